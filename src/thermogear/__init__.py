@@ -1,0 +1,43 @@
+"""thermogear: dynamics of spur gear pairs that get hot.
+
+The public names are loaded when first used, so that importing the package is cheap.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Material": "thermogear.base.materials",
+    "Lubricant": "thermogear.base.materials",
+    "Periodic": "thermogear.base.excitation",
+    "Excitation": "thermogear.base.excitation",
+    "Gear": "thermogear.gears.geometry",
+    "GearPair": "thermogear.gears.geometry",
+    "Rack": "thermogear.gears.geometry",
+    "MeshModel": "thermogear.mesh.model",
+    "Operating": "thermogear.mesh.operating",
+    "Temperatures": "thermogear.mesh.operating",
+    "mesh_cycle": "thermogear.mesh.cycle",
+    "excitation": "thermogear.mesh.excite",
+    "TorsionalModel": "thermogear.dynamics.models",
+    "PairModel": "thermogear.dynamics.models",
+    "simulate": "thermogear.dynamics.integrate",
+    "load_case": "thermogear.study.case",
+    "run": "thermogear.study.run",
+}
+
+__all__ = ["__version__", *_HOME]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'thermogear' has no attribute {name!r}")
+    return getattr(importlib.import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

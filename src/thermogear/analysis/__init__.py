@@ -1,0 +1,1 @@
+"""Sections, labels and proofs for any model with a derivative and a period."""

@@ -1,0 +1,1 @@
+"""The ground floor: errors, vocabulary, materials and the excitation that leaves the gears."""

@@ -1,0 +1,72 @@
+"""Errors and warnings: one line that names field, value, allowed range and a fix."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class ThermogearError(Exception):
+    """Base of every error this package raises on purpose."""
+
+
+class InputError(ThermogearError, ValueError):
+    """A value the user gave is impossible.
+
+    The message is one line: ``field: got VALUE; allowed RANGE; why; fix``. Parts
+    that are not given are left out.
+    """
+
+    def __init__(
+        self,
+        field: str,
+        got: object,
+        *,
+        allowed: str | None = None,
+        why: str | None = None,
+        fix: str | None = None,
+    ) -> None:
+        self.field = field
+        self.got = got
+        self.allowed = allowed
+        self.why = why
+        self.fix = fix
+        parts = [f"{field}: got {got}"]
+        if allowed:
+            parts.append(f"allowed {allowed}")
+        if why:
+            parts.append(why)
+        if fix:
+            parts.append(fix)
+        super().__init__("; ".join(parts).replace("\n", " "))
+
+    def under(self, prefix: str) -> InputError:
+        """The same error with ``prefix.`` before its field: a part speaks for its whole."""
+        return type(self)(
+            f"{prefix}.{self.field}",
+            self.got,
+            allowed=self.allowed,
+            why=self.why,
+            fix=self.fix,
+        )
+
+
+class GeometryError(InputError):
+    """A gear or a gear pair that cannot be made or cannot mesh."""
+
+
+class ConvergenceError(ThermogearError):
+    """An iteration did not settle; the message carries count, residual and tolerance."""
+
+
+class ValidityWarning(UserWarning):
+    """A value outside the range its source states; the result is an extrapolation."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Advice for an unknown ``name``: the nearest known one, else the whole list."""
+    names = sorted(known)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    return "known: " + ", ".join(names)

@@ -1,0 +1,1 @@
+"""Geometry, contact and stiffness of an isothermal spur gear pair."""

@@ -1,0 +1,1 @@
+"""Lubrication, friction, temperature and thermal deformation."""

@@ -1,0 +1,1 @@
+"""The choices of a mesh model and the quasi-static mesh cycle they lead to."""

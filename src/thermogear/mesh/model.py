@@ -1,0 +1,119 @@
+"""The named choices of a mesh model and its two bundles.
+
+A choice is a name out of :data:`CHOICES` or a number; a bundle is a full set of them. No
+function asks which bundle it is in: it is handed the choice it needs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+from thermogear.base.errors import InputError, nearest
+
+CHOICES: dict[str, dict[str, str]] = {
+    "friction": {
+        "benedict-kelley": "mixed lubrication, Benedict and Kelley 1961",
+        "dry": "constant coefficient, `dry_coefficient`",
+    },
+    "flash": {
+        "ellipse": "Blok, u = 0.78598, half width: Hertz-elliptic heat",
+        "uniform": "Blok, u = 0.79788, half width: uniform heat",
+        "parabola": "Blok, u = 0.82919, half width: parabolic heat (Blok 1937)",
+    },
+    "flank": {
+        "growth": "normal growth (B) of one flank from the annulus solution",
+        "thesis": "printed Delta f, first term read as the half-thickness form, no u_b",
+    },
+    "bore": {
+        "free": "free bore, plane stress (A1)",
+        "rigid": "bore held by a rigid cold shaft, u_a = 0 (A2)",
+        "shaft": "bore follows a same-steel shaft at its own temperature (A2)",
+    },
+    "housing": {
+        "expands": "the axes move apart by lambda_h (T_h - T0) a_w",
+        "rigid": "the centre distance stays",
+    },
+    "modulus": {
+        "of-temperature": "E(T) of carbon steel",
+        "constant": "E at 20 C",
+    },
+    "stiffness": {
+        "textbook-root-circle": "potential-energy sum from the root circle, Sainsot, no coupling",
+        "textbook-30-degree": "the same sum from the 30-degree section",
+    },
+    "thermal_stiffness": {
+        "none": "heat is an offset, not a spring",
+        "thesis": "k_T = F_n/Delta f in series, added to k",
+    },
+    "sharing": {
+        "stiffness": "load shared by the pair stiffnesses, no deviations",
+        "equal": "equal shares in double contact",
+    },
+}
+
+
+@dataclass(frozen=True)
+class MeshModel:
+    """Every choice of the quasi-static mesh cycle; see :data:`CHOICES` for the names."""
+
+    name: str
+    friction: str = "benedict-kelley"
+    dry_coefficient: float = 0.2
+    flash: str = "ellipse"
+    flank: str = "growth"
+    bore: str = "free"
+    housing: str = "expands"
+    modulus: str = "of-temperature"
+    stiffness: str = "textbook-30-degree"
+    thermal_stiffness: str = "none"
+    sharing: str = "stiffness"
+
+    def __post_init__(self) -> None:
+        for field, known in CHOICES.items():
+            value = getattr(self, field)
+            if value not in known:
+                raise InputError(
+                    f"model.{field}",
+                    repr(value),
+                    allowed=" | ".join(known),
+                    fix=nearest(str(value), known),
+                )
+        if not 0.0 < self.dry_coefficient <= 1.0:
+            raise InputError("model.dry_coefficient", self.dry_coefficient, allowed="0 < mu <= 1")
+
+    @classmethod
+    def consistent(cls) -> MeshModel:
+        """Units, energy and limits close: the default."""
+        return cls(name="consistent")
+
+    @classmethod
+    def thesis(cls) -> MeshModel:
+        """As printed, with the smallest repair where print is impossible."""
+        return cls(
+            name="thesis",
+            flash="parabola",
+            flank="thesis",
+            housing="rigid",
+            modulus="constant",
+            stiffness="textbook-root-circle",
+            thermal_stiffness="thesis",
+            sharing="equal",
+        )
+
+    def override(self, **choices: object) -> MeshModel:
+        """The same bundle with single choices replaced; an unknown name says the nearest."""
+        known = {f.name for f in fields(self)} - {"name"}
+        for key in choices:
+            if key not in known:
+                raise InputError(f"model.{key}", "an unknown choice", fix=nearest(key, known))
+        if not choices:
+            return self
+        changed = {k: v for k, v in choices.items() if getattr(self, k) != v}
+        if not changed:
+            return self
+        name = self.name + " + " + ", ".join(f"{k}={v}" for k, v in sorted(changed.items()))
+        return replace(self, name=name, **changed)  # type: ignore[arg-type]
+
+    def choices(self) -> dict[str, str | float]:
+        """Field -> value, in order, without the name."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "name"}

@@ -1,0 +1,1 @@
+"""Spectra, filters and lines, for computed and measured records alike."""

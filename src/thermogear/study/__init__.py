@@ -1,0 +1,1 @@
+"""Case files, runs and stored results."""
