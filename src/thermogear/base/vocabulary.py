@@ -1,0 +1,174 @@
+"""The one table of stored quantities and the only maker of labelled Datasets.
+
+Inside the floors a number is an SI float; at the end of a floor :func:`label` turns the arrays
+into an xarray Dataset whose variables carry units, long name, symbol and source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thermogear.base.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a stored name means: unit (SI text, "1" for a pure number), words, symbol, source."""
+
+    unit: str
+    long_name: str
+    symbol: str = ""
+    source: str = ""
+
+
+STATUS = ("ok", "jammed", "not_converged", "diverged")
+"""Meaning of the values 0, 1, 2, ... of every ``status`` variable."""
+
+_PHYSICS = "geometry of the involute"
+_THESIS = "thesis, as printed with the smallest repair"
+
+QUANTITIES: dict[str, Quantity] = {
+    # coordinates
+    "path_position": Quantity("m", "distance from the pinion's tangent point", "s", _PHYSICS),
+    "mesh_phase": Quantity("1", "mesh phase, 0 where a pair enters at A", "φ"),
+    "pinion_speed": Quantity("rad/s", "pinion speed", "ω₁"),
+    "pinion_torque": Quantity("N m", "pinion torque", "T₁"),
+    "gear_temperature": Quantity("K", "addendum temperature of both gears", "T_a"),
+    # contact
+    "pinion_radius": Quantity("m", "pinion radius of the contact point", "r_k1", _PHYSICS),
+    "wheel_radius": Quantity("m", "wheel radius of the contact point", "r_k2", _PHYSICS),
+    "reduced_radius": Quantity("m", "reduced radius of curvature", "ρ*", _PHYSICS),
+    "pinion_rolling_velocity": Quantity("m/s", "rolling velocity of the pinion flank", "v₁"),
+    "wheel_rolling_velocity": Quantity("m/s", "rolling velocity of the wheel flank", "v₂"),
+    "sliding_velocity": Quantity("m/s", "sliding velocity v₁ − v₂", "v_s"),
+    "entrainment_velocity": Quantity("m/s", "entrainment velocity (v₁ + v₂)/2", "v_e"),
+    "load_share": Quantity("1", "share of the normal force on this tooth pair", "X_Γ"),
+    "line_load": Quantity("N/m", "normal load per width of this tooth pair", "w"),
+    "hertz_half_width": Quantity("m", "Hertzian half width", "B", "Hertz"),
+    "hertz_pressure": Quantity("Pa", "Hertzian pressure at the centre", "p_H", "Hertz"),
+    "normal_force": Quantity("N", "normal force T₁/r_b1", "F_n"),
+    # friction and heat
+    "dynamic_viscosity": Quantity("Pa s", "oil viscosity at the inlet", "η₀", "ASTM D341"),
+    "friction_coefficient": Quantity("1", "friction coefficient of the chosen law", "|μ|"),
+    "friction_coefficient_mixed": Quantity(
+        "1", "friction coefficient, mixed lubrication", "|μ|", "Benedict and Kelley 1961"
+    ),
+    "friction_coefficient_dry": Quantity("1", "friction coefficient, dry", "|μ|"),
+    "flash_temperature": Quantity("K", "flash temperature rise", "ΔT_f", "Blok 1937"),
+    "flash_temperature_mixed": Quantity("K", "flash temperature rise, mixed lubrication", "ΔT_f"),
+    "flash_temperature_dry": Quantity("K", "flash temperature rise, dry", "ΔT_f"),
+    "pinion_heat_share": Quantity("1", "share of the frictional heat into the pinion", "β₁"),
+    "pinion_contact_temperature": Quantity("K", "pinion flank temperature in contact", "T_c1"),
+    "wheel_contact_temperature": Quantity("K", "wheel flank temperature in contact", "T_c2"),
+    "pinion_shaft_heat": Quantity("W", "heat conducted from the pinion's rim to its bore", "Q₁"),
+    "wheel_shaft_heat": Quantity("W", "heat conducted from the wheel's rim to its bore", "Q₂"),
+    # deformation and backlash
+    "pinion_deformation": Quantity("m", "normal growth of the pinion flank", "δ_n1"),
+    "wheel_deformation": Quantity("m", "normal growth of the wheel flank", "δ_n2"),
+    "deformation_sum": Quantity("m", "normal growth of both flanks", "δ_n1 + δ_n2"),
+    "pinion_base_growth": Quantity("m", "radial growth at the pinion's base circle", "u_b1"),
+    "wheel_base_growth": Quantity("m", "radial growth at the wheel's base circle", "u_b2"),
+    "half_backlash_curve": Quantity("m", "half backlash along the line of action", "b′(φ)"),
+    "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
+    "cold_half_backlash": Quantity("m", "cold half backlash", "b"),
+    "thermal_error": Quantity("m", "kinematic error made by heat", "e_th"),
+    "jam_temperature": Quantity(
+        "K",
+        "pinion addendum temperature at which the backlash is used up, "
+        "both gears rising alike, housing as it is",
+        "T_jam",
+    ),
+    # stiffness
+    "mesh_stiffness": Quantity("N/m", "mesh stiffness", "k"),
+    "elastic_stiffness": Quantity("N/m", "mesh stiffness without the thermal term", "k⁰"),
+    "pair_stiffness": Quantity("N/m", "stiffness of one tooth pair", "k_pair"),
+    "thermal_stiffness": Quantity("N/m", "thermal stiffness of the thesis", "k_T", _THESIS),
+    "hertz_stiffness": Quantity("N/m", "contact stiffness of one pair", "k_h"),
+    "pinion_bending_stiffness": Quantity("N/m", "bending stiffness, pinion tooth", "k_b1"),
+    "wheel_bending_stiffness": Quantity("N/m", "bending stiffness, wheel tooth", "k_b2"),
+    "pinion_shear_stiffness": Quantity("N/m", "shear stiffness, pinion tooth", "k_s1"),
+    "wheel_shear_stiffness": Quantity("N/m", "shear stiffness, wheel tooth", "k_s2"),
+    "pinion_axial_stiffness": Quantity("N/m", "axial stiffness, pinion tooth", "k_a1"),
+    "wheel_axial_stiffness": Quantity("N/m", "axial stiffness, wheel tooth", "k_a2"),
+    "pinion_body_stiffness": Quantity("N/m", "body stiffness, pinion", "k_f1"),
+    "wheel_body_stiffness": Quantity("N/m", "body stiffness, wheel", "k_f2"),
+    "mean_stiffness": Quantity("N/m", "mesh stiffness, time mean", "k_m"),
+    "peak_to_peak_stiffness": Quantity("N/m", "mesh stiffness, peak to peak", "Δk"),
+    "mid_range_stiffness": Quantity("N/m", "mesh stiffness, mid-range (max + min)/2", "k_mid"),
+    # dimensionless numbers of the equation of motion
+    "natural_frequency": Quantity("rad/s", "natural frequency", "ω_n"),
+    "mesh_frequency": Quantity("Hz", "mesh frequency", "f_mesh"),
+    "damping_ratio": Quantity("1", "damping ratio", "ζ"),
+    "frequency_ratio": Quantity("1", "mesh frequency over natural frequency", "ω_h"),
+    "stiffness_amplitude": Quantity("1", "first harmonic of the stiffness over its mean", "ε"),
+    "thermal_stiffness_ratio": Quantity("1", "change of mean stiffness by heat", "ε_T"),
+    "mean_force": Quantity("1", "mean excitation F̂/(k_m b_c)", "F_m"),
+    "force_amplitude": Quantity("1", "alternating excitation of the first harmonic", "F_h"),
+    "half_backlash_ratio": Quantity("1", "hot over cold half backlash", "B′"),
+    # motion
+    "time": Quantity("s", "time", "t"),
+    "displacement": Quantity("m", "relative displacement on the line of action", "x"),
+    "velocity": Quantity("m/s", "relative velocity", "ẋ"),
+    "section_displacement": Quantity("m", "Poincaré section: displacement", "x"),
+    "section_velocity": Quantity("m/s", "Poincaré section: velocity", "ẋ"),
+    "order": Quantity("1", "order of the mesh frequency", "f/f_mesh"),
+    "line_frequency": Quantity("Hz", "frequency of a spectral line", "f"),
+    "line_amplitude": Quantity("m", "amplitude of a spectral line (peak)", "|x|"),
+    "half_order_amplitude": Quantity("m", "amplitude of the line at half the mesh frequency", ""),
+    "scaled_displacement": Quantity("1", "relative displacement x/b_c", "X"),
+    "scaled_velocity": Quantity("1", "relative velocity, dimensionless", "Ẋ"),
+    "contact_loss_share": Quantity("1", "share of time out of drive-side contact", ""),
+    "back_impacts": Quantity("1", "back-side impacts per period", ""),
+    "status": Quantity("1", "status of the point"),
+}
+
+
+def attributes(name: str) -> dict[str, str]:
+    """units, long_name, symbol and source of a stored name, without empty entries."""
+    if name not in QUANTITIES:
+        raise InputError("quantity", repr(name), fix=nearest(name, QUANTITIES))
+    quantity = QUANTITIES[name]
+    pairs = {
+        "units": quantity.unit,
+        "long_name": quantity.long_name,
+        "symbol": quantity.symbol,
+        "source": quantity.source,
+    }
+    return {key: value for key, value in pairs.items() if value}
+
+
+def status_attributes() -> dict[str, Any]:
+    """CF flag attributes of a ``status`` variable."""
+    return {
+        "long_name": "status of the point",
+        "flag_values": np.arange(len(STATUS), dtype=np.int8),
+        "flag_meanings": " ".join(STATUS),
+    }
+
+
+def label(
+    variables: Mapping[str, tuple[tuple[str, ...], ArrayLike]],
+    coordinates: Mapping[str, tuple[tuple[str, ...], ArrayLike]] | None = None,
+    attributes_of_all: Mapping[str, Any] | None = None,
+) -> xr.Dataset:
+    """A Dataset whose every name stands in :data:`QUANTITIES`; names map to (dims, values)."""
+    import xarray as xr
+
+    def dressed(name: str, dims: tuple[str, ...], values: ArrayLike) -> xr.Variable:
+        if name == "status":
+            return xr.Variable(dims, np.asarray(values, np.int8), status_attributes())
+        return xr.Variable(dims, np.asarray(values), attributes(name))
+
+    return xr.Dataset(
+        {name: dressed(name, *entry) for name, entry in variables.items()},
+        {name: dressed(name, *entry) for name, entry in (coordinates or {}).items()},
+        dict(attributes_of_all or {}),
+    )
