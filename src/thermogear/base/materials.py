@@ -57,12 +57,26 @@ class Material:
         return float(np.sqrt(self.thermal_conductivity * self.density * self.specific_heat))
 
 
+LUBRICANT_KINDS: dict[str, str] = {
+    "mineral": "mineral base oil",
+    "pao": "polyalphaolefin",
+    "ester": "synthetic ester",
+    "pag": "polyalkylene glycol",
+}
+"""Base oil families: what pressure-viscosity and lubricant factors are tabulated by."""
+
+_WALTHER_SHIFT = 0.7  # mm^2/s, ASTM D341 above 2 mm^2/s (DIN 51563 prints 0.8)
+
+
 @dataclass(frozen=True)
 class Lubricant:
     """An oil by its Walther line (ASTM D341): log10 log10(nu + 0.7) = A - B log10 T.
 
-    nu in mm^2/s, T in K. Density rho(T) = ``density_15`` - 0.7 (T - 288.15) kg/m^3
-    (ISO/TR 15144-1 eq. 20; the standard rounds 288.15 to 289 - 273 + ...).
+    nu in mm^2/s, T in K. Density rho(T) = ``density_15`` - ``density_slope`` (T - 288.15 K),
+    kg/m^3 (form of ISO/TR 15144-1 eq. 20, whose slope is 0.7 kg/(m^3 K)). ``kind`` is one of
+    :data:`LUBRICANT_KINDS`. ``thermal_conductivity`` [W/(m K)] and ``specific_heat``
+    [J/(kg K)] are taken constant. ``temperature_range`` [K] is where the line is trusted;
+    outside it the viscosity functions warn.
     """
 
     name: str
@@ -71,6 +85,82 @@ class Lubricant:
     walther_b: float
     density_15: float
     source: str = "given by the user"
+    density_slope: float = 0.7
+    thermal_conductivity: float = 0.135
+    specific_heat: float = 2000.0
+    temperature_range: tuple[float, float] = (ZERO_CELSIUS - 20.0, ZERO_CELSIUS + 150.0)
+
+    def __post_init__(self) -> None:
+        if self.kind not in LUBRICANT_KINDS:
+            raise InputError(
+                "lubricant.kind",
+                repr(self.kind),
+                allowed=" | ".join(LUBRICANT_KINDS),
+                fix=nearest(self.kind, LUBRICANT_KINDS),
+            )
+        for field in (
+            "walther_a",
+            "walther_b",
+            "density_15",
+            "thermal_conductivity",
+            "specific_heat",
+        ):
+            value = getattr(self, field)
+            if not (np.isfinite(value) and value > 0.0):
+                raise InputError(f"lubricant.{field}", value, allowed="> 0, finite")
+        if not (np.isfinite(self.density_slope) and self.density_slope >= 0.0):
+            raise InputError(
+                "lubricant.density_slope", self.density_slope, allowed=">= 0 kg/(m^3 K)"
+            )
+        low, high = self.temperature_range
+        if not 0.0 < low < high:
+            raise InputError(
+                "lubricant.temperature_range",
+                f"{low} .. {high} K",
+                allowed="0 K < lower < upper",
+            )
+
+    @classmethod
+    def from_two_points(
+        cls,
+        name: str,
+        point_1: tuple[float, float],
+        point_2: tuple[float, float],
+        *,
+        kind: str = "mineral",
+        density_15: float | None = None,
+        source: str = "two viscosities of a data sheet",
+    ) -> Lubricant:
+        """The oil through two points (temperature [K], kinematic viscosity [m^2/s]).
+
+        ``density_15`` [kg/m^3] defaults to 43.37 log10(nu40) + 805.5, nu40 in mm^2/s
+        (ISO/TR 15144-1 eq. 21, for want of a measured one). Raises when the points are not
+        two, or the viscosity does not fall from the colder to the hotter.
+        """
+        (cold, thick), (hot, thin) = sorted([point_1, point_2])
+        if not 0.0 < cold < hot:
+            raise InputError(
+                "lubricant.temperatures",
+                f"{cold} and {hot} K",
+                allowed="two different temperatures > 0 K",
+                fix="give the viscosities at 313.15 K and 373.15 K (40 and 100 C)",
+            )
+        if not 0.3e-6 < thin < thick < np.inf:
+            raise InputError(
+                "lubricant.viscosities",
+                f"{thick * 1e6:g} mm^2/s at {cold} K and {thin * 1e6:g} mm^2/s at {hot} K",
+                allowed="> 0.3 mm^2/s and falling with temperature",
+                why="the Walther line takes log10(log10(nu + 0.7))",
+                fix="viscosities are in m^2/s: 100 mm^2/s is 100e-6",
+            )
+        ordinates = np.log10(np.log10(np.array([thick, thin]) * 1e6 + _WALTHER_SHIFT))
+        abscissae = np.log10([cold, hot])
+        slope = float((ordinates[0] - ordinates[1]) / (abscissae[1] - abscissae[0]))
+        intercept = float(ordinates[0] + slope * abscissae[0])
+        if density_15 is None:
+            at_40 = 10.0 ** (10.0 ** (intercept - slope * np.log10(ZERO_CELSIUS + 40.0)))
+            density_15 = float(43.37 * np.log10(at_40 - _WALTHER_SHIFT) + 805.5)
+        return cls(name, kind, intercept, slope, density_15, source)
 
 
 MATERIALS: dict[str, Material] = {
@@ -94,3 +184,77 @@ def material(name: str) -> Material:
     if name not in MATERIALS:
         raise InputError("material", repr(name), fix=nearest(name, MATERIALS))
     return MATERIALS[name]
+
+
+_PUBLIC_SET = (
+    "GEARpie lubricant library (C. Fernandes, University of Porto); density at 15 C and its "
+    "expansion from the same set, conductivity from its formula at 60 C"
+)
+
+
+def _graded(prefix: str, kind: str, lines: dict[int, tuple[float, float]]) -> dict[str, Lubricant]:
+    """One family of ISO VG grades: density, its slope, conductivity and heat are shared."""
+    density, expansion, conductivity = {
+        "mineral": (902.0, 5.8e-4, 0.135),
+        "pao": (859.0, 5.5e-4, 0.142),
+    }[kind]
+    return {
+        f"{prefix}{grade}": Lubricant(
+            name=f"{prefix}{grade}",
+            kind=kind,
+            walther_a=a,
+            walther_b=b,
+            density_15=density,
+            source=_PUBLIC_SET,
+            density_slope=density * expansion,
+            thermal_conductivity=conductivity,
+            specific_heat=2306.93,
+        )
+        for grade, (a, b) in lines.items()
+    }
+
+
+LUBRICANTS: dict[str, Lubricant] = {
+    **_graded(
+        "M",
+        "mineral",
+        {
+            32: (9.5259, 3.7449),
+            46: (9.7044, 3.7995),
+            68: (9.4422, 3.6778),
+            100: (9.2479, 3.5849),
+            150: (9.0379, 3.4861),
+            220: (8.8178, 3.3852),
+            320: (9.0658, 3.4730),
+        },
+    ),
+    **_graded(
+        "P",
+        "pao",
+        {
+            68: (7.9787, 3.0914),
+            100: (7.8091, 3.0083),
+            150: (7.646383, 2.928541),
+            220: (7.4846, 2.8510),
+            320: (7.3514, 2.7865),
+        },
+    ),
+    "FVA3": Lubricant(
+        name="FVA3",
+        kind="mineral",
+        walther_a=9.2384,
+        walther_b=3.5810,
+        density_15=892.1,
+        source=(
+            "reference mineral oil, ISO VG 100, Walther line of the public FZG calculations; "
+            "density from its viscosity at 40 C by ISO/TR 15144-1 eq. 21"
+        ),
+    ),
+}
+
+
+def lubricant(name: str) -> Lubricant:
+    """The named oil, or an error that says the nearest name."""
+    if name not in LUBRICANTS:
+        raise InputError("lubricant", repr(name), fix=nearest(name, LUBRICANTS))
+    return LUBRICANTS[name]

@@ -1,0 +1,81 @@
+"""What a friction law needs to know of a contact: arrays over any positions and points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactState:
+    """The contact of one tooth pair (SI), every field a number or an array that broadcasts.
+
+    ``line_load`` w [N/m] of this pair; ``speed_1``, ``speed_2`` [m/s] rolling speeds of pinion
+    and wheel flank; ``reduced_radius`` R [m]; ``pressure`` greatest Hertz pressure [Pa];
+    ``viscosity`` eta [Pa s] at the oil's temperature and ambient pressure;
+    ``kinematic_viscosity`` nu [m^2/s] likewise; ``roughness`` Ra [m], the mean of both flanks;
+    ``film_parameter`` Lambda [-] where a law blends by it.
+    """
+
+    line_load: ArrayLike
+    speed_1: ArrayLike
+    speed_2: ArrayLike
+    reduced_radius: ArrayLike
+    pressure: ArrayLike
+    viscosity: ArrayLike
+    roughness: ArrayLike
+    kinematic_viscosity: ArrayLike | None = None
+    film_parameter: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("line_load", "speed_1", "speed_2", "pressure", "roughness"):
+            self._check(name, positive=False)
+        for name in ("reduced_radius", "viscosity"):
+            self._check(name, positive=True)
+        if self.kinematic_viscosity is not None:
+            self._check("kinematic_viscosity", positive=True)
+        if self.film_parameter is not None:
+            self._check("film_parameter", positive=False)
+
+    def _check(self, name: str, *, positive: bool) -> None:
+        values = np.asarray(getattr(self, name), dtype=float)
+        object.__setattr__(self, name, values)
+        good = values > 0.0 if positive else values >= 0.0
+        if not np.all(good & (np.isfinite(values) | (name == "film_parameter"))):
+            worst = values[~good].flat[0] if np.any(~good) else "a value that is not finite"
+            raise InputError(
+                f"contact.{name}", worst, allowed="> 0, finite" if positive else ">= 0, finite"
+            )
+
+    @property
+    def sliding(self) -> Floats:
+        """v1 - v2 [m/s], signed: positive where the pinion flank is the faster."""
+        return np.asarray(np.asarray(self.speed_1) - np.asarray(self.speed_2))
+
+    @property
+    def sum_speed(self) -> Floats:
+        """v1 + v2 [m/s]."""
+        return np.asarray(np.asarray(self.speed_1) + np.asarray(self.speed_2))
+
+    @property
+    def entrainment(self) -> Floats:
+        """(v1 + v2)/2 [m/s]."""
+        return np.asarray(0.5 * self.sum_speed)
+
+    @property
+    def slide_roll_ratio(self) -> Floats:
+        """|v1 - v2| over the entrainment speed [-], 0 at rest."""
+        slide, roll = np.abs(self.sliding), self.entrainment
+        return np.asarray(np.divide(slide, roll, out=np.zeros(slide.shape), where=roll != 0.0))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The common shape of all fields."""
+        given = [np.shape(value) for value in vars(self).values() if value is not None]
+        return np.broadcast_shapes(*given)

@@ -1,0 +1,404 @@
+"""Thermal growth of gears: annulus displacement, flank growth, hot half backlash, jam.
+
+A gear body is an annulus with the radial field of :class:`RadialField`; its teeth carry no
+hoop stress and follow the root circle. Everything is of first order in lambda tau, tau the
+rise over the reference temperature.
+
+The displacements are written as u(r) = lambda tau(r) r + w(r). The excess w comes from the
+gradient and from the bore's support alone, so that a uniform field gives w = 0 exactly: then
+an involute stays an involute and gears that heat with their housing keep their backlash to the
+last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.materials import Material
+from thermogear.heat.temperature import radial_temperature
+
+Floats = NDArray[np.float64]
+
+__all__ = [
+    "BORES",
+    "GearLike",
+    "RadialField",
+    "annulus_displacement",
+    "base_circle_growth",
+    "centre_distance_growth",
+    "flank_growth",
+    "flank_normal_growth",
+    "hot_half_backlash",
+    "jam_temperature",
+    "radial_displacement",
+]
+
+BORES: dict[str, str] = {
+    "free": "free bore",
+    "rigid": "bore held by a rigid cold shaft, u_a = 0",
+    "shaft": "bore follows a shaft of the same material at its own temperature",
+}
+PLANES = ("stress", "strain")
+
+
+class GearLike(Protocol):
+    """What the growth of a flank needs to know of its gear (SI)."""
+
+    @property
+    def base_radius(self) -> float: ...
+
+    @property
+    def root_radius(self) -> float: ...
+
+    @property
+    def pitch_radius(self) -> float: ...
+
+    @property
+    def material(self) -> Material: ...
+
+    def half_thickness_angle(self, radius: ArrayLike) -> Floats: ...
+
+
+@dataclass(frozen=True, eq=False)
+class RadialField:
+    """T(r) of a gear body, logarithmic between bore and addendum circle.
+
+    ``bore_radius`` r_x, ``tip_radius`` r_a [m]; ``bore_temperature`` T_x and
+    ``addendum_temperature`` T_a [K], numbers or arrays that broadcast against the radii (shape
+    (operating, 1) against radii of shape (position,)); ``reference`` T0 [K], where the
+    drawing's dimensions hold. Raises for r_x <= 0, r_x >= r_a, temperatures <= 0 K.
+    """
+
+    bore_radius: float
+    tip_radius: float
+    bore_temperature: ArrayLike
+    addendum_temperature: ArrayLike
+    reference: float
+
+    def __post_init__(self) -> None:
+        for name in ("bore_temperature", "addendum_temperature"):
+            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
+        if not (np.isfinite(self.reference) and self.reference > 0.0):
+            raise InputError("reference temperature", f"{self.reference} K", allowed="> 0 K")
+        self.temperature(self.tip_radius)
+
+    @classmethod
+    def uniform(
+        cls, bore_radius: float, tip_radius: float, temperature: ArrayLike, reference: float
+    ) -> RadialField:
+        """The same temperature everywhere."""
+        return cls(bore_radius, tip_radius, temperature, temperature, reference)
+
+    @property
+    def bore_rise(self) -> Floats:
+        """t_x = T_x - T0 [K]."""
+        return np.asarray(self.bore_temperature) - self.reference
+
+    @property
+    def gradient(self) -> Floats:
+        """g = (T_a - T_x)/ln(r_a/r_x) [K]; exactly 0 for a uniform field."""
+        drop = np.asarray(self.addendum_temperature) - np.asarray(self.bore_temperature)
+        return np.asarray(drop / np.log(self.tip_radius / self.bore_radius))
+
+    def temperature(self, radius: ArrayLike) -> Floats:
+        """T(r) [K] for r_x <= r <= r_a; raises outside."""
+        return radial_temperature(
+            radius,
+            self.bore_radius,
+            self.tip_radius,
+            self.bore_temperature,
+            self.addendum_temperature,
+        )
+
+    def rise(self, radius: ArrayLike) -> Floats:
+        """tau(r) = t_x + g ln(r/r_x) [K] over the reference."""
+        r = np.asarray(radius, dtype=float)
+        return np.asarray(self.bore_rise + self.gradient * np.log(r / self.bore_radius))
+
+    def area_mean(self, radius: ArrayLike) -> Floats:
+        """Mean temperature over the annulus from the bore to ``radius`` [K], by area."""
+        r = np.asarray(radius, dtype=float)
+        area = 0.5 * (r**2 - self.bore_radius**2)
+        moment = _log_moment(r, self.bore_radius)
+        return np.asarray(np.asarray(self.bore_temperature) + self.gradient * (moment / area))
+
+
+def _log_moment(radius: ArrayLike, bore_radius: ArrayLike) -> Floats:
+    """K(r) = int_{r_x}^r s ln(s/r_x) ds = r^2 ln(r/r_x)/2 - (r^2 - r_x^2)/4."""
+    r, rx = np.asarray(radius, dtype=float), np.asarray(bore_radius, dtype=float)
+    return np.asarray(0.5 * r**2 * np.log(r / rx) - 0.25 * (r**2 - rx**2))
+
+
+def _support(bore: str, plane: str, expansion: float, poisson: float) -> tuple[float, float]:
+    """(lambda, nu) of the plane problem; refuses unknown names."""
+    if bore not in BORES:
+        raise InputError("bore", repr(bore), allowed=" | ".join(BORES), fix=nearest(bore, BORES))
+    if plane not in PLANES:
+        raise InputError(
+            "plane", repr(plane), allowed=" | ".join(PLANES), fix=nearest(plane, PLANES)
+        )
+    if plane == "strain":
+        return expansion * (1.0 + poisson), poisson / (1.0 - poisson)
+    return expansion, poisson
+
+
+def _annulus_excess(
+    field: RadialField,
+    radius: ArrayLike,
+    outer_radius: float,
+    expansion: float,
+    poisson: float,
+    bore: str,
+) -> Floats:
+    """w(r) = u(r) - lambda tau(r) r of an annulus free at ``outer_radius`` [m].
+
+    ``expansion`` and ``poisson`` already those of the plane problem.
+    """
+    r = np.asarray(radius, dtype=float)
+    rx, ro, g = field.bore_radius, outer_radius, field.gradient
+
+    def free(at: Floats) -> Floats:
+        whole = _log_moment(ro, rx) / (ro**2 - rx**2)
+        pulled = (1.0 + poisson) * _log_moment(at, rx)
+        pulled = pulled + ((1.0 - poisson) * at**2 + (1.0 + poisson) * rx**2) * whole
+        return np.asarray(expansion * g * (pulled / at - at * np.log(at / rx)))
+
+    excess = free(r)
+    if bore == "free":
+        return excess
+    # the support moves the bore from where it would go freely; the outer edge stays free
+    wanted = -expansion * field.bore_rise * rx if bore == "rigid" else 0.0 * field.bore_rise
+    shift = wanted - free(np.asarray(rx))
+    spread = ((1.0 - poisson) * r**2 + (1.0 + poisson) * ro**2) / (
+        (1.0 - poisson) * rx**2 + (1.0 + poisson) * ro**2
+    )
+    return np.asarray(excess + shift * spread * (rx / r))
+
+
+def annulus_displacement(
+    field: RadialField,
+    radius: ArrayLike,
+    outer_radius: float,
+    expansion: float,
+    poisson: float,
+    bore: str = "free",
+    plane: str = "stress",
+) -> Floats:
+    """Radial displacement u(r) of an annulus with the field's temperature [m].
+
+    Free bore (A1): u = (lambda/r) { (1+nu) J(r) + [(1-nu) r^2 + (1+nu) r_x^2] J(R)/(R^2 - r_x^2) },
+    J(r) = int_{r_x}^r tau s ds. Bore moved by u_a (A2): u = (1+nu) lambda J/r + C1 r + C2/r,
+    C1 = [(1-nu) r_x u_a + (1-nu^2) lambda J(R)]/[(1-nu) r_x^2 + (1+nu) R^2],
+    C2 = r_x u_a - C1 r_x^2; u_a = 0 (``bore`` "rigid") or lambda t_x r_x ("shaft").
+
+    ``field`` the temperature, ``radius`` r [m], ``outer_radius`` R [m] of the free edge (the
+    root circle), ``expansion`` lambda [1/K], ``poisson`` nu, ``plane`` "stress" or "strain"
+    (nu -> nu/(1-nu), lambda -> lambda (1+nu), the shaft's too). Shape of field and radius.
+    Identity for the free bore: u(R) = lambda R times the area mean of tau. Raises for unknown
+    names and for R <= r_x. Source: plane thermoelasticity of the annulus; both forms agree
+    with a boundary-value solver.
+    """
+    lam, nu = _support(bore, plane, expansion, poisson)
+    if not outer_radius > field.bore_radius:
+        raise InputError(
+            "bore_radius",
+            f"{field.bore_radius} m with root radius {outer_radius} m",
+            allowed="0 < bore radius < root radius",
+            why="no ring would be left below the teeth",
+        )
+    r = np.asarray(radius, dtype=float)
+    excess = _annulus_excess(field, r, outer_radius, lam, nu, bore)
+    return np.asarray(lam * field.rise(r) * r + excess)
+
+
+def _excess(
+    field: RadialField,
+    radius: ArrayLike,
+    root_radius: float,
+    expansion: float,
+    poisson: float,
+    bore: str,
+) -> Floats:
+    """w(r) in ring and tooth; above the root circle dw/dr = -lambda g."""
+    if not root_radius > field.bore_radius:
+        raise InputError(
+            "bore_radius",
+            f"{field.bore_radius} m with root radius {root_radius} m",
+            allowed="0 < bore radius < root radius",
+            why="no ring would be left below the teeth",
+        )
+    r = np.asarray(radius, dtype=float)
+    inside = np.minimum(r, root_radius)
+    ring = _annulus_excess(field, inside, root_radius, expansion, poisson, bore)
+    return np.asarray(ring - expansion * field.gradient * (r - inside))
+
+
+def radial_displacement(
+    field: RadialField,
+    radius: ArrayLike,
+    root_radius: float,
+    expansion: float,
+    poisson: float,
+    bore: str = "free",
+    plane: str = "stress",
+) -> Floats:
+    """Radial displacement u_r(r) of ring and tooth [m].
+
+    r <= r_f: :func:`annulus_displacement` with R = r_f; above it the tooth grows freely,
+    u_r(r) = u(r_f) + lambda int_{r_f}^r tau dr.
+
+    Arguments as :func:`annulus_displacement`, ``root_radius`` r_f [m]. At the base circle it is
+    the u_b that printed formulas leave undefined. Continuous at r_f.
+    """
+    lam, nu = _support(bore, plane, expansion, poisson)
+    r = np.asarray(radius, dtype=float)
+    return np.asarray(lam * field.rise(r) * r + _excess(field, r, root_radius, lam, nu, bore))
+
+
+def base_circle_growth(
+    gear: GearLike, field: RadialField, bore: str = "free", plane: str = "stress"
+) -> Floats:
+    """u_b = u_r(r_b), the radial displacement of the base circle [m].
+
+    T0 + u_b/(lambda r_b) is the gear's effective temperature for its base pitch. Shape of the
+    field's temperatures.
+    """
+    return radial_displacement(
+        field,
+        gear.base_radius,
+        gear.root_radius,
+        gear.material.thermal_expansion,
+        gear.material.poisson_ratio,
+        bore,
+        plane,
+    )
+
+
+def flank_normal_growth(
+    field: RadialField,
+    radius: ArrayLike,
+    half_thickness_angle: ArrayLike,
+    base_radius: float,
+    root_radius: float,
+    expansion: float,
+    poisson: float,
+    bore: str = "free",
+    plane: str = "stress",
+    strain_taken_off: ArrayLike = 0.0,
+) -> Floats:
+    """Normal growth (B) of one flank about its tooth centre line [m], positive = material.
+
+    delta_n(r) = u_r sin(alpha_k) + psi [ r lambda tau(r) - u_r ] cos(alpha_k),
+    cos(alpha_k) = r_b/r.
+
+    ``radius`` r [m] >= r_b, ``half_thickness_angle`` psi(r) [rad], ``base_radius``,
+    ``root_radius`` [m], the rest as :func:`annulus_displacement`. ``strain_taken_off`` eps [-]
+    returns delta_n - eps rho_k instead, rho_k the curvature radius: the growth beyond a body
+    that swells uniformly by eps, exactly 0 for lambda tau = eps. Uniform tau: lambda tau rho_k.
+    Shape of field and radius. Raises for r < r_b. Agrees with a plane-stress finite-element
+    sector to 0.2 um (25 teeth) and 0.7 um (75 teeth).
+    """
+    lam, nu = _support(bore, plane, expansion, poisson)
+    r = np.asarray(radius, dtype=float)
+    if np.any(r < base_radius * (1.0 - 1e-12)):
+        raise InputError(
+            "radius",
+            f"{r.min():.6g} m",
+            allowed=f">= {base_radius:.6g} m",
+            why="the involute starts at the base circle",
+        )
+    cosine = np.minimum(base_radius / r, 1.0)
+    curvature = np.sqrt(np.maximum(r**2 - base_radius**2, 0.0))
+    excess = _excess(field, r, root_radius, lam, nu, bore)
+    uniform = (lam * field.rise(r) - np.asarray(strain_taken_off)) * curvature
+    tilt = curvature / r - np.asarray(half_thickness_angle) * cosine
+    return np.asarray(uniform + excess * tilt)
+
+
+def flank_growth(
+    gear: GearLike,
+    field: RadialField,
+    radius: ArrayLike,
+    bore: str = "free",
+    plane: str = "stress",
+    strain_taken_off: ArrayLike = 0.0,
+) -> Floats:
+    """Normal growth (B) of one flank of ``gear`` at ``radius`` [m]; :func:`flank_normal_growth`.
+
+    Includes the body's radial displacement; the axes' movement enters apart, in
+    :func:`hot_half_backlash`.
+    """
+    return flank_normal_growth(
+        field,
+        radius,
+        gear.half_thickness_angle(radius),
+        gear.base_radius,
+        gear.root_radius,
+        gear.material.thermal_expansion,
+        gear.material.poisson_ratio,
+        bore,
+        plane,
+        strain_taken_off,
+    )
+
+
+def centre_distance_growth(
+    centre_distance: ArrayLike, expansion: ArrayLike, temperature: ArrayLike, reference: ArrayLike
+) -> Floats:
+    """Da = lambda_h (T_h - T0) a [m]: how far a housing at ``temperature`` moves the axes.
+
+    ``centre_distance`` a [m], ``expansion`` lambda_h [1/K], temperatures [K]. Along the line of
+    action it opens the mesh by Da sin(alpha_w).
+    """
+    rise = np.asarray(temperature, dtype=float) - np.asarray(reference)
+    return np.asarray(np.asarray(expansion) * rise * np.asarray(centre_distance))
+
+
+def hot_half_backlash(
+    half_backlash: ArrayLike,
+    growth_1: ArrayLike,
+    growth_2: ArrayLike,
+    axis_opening: ArrayLike = 0.0,
+) -> Floats:
+    """Half backlash when hot, along the line of action [m].
+
+    b' = b - (delta_n1 + delta_n2) + Da sin(alpha_w).
+
+    ``half_backlash`` b [m] cold, ``growth_1``, ``growth_2`` [m] of one flank of pinion and
+    wheel (both flanks of both gears grow), ``axis_opening`` Da sin(alpha_w) [m]. Any shape.
+    b' <= 0 means jammed. Since rho_1 + rho_2 = a sin(alpha_w), growths with
+    ``strain_taken_off`` = lambda_h (T_h - T0) and no opening say the same, and then a pair
+    as hot as its housing keeps b exactly.
+    """
+    lost = np.asarray(growth_1, dtype=float) + np.asarray(growth_2)
+    return np.asarray(np.asarray(half_backlash) - lost + np.asarray(axis_opening))
+
+
+def jam_temperature(
+    half_backlash: Callable[[float], float], low: float, high: float, scan: int = 65
+) -> float:
+    """The lowest temperature [K] in [low, high] at which the half backlash reaches 0.
+
+    ``half_backlash`` gives b' [m] at a temperature [K] of a one-parameter family (the least
+    along the path). The interval is scanned at ``scan`` points and the first change of sign
+    refined to 1e-9 K; nan when b' stays positive, ``low`` when it is jammed there already.
+    """
+    if not 0.0 < low < high:
+        raise InputError("temperature range", f"{low} .. {high} K", allowed="0 K < low < high")
+    if scan < 2:
+        raise InputError("scan", scan, allowed=">= 2 points")
+    before = low
+    if half_backlash(low) <= 0.0:
+        return low
+    for after in np.linspace(low, high, scan)[1:]:
+        if half_backlash(float(after)) <= 0.0:
+            return float(brentq(half_backlash, before, float(after), xtol=1e-9))
+        before = float(after)
+    return float("nan")

@@ -1,0 +1,180 @@
+"""Coefficient of friction: published laws as functions, law objects, one table of names.
+
+Every law returns the magnitude |mu|; the direction belongs to the friction force. A law object
+holds a law's own parameters and is called with a :class:`ContactState`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.heat.contact_state import ContactState
+
+Floats = NDArray[np.float64]
+
+__all__ = [
+    "LAWS",
+    "BenedictKelley",
+    "ConstantDry",
+    "FrictionLaw",
+    "benedict_kelley",
+    "benedict_kelley_as_printed",
+    "constant_dry",
+    "friction_law",
+]
+
+ROUGHNESS_LIMIT = 1.13e-6
+"""Roughness [m] at which Benedict and Kelley's factor 1.13/(1.13 - S) diverges."""
+
+
+class FrictionLaw(Protocol):
+    """A coefficient of friction with its name, regime and source."""
+
+    name: ClassVar[str]
+    regime: ClassVar[str]
+    source: ClassVar[str]
+
+    def __call__(self, state: ContactState) -> Floats:
+        """|mu| [-] in the common shape of ``state``."""
+        ...
+
+
+def benedict_kelley(
+    line_load: ArrayLike,
+    sliding_speed: ArrayLike,
+    sum_speed: ArrayLike,
+    viscosity: ArrayLike,
+    roughness: ArrayLike,
+    pitch_floor: float = 0.01,
+    ceiling: float = 0.5,
+) -> Floats:
+    """Mixed-lubrication friction of Benedict and Kelley, regularised [-].
+
+    mu = 0.0127 * 1.13/(1.13 - S) * log10[ 29660 w/(eta v_s v_sum^2) ],
+    S in um, w in N/mm, eta in mPa s, v in m/s (0.02966 with SI units in the logarithm).
+
+    ``line_load`` w [N/m] >= 0, ``sliding_speed`` v1 - v2 [m/s] of either sign, ``sum_speed``
+    v1 + v2 [m/s] >= 0, ``viscosity`` eta [Pa s] > 0, ``roughness`` S [m] < 1.13 um.
+    ``pitch_floor`` delta: the logarithm sees sqrt(v_s^2 + (delta v_sum/2)^2), so the pitch
+    point has a finite value; it moves mu by less than 1e-4 where |v_s| > 0.1 v_sum/2.
+    ``ceiling``: greatest value returned, met only near rest. Where the argument falls below 1
+    (light load, high speed) the formula would turn negative and 0 is returned; so too at zero
+    load. Any shape. Raises for S >= 1.13 um. Sign and limits: mu falls with both speeds and
+    viscosity, rises with load and roughness.
+    Source: Benedict and Kelley, ASLE Trans. 4 (1961) 59-70; 29660 is 3.17e8 of the US units
+    (lb/in, cP, in/s) converted, usually printed 29700.
+    """
+    if not (np.isfinite(pitch_floor) and pitch_floor > 0.0):
+        raise InputError("pitch_floor", pitch_floor, allowed="> 0")
+    w, vs, total, eta, rough = (
+        np.asarray(a, dtype=float)
+        for a in (line_load, sliding_speed, sum_speed, viscosity, roughness)
+    )
+    if np.any(rough >= ROUGHNESS_LIMIT):
+        raise InputError(
+            "roughness",
+            f"{rough.max() * 1e6:.3g} um",
+            allowed="< 1.13 um",
+            why="Benedict and Kelley's factor 1.13/(1.13 - S) diverges there",
+            fix="use the law 'iso-13989-2' or a smoother flank",
+        )
+    vs, total = np.broadcast_arrays(vs, total)
+    below = eta * np.hypot(vs, pitch_floor * 0.5 * total) * total**2
+    w, below = np.broadcast_arrays(w, below)
+    at_rest = below == 0.0
+    ratio = np.divide(0.02966 * w, below, out=np.ones(w.shape), where=~at_rest)
+    decades = np.log10(np.maximum(ratio, 1.0))
+    mu = np.minimum(0.0127 * ROUGHNESS_LIMIT / (ROUGHNESS_LIMIT - rough) * decades, ceiling)
+    return np.where(at_rest & (w > 0.0), ceiling, mu)
+
+
+def benedict_kelley_as_printed(
+    line_load: ArrayLike,
+    sliding_speed: ArrayLike,
+    entrainment_speed: ArrayLike,
+    viscosity: ArrayLike,
+    roughness: ArrayLike,
+) -> Floats:
+    """The "mixed" formula exactly as the thesis prints it, evaluated in SI; signed [-].
+
+    mu = 1.13e-2 (eta w/S)^0.127 sign(v_s) log10[ 29700 eta / sqrt(v_e^2/|v_s|) ].
+
+    Arguments as :func:`benedict_kelley` with ``entrainment_speed`` (v1 + v2)/2. 0 where
+    nothing slides. Power and logarithm both take dimensional arguments, so the value depends
+    on the units: 0.55..0.61 for the rig. Kept to show the misprint; feeds nothing.
+    """
+    w, vs, ve, eta, rough = (
+        np.asarray(a, dtype=float)
+        for a in (line_load, sliding_speed, entrainment_speed, viscosity, roughness)
+    )
+    slides = np.asarray((vs != 0.0) & (ve > 0.0))
+    slide, roll = np.where(slides, np.abs(vs), 1.0), np.where(slides, ve, 1.0)
+    inside = 29700.0 * eta / np.sqrt(roll**2 / slide)
+    mu = 1.13e-2 * (eta * w / rough) ** 0.127 * np.log10(inside)
+    return np.where(slides, np.sign(vs) * mu, 0.0)
+
+
+def constant_dry(sliding_speed: ArrayLike, coefficient: float = 0.2) -> Floats:
+    """Dry friction, one constant everywhere [-].
+
+    ``sliding_speed`` [m/s] gives the shape only; ``coefficient`` 0.1..0.5 in the thesis.
+    Raises outside 0 < mu <= 1.
+    """
+    if not 0.0 < coefficient <= 1.0:
+        raise InputError("dry_coefficient", coefficient, allowed="0 < mu <= 1")
+    return np.full(np.shape(sliding_speed), float(coefficient))
+
+
+@dataclass(frozen=True)
+class BenedictKelley:
+    """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`."""
+
+    pitch_floor: float = 0.01
+    ceiling: float = 0.5
+    name: ClassVar[str] = "benedict-kelley"
+    regime: ClassVar[str] = "mixed"
+    source: ClassVar[str] = "Benedict and Kelley, ASLE Trans. 4 (1961) 59-70"
+
+    def __call__(self, state: ContactState) -> Floats:
+        mu = benedict_kelley(
+            state.line_load,
+            state.sliding,
+            state.sum_speed,
+            state.viscosity,
+            state.roughness,
+            self.pitch_floor,
+            self.ceiling,
+        )
+        return np.broadcast_to(mu, state.shape).copy()
+
+
+@dataclass(frozen=True)
+class ConstantDry:
+    """One constant, dry; see :func:`constant_dry`."""
+
+    coefficient: float = 0.2
+    name: ClassVar[str] = "dry"
+    regime: ClassVar[str] = "dry"
+    source: ClassVar[str] = "constant 0.1..0.5, the thesis's range"
+
+    def __post_init__(self) -> None:
+        constant_dry(0.0, self.coefficient)
+
+    def __call__(self, state: ContactState) -> Floats:
+        return np.broadcast_to(constant_dry(state.sliding, self.coefficient), state.shape).copy()
+
+
+LAWS: dict[str, FrictionLaw] = {law.name: law for law in (BenedictKelley(), ConstantDry())}
+"""Every law by its name, with the parameters of its source."""
+
+
+def friction_law(name: str) -> FrictionLaw:
+    """The named law with its default parameters, or an error that says the nearest name."""
+    if name not in LAWS:
+        raise InputError("friction", repr(name), fix=nearest(name, LAWS))
+    return LAWS[name]

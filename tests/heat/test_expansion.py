@@ -1,0 +1,329 @@
+"""Thermal growth: boundary-value solver, published table, uniform limits, backlash and jam."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+from scipy.optimize import brentq
+
+from thermogear.base.errors import InputError
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.gears.geometry import Gear
+from thermogear.heat.expansion import (
+    RadialField,
+    annulus_displacement,
+    base_circle_growth,
+    centre_distance_growth,
+    flank_growth,
+    hot_half_backlash,
+    jam_temperature,
+    radial_displacement,
+)
+
+LAM, NU, COLD = 11.5e-6, 0.3, ZERO_CELSIUS + 20.0
+PINION = Gear(teeth=25, module=5e-3, bore_radius=0.025, face_width=0.025)
+WHEEL = Gear(teeth=75, module=5e-3, bore_radius=0.040, face_width=0.025)
+CENTRE, BASE_SUM = 0.25, 0.25 * math.sin(math.radians(20.0))
+
+
+def field_of(gear: Gear, addendum: float, drop: float = 20.0) -> RadialField:
+    """T_a [C] at the addendum, ``drop`` K less at the bore."""
+    hot = ZERO_CELSIUS + addendum
+    return RadialField(gear.bore_radius, gear.tip_radius, hot - drop, hot, COLD)
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("bore", ["free", "rigid", "shaft"])
+def test_annulus_against_a_boundary_value_solver(bore: str, plane: str) -> None:
+    """u'' + u'/r - u/r^2 = (1+nu) lambda tau', stress-free outside, bore free or given."""
+    lam, nu = (LAM, NU) if plane == "stress" else (LAM * (1 + NU), NU / (1 - NU))
+    field, outer = field_of(PINION, 120.0), PINION.root_radius
+    rx, tx, g = field.bore_radius, float(field.bore_rise), float(field.gradient)
+    given = {"rigid": 0.0, "shaft": lam * tx * rx}.get(bore)
+    edge = rx / outer  # radii in units of the outer one, displacements of lam * 100 K * outer
+
+    def tau(x: float) -> float:
+        return (tx + g * float(np.log(x / edge))) / 100.0
+
+    def slope(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.vstack([y[1], y[0] / x**2 - y[1] / x + (1 + nu) * g / 100.0 / x])
+
+    def ends(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        def stress(x: float, y: np.ndarray) -> float:
+            return float(y[1] + nu * y[0] / x - (1 + nu) * tau(x))
+
+        unit = lam * 100.0 * outer
+        at_bore = stress(edge, left) if given is None else left[0] - given / unit
+        return np.array([at_bore, stress(1.0, right)])
+
+    mesh = np.linspace(edge, 1.0, 60)
+    solved = solve_bvp(slope, ends, mesh, np.zeros((2, 60)), tol=1e-9, max_nodes=20000)
+    assert solved.success
+    probe = np.linspace(edge, 1.0, 17)
+    ours = annulus_displacement(field, probe * outer, outer, LAM, NU, bore, plane)
+    assert ours / (lam * 100.0 * outer) == pytest.approx(solved.sol(probe)[0], abs=1e-10)
+
+
+def literal(field: RadialField, r: np.ndarray, outer: float, bore: str) -> np.ndarray:
+    """(A1) and (A2) as they are written in the docstring."""
+    rx, tx, g = field.bore_radius, float(field.bore_rise), float(field.gradient)
+
+    def moment(s):  # type: ignore[no-untyped-def]
+        return tx * (s**2 - rx**2) / 2 + g * (s**2 * np.log(s / rx) / 2 - (s**2 - rx**2) / 4)
+
+    if bore == "free":
+        spread = ((1 - NU) * r**2 + (1 + NU) * rx**2) / (outer**2 - rx**2)
+        return LAM / r * ((1 + NU) * moment(r) + spread * moment(outer))
+    ua = 0.0 if bore == "rigid" else LAM * tx * rx
+    c1 = ((1 - NU) * rx * ua + (1 - NU**2) * LAM * moment(outer)) / (
+        (1 - NU) * rx**2 + (1 + NU) * outer**2
+    )
+    return (1 + NU) * LAM * moment(r) / r + c1 * r + (rx * ua - c1 * rx**2) / r
+
+
+@pytest.mark.parametrize("bore", ["free", "rigid", "shaft"])
+def test_annulus_is_the_textbook_form(bore: str) -> None:
+    field, outer = field_of(WHEEL, 140.0), WHEEL.root_radius
+    r = np.linspace(field.bore_radius, outer, 9)
+    ours = annulus_displacement(field, r, outer, LAM, NU, bore)
+    assert ours == pytest.approx(literal(field, r, outer, bore), abs=1e-17)
+
+
+def test_outer_edge_moves_by_the_area_mean() -> None:
+    field, outer = field_of(PINION, 130.0, 35.0), PINION.root_radius
+    mean = float(field.area_mean(outer)) - COLD
+    edge = annulus_displacement(field, outer, outer, LAM, NU)
+    assert edge == pytest.approx(LAM * outer * mean, rel=1e-13)
+
+
+def test_displacement_is_continuous_at_the_root_circle_and_follows_its_integral() -> None:
+    field, rf = field_of(PINION, 120.0), PINION.root_radius
+    near = radial_displacement(field, rf * (1.0 + np.array([-1e-12, 1e-12])), rf, LAM, NU)
+    assert near[0] == pytest.approx(near[1], abs=1e-15)
+    r, rx = 0.066, field.bore_radius
+    tx, g = float(field.bore_rise), float(field.gradient)
+
+    def primitive(s: float) -> float:
+        return LAM * (tx * s + g * (s * np.log(s / rx) - s))
+
+    free = radial_displacement(field, r, rf, LAM, NU) - radial_displacement(field, rf, rf, LAM, NU)
+    assert free == pytest.approx(primitive(r) - primitive(rf), rel=1e-11)
+
+
+TABLE = [  # T_a C, gear, radii mm, delta_n um, u_b um
+    (100.0, PINION, (60.0, 62.5, 65.0, 67.5), (10.3, 17.8, 23.1, 27.6), 47.7),
+    (140.0, PINION, (60.0, 62.5, 65.0, 67.5), (16.0, 27.6, 35.9, 42.9), 74.7),
+    (
+        100.0,
+        WHEEL,
+        (181.25, 185.0, 187.5, 190.0, 192.5),
+        (36.5, 48.3, 54.8, 60.8, 66.3),
+        149.2,
+    ),
+    (
+        140.0,
+        WHEEL,
+        (181.25, 185.0, 187.5, 190.0, 192.5),
+        (56.0, 74.2, 84.3, 93.5, 102.0),
+        230.3,
+    ),
+]
+
+
+@pytest.mark.parametrize(("addendum", "gear", "radii", "growth", "base"), TABLE)
+def test_published_flank_growth(
+    addendum: float,
+    gear: Gear,
+    radii: tuple[float, ...],
+    growth: tuple[float, ...],
+    base: float,
+) -> None:
+    """delta_n within 0.1 um, u_b too (bores 25/40 mm free, 20 K gradient)."""
+    field = field_of(gear, addendum)
+    ours = flank_growth(gear, field, np.array(radii) * 1e-3) * 1e6
+    assert np.all(np.abs(ours - growth) < 0.1)
+    assert abs(base_circle_growth(gear, field) * 1e6 - base) < 0.1
+
+
+@pytest.mark.parametrize("bore", ["free", "shaft"])
+@pytest.mark.parametrize("gear", [PINION, WHEEL])
+def test_uniform_rise_keeps_an_involute(gear: Gear, bore: str) -> None:
+    """delta_n = lambda tau rho_k to 1e-12: an involute of the larger base circle."""
+    field = field_of(gear, 120.0, 0.0)
+    r = np.linspace(gear.form_radius, gear.tip_radius, 33)
+    rho = np.sqrt(r**2 - gear.base_radius**2)
+    assert flank_growth(gear, field, r, bore) == pytest.approx(LAM * 100.0 * rho, rel=1e-12)
+    assert base_circle_growth(gear, field, bore) == pytest.approx(
+        LAM * 100.0 * gear.base_radius, rel=1e-14
+    )
+
+
+def test_uniform_growth_carries_the_involute_onto_the_larger_base_circle() -> None:
+    """Independent of (B): the scaled flank is the involute of r_b (1 + lambda tau)."""
+    rise = 0.01  # so small that the second order vanishes
+    bigger = Gear(teeth=25, module=5e-3 * (1.0 + LAM * rise), bore_radius=0.025)
+    r = np.linspace(0.0595, 0.067, 9)
+    turn = bigger.half_thickness_angle(r) - PINION.half_thickness_angle(r)
+    normal = turn * r * (PINION.base_radius / r)  # to first order
+    growth = flank_growth(PINION, field_of(PINION, 20.0 + rise, 0.0), r)
+    assert normal == pytest.approx(growth, rel=1e-5)
+
+
+def path_radii(count: int = 41) -> tuple[np.ndarray, np.ndarray]:
+    """Radii of pinion and wheel flank along A..E of the rig."""
+    s = np.linspace(7.9647e-3, 33.2708e-3, count)
+    return np.hypot(PINION.base_radius, s), np.hypot(WHEEL.base_radius, BASE_SUM - s)
+
+
+@pytest.mark.parametrize(("drop", "limit"), [(0.0, 1e-12), (10.0, 0.9e-6), (20.0, 0.9e-6)])
+def test_equal_fields_shift_backlash_and_hardly_excite(drop: float, limit: float) -> None:
+    """delta_n1 + delta_n2 is constant along the path to < 0.9 um for free bores, <= 20 K."""
+    r1, r2 = path_radii()
+    for addendum in (100.0, 130.0, 160.0):
+        total = flank_growth(PINION, field_of(PINION, addendum, drop), r1)
+        total = total + flank_growth(WHEEL, field_of(WHEEL, addendum, drop), r2)
+        assert np.ptp(total) < limit
+
+
+def test_unequal_gears_differ_by_a_base_pitch_error() -> None:
+    """Slope of the sum along the path: lambda (T1 - T2), 3.4 um per 20 K and base pitch."""
+    s = np.linspace(9e-3, 32e-3, 30)
+    r1, r2 = np.hypot(PINION.base_radius, s), np.hypot(WHEEL.base_radius, BASE_SUM - s)
+    total = flank_growth(PINION, field_of(PINION, 120.0, 0.0), r1)
+    total = total + flank_growth(WHEEL, field_of(WHEEL, 100.0, 0.0), r2)
+    slope = np.polyfit(s, total, 1)[0]
+    assert slope == pytest.approx(LAM * 20.0, rel=1e-9)
+    assert slope * PINION.base_pitch == pytest.approx(3.4e-6, abs=0.05e-6)
+
+
+@pytest.mark.parametrize("rise", [7.3, 80.0, 140.0])
+@pytest.mark.parametrize("bore", ["free", "shaft"])
+def test_everything_uniform_keeps_the_backlash_exactly(rise: float, bore: str) -> None:
+    r1, r2 = path_radii()
+    hot = COLD + rise
+    strain = PINION.material.thermal_expansion * (hot - COLD)
+    beyond = [
+        flank_growth(
+            gear,
+            RadialField.uniform(gear.bore_radius, gear.tip_radius, hot, COLD),
+            r,
+            bore,
+            strain_taken_off=strain,
+        )
+        for gear, r in ((PINION, r1), (WHEEL, r2))
+    ]
+    assert np.all(hot_half_backlash(125e-6, *beyond) == 125e-6)
+    # the plain form says the same to rounding
+    plain = [
+        flank_growth(g, RadialField.uniform(g.bore_radius, g.tip_radius, hot, COLD), r, bore)
+        for g, r in ((PINION, r1), (WHEEL, r2))
+    ]
+    opening = centre_distance_growth(CENTRE, LAM, hot, COLD) * math.sin(math.radians(20.0))
+    assert hot_half_backlash(0.0, *plain, opening) == pytest.approx(np.zeros(41), abs=1e-17)
+
+
+def test_both_ways_of_the_housing_agree_for_any_field() -> None:
+    r1, r2 = path_radii()
+    strain = LAM * 60.0
+    fields = field_of(PINION, 120.0), field_of(WHEEL, 110.0)
+    plain = flank_growth(PINION, fields[0], r1), flank_growth(WHEEL, fields[1], r2)
+    opening = centre_distance_growth(CENTRE, LAM, COLD + 60.0, COLD) * math.sin(math.radians(20.0))
+    beyond = (
+        flank_growth(PINION, fields[0], r1, strain_taken_off=strain),
+        flank_growth(WHEEL, fields[1], r2, strain_taken_off=strain),
+    )
+    first, second = hot_half_backlash(1e-4, *plain, opening), hot_half_backlash(1e-4, *beyond)
+    assert first == pytest.approx(second, abs=1e-17)
+
+
+@pytest.mark.parametrize(
+    ("addendum", "below", "lost", "tolerance"),
+    [
+        (100.0, None, 72.0, 1.0),
+        (160.0, None, 132.0, 1.0),
+        (130.0, 20.0, 14.0, 1.0),
+        (130.0, 50.0, 43.0, 1.0),
+    ],
+)
+def test_published_backlash_losses(
+    addendum: float, below: float | None, lost: float, tolerance: float
+) -> None:
+    """Half backlash lost [um], bores 25/40 free, 20 K gradient, housing none or below T_a."""
+    r1, r2 = path_radii()
+    total = flank_growth(PINION, field_of(PINION, addendum), r1)
+    total = total + flank_growth(WHEEL, field_of(WHEEL, addendum), r2)
+    opening = 0.0
+    if below is not None:
+        hot = ZERO_CELSIUS + addendum - below
+        opening = float(centre_distance_growth(CENTRE, LAM, hot, COLD)) * BASE_SUM / CENTRE
+    change = -hot_half_backlash(0.0, total, 0.0, opening) * 1e6
+    assert abs(float(np.mean(change)) - lost) < tolerance
+
+
+def least_backlash(temperature: float) -> float:
+    """94 um of total normal backlash; both gears uniformly hot, steel housing cold."""
+    r1, r2 = path_radii()
+    growth = [
+        flank_growth(g, RadialField.uniform(g.bore_radius, g.tip_radius, temperature, COLD), r)
+        for g, r in ((PINION, r1), (WHEEL, r2))
+    ]
+    return float(np.min(hot_half_backlash(47e-6, *growth)))
+
+
+def test_uniformly_hot_gears_jam_over_a_cold_housing() -> None:
+    """1.967 um/K of total normal backlash, so 94 um are gone near +48 K."""
+    jam = jam_temperature(least_backlash, COLD, COLD + 120.0)
+    assert jam - COLD == pytest.approx(94e-6 / (2.0 * BASE_SUM * LAM), rel=1e-6)
+    assert jam - COLD == pytest.approx(48.0, abs=0.3)
+    lost = least_backlash(COLD) - least_backlash(COLD + 1.0)
+    assert 2e6 * lost == pytest.approx(1.967, abs=5e-4)
+    assert jam == pytest.approx(brentq(least_backlash, COLD, COLD + 120.0), abs=1e-6)
+
+
+def test_a_pair_that_never_jams_gives_nan_and_a_jammed_one_its_start() -> None:
+    assert math.isnan(jam_temperature(least_backlash, COLD, COLD + 40.0))
+    assert jam_temperature(least_backlash, COLD + 90.0, COLD + 120.0) == COLD + 90.0
+    with pytest.raises(InputError, match=r"^temperature range: got 300.0 .. 290.0 K"):
+        jam_temperature(least_backlash, 300.0, 290.0)
+
+
+def test_batch_over_operating_points_is_one_by_one() -> None:
+    addenda = ZERO_CELSIUS + np.array([[100.0], [140.0]])
+    r = np.linspace(0.0595, 0.067, 5)
+    many = RadialField(PINION.bore_radius, PINION.tip_radius, addenda - 20.0, addenda, COLD)
+    for bore in ("free", "rigid", "shaft"):
+        batch = flank_growth(PINION, many, r, bore)
+        single = [flank_growth(PINION, field_of(PINION, t), r, bore) for t in (100.0, 140.0)]
+        assert np.array_equal(batch, single)
+
+
+def test_scaling_the_gear_scales_the_growth() -> None:
+    twice = Gear(teeth=25, module=1e-2, bore_radius=0.050)
+    r = np.linspace(0.0595, 0.067, 5)
+    one = flank_growth(PINION, field_of(PINION, 120.0), r)
+    two = flank_growth(twice, field_of(twice, 120.0), 2.0 * r)
+    assert two == pytest.approx(2.0 * one, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: RadialField(0.07, 0.0675, 350.0, 350.0, COLD), "bore_radius: got 0.07 m with"),
+        (lambda: RadialField(0.025, 0.0675, -3.0, 350.0, COLD), "bore_temperature: got -3.0 K"),
+        (lambda: RadialField(0.025, 0.0675, 350.0, 350.0, 0.0), "reference temperature: got 0.0"),
+        (lambda: flank_growth(PINION, field_of(PINION, 90.0), 0.05), "radius: got 0.05 m"),
+        (
+            lambda: flank_growth(PINION, field_of(PINION, 90.0), 0.06, "fre"),
+            "bore: got 'fre'; allowed free | rigid | shaft; did you mean 'free'?",
+        ),
+        (
+            lambda: annulus_displacement(field_of(PINION, 90.0), 0.03, 0.02, LAM, NU),
+            "bore_radius: got 0.025 m with root radius 0.02 m",
+        ),
+    ],
+)
+def test_impossible_input_is_refused_in_one_line(call, message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError) as caught:
+        call()
+    assert str(caught.value).startswith(message)
