@@ -1,4 +1,4 @@
-"""What dynamics needs to know of a gear pair: periodic stiffness and error, half backlash, force."""
+"""All that dynamics knows of a gear pair: periodic stiffness and error, half backlash, force."""
 
 from __future__ import annotations
 
@@ -88,9 +88,11 @@ class Excitation:
 
     f the dead zone of half width b' = ``half_backlash``. ``stiffness`` k [N/m] and ``error`` e
     [m] are periodic in the mesh phase; e is the unloaded (kinematic) error, never the loaded
-    transmission error. ``reference_half_backlash`` b_c [m] (the cold one) is the length scale
-    of the dimensionless equation. ``damping_ratio`` zeta refers to
-    omega_n = sqrt(k_m/m_e), k_m the time mean of k. For perfect gears e = 0.
+    transmission error; for perfect gears e = 0. ``reference_half_backlash`` b_c [m] (the cold
+    one) is the length scale of the dimensionless equation. ``mean_force`` F [N],
+    ``mesh_frequency`` [rad/s], ``inertias`` [kg m^2], ``base_radii`` [m] and ``torques`` [N m]
+    of pinion and wheel. ``damping_ratio`` zeta refers to omega_n = sqrt(k_m/m_e), k_m the time
+    mean of k.
     """
 
     stiffness: Periodic

@@ -66,8 +66,11 @@ QUANTITIES: dict[str, Quantity] = {
     "flash_temperature_mixed": Quantity("K", "flash temperature rise, mixed lubrication", "ΔT_f"),
     "flash_temperature_dry": Quantity("K", "flash temperature rise, dry", "ΔT_f"),
     "pinion_heat_share": Quantity("1", "share of the frictional heat into the pinion", "β₁"),
-    "pinion_contact_temperature": Quantity("K", "pinion flank temperature in contact", "T_c1"),
-    "wheel_contact_temperature": Quantity("K", "wheel flank temperature in contact", "T_c2"),
+    "contact_temperature": Quantity("K", "greatest contact temperature of both flanks", "T_c"),
+    "pinion_body_temperature": Quantity(
+        "K", "body temperature at the pinion's contact radius", "T₁"
+    ),
+    "wheel_body_temperature": Quantity("K", "body temperature at the wheel's contact radius", "T₂"),
     "pinion_shaft_heat": Quantity("W", "heat conducted from the pinion's rim to its bore", "Q₁"),
     "wheel_shaft_heat": Quantity("W", "heat conducted from the wheel's rim to its bore", "Q₂"),
     # deformation and backlash
@@ -104,7 +107,7 @@ QUANTITIES: dict[str, Quantity] = {
     "peak_to_peak_stiffness": Quantity("N/m", "mesh stiffness, peak to peak", "Δk"),
     "mid_range_stiffness": Quantity("N/m", "mesh stiffness, mid-range (max + min)/2", "k_mid"),
     # dimensionless numbers of the equation of motion
-    "natural_frequency": Quantity("rad/s", "natural frequency", "ω_n"),
+    "natural_frequency": Quantity("Hz", "natural frequency", "f_n"),
     "mesh_frequency": Quantity("Hz", "mesh frequency", "f_mesh"),
     "damping_ratio": Quantity("1", "damping ratio", "ζ"),
     "frequency_ratio": Quantity("1", "mesh frequency over natural frequency", "ω_h"),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.materials import Lubricant
+from thermogear.base.materials import MATERIALS, Lubricant, Material
 
 Floats = NDArray[np.float64]
 
@@ -51,7 +51,8 @@ class Operating:
 
     ``speed`` pinion speed [rad/s] > 0, ``torque`` pinion torque [N m] >= 0 (the wheel carries
     torque x ratio), ``half_backlash`` cold half backlash b [m] along the line of action,
-    ``oil_temperature`` [K] of the oil that enters the mesh.
+    ``oil_temperature`` [K] of the oil that enters the mesh; ``housing`` the material that moves
+    the axes apart when it is warm.
     """
 
     speed: Floats
@@ -60,6 +61,7 @@ class Operating:
     oil_temperature: float
     temperatures: Temperatures
     half_backlash: float
+    housing: Material = MATERIALS["steel"]
 
     def __post_init__(self) -> None:
         speed, torque = np.broadcast_arrays(

@@ -1,0 +1,234 @@
+"""The quasi-static mesh cycle: from pair, operating points and choices to one labelled Dataset."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import STATUS, label
+from thermogear.gears.contact import (
+    entrainment_velocity,
+    flank_radii,
+    hertz_half_width,
+    hertz_pressure,
+    path_of_contact,
+    reduced_radius,
+    rolling_velocities,
+    sliding_velocity,
+)
+from thermogear.gears.geometry import GearPair
+from thermogear.heat.contact_state import ContactState
+from thermogear.heat.expansion import base_circle_growth
+from thermogear.heat.friction import ROUGHNESS_LIMIT, BenedictKelley, ConstantDry
+from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity
+from thermogear.heat.temperature import (
+    blok_flash,
+    conduction_power,
+    contact_temperature,
+    flash_factor,
+    heat_partition,
+)
+from thermogear.mesh.elastic import ElasticPair
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair, hot_backlash, thesis_thermal_stiffness
+
+Floats = NDArray[np.float64]
+Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
+
+PATH = ("operating", "path_position")
+PHASE = ("operating", "mesh_phase")
+POINT = ("operating",)
+
+
+def mesh_cycle(
+    pair: GearPair,
+    operating: Operating,
+    model: MeshModel | None = None,
+    *,
+    path_positions: int = 201,
+    mesh_positions: int = 512,
+) -> xr.Dataset:
+    """Everything quasi-static about ``pair`` at its operating points, in SI.
+
+    Along the path of contact A..E of one tooth pair (``path_position`` s [m] from the pinion's
+    tangent point): rolling and sliding velocities, load share, line load, Hertz contact,
+    friction, flash and contact temperature, thermal growth of both flanks, and the springs of
+    the pair. Over the mesh phase (0 where a pair enters at A): mesh stiffness, half backlash,
+    thermal error. Per operating point: normal force, mean and extreme stiffness, half backlash,
+    jam temperature, and ``status``: ``ok``, or ``jammed`` where the least half backlash over the
+    phase is <= 0 (the values stay, for they say how far it is jammed).
+
+    ``model`` defaults to :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash;
+    zero speed gives zero flash; the pitch point has its limit values. Warns outside the ranges
+    of the sources; raises InputError for fewer than 2 positions.
+    """
+    for name, count in (("path_positions", path_positions), ("mesh_positions", mesh_positions)):
+        if count < 2:
+            raise InputError(name, count, allowed=">= 2")
+    hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
+    elastic = ElasticPair.of(hot)
+    s = path_of_contact(pair, path_positions)
+    phase = np.arange(mesh_positions) / mesh_positions
+
+    variables: Variables = {}
+    variables |= _contact(hot, elastic, s)
+    variables |= _deformation(hot, s)
+    variables |= {name: (PATH, k) for name, k in elastic.parts(s).items()}
+    variables["pair_stiffness"] = (PATH, elastic.pair_stiffness(s))
+    variables |= _mesh(hot, elastic, phase)
+
+    r1, r2 = flank_radii(pair, s)
+    points = pair.path
+    return label(
+        variables,
+        {
+            "pinion_speed": (POINT, operating.speed),
+            "pinion_torque": (POINT, operating.torque),
+            "path_position": (("path_position",), s),
+            "pinion_radius": (("path_position",), r1),
+            "wheel_radius": (("path_position",), r2),
+            "mesh_phase": (("mesh_phase",), phase),
+        },
+        {
+            "bundle": hot.model.name,
+            "choices": json.dumps(hot.model.choices()),
+            "path_points": json.dumps({k.upper(): v for k, v in points._asdict().items()}),
+            "contact_ratio": pair.contact_ratio,
+        },
+    )
+
+
+def _contact(hot: HotPair, elastic: ElasticPair, s: Floats) -> Variables:
+    """Kinematics, load, Hertz contact, friction and flash along the path."""
+    pair, operating, model = hot.pair, hot.operating, hot.model
+    speed = operating.speed[:, None]
+    v1, v2 = rolling_velocities(pair, speed, s)
+    force = operating.torque / pair.pinion.base_radius
+    share = elastic.share(s)
+    line_load = share * force[:, None] / pair.face_width
+    radius = reduced_radius(pair, s)
+    half_width = hertz_half_width(line_load, radius, elastic.contact_modulus)
+    pressure = hertz_pressure(line_load, radius, elastic.contact_modulus)
+    oil, warm = operating.lubricant, operating.oil_temperature
+    state = ContactState(
+        line_load=line_load,
+        speed_1=v1,
+        speed_2=v2,
+        reduced_radius=radius,
+        pressure=pressure,
+        viscosity=dynamic_viscosity(oil, warm),
+        kinematic_viscosity=kinematic_viscosity(oil, warm),
+        roughness=0.5 * (pair.pinion.roughness + pair.wheel.roughness),
+    )
+    frictions = {"dry": ConstantDry(model.dry_coefficient)(state)}
+    if float(np.max(state.roughness)) < ROUGHNESS_LIMIT or model.friction != "dry":
+        frictions["mixed"] = BenedictKelley()(state)
+    else:
+        # beyond the mixed law's roughness only the dry curve exists
+        frictions["mixed"] = np.full(state.shape, np.nan)
+    chosen = "dry" if model.friction == "dry" else "mixed"
+
+    first = pair.pinion.material.thermal_contact_coefficient
+    second = pair.wheel.material.thermal_contact_coefficient
+    factor = flash_factor(model.flash)
+    flashes = {
+        name: blok_flash(mu, line_load, v1, v2, half_width, first, second, factor)
+        for name, mu in frictions.items()
+    }
+    partition = heat_partition(v1, v2, first, second)
+    pinion_field, wheel_field = hot.field(pair.pinion), hot.field(pair.wheel)
+    r1, r2 = flank_radii(pair, s)
+    hottest = contact_temperature(
+        flashes[chosen], partition, pinion_field.temperature(r1), wheel_field.temperature(r2)
+    )
+    found: dict[str, ArrayLike] = {
+        "pinion_rolling_velocity": v1,
+        "wheel_rolling_velocity": v2,
+        "sliding_velocity": sliding_velocity(pair, speed, s),
+        "entrainment_velocity": entrainment_velocity(pair, speed, s),
+        "load_share": share,
+        "line_load": line_load,
+        "hertz_half_width": half_width,
+        "hertz_pressure": pressure,
+        "friction_coefficient": frictions[chosen],
+        "flash_temperature": flashes[chosen],
+        "pinion_heat_share": partition,
+        "contact_temperature": hottest,
+        "pinion_body_temperature": pinion_field.temperature(r1),
+        "wheel_body_temperature": wheel_field.temperature(r2),
+    }
+    for name in ("mixed", "dry"):
+        found[f"friction_coefficient_{name}"] = frictions[name]
+        found[f"flash_temperature_{name}"] = flashes[name]
+    shape = (hot.count, s.size)
+    variables: Variables = {
+        name: (PATH, np.broadcast_to(np.asarray(values), shape)) for name, values in found.items()
+    }
+    variables["reduced_radius"] = (("path_position",), radius)
+    variables["normal_force"] = (POINT, force)
+    variables["dynamic_viscosity"] = (POINT, np.full(hot.count, dynamic_viscosity(oil, warm)))
+    return variables
+
+
+def _deformation(hot: HotPair, s: Floats) -> Variables:
+    """Growth of both flanks along the path, and what the assumed fields imply."""
+    pair, operating = hot.pair, hot.operating
+    first, second = hot.growth(s)
+    variables: Variables = {
+        "pinion_deformation": (PATH, first),
+        "wheel_deformation": (PATH, second),
+        "deformation_sum": (PATH, first + second),
+    }
+    t = operating.temperatures
+    for name, gear, bore, tip in (
+        ("pinion", pair.pinion, t.pinion_bore, t.pinion_addendum),
+        ("wheel", pair.wheel, t.wheel_bore, t.wheel_addendum),
+    ):
+        growth = base_circle_growth(gear, hot.field(gear), hot.model.bore)
+        variables[f"{name}_base_growth"] = (POINT, np.broadcast_to(growth.ravel(), (hot.count,)))
+        power = conduction_power(
+            gear.bore_radius,
+            gear.tip_radius,
+            bore,
+            tip,
+            gear.material.thermal_conductivity,
+            gear.face_width,
+        )
+        variables[f"{name}_shaft_heat"] = (POINT, np.broadcast_to(power, (hot.count,)))
+    return variables
+
+
+def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
+    """Stiffness and backlash over the mesh phase, with the figures made of them."""
+    k = elastic.mesh_stiffness(phase)
+    thermal = (
+        thesis_thermal_stiffness(hot, phase, elastic.pair_stiffness)
+        if hot.model.thermal_stiffness == "thesis"
+        else np.zeros_like(k)
+    )
+    total = k + thermal
+    backlash = hot_backlash(hot, phase, elastic.pair_stiffness)
+    least = backlash.half_backlash.min(axis=1)
+    hottest = np.broadcast_to(
+        np.asarray(hot.temperatures.pinion_addendum, dtype=float), (hot.count,)
+    )
+    highest, lowest = total.max(axis=1), total.min(axis=1)
+    return {
+        "elastic_stiffness": (PHASE, k),
+        "thermal_stiffness": (PHASE, thermal),
+        "mesh_stiffness": (PHASE, total),
+        "half_backlash_curve": (PHASE, backlash.half_backlash),
+        "thermal_error": (PHASE, backlash.error),
+        "mean_stiffness": (POINT, total.mean(axis=1)),
+        "peak_to_peak_stiffness": (POINT, highest - lowest),
+        "mid_range_stiffness": (POINT, 0.5 * (highest + lowest)),
+        "half_backlash": (POINT, backlash.half_backlash.mean(axis=1)),
+        "cold_half_backlash": (POINT, np.full(hot.count, hot.operating.half_backlash)),
+        "jam_temperature": (POINT, hottest + backlash.jam_rise),
+        "status": (POINT, np.where(least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))),
+    }

@@ -1,0 +1,211 @@
+"""Where heat joins the mesh: added flank material, hot backlash, jam, moduli.
+
+Positions s [m] are measured from the pinion's tangent point; the last axis is the position,
+the first the operating point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.gears.contact import back_flank_position, flank_radii, pair_positions
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.heat.expansion import RadialField, centre_distance_growth, flank_growth
+from thermogear.heat.thesis_profile import thesis_flank_growth
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating, Temperatures
+
+Floats = NDArray[np.float64]
+
+
+def _column(values: ArrayLike, count: int) -> Floats:
+    """One value per operating point as a column against positions."""
+    return np.broadcast_to(np.asarray(values, dtype=float), (count,))[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class HotPair:
+    """A gear pair in its temperature fields, with the model's readings of heat.
+
+    ``operating`` gives ``count`` operating points; every result has shape (count, ...).
+    """
+
+    pair: GearPair
+    operating: Operating
+    model: MeshModel
+
+    @property
+    def count(self) -> int:
+        return self.operating.speed.size
+
+    @property
+    def temperatures(self) -> Temperatures:
+        return self.operating.temperatures
+
+    def field(self, gear: Gear) -> RadialField:
+        """The radial field of one of the two gears, temperatures of shape (count, 1)."""
+        t = self.temperatures
+        bore, tip = (
+            (t.pinion_bore, t.pinion_addendum)
+            if gear is self.pair.pinion
+            else (t.wheel_bore, t.wheel_addendum)
+        )
+        return RadialField(
+            gear.bore_radius,
+            gear.tip_radius,
+            _column(bore, self.count),
+            _column(tip, self.count),
+            t.reference,
+        )
+
+    def warmed(self, rise: float) -> HotPair:
+        """The same pair with both gears hotter by ``rise`` [K] everywhere, housing as it is."""
+        t = self.temperatures
+        hotter = replace(
+            t,
+            pinion_addendum=np.asarray(t.pinion_addendum) + rise,
+            pinion_bore=np.asarray(t.pinion_bore) + rise,
+            wheel_addendum=np.asarray(t.wheel_addendum) + rise,
+            wheel_bore=np.asarray(t.wheel_bore) + rise,
+        )
+        return replace(self, operating=replace(self.operating, temperatures=hotter))
+
+    # --- growth ---------------------------------------------------------------------
+    def growth(self, s: ArrayLike, taken_off: ArrayLike = 0.0) -> tuple[Floats, Floats]:
+        """Normal growth [m] of pinion and wheel flank at ``s`` [m], (count, positions).
+
+        ``taken_off`` is a uniform strain that is not counted (flank growth only).
+        """
+        p, w = self.pair.pinion, self.pair.wheel
+        r1, r2 = flank_radii(self.pair, s)
+        if self.model.flank == "thesis":
+            return (
+                thesis_flank_growth(p, self.field(p), r1),
+                thesis_flank_growth(w, self.field(w), r2),
+            )
+        bore = self.model.bore
+        return (
+            flank_growth(p, self.field(p), r1, bore, strain_taken_off=taken_off),
+            flank_growth(w, self.field(w), r2, bore, strain_taken_off=taken_off),
+        )
+
+    def axis_opening(self) -> Floats:
+        """Da sin(alpha_w) [m], shape (count,): what the warm housing opens the mesh by."""
+        if self.model.housing == "rigid":
+            return np.zeros(self.count)
+        opened = centre_distance_growth(
+            self.pair.centre_distance,
+            self.operating.housing.thermal_expansion,
+            np.broadcast_to(np.asarray(self.temperatures.housing, dtype=float), (self.count,)),
+            self.temperatures.reference,
+        )
+        return np.asarray(opened * np.sin(self.pair.operating_pressure_angle))
+
+    def added_material(self, s: ArrayLike) -> Floats:
+        """S(s) = delta_n1 + delta_n2 - Da sin(alpha_w) [m], (count, positions).
+
+        With the thesis's flank each deformation counts half, as its b' has it. The housing's
+        strain is taken off before adding, because rho_1 + rho_2 = a_w sin(alpha_w): a pair as
+        hot as its housing gives exactly 0.
+        """
+        if self.model.flank == "thesis":
+            first, second = self.growth(s)
+            return 0.5 * (first + second) - self.axis_opening()[:, None]
+        strain: ArrayLike = 0.0
+        if self.model.housing == "expands":
+            rise = np.asarray(self.temperatures.housing, dtype=float) - self.temperatures.reference
+            strain = _column(self.operating.housing.thermal_expansion * rise, self.count)
+        first, second = self.growth(s, strain)
+        return first + second
+
+    # --- moduli -----------------------------------------------------------------------
+    def moduli(self, gear: Gear) -> tuple[Floats, Floats]:
+        """(E of the teeth, E of the body) [Pa], shape (count,).
+
+        Teeth at the pitch radius's temperature, the body at its mean by area up to the root
+        circle; E at 20 C where the model keeps the modulus constant.
+        """
+        if self.model.modulus == "constant":
+            both = np.full(self.count, gear.material.youngs_modulus)
+            return both, both
+        field = self.field(gear)
+        teeth = gear.material.youngs_modulus_at(field.temperature(gear.pitch_radius))
+        body = gear.material.youngs_modulus_at(field.area_mean(gear.root_radius))
+        return teeth[:, 0], body[:, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class HotBacklash:
+    """Half backlash over the mesh phase and what heat makes of the kinematic error.
+
+    ``half_backlash`` b'(phi) and ``error`` e_th(phi) [m], (count, phases);
+    ``jam_rise`` [K], (count,): further common rise of both gears at which the least b' is 0
+    (negative when jammed already, nan when heat does not close the gap).
+    """
+
+    half_backlash: Floats
+    error: Floats
+    jam_rise: Floats
+
+
+def _carried(
+    positions: Floats, values: Callable[[Floats], Floats], weights: Callable[[Floats], Floats]
+) -> Floats:
+    """sum_j k_j S_j / sum_j k_j over the pairs present; (phases, pairs) -> (count, phases)."""
+    present = np.isfinite(positions)
+    anywhere = float(positions[present].flat[0])
+    filled = np.where(present, positions, anywhere)
+    shape = filled.shape
+    k = np.where(present.ravel(), weights(filled.ravel()), 0.0).reshape(-1, *shape)
+    s = values(filled.ravel()).reshape(-1, *shape)
+    return np.asarray((k * s).sum(axis=-1) / k.sum(axis=-1))
+
+
+def hot_backlash(hot: HotPair, phase: Floats, weights: Callable[[Floats], Floats]) -> HotBacklash:
+    """b'(phi) = b - (S + S^c)/2 and e_th(phi) = -(S - S^c)/2 of the one-spring form.
+
+    S is the added material of the drive flanks, weighted by the pair stiffnesses
+    ``weights`` (positions -> (count, positions)), S^c that of the back flanks, which touch at
+    the mirrored positions. Added material is linear in the temperatures, so the jam rise
+    follows from one further evaluation 1 K hotter, exactly. With the thesis's flank b' is its
+    b' of the drive flanks and no error arises.
+    """
+    pair = hot.pair
+    drive = pair_positions(pair, phase)
+    back = back_flank_position(pair, drive[:, :1])
+    back = back + np.arange(drive.shape[1]) * pair.base_pitch
+    back = np.where(back < pair.path.e, back, np.nan)
+
+    def half(of: HotPair) -> tuple[Floats, Floats]:
+        front = _carried(drive, of.added_material, weights)
+        if of.model.flank == "thesis":
+            return front, np.zeros_like(front)
+        behind = _carried(back, of.added_material, weights)
+        return 0.5 * (front + behind), 0.5 * (front - behind)
+
+    lost, tilt = half(hot)
+    left = hot.operating.half_backlash - lost
+    slope = half(hot.warmed(1.0))[0] - lost
+    with np.errstate(divide="ignore"):
+        rise = np.where(slope > 0.0, left / slope, np.inf).min(axis=1)
+    return HotBacklash(left, -tilt, np.where(np.isfinite(rise), rise, np.nan))
+
+
+def thesis_thermal_stiffness(
+    hot: HotPair, phase: Floats, weights: Callable[[Floats], Floats]
+) -> Floats:
+    """The thesis's k_T over the mesh phase [N/m], (count, phases).
+
+    k_Ti = F_n/Delta f_i (the printed division by the face width would leave N/m^2),
+    k_T = k_T1 k_T2/(k_T1 + k_T2) = F_n/(Delta f_1 + Delta f_2), Delta f weighted over the pairs
+    in contact as in :func:`hot_backlash`. Where nothing has grown the print tends to infinity;
+    0 is returned there. It grows with load and falls as the gear heats: heat is no spring.
+    """
+    force = hot.operating.torque / hot.pair.pinion.base_radius
+    drive = pair_positions(hot.pair, phase)
+    grown = _carried(drive, lambda s: np.add(*hot.growth(s)), weights)
+    return np.divide(force[:, None], grown, out=np.zeros_like(grown), where=grown > 0.0)
