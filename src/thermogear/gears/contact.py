@@ -122,7 +122,7 @@ def hertz_half_width(line_load: ArrayLike, radius: ArrayLike, modulus: ArrayLike
     Zero load or radius gives 0. Source: Johnson, Contact Mechanics, eq. 4.43.
     """
     w, rho = np.asarray(line_load, dtype=float), np.asarray(radius, dtype=float)
-    return np.sqrt(4.0 * w * rho / (np.pi * np.asarray(modulus, dtype=float)))
+    return np.asarray(np.sqrt(4.0 * w * rho / (np.pi * np.asarray(modulus, dtype=float))))
 
 
 def hertz_pressure(line_load: ArrayLike, radius: ArrayLike, modulus: ArrayLike) -> Floats:

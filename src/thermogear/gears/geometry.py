@@ -40,7 +40,9 @@ def involute(angle: ArrayLike) -> Floats:
     series = 1 / 3 + a2 * (
         2 / 15 + a2 * (17 / 315 + a2 * (62 / 2835 + a2 * (1382 / 155925 + a2 * (21844 / 6081075))))
     )
-    return np.where(np.abs(alpha) < _SMALL_ANGLE, alpha * a2 * series, np.tan(alpha) - alpha)
+    return np.asarray(
+        np.where(np.abs(alpha) < _SMALL_ANGLE, alpha * a2 * series, np.tan(alpha) - alpha)
+    )
 
 
 def inverse_involute(value: ArrayLike) -> Floats:
@@ -60,7 +62,7 @@ def inverse_involute(value: ArrayLike) -> Floats:
         step = np.divide(involute(alpha) - size, slope, out=np.zeros_like(alpha), where=slope > 0.0)
         # never past a right angle, where the function has its pole
         alpha = np.minimum(alpha - step, 0.5 * (alpha + 0.5 * np.pi))
-    return np.copysign(alpha, inv)
+    return np.asarray(np.copysign(alpha, inv))
 
 
 def _mm(value: float) -> str:
@@ -137,6 +139,7 @@ class Gear:
                 f"{self.rack.fillet_radius:g} modules",
                 allowed=f"<= {max(largest, 0.0):.4f} modules",
                 why="the rack's tip is not wide enough for two such rounds",
+                fix="give the rack a smaller one",
             )
         self._default("face_width", DEFAULT_FACE_WIDTH * self.module)
         self._default("bore_radius", DEFAULT_BORE * self.pitch_radius)

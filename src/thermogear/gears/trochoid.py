@@ -33,7 +33,7 @@ class Trochoid:
         """Roll angle phi = (a1/tan(gamma) + b1)/r [rad]."""
         g = np.asarray(gamma, dtype=float)
         cotangent = np.cos(g) / np.sin(g)
-        return (self.centre_depth * cotangent + self.centre_offset) / self.pitch_radius
+        return np.asarray((self.centre_depth * cotangent + self.centre_offset) / self.pitch_radius)
 
     def point(self, gamma: ArrayLike) -> tuple[Floats, Floats]:
         """(x, y) [m] of the fillet at the rack normal angle ``gamma`` [rad], any shape.
@@ -49,18 +49,14 @@ class Trochoid:
         return x, y
 
     def height_rate(self, gamma: ArrayLike) -> Floats:
-        """dy/dgamma [m/rad] along the fillet.
-
-        The tangent is normal to the line from the pitch point, so that only the part
-        l (1 - dphi/dgamma) along it and the slide of the lever remain.
-        """
+        """dy/dgamma [m/rad] along the fillet, the derivative of :meth:`point`."""
         g = np.asarray(gamma, dtype=float)
         sine, cosine = np.sin(g), np.cos(g)
         phi = self.roll(g)
         phi_rate = -self.centre_depth / (sine**2 * self.pitch_radius)
         lever = self.centre_depth / sine + self.radius
         lever_rate = -self.centre_depth * cosine / sine**2
-        return (
+        return np.asarray(
             -self.pitch_radius * np.sin(phi) * phi_rate
             - lever_rate * np.sin(g - phi)
             - lever * np.cos(g - phi) * (1.0 - phi_rate)

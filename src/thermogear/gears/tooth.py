@@ -1,0 +1,136 @@
+"""Tooth as a cantilever of the true profile: bending, shear and axial compliance.
+
+Tooth frame: origin at the gear centre, y along the tooth axis. The force acts at the
+involute point of parameter t = tan(alpha_k), under the angle beta = t - theta_b to the
+normal of the tooth axis.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.gears.geometry import Gear
+
+Floats = NDArray[np.float64]
+
+STARTS = {
+    "root-circle": "from the bottom of the fillet, as most published curves",
+    "30-degree": "from the section whose fillet tangent makes 30 deg with the tooth axis",
+}
+SHEAR_FACTOR = 1.2  # rectangle
+_CRITICAL_SLOPE = np.radians(30.0)
+_FILLET_NODES = np.polynomial.legendre.leggauss(40)
+_FLANK_NODES = np.polynomial.legendre.leggauss(20)
+
+
+class ToothCompliances(NamedTuple):
+    """1/k_b, 1/k_s, 1/k_a [m/N] of one tooth."""
+
+    bending: Floats
+    shear: Floats
+    axial: Floats
+
+    @property
+    def total(self) -> Floats:
+        """Sum of the three parts [m/N]."""
+        return self.bending + self.shear + self.axial
+
+
+class FlankPoint(NamedTuple):
+    """A point of the involute in the tooth frame and the direction of its normal force."""
+
+    x: Floats
+    y: Floats
+    beta: Floats
+
+
+def flank_point(gear: Gear, t: ArrayLike) -> FlankPoint:
+    """Half thickness x_p, height y_p [m] and force angle beta [rad] at t = tan(alpha_k).
+
+    r_k = r_b sqrt(1 + t^2), psi = theta_b - (t - arctan t), x = r_k sin psi, y = r_k cos psi,
+    beta = t - theta_b. Any shape.
+    """
+    t_ = np.asarray(t, dtype=float)
+    psi = gear.base_half_angle - (t_ - np.arctan(t_))
+    r = gear.base_radius * np.sqrt(1.0 + t_ * t_)
+    return FlankPoint(r * np.sin(psi), r * np.cos(psi), t_ - gear.base_half_angle)
+
+
+def start_angle(gear: Gear, start: str) -> float:
+    """Rack normal angle gamma [rad] of the section where the beam begins; see ``STARTS``."""
+    if start == "root-circle":
+        return 0.5 * np.pi
+    if start == "30-degree":
+        # a deeply undercut tooth may be past that slope already where the involute begins
+        return max(gear.fillet.section_at_slope(_CRITICAL_SLOPE), gear.junction[0])
+    raise InputError("start", repr(start), allowed=" | ".join(STARTS), fix=nearest(start, STARTS))
+
+
+def _moments(x: Floats, y: Floats, dy: Floats, point: FlankPoint) -> tuple[Floats, Floats, Floats]:
+    """The three integrals over given sections, without modulus and width.
+
+    x, y, dy: half thickness, height and weight of the sections, last axis; the point's
+    arrays carry a length-1 axis there.
+    """
+    cosine, sine = np.cos(point.beta), np.sin(point.beta)
+    moment = cosine * (point.y - y) - sine * point.x
+    bending = np.sum(1.5 * moment * moment / x**3 * dy, axis=-1)
+    section = np.sum(np.broadcast_to(0.5 / x * dy, moment.shape), axis=-1)
+    return bending, section * cosine[..., 0] ** 2, section * sine[..., 0] ** 2
+
+
+@lru_cache(maxsize=256)
+def _fillet_sections(gear: Gear, start: str) -> tuple[Floats, Floats, Floats]:
+    low, high = start_angle(gear, start), gear.junction[0]
+    nodes, weights = _FILLET_NODES
+    gamma = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+    x, y = gear.fillet.point(gamma)
+    return x, y, gear.fillet.height_rate(gamma) * 0.5 * (high - low) * weights
+
+
+def tooth_compliances(
+    gear: Gear,
+    t: ArrayLike,
+    start: str = "30-degree",
+    modulus: ArrayLike | None = None,
+    face_width: float | None = None,
+) -> ToothCompliances:
+    """Beam compliances of one tooth under a unit normal force on its flank [m/N].
+
+    1/k_b = int [cos(beta)(y_p - y) - x_p sin(beta)]^2/(E I) dy,
+    1/k_s = int 1.2 cos^2(beta)/(G A) dy,   1/k_a = int sin^2(beta)/(E A) dy,
+    I = b (2x)^3/12, A = 2 x b, over fillet trochoid and involute up to the force.
+
+    t: tan of the pressure angle at the loaded point, at or above the form circle, any shape;
+    start: see :data:`STARTS`; modulus: E [Pa], default the material's, broadcasts with t;
+    face_width: b [m], default the gear's. Returns the broadcast shape. Raises InputError for
+    an unknown start. Slender-beam theory on a stub: the sum with body and contact is meant.
+    Source: Weber 1949; Weber & Banaschek 1953; Yang & Sun 1985.
+    """
+    t_ = np.asarray(t, dtype=float)
+    point = flank_point(gear, t_[..., None])
+    bending, shear, axial = _moments(*_fillet_sections(gear, start), point)
+
+    # flank sections from the form circle to the force, equally split in t
+    lowest = gear.junction[1]
+    half = 0.5 * (t_[..., None] - lowest)
+    nodes, weights = _FLANK_NODES
+    at = lowest + half * (1.0 + nodes)
+    section = flank_point(gear, at)
+    # dy/dt = r_b t cos(t - theta_b)
+    rate = gear.base_radius * at * np.cos(section.beta)
+    more = _moments(section.x, section.y, rate * half * weights, point)
+
+    young = np.asarray(gear.material.youngs_modulus if modulus is None else modulus, dtype=float)
+    stiff = young * (gear.face_width if face_width is None else face_width)
+    shear_ratio = SHEAR_FACTOR * 2.0 * (1.0 + gear.material.poisson_ratio)
+    return ToothCompliances(
+        (bending + more[0]) / stiff,
+        shear_ratio * (shear + more[1]) / stiff,
+        (axial + more[2]) / stiff,
+    )

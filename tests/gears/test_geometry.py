@@ -1,0 +1,328 @@
+"""Geometry against closed forms, line/circle intersections, symmetries and refusals."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from thermogear.base.errors import GeometryError, InputError, ValidityWarning
+from thermogear.gears.geometry import Gear, GearPair, Rack, inverse_involute, involute
+
+RIG = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
+
+
+def random_pairs(count: int, seed: int = 1) -> list[GearPair]:
+    """Valid pairs with random teeth, shifts, modules, pressure angles and centre distances."""
+    rng = np.random.default_rng(seed)
+    pairs: list[GearPair] = []
+    while len(pairs) < count:
+        m = float(rng.uniform(0.5e-3, 20e-3))
+        alpha = math.radians(float(rng.uniform(14.5, 25.0)))
+        gears = []
+        try:
+            for _ in range(2):
+                gears.append(
+                    Gear(
+                        int(rng.integers(8, 140)),
+                        m,
+                        pressure_angle=alpha,
+                        profile_shift=float(rng.uniform(-0.4, 0.8)),
+                        rack=Rack(float(rng.uniform(0.8, 1.0)), 1.25, float(rng.uniform(0.1, 0.3))),
+                    )
+                )
+            tight = GearPair(*gears)
+            pairs.append(
+                GearPair(*gears, centre_distance=tight.centre_distance + m * rng.uniform(0, 0.05))
+            )
+        except GeometryError:
+            continue
+    return pairs
+
+
+class TestInvolute:
+    def test_inverse_undoes_the_involute_to_machine_precision(self) -> None:
+        alpha = np.linspace(-1.55, 1.55, 3001)
+        assert np.abs(inverse_involute(involute(alpha)) - alpha).max() < 5e-15
+
+    def test_involute_of_the_inverse(self) -> None:
+        value = np.concatenate([np.logspace(-18, 3, 400)])
+        assert np.abs(involute(inverse_involute(value)) / value - 1.0).max() < 2e-12
+
+    def test_series_and_difference_agree_where_they_meet(self) -> None:
+        from decimal import Decimal, getcontext
+
+        getcontext().prec = 40
+        a = Decimal("0.1")
+        # tan from its power series in exact arithmetic
+        sine = sum((-1) ** k * a ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(12))
+        cosine = sum((-1) ** k * a ** (2 * k) / math.factorial(2 * k) for k in range(12))
+        exact = float(sine / cosine - a)
+        assert float(involute(np.nextafter(0.1, 0.0))) == pytest.approx(exact, rel=1e-14)
+        assert float(involute(0.1)) == pytest.approx(exact, rel=1e-13)
+
+    def test_zero_and_handbook_value(self) -> None:
+        assert float(involute(0.0)) == 0.0
+        assert float(inverse_involute(0.0)) == 0.0
+        assert float(involute(math.radians(20.0))) == pytest.approx(0.01490438387, abs=5e-12)
+
+
+class TestRig:
+    def test_radii_and_path_of_contact(self) -> None:
+        figures = [
+            RIG.pinion.base_radius,
+            RIG.wheel.base_radius,
+            RIG.centre_distance,
+            RIG.base_pitch,
+            *RIG.path,
+        ]
+        expected = [58.731, 176.192, 250.0, 14.760657, 7.9647, 18.5101, 21.3763, 22.7254, 33.2708]
+        printed = [1e-3, 1e-3, 1e-9, 1e-6, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4]
+        for got, want, digit in zip(figures, expected, printed, strict=True):
+            assert 1e3 * got == pytest.approx(want, abs=0.51 * digit)
+        assert RIG.contact_ratio == pytest.approx(1.714426, abs=1e-6)
+        assert RIG.normal_backlash == pytest.approx(0.0, abs=1e-15)
+        assert RIG.ratio == 3.0
+
+    def test_default_sizes_scale_with_the_module(self) -> None:
+        gear = Gear(25, 5e-3)
+        assert (gear.tip_radius, gear.face_width, gear.bore_radius) == (0.0675, 0.025, 0.025)
+
+
+class TestRandomGears:
+    @pytest.fixture(scope="class")
+    @classmethod
+    def pairs(cls) -> list[GearPair]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)
+            return random_pairs(1000)
+
+    def test_contact_ratio_is_the_line_cut_by_the_tip_circles(self, pairs: list[GearPair]) -> None:
+        assert sum(2 for _ in pairs) == 2000
+        for pair in pairs:
+            p, w, a = pair.pinion, pair.wheel, pair.centre_distance
+            # inner common tangent of the base circles, by plane vectors
+            cosine = (p.base_radius + w.base_radius) / a
+            normal = np.array([cosine, -math.sqrt(1.0 - cosine**2)])
+            along = np.array([-normal[1], normal[0]])
+            foot = p.base_radius * normal
+
+            def cut(centre: np.ndarray, radius: float, side: float, o=foot, d=along) -> float:
+                b = float((o - centre) @ d)
+                c = float((o - centre) @ (o - centre)) - radius**2
+                return -b + side * math.sqrt(b * b - c)
+
+            end = cut(np.zeros(2), p.tip_radius, 1.0)
+            start = cut(np.array([a, 0.0]), w.tip_radius, -1.0)
+            assert (end - start) / p.base_pitch == pytest.approx(pair.contact_ratio, abs=1e-9)
+
+    def test_swapping_the_gears_mirrors_the_path(self, pairs: list[GearPair]) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)
+            for pair in pairs[:200]:
+                other = pair.swapped()
+                mirrored = [pair.line_of_action - s for s in reversed(other.path)]
+                assert np.allclose(mirrored, pair.path, rtol=0, atol=1e-12)
+                assert other.contact_ratio == pytest.approx(pair.contact_ratio, abs=1e-12)
+                assert other.normal_backlash == pytest.approx(pair.normal_backlash, abs=1e-14)
+
+    def test_the_module_is_only_a_scale(self, pairs: list[GearPair]) -> None:
+        def scaled(gear: Gear) -> Gear:
+            return Gear(
+                gear.teeth,
+                2.0 * gear.module,
+                gear.pressure_angle,
+                gear.profile_shift,
+                rack=gear.rack,
+            )
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)
+            for pair in pairs[:200]:
+                twice = GearPair(
+                    scaled(pair.pinion), scaled(pair.wheel), 2.0 * pair.centre_distance
+                )
+                assert twice.contact_ratio == pytest.approx(pair.contact_ratio, abs=1e-12)
+                assert np.allclose(twice.path, 2.0 * np.array(pair.path), rtol=1e-12)
+                assert twice.pinion.root_half_angle == pytest.approx(
+                    pair.pinion.root_half_angle, rel=1e-14
+                )
+
+    def test_backlash_is_the_gap_on_the_rolling_circles(self, pairs: list[GearPair]) -> None:
+        for pair in pairs[:200]:
+            r1, r2 = pair.operating_radii
+            pitch = 2.0 * math.pi * r1 / pair.pinion.teeth
+            thick = 2.0 * r1 * float(pair.pinion.half_thickness_angle(r1))
+            thick += 2.0 * r2 * float(pair.wheel.half_thickness_angle(r2))
+            gap = (pitch - thick) * math.cos(pair.operating_pressure_angle)
+            assert pair.normal_backlash == pytest.approx(gap, abs=1e-12)
+            assert pair.normal_backlash >= -1e-12
+
+    def test_flank_and_fillet_meet_with_one_tangent(self, pairs: list[GearPair]) -> None:
+        for pair in pairs[:300]:
+            gear = pair.pinion
+            gamma, t = gear.junction
+            x, y = gear.fillet.point(gamma)
+            radius = float(np.hypot(x, y))
+            assert radius == pytest.approx(gear.form_radius, rel=1e-12)
+            assert float(np.arctan2(x, y)) == pytest.approx(
+                float(gear.half_thickness_angle(radius)), abs=1e-9
+            )
+            # the normal of both: gamma - phi on the fillet, t - theta_b on the involute
+            assert gamma - float(gear.fillet.roll(gamma)) == pytest.approx(
+                t - gear.base_half_angle, abs=1e-12
+            )
+
+
+class TestFillet:
+    def test_bottom_touches_the_root_circle_at_the_foot_angle(self) -> None:
+        gear = Gear(25, 5e-3)
+        x, y = gear.fillet.point(0.5 * math.pi)
+        assert float(np.hypot(x, y)) == pytest.approx(gear.root_radius, rel=1e-14)
+        assert float(np.arctan2(x, y)) == pytest.approx(gear.root_half_angle, rel=1e-14)
+
+    def test_height_rate_is_the_derivative(self) -> None:
+        gear = Gear(31, 2e-3, profile_shift=0.2)
+        gamma = np.linspace(0.4, 1.5, 12)
+        h = 1e-6
+        by_difference = (gear.fillet.point(gamma + h)[1] - gear.fillet.point(gamma - h)[1]) / (
+            2 * h
+        )
+        assert np.allclose(gear.fillet.height_rate(gamma), by_difference, rtol=1e-7, atol=1e-12)
+
+    def test_undercut_fillet_cuts_the_involute_above_the_base_circle(self) -> None:
+        gear = Gear(10, 5e-3, allow_undercut=True)
+        gamma, t = gear.junction
+        assert gear.form_radius > gear.base_radius * (1 + 1e-4)
+        x, y = gear.fillet.point(gamma)
+        assert float(np.arctan2(x, y)) == pytest.approx(
+            float(gear.half_thickness_angle(gear.form_radius)), abs=1e-12
+        )
+        # just above the crossing the fillet lies outside the tooth, just below inside
+        assert t > 0.0
+
+    def test_crossing_is_continuous_with_the_tangent_junction(self) -> None:
+        limit = Gear(12, 5e-3, profile_shift=0.29814).junction[1]
+        barely = Gear(12, 5e-3, profile_shift=0.2970, allow_undercut=True).junction[1]
+        assert limit < 0.02
+        assert barely < 0.1
+
+
+def message(call: object) -> str:
+    with pytest.raises(InputError) as caught:
+        call()  # type: ignore[operator]
+    text = str(caught.value)
+    assert "\n" not in text
+    return text
+
+
+class TestRefusals:
+    def test_undercut_names_shift_and_teeth(self) -> None:
+        assert message(lambda: Gear(12, 5e-3)) == (
+            "profile_shift: got 0 for 12 teeth; needs x >= 0.298; use x >= 0.30 or >= 18 teeth"
+        )
+        assert Gear(12, 5e-3, profile_shift=0.30).minimum_teeth == 12
+        assert Gear(18, 5e-3).teeth == 18
+
+    def test_error_takes_its_part_as_prefix(self) -> None:
+        with pytest.raises(GeometryError) as caught:
+            Gear(12, 5e-3)
+        assert str(caught.value.under("pinion")).startswith("pinion.profile_shift: got 0 for 12")
+
+    def test_pointed_tooth_names_the_radius_of_its_point(self) -> None:
+        text = message(lambda: Gear(20, 5e-3, profile_shift=1.5))
+        assert text.startswith("tip_radius: got 62.5 mm; allowed < 61.848 mm; the tooth is pointed")
+        gear = Gear(20, 5e-3, profile_shift=1.5, tip_radius=61.0e-3)
+        root = brentq(lambda r: float(gear.half_thickness_angle(r)), 0.05, 0.07, xtol=1e-15)
+        assert gear.pointed_radius == pytest.approx(root, rel=1e-12)
+
+    @pytest.mark.parametrize(
+        ("changes", "text"),
+        [
+            (
+                {"module": -5e-3},
+                "module: got -5 mm; allowed > 0, finite",
+            ),
+            ({"module": math.nan}, "module: got nan mm; allowed > 0, finite"),
+            ({"module": "5 mm"}, "module: got '5 mm'; allowed a number [mm]"),
+            ({"teeth": 4}, "teeth: got 4; allowed a whole number >= 5"),
+            ({"teeth": 25.5}, "teeth: got 25.5; allowed a whole number >= 5"),
+            ({"teeth": True}, "teeth: got True; allowed a whole number >= 5"),
+            ({"pressure_angle": 20.0}, "pressure_angle: got 1145.92 deg; allowed 10 .. 35 deg"),
+            ({"pressure_angle": math.nan}, "pressure_angle: got nan deg; allowed 10 .. 35 deg"),
+            ({"face_width": 0.0}, "face_width: got 0 mm; allowed > 0, finite"),
+            ({"face_width": math.inf}, "face_width: got inf mm; allowed > 0, finite"),
+            ({"roughness": -1e-6}, "roughness: got -0.001 mm; allowed > 0, finite"),
+            ({"profile_shift": math.inf}, "profile_shift: got inf; allowed finite"),
+            (
+                {"bore_radius": 0.06},
+                "bore_radius: got 60 mm; allowed 0 < bore radius < root radius 56.25 mm; "
+                "the body must be a ring",
+            ),
+            (
+                {"bore_radius": 0.0},
+                "bore_radius: got 0 mm; allowed 0 < bore radius < root radius 56.25 mm; "
+                "the body must be a ring",
+            ),
+            (
+                {"tip_radius": 0.0585},
+                "tip_radius: got 58.5 mm; allowed > 59.1183 mm (form circle); "
+                "no involute flank is left",
+            ),
+            (
+                {"rack": Rack(fillet_radius=0.5)},
+                "rack.fillet_radius: got 0.5 modules; allowed <= 0.4719 modules; "
+                "the rack's tip is not wide enough for two such rounds; "
+                "give the rack a smaller one",
+            ),
+        ],
+    )
+    def test_impossible_gears(self, changes: dict[str, object], text: str) -> None:
+        arguments: dict[str, object] = {"teeth": 25, "module": 5e-3} | changes
+        assert message(lambda: Gear(**arguments)) == text  # type: ignore[arg-type]
+
+    def test_rack_and_hopeless_undercut(self) -> None:
+        assert message(lambda: Rack(addendum=0.0)) == ("rack.addendum: got 0; allowed > 0, finite")
+        text = message(lambda: Gear(5, 5e-3, profile_shift=-0.9, allow_undercut=True))
+        assert "no involute flank is left" in text
+
+    def test_pair_of_different_racks(self) -> None:
+        assert message(lambda: GearPair(Gear(25, 5e-3), Gear(75, 4e-3))) == (
+            "wheel.module: got 4 mm; allowed 5 mm, the pinion's; both gears come from one rack"
+        )
+        assert message(
+            lambda: GearPair(
+                Gear(25, 5e-3),
+                Gear(75, 5e-3, pressure_angle=math.radians(25), rack=Rack(fillet_radius=0.3)),
+            )
+        ).startswith("wheel.pressure_angle: got 25 deg; allowed 20 deg, the pinion's")
+
+    def test_jammed_centre_distance(self) -> None:
+        assert message(lambda: GearPair(Gear(25, 5e-3), Gear(75, 5e-3), 0.2499)) == (
+            "centre_distance: got 249.9 mm; allowed >= 250 mm; "
+            "the teeth would wedge (no backlash left)"
+        )
+        assert message(lambda: GearPair(Gear(25, 5e-3), Gear(75, 5e-3), math.inf)).startswith(
+            "centre_distance: got inf mm"
+        )
+
+    def test_interference_names_the_longest_tip(self) -> None:
+        wheel = Gear(75, 5e-3, tip_radius=0.1955)
+        text = message(lambda: GearPair(Gear(18, 5e-3), wheel))
+        assert text.startswith("wheel.tip_radius: got 195.5 mm; allowed <= ")
+        assert "interference: the tip reaches below the pinion's" in text
+        longest = float(text.split("allowed <= ")[1].split(" mm")[0]) * 1e-3
+        GearPair(Gear(18, 5e-3), Gear(75, 5e-3, tip_radius=longest * (1 - 1e-6)))
+
+    def test_contact_ratio(self) -> None:
+        def short(tip: float) -> GearPair:
+            return GearPair(
+                Gear(25, 5e-3, tip_radius=62.5e-3 + tip), Gear(75, 5e-3, tip_radius=187.5e-3 + tip)
+            )
+
+        assert message(lambda: short(2.0e-3)).startswith("contact_ratio: got 0.7")
+        with pytest.warns(ValidityWarning, match=r"contact_ratio: got 1\.\d+; recommended >= 1\.2"):
+            short(3.1e-3)

@@ -1,0 +1,170 @@
+"""The textbook mesh stiffness: published elements, the thesis's curve, limits and symmetries."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.gears.body import sainsot_compliance
+from thermogear.gears.contact_compliance import yang_sun_stiffness
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.sharing import equal_share, stiffness_share
+from thermogear.gears.stiffness import (
+    Moduli,
+    mesh_figures,
+    mesh_stiffness,
+    pair_compliances,
+    pair_stiffness,
+)
+
+
+def rig(face_width: float, bores: tuple[float, float]) -> GearPair:
+    return GearPair(
+        Gear(25, 5e-3, face_width=face_width, bore_radius=bores[0]),
+        Gear(75, 5e-3, face_width=face_width, bore_radius=bores[1]),
+    )
+
+
+REFERENCE = rig(20e-3, (20e-3, 60e-3))
+THESIS = rig(23.54e-3, (30e-3, 100e-3))
+
+
+@pytest.mark.parametrize(
+    ("start", "pinion", "wheel"),
+    [
+        ("root-circle", (7.48417e9, 2.02541e9, 7.29525e10), (1.20947e10, 2.26467e9, 6.09691e10)),
+        ("30-degree", (1.22516e10, 2.38209e9, 8.57997e10), (1.93890e10, 2.61821e9, 7.04870e10)),
+    ],
+)
+def test_elements_at_the_pitch_point(
+    start: str, pinion: tuple[float, ...], wheel: tuple[float, ...]
+) -> None:
+    parts = pair_compliances(REFERENCE, REFERENCE.path.c, start)
+    assert 1.0 / np.array(parts.pinion.tooth) == pytest.approx(pinion, rel=1e-4)
+    assert 1.0 / np.array(parts.wheel.tooth) == pytest.approx(wheel, rel=1e-4)
+    assert 1.0 / float(parts.pinion.foundation) == pytest.approx(8.67547e8, rel=1e-4)
+    assert 1.0 / float(parts.wheel.foundation) == pytest.approx(7.79007e8, rel=1e-4)
+    assert 1.0 / float(parts.contact) == pytest.approx(3.55587e9, rel=1e-4)
+
+
+def test_contact_of_equal_materials() -> None:
+    young, nu, width = 206e9, 0.3, 0.02
+    got = yang_sun_stiffness(young / (2 * (1 - nu**2)), width)
+    assert float(got) == pytest.approx(np.pi * young * width / (4 * (1 - nu**2)), rel=1e-14)
+
+
+def test_the_curve_of_the_thesis() -> None:
+    figures = mesh_figures(THESIS)
+    assert figures.minimum == pytest.approx(3.494e8, rel=5e-3)
+    assert figures.maximum == pytest.approx(6.255e8, rel=5e-3)
+    assert figures.mean == pytest.approx(5.41e8, rel=5e-3)
+    assert 0.5 * (figures.minimum + figures.maximum) == pytest.approx(4.875e8, rel=4e-3)
+    assert figures.maximum - figures.minimum == pytest.approx(2.75e8, rel=5e-3)
+
+
+def test_figures_are_those_of_the_sampled_curve() -> None:
+    phase = (np.arange(4000) + 0.5) / 4000
+    curve = mesh_stiffness(THESIS, phase)
+    figures = mesh_figures(THESIS)
+    # two jumps fall into samples of 1/4000 period
+    assert figures.mean == pytest.approx(curve.mean(), rel=2e-4)
+    assert figures.minimum == pytest.approx(curve.min(), rel=1e-4)
+    assert figures.maximum == pytest.approx(curve.max(), rel=1e-4)
+
+
+def test_mesh_is_the_sum_of_the_pairs_in_contact() -> None:
+    pair = REFERENCE
+    assert float(mesh_stiffness(pair, 0.8)) == pytest.approx(
+        float(pair_stiffness(pair, pair.path.a + 0.8 * pair.base_pitch)), rel=1e-15
+    )
+    both = pair_stiffness(pair, pair.path.a + np.array([0.3, 1.3]) * pair.base_pitch)
+    assert float(mesh_stiffness(pair, 0.3)) == pytest.approx(both.sum(), rel=1e-15)
+    assert np.array_equal(pair_stiffness(pair, [0.0, pair.line_of_action, np.nan]), np.zeros(3))
+
+
+def test_swapped_gears_run_the_curve_backwards() -> None:
+    pair = GearPair(Gear(26, 3e-3, profile_shift=0.3), Gear(45, 3e-3, bore_radius=20e-3))
+    s = np.linspace(pair.path.a, pair.path.e, 15)
+    mirrored = pair_stiffness(pair.swapped(), pair.line_of_action - s)
+    with np.errstate(invalid="raise"):
+        assert np.allclose(mirrored, pair_stiffness(pair, s), rtol=1e-9)
+
+
+def test_stiffness_per_width_does_not_know_the_module() -> None:
+    small = GearPair(Gear(25, 1e-3), Gear(75, 1e-3))
+    large = GearPair(Gear(25, 8e-3), Gear(75, 8e-3))
+    phase = np.linspace(0, 1, 20, endpoint=False)
+    a = mesh_stiffness(small, phase) / small.face_width
+    b = mesh_stiffness(large, phase) / large.face_width
+    assert np.allclose(a, b, rtol=1e-9)
+
+
+def test_the_smaller_face_width_counts() -> None:
+    wide = GearPair(
+        Gear(25, 5e-3, face_width=30e-3, bore_radius=20e-3),
+        Gear(75, 5e-3, face_width=20e-3, bore_radius=60e-3),
+    )
+    assert np.array_equal(mesh_stiffness(wide, [0.1, 0.8]), mesh_stiffness(REFERENCE, [0.1, 0.8]))
+
+
+def test_hot_moduli_scale_their_parts_and_broadcast() -> None:
+    """E falls alike in everything: so does k. In the pinion's teeth alone: only its parts."""
+    phase = np.linspace(0, 1, 6, endpoint=False)
+    factor = np.array([[1.0], [0.95]])
+    hot = Moduli(206e9 * factor, 206e9 * factor)
+    k = mesh_stiffness(REFERENCE, phase, pinion=hot, wheel=hot)
+    assert k.shape == (2, 6)
+    assert np.allclose(k[1], 0.95 * k[0], rtol=1e-13)
+    share = stiffness_share(
+        REFERENCE, REFERENCE.path.a + phase * REFERENCE.base_pitch, pinion=hot, wheel=hot
+    )
+    assert np.allclose(share[0], share[1], rtol=1e-13)
+
+    cold = pair_compliances(REFERENCE, REFERENCE.path.c)
+    warm = pair_compliances(REFERENCE, REFERENCE.path.c, pinion=Moduli(103e9, 206e9))
+    assert float(warm.pinion.tooth.total) == pytest.approx(2 * float(cold.pinion.tooth.total))
+    assert float(warm.pinion.foundation) == float(cold.pinion.foundation)
+    assert float(warm.contact) == pytest.approx(1.5 * float(cold.contact))
+    assert float(warm.wheel.total) == float(cold.wheel.total)
+
+
+def test_modulus_of_temperature() -> None:
+    gear = REFERENCE.pinion
+    cold = Moduli.at(gear, 293.15, 293.15)
+    assert (float(cold.tooth), float(cold.body)) == (206e9, 206e9)
+    hot = Moduli.at(gear, 393.15, 373.15)
+    assert float(hot.tooth) == pytest.approx(206e9 * (1 - 3.3e-2))
+    assert float(hot.body) == pytest.approx(206e9 * (1 - 2.64e-2))
+    with pytest.raises(InputError, match=r"modulus\.tooth: got -1\.0 Pa; allowed > 0, finite"):
+        Moduli(-1.0, 206e9)
+
+
+def test_foundation_warns_outside_its_source() -> None:
+    thick = Gear(13, 5e-3, profile_shift=0.3)
+    with pytest.warns(ValidityWarning, match=r"13 teeth: r_f/r_bore = .*theta_f = 0\.23"):
+        sainsot_compliance(thick, 0.4)
+    thin = Gear(75, 5e-3, bore_radius=150e-3)
+    with pytest.warns(ValidityWarning, match=r"r_f/r_bore = 1\.208"):
+        sainsot_compliance(thin, 0.4)
+
+
+class TestShares:
+    def test_equal(self) -> None:
+        path = REFERENCE.path
+        s = np.array([path.a, 0.5 * (path.a + path.b), path.c, 0.5 * (path.d + path.e), path.e])
+        assert np.array_equal(equal_share(REFERENCE, s), [0.5, 0.5, 1.0, 0.5, 0.5])
+        assert np.array_equal(equal_share(REFERENCE, [0.0, path.e + 1e-3]), [0.0, 0.0])
+
+    def test_stiffness_shares_sum_to_one_and_follow_the_stiffness(self) -> None:
+        pair = REFERENCE
+        s = pair.path.a + np.linspace(0.0, 0.999, 40) * pair.base_pitch
+        ahead = s + pair.base_pitch
+        total = stiffness_share(pair, s) + np.where(
+            ahead < pair.path.e, stiffness_share(pair, ahead), 0.0
+        )
+        assert np.allclose(total, 1.0, rtol=1e-14)
+        k = pair_stiffness(pair, [s[5], ahead[5]])
+        assert float(stiffness_share(pair, s[5])) == pytest.approx(k[0] / k.sum(), rel=1e-14)
+        assert float(stiffness_share(pair, pair.path.c)) == 1.0
+        assert float(stiffness_share(pair, 0.0)) == 0.0
