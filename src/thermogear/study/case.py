@@ -1,0 +1,221 @@
+"""A case: the file read, checked and turned into frozen SI dataclasses.
+
+Read it with :func:`load_case`; a ready-made one with :func:`load_example`. What leaves knows
+nothing of TOML, texts or units any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Periodic
+from thermogear.base.materials import MATERIALS, Material
+from thermogear.gears.geometry import GearPair
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating
+from thermogear.study import parts
+from thermogear.study.assumptions import Assumption, assumptions
+from thermogear.study.backlash import Backlash
+from thermogear.study.complaints import first_complaint
+from thermogear.study.parts import TemperatureRule
+from thermogear.study.ranges import warn_of_temperatures
+from thermogear.study.ready import example_text
+from thermogear.study.rows import Point, points_of
+from thermogear.study.schema import PICTURES, DimensionlessFile, GearFile
+from thermogear.study.source import case_text, overridden, pairs, tables
+
+__all__ = [
+    "PICTURES",
+    "Assumption",
+    "Backlash",
+    "Case",
+    "DimensionlessCase",
+    "GearCase",
+    "Point",
+    "Simulation",
+    "TemperatureRule",
+    "load_case",
+    "load_example",
+]
+
+MOST_POINTS = 1_000_000
+"""Speeds times torques, at most."""
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """How long and how finely the motion is followed; periods are mesh periods.
+
+    ``initial_state`` is (X, X'), the displacement over the cold half backlash and its derivative
+    by omega_n t.
+    """
+
+    periods: int
+    discard: int
+    most_discarded: int
+    steps_per_period: int
+    samples: int
+    sample_periods: int
+    initial_state: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """What every case has; ``text`` is the file as it was read, without the ``overrides``."""
+
+    title: str
+    text: str
+    simulation: Simulation
+    assumptions: tuple[Assumption, ...] = ()
+    overrides: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """``"gear"`` or ``"dimensionless"``."""
+        return "gear" if isinstance(self, GearCase) else "dimensionless"
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearCase(Case):
+    """A gear pair with its operating points, from friction to vibration (SI, K, rad).
+
+    ``operating`` holds every speed with every torque, the speed the slow axis, in the hot state;
+    ``gear_temperatures`` [K] is the row of addendum temperatures of both gears. ``inertias``
+    [kg m^2]; ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the
+    bundles to compute with.
+    """
+
+    pair: GearPair
+    operating: Operating
+    temperature_rule: TemperatureRule
+    gear_temperatures: tuple[float, ...]
+    inertias: tuple[float, float]
+    inertia_kind: str
+    damping_ratio: float
+    transmission_error: Periodic
+    cold_backlash: Backlash
+    models: tuple[MeshModel, ...]
+    speeds: tuple[float, ...]
+    torques: tuple[float, ...]
+    harmonics: int
+    mesh_positions: int
+    path_positions: int
+    pictures: tuple[str, ...] = PICTURES
+    base_sets: tuple[str, ...] = ()
+
+    @property
+    def housing(self) -> Material:
+        """The material of the housing."""
+        return self.operating.housing
+
+    def operating_at(self, gear_temperature: float) -> Operating:
+        """The operating points with both addenda at ``gear_temperature`` [K]."""
+        return replace(
+            self.operating,
+            oil_temperature=self.temperature_rule.oil.at(gear_temperature),
+            temperatures=self.temperature_rule.at(gear_temperature, gear_temperature),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DimensionlessCase(Case):
+    """Rows of points of the dimensionless equation; no gear stands behind them."""
+
+    points: tuple[Point, ...]
+
+
+def load_case(
+    source: str | Path, overrides: Mapping[str, str] | Sequence[str] = ()
+) -> GearCase | DimensionlessCase:
+    """The case in the file ``source``, or in the text itself, with ``overrides`` put in.
+
+    ``overrides`` map dotted fields to values as a file would hold them, or are texts
+    ``"gears.pinion.teeth=30"``. Raises :class:`InputError` in one line; warns with
+    :class:`ValidityWarning` where a value leaves the range of its data.
+    """
+    name, text = case_text(source)
+    changes = pairs(overrides)
+    data = overridden(tables(name, text), changes)
+    kind = data.get("kind", "gear")
+    file = DimensionlessFile if kind == "dimensionless" else GearFile
+    try:
+        read: GearFile | DimensionlessFile = file.model_validate(data)
+    except ValidationError as error:
+        raise first_complaint(error, file) from error
+    common: dict[str, Any] = {
+        "title": read.title,
+        "text": text,
+        "simulation": Simulation(**read.simulation.model_dump()),
+        "assumptions": assumptions(data, read, tuple(path for path, _ in changes)),
+        "overrides": changes,
+    }
+    if isinstance(read, DimensionlessFile):
+        return DimensionlessCase(points=points_of(read), **common)
+    return _gear_case(read, common)
+
+
+def load_example(
+    name: str, overrides: Mapping[str, str] | Sequence[str] = ()
+) -> GearCase | DimensionlessCase:
+    """The ready-made case ``name``; an unknown name says the nearest."""
+    return load_case(example_text(name), overrides)
+
+
+def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
+    materials = MATERIALS | parts.own_materials(file)
+    housing = parts.named_material(file.housing.material, "housing.material", materials)
+    pair = parts.pair_of(file, materials)
+    rule = parts.temperature_rule(file)
+    temperatures = rule.at(file.temperatures.pinion_addendum, file.temperatures.wheel_addendum)
+    backlash = parts.cold_backlash(file, pair, housing)
+    speeds, torques = file.operating.speed, file.operating.torque
+    count = len(speeds) * len(torques)
+    if count > MOST_POINTS:
+        raise InputError(
+            "operating",
+            f"{len(speeds)} speeds x {len(torques)} torques = {count} points",
+            allowed=f"1..{MOST_POINTS} points",
+            fix="split the case",
+        )
+    inertias, inertia_kind = parts.inertias(file, pair)
+    case = GearCase(
+        pair=pair,
+        operating=Operating(
+            speed=np.repeat(speeds, len(torques)),
+            torque=np.tile(torques, len(speeds)),
+            lubricant=parts.lubricant(file),
+            oil_temperature=rule.oil.at(file.temperatures.pinion_addendum),
+            temperatures=temperatures,
+            half_backlash=backlash.half,
+            housing=housing,
+        ),
+        temperature_rule=rule,
+        gear_temperatures=file.temperatures.row,
+        inertias=inertias,
+        inertia_kind=inertia_kind,
+        damping_ratio=file.dynamics.damping_ratio,
+        transmission_error=parts.transmission_error(file),
+        cold_backlash=backlash,
+        models=parts.models(file),
+        speeds=speeds,
+        torques=torques,
+        harmonics=file.grid.harmonics,
+        mesh_positions=file.grid.mesh_positions,
+        path_positions=file.grid.path_positions,
+        pictures=file.draw.pictures,
+        base_sets=file.draw.base_sets,
+        **common,
+    )
+    row = {
+        f"temperatures.row[{place}]": case.operating_at(temperature)
+        for place, temperature in enumerate(case.gear_temperatures)
+    }
+    warn_of_temperatures(pair, {"temperatures": case.operating} | row)
+    return case

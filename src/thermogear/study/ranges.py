@@ -1,0 +1,49 @@
+"""Warnings where a case leaves the range of its material and oil data."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from thermogear.base.errors import ValidityWarning
+from thermogear.base.materials import ZERO_CELSIUS, Material
+from thermogear.gears.geometry import GearPair
+from thermogear.mesh.operating import Operating
+
+COLDEST = ZERO_CELSIUS - 60.0
+"""Below it [K] the material data are an extrapolation."""
+
+
+def warn_of_temperatures(pair: GearPair, states: dict[str, Operating]) -> None:
+    """Warn of every body and oil temperature of ``states`` (field -> points) outside its data."""
+    for where, state in states.items():
+        bodies = state.temperatures
+        for body, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+            for place in ("addendum", "bore"):
+                value = float(np.max(getattr(bodies, f"{body}_{place}")))
+                _warn(f"{where}.{body}_{place}", value, gear.material)
+        _warn(f"{where}.housing", float(np.max(bodies.housing)), state.housing)
+        low, high = state.lubricant.temperature_range
+        if not low <= state.oil_temperature <= high:
+            field = "oil.temperature" if where == "temperatures" else f"{where}, oil"
+            why = f"outside the viscosity fit of {state.lubricant.name}"
+            _say(field, state.oil_temperature, low, high, why)
+
+
+def _warn(where: str, value: float, material: Material) -> None:
+    high = material.tempering_temperature
+    if value > high:
+        _say(where, value, COLDEST, high, f"above the tempering temperature of {material.name}")
+    elif value < COLDEST:
+        _say(where, value, COLDEST, high, f"below the data of {material.name}")
+
+
+def _say(where: str, value: float, low: float, high: float, why: str) -> None:
+    upper = f"{high - ZERO_CELSIUS:g}" if high < 1e6 else "any"
+    warnings.warn(
+        f"{where}: got {value - ZERO_CELSIUS:g} degC; valid {low - ZERO_CELSIUS:g}..{upper} degC; "
+        f"{why}",
+        ValidityWarning,
+        stacklevel=5,
+    )

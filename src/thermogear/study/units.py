@@ -1,0 +1,197 @@
+"""Units as text, read once: ``"5 mm"`` becomes 0.005.
+
+Below the case file every float is SI, every temperature K, every angle rad. pint is loaded when
+the first text is read, never on import.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from thermogear.base.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of quantity: its SI unit, the unit messages speak in, an example to copy.
+
+    ``parts``: unit names one of which must occur. pint calls an angle a pure number and a joule
+    a newton metre, so that 50 Hz would pass as 50 rad/s; a kind that suffers from this names the
+    units it accepts.
+    """
+
+    name: str
+    si: str
+    shown: str
+    example: str
+    parts: tuple[str, ...] = ()
+
+
+_ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
+
+KINDS: dict[str, Kind] = {
+    kind.name: kind
+    for kind in (
+        Kind("length", "m", "mm", "5 mm"),
+        Kind("angle", "rad", "deg", "20 deg", _ANGLES),
+        Kind("temperature", "K", "degC", "100 degC"),
+        Kind("temperature difference", "K", "K", "20 K"),
+        Kind(
+            "rotational speed",
+            "rad/s",
+            "rpm",
+            "1000 rpm",
+            (*_ANGLES, "revolutions_per_minute", "revolutions_per_second"),
+        ),
+        Kind("torque", "N m", "N m", "100 N m", ("newton", "pound", "force", "dyne", "kip")),
+        Kind("moment of inertia", "kg m^2", "kg m^2", "0.01 kg m^2"),
+        Kind("kinematic viscosity", "m^2/s", "mm^2/s", "100 mm^2/s"),
+        Kind("density", "kg/m^3", "kg/m^3", "7850 kg/m^3"),
+        Kind("pressure", "Pa", "GPa", "206 GPa"),
+        Kind("thermal conductivity", "W/(m K)", "W/(m K)", "46 W/(m K)"),
+        Kind("specific heat", "J/(kg K)", "J/(kg K)", "470 J/(kg K)"),
+        Kind("thermal expansion", "1/K", "1/K", "11.5e-6 1/K"),
+    )
+}
+
+_TEXT = re.compile(
+    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)(?![a-z]))"
+    r"\s*(?P<unit>.*?)\s*",
+    re.IGNORECASE | re.DOTALL,
+)
+_UNIT = re.compile(r"[\w°·*/^().\s²³⁻¹-]{1,40}")  # what a unit is written with, and not too long
+_SLIPS = {"C": "degC", "°": "deg", "F": "degF", "cst": "cSt", "RPM": "rpm", "Nm": "N m"}
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def convert(number: float, unit: str, kind: Kind) -> float:
+    """``number`` in ``unit`` as an SI number of ``kind``.
+
+    Raises :class:`InputError` (with an empty field; the reader knows which) where the unit is
+    unknown or of another kind.
+    """
+    registry = _registry()
+    got = f"{number:g} {unit}"
+    example = f'write for instance "{kind.example}"'
+    if not _UNIT.fullmatch(unit):
+        raise InputError("", repr(f"{number:g} {unit}")[:80], why="not a unit", fix=example)
+    try:
+        parsed = registry.parse_units(unit)
+        wrong = parsed.dimensionality != registry.parse_units(kind.si).dimensionality
+        names = str(parsed)
+    except Exception as cause:
+        # pint answers nonsense with errors of many classes (lookup, syntax, tokens, arithmetic)
+        slip = _SLIPS.get(unit)
+        raise InputError(
+            "",
+            repr(got),
+            allowed=f"a unit of {kind.name}",
+            why=f"unit {unit!r} is not known",
+            fix=f'did you mean "{slip}"?' if slip else example,
+        ) from cause
+    if not wrong and kind.parts:
+        wrong = not any(part in names for part in kind.parts)
+    if not wrong and kind.name == "temperature" and "delta" in names:
+        wrong = True
+    if wrong:
+        slip = _SLIPS.get(unit)
+        raise InputError(
+            "",
+            repr(got),
+            allowed=f"a unit of {kind.name}",
+            why=f"{unit!r} is no unit of {kind.name}",
+            fix=f'did you mean "{number:g} {slip}"?' if slip else example,
+        )
+    if kind.name == "temperature difference" and parsed != registry.kelvin and "delta" not in names:
+        raise InputError(
+            "",
+            repr(got),
+            allowed="a difference of temperatures",
+            why=f"{unit!r} has its zero elsewhere",
+            fix=f'write "{number:g} K"',
+        )
+    try:
+        return float(registry.Quantity(number, parsed).to(kind.si).magnitude)
+    except Exception as cause:  # offset units inside a product, overflow
+        raise InputError(
+            "", repr(got), why=f"{unit!r} cannot be turned into {kind.si}", fix=example
+        ) from cause
+
+
+def read_quantity(text: object, kind_name: str) -> float:
+    """An SI number out of a text with a unit; a bare number is refused with an example."""
+    kind = KINDS[kind_name]
+    example = f'write for instance "{kind.example}"'
+    if isinstance(text, bool) or not isinstance(text, str | int | float):
+        raise InputError(
+            "", short(text), allowed=f"a text: number and unit of {kind.name}", fix=example
+        )
+    if isinstance(text, int | float):
+        raise InputError(
+            "",
+            short(text),
+            allowed=f"a text: number and unit of {kind.name}",
+            why="a bare number has no unit",
+            fix=f'write for instance "{short(text)} {kind.shown}"'
+            if math.isfinite(text)
+            else example,
+        )
+    match = _TEXT.fullmatch(text)
+    if match is None:
+        comma = re.match(r"\s*[+-]?\d+,\d+", text) is not None
+        raise InputError(
+            "",
+            short(text),
+            allowed=f"a text: number and unit of {kind.name}",
+            why="decimals follow a point, not a comma" if comma else "no number at its start",
+            fix=example,
+        )
+    number, unit = float(match["number"]), match["unit"]
+    if not math.isfinite(number):
+        raise InputError("", short(text), allowed="finite numbers", fix=example)
+    if not unit:
+        raise InputError(
+            "",
+            short(text),
+            allowed=f"a text: number and unit of {kind.name}",
+            why="the unit is missing",
+            fix=f'write for instance "{match["number"]} {kind.shown}"',
+        )
+    return convert(number, unit, kind)
+
+
+def shown(value: float, kind_name: str, digits: int = 6) -> str:
+    """An SI ``value`` as text in the unit that messages and tables speak in."""
+    kind = KINDS[kind_name]
+    quantity = _registry().Quantity(value, kind.si).to(kind.shown)
+    return f"{float(quantity.magnitude):.{digits}g} {kind.shown}"
+
+
+def short(value: object) -> str:
+    """A value as it stands in a message: one line, at most 60 characters."""
+    if isinstance(value, bool):
+        text = str(value).lower()
+    elif isinstance(value, dict):
+        text = "a table"
+    elif isinstance(value, int) and abs(value) >= 10**20:
+        text = f"a whole number of about {value.bit_length() * 0.30103:.0f} digits"
+    elif isinstance(value, int | float):
+        text = f"{value:.15g}" if isinstance(value, float) else str(value)
+    elif isinstance(value, str):
+        text = repr(value)
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
