@@ -1,0 +1,144 @@
+"""The largest Lyapunov exponent along a trajectory, with its batch-means error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.section import lanes_of, starts_of
+from thermogear.base.errors import InputError
+from thermogear.dynamics import exact
+from thermogear.dynamics.blocks import Pace, Progress, run_blocks
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Lyapunov:
+    """Largest exponent ``value`` per unit time with the standard ``error`` of its batch means.
+
+    ``sum`` is the sum of both exponents, exactly -2 zeta; ``batches`` the batch means,
+    ``state`` the last state on the section.
+    """
+
+    value: float
+    error: float
+    sum: float
+    batches: Floats
+    state: Floats
+
+    @property
+    def second(self) -> float:
+        """The other exponent: sum - value."""
+        return self.sum - self.value
+
+    @property
+    def kaplan_yorke(self) -> float:
+        """Kaplan-Yorke dimension on the section: 1 + value/|second|, 0 when not chaotic."""
+        return 1.0 + self.value / abs(self.second) if self.value > 0.0 else 0.0
+
+
+def _block(
+    lanes: Lanes,
+    index: NDArray[np.int64],
+    borders: Floats,
+    marks: NDArray[np.uint8],
+    start: Floats,
+    discard: int,
+    means: Floats,
+    ends: Floats,
+    length: int,
+    pace: Pace,
+) -> None:
+    mine = lanes.take(index)
+    maps = exact.prepare_maps(mine, borders, marks)
+    state = exact.State.start(start[index, 0], start[index, 1], mine.half_backlash)
+    for _, count in pace.chunks(discard, index.size):
+        exact.advance(maps, state, count)
+    # the tangent turns into its own direction before it is counted
+    state.fresh_tangent()
+    state.tangent[2] = 2.0 * np.pi / mine.period
+    exact.advance(maps, state, min(50, length), columns=1, normalise=True)
+    for batch in range(means.shape[1]):
+        total = np.zeros(index.size)
+        for _, count in pace.chunks(length, index.size):
+            _, stretch, _ = exact.advance(maps, state, count, columns=1, normalise=True)
+            total += stretch.sum(axis=0)
+        means[index, batch] = total / (length * mine.period)
+    ends[index, 0], ends[index, 1] = state.x, state.y
+
+
+def lyapunov_exponents(
+    model: object,
+    *,
+    initial_state: ArrayLike = (0.0, 0.0),
+    discard: int = 2000,
+    batches: int = 20,
+    batch_periods: int = 1000,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> list[Lyapunov]:
+    """:func:`lyapunov_exponent` of every lane of ``model``."""
+    for name, value, least in (
+        ("discard", discard, 0),
+        ("batches", batches, 2),
+        ("batch_periods", batch_periods, 1),
+    ):
+        if int(value) != value or value < least:
+            raise InputError(name, value, allowed=f"a whole number >= {least}")
+    lanes = lanes_of(model)
+    start = starts_of(initial_state, len(lanes))
+    means = np.full((len(lanes), batches), np.nan)
+    ends = np.full((len(lanes), 2), np.nan)
+    work = [
+        partial(_block, lanes, index, borders, marks, start, discard, means, ends, batch_periods)
+        for index, borders, marks in exact.layouts(lanes)
+    ]
+    total = len(lanes) * (discard + batches * batch_periods)
+    run_blocks(work, total, threads=threads, progress=progress)
+    errors = means.std(axis=1, ddof=1) / np.sqrt(batches)
+    return [
+        Lyapunov(
+            float(means[i].mean()), float(errors[i]), -float(lanes.damping[i]), means[i], ends[i]
+        )
+        for i in range(len(lanes))
+    ]
+
+
+def lyapunov_exponent(
+    model: object,
+    *,
+    initial_state: ArrayLike = (0.0, 0.0),
+    discard: int = 2000,
+    batches: int = 20,
+    batch_periods: int = 1000,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Lyapunov:
+    """Largest Lyapunov exponent of the trajectory of a model of one lane.
+
+    lambda_1 = lim ln|D P^n e|/(n T); the tangent vector follows the variational equations
+    through every contact change (the saltation matrix is the identity) and is normalised every
+    period. The mean of ``batches`` batches of ``batch_periods`` periods after ``discard``; the
+    error is the standard error of the batch means.
+    """
+    return lyapunov_exponents(
+        _one(model),
+        initial_state=initial_state,
+        discard=discard,
+        batches=batches,
+        batch_periods=batch_periods,
+        threads=threads,
+        progress=progress,
+    )[0]
+
+
+def _one(model: object) -> Lanes:
+    lanes = lanes_of(model)
+    if len(lanes) != 1:
+        raise InputError("model", f"{len(lanes)} lanes", allowed="one lane; use the plural form")
+    return lanes

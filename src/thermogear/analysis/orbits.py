@@ -1,0 +1,206 @@
+"""Periodic orbits: Newton shooting on the event-exact map, multipliers, what happens on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.section import ReturnMap, lanes_of
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A closed orbit of ``period`` mesh periods.
+
+    ``points`` (period, 2) on the section, ``jacobian`` D P^n at the first of them,
+    ``residual`` |P^n z - z| in units of the half backlash, counts and shares over one orbit,
+    ``iterations`` of Newton. :attr:`minimal_period` says whether it closes sooner.
+    """
+
+    lanes: Lanes = field(repr=False)
+    period: int
+    points: Floats
+    jacobian: Floats
+    residual: float
+    contact_losses: int
+    back_impacts: int
+    shares: Floats
+    iterations: int
+
+    @property
+    def state(self) -> Floats:
+        """(x, x') at phase 0."""
+        return np.asarray(self.points[0])
+
+    @property
+    def multipliers(self) -> Complexes:
+        """Floquet multipliers over the whole orbit, the larger modulus first."""
+        return multipliers(self.jacobian, self.determinant)
+
+    @property
+    def determinant(self) -> float:
+        """exp(-c n T), the product of the multipliers."""
+        return float(np.exp(-self.lanes.damping[0] * self.lanes.period[0] * self.period))
+
+    @property
+    def stable(self) -> bool:
+        """All multipliers inside the unit circle."""
+        return bool(np.max(np.abs(self.multipliers)) < 1.0)
+
+    @property
+    def time_share(self) -> dict[str, float]:
+        """Share of time in back contact, free flight and drive contact."""
+        return dict(zip(("back", "free", "drive"), map(float, self.shares), strict=True))
+
+    @property
+    def minimal_period(self) -> int:
+        """The smallest number of mesh periods after which the orbit closes."""
+        unit = ReturnMap(self.lanes).unit
+        for lag in range(1, self.period):
+            if self.period % lag == 0:
+                gap = np.max(np.abs(self.points[lag] - self.points[0]) / unit)
+                if gap <= max(1e-8, 1e3 * self.residual):
+                    return lag
+        return self.period
+
+    def samples(self, per_period: int = 256) -> tuple[Floats, Floats, Floats]:
+        """Phase (in periods), x and x' along the whole orbit at uniform phases."""
+        visit = ReturnMap(self.lanes, per_period).visit(self.state, self.period, sampled=True)
+        phase = np.arange(self.period * per_period) / per_period
+        return phase, visit.samples[:, 0], visit.samples[:, 1]
+
+    def extremes(self, per_period: int = 256) -> tuple[float, float]:
+        """Least and largest x on the orbit, between the samples too."""
+        _, x, v = self.samples(per_period)
+        step = float(self.lanes.period[0]) / per_period
+        x1, v1 = np.roll(x, -1), np.roll(v, -1)
+        low, high = float(x.min()), float(x.max())
+        for i in np.flatnonzero(v * v1 < 0.0):
+            # cubic Hermite through both ends: its error is of fourth order in a short step
+            d = x1[i] - x[i]
+            c2, c3 = 3 * d - step * (2 * v[i] + v1[i]), step * (v[i] + v1[i]) - 2 * d
+            roots = np.roots([3 * c3, 2 * c2, step * v[i]])
+            for t in roots[np.isreal(roots)].real:
+                if 0.0 <= t <= 1.0:
+                    value = float(x[i] + t * (step * v[i] + t * (c2 + t * c3)))
+                    low, high = min(low, value), max(high, value)
+        return low, high
+
+    def dynamic_load_factor(self, per_period: int = 1024) -> float:
+        """max |k f| over the mean of k f on the orbit (1 for a quasi-static, constant mesh).
+
+        The mean of the elastic force equals the mean of F(t) on every closed orbit. Infinite
+        when that mean is 0.
+        """
+        phase, x, _ = self.samples(per_period)
+        stiffness = self.lanes.values("stiffness", np.mod(phase, 1.0))[:, 0]
+        b = float(self.lanes.half_backlash[0])
+        force = stiffness * (x - np.clip(x, -b, b))
+        mean = float(self.lanes.force[0, 0].real)
+        piece = self.lanes.force_pieces[0]
+        mean += 0.0 if piece is None else piece.mean
+        return float(np.max(np.abs(force)) / abs(mean)) if mean != 0.0 else float("inf")
+
+
+def multipliers(jacobian: Floats, determinant: float) -> Complexes:
+    """Eigenvalues of a 2 x 2 Jacobian whose determinant is known exactly.
+
+    mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu, free of cancellation. The
+    larger modulus (the upper half plane) first.
+    """
+    half = 0.5 * float(jacobian[0, 0] + jacobian[1, 1])
+    square = half * half - determinant
+    if square < 0.0:
+        return np.array([complex(half, np.sqrt(-square)), complex(half, -np.sqrt(-square))])
+    large = half + np.copysign(np.sqrt(square), half)
+    return np.array([large, determinant / large], complex)
+
+
+def shoot(
+    section: ReturnMap,
+    guess: Floats,
+    period: int,
+    *,
+    tolerance: float = 1e-13,
+    most: int = 30,
+) -> Orbit | None:
+    """Newton from ``guess`` to a fixed point of P^n; None when it does not settle.
+
+    Steps longer than a half backlash are shortened. Converged when the residual in units of
+    the half backlash is below ``tolerance``, or no longer falls and is below 1e-9: a long
+    orbit carries its own rounding.
+    """
+    unit = section.unit
+    z = np.array(guess, dtype=float)
+    best: tuple[float, Floats] | None = None
+    stalled = 0
+    used = 0
+    for _ in range(most):
+        used += 1
+        visit = section.visit(z, period)
+        gap = visit.points[-1] - z
+        if not np.all(np.isfinite(gap)):
+            return None
+        residual = float(np.max(np.abs(gap) / unit))
+        if best is None or residual < best[0]:
+            best, stalled = (residual, z.copy()), 0
+        else:
+            stalled += 1
+        if residual < tolerance or (stalled >= 3 and best[0] < 1e-9):
+            break
+        matrix = visit.jacobian - np.eye(2)
+        try:
+            step = np.linalg.solve(matrix, -gap)
+        except np.linalg.LinAlgError:
+            return None
+        length = float(np.max(np.abs(step) / unit))
+        if length > 1.0:
+            step = step / length
+        z = z + step
+    if best is None or best[0] > 1e-9:
+        return None
+    residual, z = best
+    visit = section.visit(z, period)
+    return Orbit(
+        section.lanes,
+        period,
+        visit.points[:-1],
+        visit.jacobian,
+        residual,
+        visit.contact_losses,
+        visit.back_impacts,
+        visit.shares,
+        used,
+    )
+
+
+def periodic_orbit(
+    model: object, period: int = 1, guess: ArrayLike = (0.0, 0.0), *, tolerance: float = 1e-13
+) -> Orbit:
+    """The orbit of ``period`` mesh periods near ``guess`` = (x, x') at phase 0, stable or not.
+
+    Newton shooting on the event-exact return map with its variational equations.
+
+    Raises InputError for a period that is no whole number >= 1 or a model of several lanes, and
+    ConvergenceError when Newton does not settle from this guess.
+    """
+    if int(period) != period or period < 1:
+        raise InputError("period", period, allowed="a whole number >= 1")
+    start = np.asarray(guess, dtype=float)
+    if start.shape != (2,) or not np.all(np.isfinite(start)):
+        raise InputError("guess", start.tolist(), allowed="two finite numbers (x, x')")
+    section = ReturnMap(lanes_of(model))
+    orbit = shoot(section, start, int(period), tolerance=tolerance)
+    if orbit is None:
+        raise ConvergenceError(
+            f"no orbit of period {period} reached from {start.tolist()}: Newton did not settle "
+            "within 30 iterations to a residual of 1e-9 half backlashes; try another guess"
+        )
+    return orbit

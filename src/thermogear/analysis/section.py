@@ -1,0 +1,144 @@
+"""The Poincare map of a clearance oscillator: state at phase 0 to state n periods later."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.dynamics import exact
+from thermogear.dynamics.blocks import Pace, run_blocks
+from thermogear.dynamics.models import ClearanceModel
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+
+def lanes_of(model: object) -> Lanes:
+    """The flat parameters of ``model``; InputError where the exact maps do not apply."""
+    if isinstance(model, Lanes):
+        return model
+    if not isinstance(model, ClearanceModel):
+        raise InputError(
+            "model",
+            type(model).__name__,
+            why="the section needs a piecewise-linear force and coefficients of time alone",
+            allowed="TorsionalModel, DeadZoneModel or PairModel",
+        )
+    return model.lanes()
+
+
+def starts_of(initial_state: ArrayLike, lanes: int) -> Floats:
+    """Start states (lane, 2) from one state or one per lane."""
+    start = np.asarray(initial_state, dtype=float)
+    if not np.all(np.isfinite(start)):
+        raise InputError("initial_state", start.tolist(), allowed="finite numbers")
+    if start.shape not in ((2,), (1, 2), (lanes, 2)):
+        raise InputError("initial_state", f"shape {start.shape}", allowed=f"(2,) or ({lanes}, 2)")
+    return np.array(np.broadcast_to(start, (lanes, 2)))
+
+
+@dataclass(frozen=True)
+class Visit:
+    """Where ``n`` periods of one lane lead.
+
+    ``points`` (n + 1, 2) on the section, ``jacobian`` D P^n, ``contact_losses`` and
+    ``back_impacts`` counted, ``shares`` of time in back contact, free flight, drive contact,
+    ``samples`` (n * samples a period, 2) when asked for.
+    """
+
+    points: Floats
+    jacobian: Floats
+    contact_losses: int
+    back_impacts: int
+    shares: Floats
+    samples: Floats
+
+
+class ReturnMap:
+    """P: (x, x') at phase 0 to (x, x') one period later, of one lane, by event-exact maps."""
+
+    def __init__(self, lanes: Lanes, samples: int = 0) -> None:
+        if len(lanes) != 1:
+            raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
+        self.lanes = lanes
+        ((_, borders, marks),) = exact.layouts(lanes, samples)
+        self.maps = exact.prepare_maps(lanes, borders, marks)
+        self.period = float(lanes.period[0])
+        self.backlash = float(lanes.half_backlash[0])
+
+    @property
+    def unit(self) -> Floats:
+        """Scales of (x, x') for distances: b and 2 pi b/period."""
+        return np.array([self.backlash, 2.0 * np.pi * self.backlash / self.period])
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        """Largest component of the difference in units of :attr:`unit`, over leading axes."""
+        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
+
+    def determinant(self, periods: int) -> float:
+        """det D P^n = exp(-c n T) of every trajectory."""
+        return float(np.exp(-self.lanes.damping[0] * self.period * periods))
+
+    def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
+        """Run ``periods`` periods from ``start`` with the variational equations."""
+        state = exact.State.start(
+            np.array([start[0]]), np.array([start[1]]), self.lanes.half_backlash
+        )
+        sections, _, samples = exact.advance(self.maps, state, periods, columns=2, sampled=sampled)
+        points = np.vstack([np.asarray(start, dtype=float)[None], sections[:, :, 0]])
+        return Visit(
+            points,
+            state.tangent[:, 0].reshape(2, 2),
+            int(state.counts[0, 0]),
+            int(state.counts[1, 0]),
+            state.spent[:, 0] / (periods * self.period),
+            samples[:, :, 0],
+        )
+
+
+class Ensemble:
+    """Many lanes running side by side, with the last stretch of their sections kept."""
+
+    def __init__(self, lanes: Lanes, start: Floats, *, threads: int | None = None) -> None:
+        self.lanes = lanes
+        self.threads = threads
+        self.elapsed = 0
+        self._blocks = [
+            (index, exact.prepare_maps(lanes.take(index), borders, marks))
+            for index, borders, marks in exact.layouts(lanes)
+        ]
+        self._states = [
+            exact.State.start(start[index, 0], start[index, 1], lanes.half_backlash[index])
+            for index, _ in self._blocks
+        ]
+
+    @property
+    def state(self) -> Floats:
+        """Present (x, x') of every lane: (lane, 2)."""
+        out = np.empty((len(self.lanes), 2))
+        for (index, _), state in zip(self._blocks, self._states, strict=True):
+            out[index, 0], out[index, 1] = state.x, state.y
+        return out
+
+    def run(self, periods: int, keep: int = 0) -> Floats:
+        """Advance; the last ``keep`` sections as (lane, keep, 2)."""
+        kept = np.full((len(self.lanes), keep, 2), np.nan)
+
+        def block(number: int, pace: Pace) -> None:
+            index, maps = self._blocks[number]
+            state = self._states[number]
+            for _, count in pace.chunks(periods - keep, index.size):
+                exact.advance(maps, state, count)
+            for first, count in pace.chunks(keep, index.size):
+                sections, _, _ = exact.advance(maps, state, count)
+                kept[index, first : first + count] = sections.transpose(2, 0, 1)
+
+        jobs = [partial(block, number) for number in range(len(self._blocks))]
+        run_blocks(jobs, len(self.lanes) * periods, threads=self.threads)
+        self.elapsed += periods
+        return kept

@@ -1,0 +1,247 @@
+"""Event-exact propagation: choose the sub-steps, prepare the affine maps, run them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from math import factorial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.dynamics.kernels.exact import advance_exact, prepare
+from thermogear.dynamics.tables import Lanes, Pieces
+
+Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+ORDER = 12
+BLOCK = 128
+_COUNTS = tuple(base * 2**k for k in range(12) for base in (16, 24))
+
+
+def _bounds(lanes: Lanes, name: str) -> tuple[Floats, Floats]:
+    """Per lane: a bound of |p| over the period and of |dp/dphi| (without the jumps)."""
+    coefficients = np.abs(getattr(lanes, name))
+    size = coefficients.sum(axis=1)
+    rate = 2.0 * np.pi * coefficients @ np.arange(coefficients.shape[1])
+    for lane, piece in enumerate(getattr(lanes, name + "_pieces")):
+        if piece is not None:
+            size[lane] += max(sum(abs(c) for c in row) for row in piece.coefficients)
+            rate[lane] += max(
+                sum(m * abs(c) for m, c in enumerate(row)) for row in piece.coefficients
+            )
+    return size, rate
+
+
+def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
+    """Sub-steps a period each lane needs so that a polynomial of ``order`` is exact.
+
+    The tail of the series stays below a few units in the last place: h sqrt(k_max) <= 0.3 for
+    half width h in time, and every harmonic q of the tables adds at most 2e-17 of the scale.
+    """
+    stiffest, _ = _bounds(lanes, "stiffness")
+    strongest, _ = _bounds(lanes, "force")
+    mean = np.array(
+        [
+            row[0].real + (0.0 if piece is None else piece.mean)
+            for row, piece in zip(lanes.stiffness, lanes.stiffness_pieces, strict=True)
+        ]
+    )
+    scale = lanes.half_backlash + strongest / mean
+    needed = np.zeros(len(lanes), np.int64)
+    allowed = 2e-17 * factorial(order + 1)
+    for count in _COUNTS:
+        half = lanes.period / (2.0 * count)
+        turn = np.pi / count
+        ok = half * np.maximum(np.sqrt(stiffest), lanes.damping) <= 0.3
+        for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
+            coefficients = np.abs(getattr(lanes, name))
+            ranks = np.arange(coefficients.shape[1])
+            tail = half**2 * (coefficients @ (ranks * turn) ** (order - 1))
+            ok &= tail <= allowed * size
+        needed[(needed == 0) & ok] = count
+        if np.all(needed):
+            return needed
+    lane = int(np.argmin(needed))
+    raise InputError(
+        "frequency",
+        2.0 * np.pi / lanes.period[lane],
+        why=f"the exact maps would need more than {_COUNTS[-1]} sub-steps a period",
+        fix="use method='rk4'",
+    )
+
+
+@dataclass(frozen=True)
+class ExactMaps:
+    """Affine maps of lanes that share their sub-steps; made by :func:`prepare_maps`."""
+
+    maps: Floats
+    polys: Floats
+    half: Floats
+    reach: Floats
+    backlash: Floats
+    marks: NDArray[np.uint8]
+    borders: Floats
+
+    @property
+    def marked(self) -> int:
+        """Samples a period."""
+        return int(self.marks.sum())
+
+
+@dataclass
+class State:
+    """Where a group of lanes stands; advanced in place."""
+
+    x: Floats
+    y: Floats
+    region: Whole
+    tangent: Floats
+    counts: Whole
+    spent: Floats = field(repr=False)
+
+    @classmethod
+    def start(cls, x: Floats, y: Floats, backlash: Floats) -> State:
+        """Lanes at (x, y); on an edge the velocity says which region comes next."""
+        drive = (x > backlash) | ((x == backlash) & (y > 0.0))
+        back = (x < -backlash) | ((x == -backlash) & (y < 0.0))
+        tangent = np.zeros((4, x.size))
+        tangent[0] = tangent[3] = 1.0
+        return cls(
+            np.array(x, dtype=float),
+            np.array(y, dtype=float),
+            drive.astype(np.int64) - back.astype(np.int64),
+            tangent,
+            np.zeros((2, x.size), np.int64),
+            np.zeros((3, x.size)),
+        )
+
+    def fresh_tangent(self) -> None:
+        """Set the tangent to the identity, counts and times to zero."""
+        self.tangent[:] = 0.0
+        self.tangent[0] = self.tangent[3] = 1.0
+        self.counts[:] = 0
+        self.spent[:] = 0.0
+
+
+def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) -> Floats:
+    """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
+    coefficients = getattr(lanes, name)
+    out = np.zeros((centres.size, len(lanes), order + 1))
+    out[:, :, 0] = coefficients[:, 0].real
+    for rank in range(1, coefficients.shape[1]):
+        row = coefficients[:, rank]
+        if not np.any(row):
+            continue
+        angle = 2.0 * np.pi * np.mod(rank * centres, 1.0)
+        cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
+        even = row.real * cosine - row.imag * sine
+        odd = row.real * sine + row.imag * cosine
+        reach = 2.0 * np.pi * rank * half[:, None]
+        power = np.ones_like(reach)
+        for m in range(order + 1):
+            if m > 0:
+                power = power * reach / m
+            part = odd if m % 2 else even
+            out[:, :, m] += part * power if m % 4 in (0, 3) else -(part * power)
+    pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
+    done: dict[Pieces, Floats] = {}
+    for lane, piece in enumerate(pieces):
+        if piece is not None:
+            if piece not in done:
+                rows = [
+                    piece.taylor(float(c), float(h), order)
+                    for c, h in zip(centres, half, strict=True)
+                ]
+                done[piece] = np.array(rows)
+            out[:, lane, :] += done[piece]
+    return out
+
+
+def prepare_maps(
+    lanes: Lanes, borders: Floats, marks: NDArray[np.uint8], order: int = ORDER
+) -> ExactMaps:
+    """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
+    width = np.diff(borders)
+    centres = borders[:-1] + 0.5 * width
+    half = 0.5 * width[:, None] * lanes.period
+    maps = np.empty((centres.size, 10, len(lanes)))
+    polys = np.empty((centres.size, len(lanes), 5, order + 1))
+    prepare(
+        lanes.damping,
+        half,
+        _taylor(lanes, "stiffness", centres, 0.5 * width, order),
+        _taylor(lanes, "force", centres, 0.5 * width, order),
+        maps,
+        polys,
+    )
+    size, rate = _bounds(lanes, "force")
+    jerk = rate / lanes.period + lanes.damping * size
+    return ExactMaps(
+        maps, polys, half, jerk * half.max(axis=0) ** 3, lanes.half_backlash, marks, borders
+    )
+
+
+def layouts(
+    lanes: Lanes, samples: int = 0, block: int = BLOCK
+) -> Iterator[tuple[Whole, Floats, NDArray[np.uint8]]]:
+    """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
+
+    The sub-steps of a lane depend on that lane alone, so results do not depend on company.
+    """
+    needed = substeps(lanes)
+    keys = [(int(needed[i]), lanes.jumps(i)) for i in range(len(lanes))]
+    for key in sorted(set(keys)):
+        count, jumps = key
+        if samples > 0:
+            count = -(-count // samples) * samples
+        uniform = np.arange(count + 1) / count
+        borders = np.unique(np.concatenate([uniform, jumps]))
+        marks = np.zeros(borders.size - 1, np.uint8)
+        if samples > 0:
+            at = uniform[: -1 : count // samples]
+            marks[np.searchsorted(borders, at)] = 1
+        index = np.array([i for i, k in enumerate(keys) if k == key])
+        for first in range(0, index.size, block):
+            yield index[first : first + block], borders, marks
+
+
+def advance(
+    maps: ExactMaps,
+    state: State,
+    periods: int,
+    *,
+    columns: int = 0,
+    normalise: bool = False,
+    sampled: bool = False,
+) -> tuple[Floats, Floats, Floats]:
+    """Run ``periods`` periods in place; sections (period, 2, lane), stretches, samples.
+
+    ``columns`` tangent columns travel along; ``normalise`` rescales the first one every period
+    and returns the logarithms as stretches (period, lane).
+    """
+    lanes = state.x.size
+    sections = np.empty((periods, 2, lanes))
+    stretch = np.empty((periods if normalise else 0, lanes))
+    samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
+    advance_exact(
+        maps.maps,
+        maps.polys,
+        maps.half,
+        maps.reach,
+        maps.backlash,
+        state.x,
+        state.y,
+        state.region,
+        state.tangent,
+        columns,
+        sections,
+        stretch,
+        samples,
+        maps.marks,
+        state.counts,
+        state.spent,
+    )
+    return sections, stretch, samples

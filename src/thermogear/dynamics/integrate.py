@@ -1,0 +1,518 @@
+"""simulate: a clearance oscillator over many mesh periods, as a labelled dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear import __version__
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.vocabulary import STATUS
+from thermogear.dynamics import adaptive, exact
+from thermogear.dynamics.blocks import Pace, Progress, run_blocks
+from thermogear.dynamics.kernels.rk4 import advance_pair, advance_rk4
+from thermogear.dynamics.models import ClearanceModel, PairModel
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+
+METHODS = {
+    "exact": "event-exact affine maps",
+    "rk4": "classical Runge-Kutta, fixed steps",
+    "adaptive": "scipy DOP853 with events at the backlash edges",
+}
+DIVERGED = STATUS.index("diverged")
+SIDES = ("back", "free", "drive")
+RK4_BLOCK = 64
+
+
+class _Result:
+    """What the kernels fill, one row per lane."""
+
+    def __init__(self, lanes: int, periods: int, samples: int) -> None:
+        self.sections = np.full((lanes, 2, periods + 1), np.nan)
+        self.samples = np.full((lanes, 2, periods * samples), np.nan)
+        self.losses = np.full(lanes, -1, np.int64)
+        self.impacts = np.full(lanes, -1, np.int64)
+        self.shares = np.full((lanes, 3), np.nan)
+        self.substeps = np.zeros(lanes, np.int64)
+
+
+def _choose(model: object, method: str) -> tuple[str, str]:
+    """The method and why it was taken."""
+    if method != "auto" and method not in METHODS:
+        known = ["auto", *METHODS]
+        raise InputError(
+            "method", repr(method), allowed=" | ".join(known), fix=nearest(method, known)
+        )
+    if method != "auto":
+        if method == "exact" and not isinstance(model, ClearanceModel):
+            raise InputError(
+                "method",
+                "'exact'",
+                why="the exact maps need a piecewise-linear force and coefficients of time alone",
+                fix="use method='adaptive'",
+            )
+        return method, "asked for"
+    if not isinstance(model, ClearanceModel):
+        return "adaptive", "coefficients may depend on the state: neither maps nor tables apply"
+    try:
+        exact.substeps(model.lanes())
+    except InputError as error:
+        return "rk4", f"{error.why}"
+    return "exact", "piecewise-linear force, stiffness and force are functions of time alone"
+
+
+def _exact_block(
+    lanes: Lanes,
+    index: NDArray[np.int64],
+    borders: Floats,
+    marks: NDArray[np.uint8],
+    start: Floats,
+    discard: int,
+    result: _Result,
+    pace: Pace,
+) -> None:
+    mine = lanes.take(index)
+    maps = exact.prepare_maps(mine, borders, marks)
+    state = exact.State.start(start[index, 0], start[index, 1], mine.half_backlash)
+    for _, count in pace.chunks(discard, index.size):
+        exact.advance(maps, state, count)
+    state.fresh_tangent()
+    result.sections[index, 0, 0] = state.x
+    result.sections[index, 1, 0] = state.y
+    periods = result.sections.shape[2] - 1
+    wanted = maps.marked
+    for first, count in pace.chunks(periods, index.size):
+        sections, _, samples = exact.advance(maps, state, count, sampled=wanted > 0)
+        result.sections[index, :, first + 1 : first + 1 + count] = sections.transpose(2, 1, 0)
+        if wanted:
+            part = slice(first * wanted, (first + count) * wanted)
+            result.samples[index, :, part] = samples.transpose(2, 1, 0)
+    result.losses[index], result.impacts[index] = state.counts
+    if periods:
+        result.shares[index] = (state.spent / (periods * mine.period)).T
+    result.substeps[index] = borders.size - 1
+
+
+def _rk4_block(
+    lanes: Lanes,
+    index: NDArray[np.int64],
+    steps: int,
+    samples: int,
+    start: Floats,
+    discard: int,
+    result: _Result,
+    precision: type[np.floating],
+    pace: Pace,
+) -> None:
+    mine = lanes.take(index)
+    phase = np.arange(2 * steps) / (2 * steps)
+    stiffness = np.ascontiguousarray(mine.values("stiffness", phase), precision)
+    force = np.ascontiguousarray(mine.values("force", phase), precision)
+    damping = mine.damping.astype(precision)
+    backlash = mine.half_backlash.astype(precision)
+    step = (mine.period / steps).astype(precision)
+    x = start[index, 0].astype(precision)
+    v = start[index, 1].astype(precision)
+    none = np.empty((0, 2, index.size), precision)
+    stride = steps // samples if samples else 1
+    for _, count in pace.chunks(discard, index.size):
+        sections = np.empty((count, 2, index.size), precision)
+        advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, none, stride)
+    result.sections[index, 0, 0] = x
+    result.sections[index, 1, 0] = v
+    periods = result.sections.shape[2] - 1
+    for first, count in pace.chunks(periods, index.size):
+        sections = np.empty((count, 2, index.size), precision)
+        path = np.empty((count * samples, 2, index.size), precision) if samples else none
+        advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, path, stride)
+        result.sections[index, :, first + 1 : first + 1 + count] = sections.transpose(2, 1, 0)
+        if samples:
+            part = slice(first * samples, (first + count) * samples)
+            result.samples[index, :, part] = path.transpose(2, 1, 0)
+    result.substeps[index] = steps
+
+
+def _adaptive_lane(
+    lanes: Lanes,
+    lane: int,
+    samples: int,
+    start: Floats,
+    discard: int,
+    result: _Result,
+    tolerances: tuple[float, float],
+    pace: Pace,
+) -> None:
+    one = lanes.take(lane)
+    backlash = float(one.half_backlash[0])
+    periods = result.sections.shape[2] - 1
+    y = np.array(start[lane], dtype=float)
+    total = discard + periods
+    rate = adaptive.lane_rate(one)
+    result.sections[lane, :, 0] = y
+    for turn in range(total):
+        for _ in pace.chunks(1, 1):
+            kept = turn - discard
+            sections, path, _crossings = adaptive.follow(
+                rate,
+                _displacement,
+                backlash,
+                float(one.period[0]),
+                y,
+                1,
+                samples if kept >= 0 else 0,
+                jumps=one.jumps(0),
+                rtol=tolerances[0],
+                atol=tolerances[1] * backlash,
+            )
+            y = sections[-1]
+            if not np.all(np.abs(y[0]) <= 1e6 * backlash):
+                return
+            if kept >= -1:
+                result.sections[lane, :, kept + 1] = y
+            if kept >= 0 and samples:
+                result.samples[lane, :, kept * samples : (kept + 1) * samples] = path.T
+
+
+def _displacement(_t: float, y: Floats) -> float:
+    return float(y[0])
+
+
+def _count(name: str, value: int, least: int) -> int:
+    if int(value) != value or value < least:
+        raise InputError(name, value, allowed=f"a whole number >= {least}")
+    return int(value)
+
+
+def simulate(
+    model: object,
+    *,
+    periods: int = 64,
+    discard: int = 0,
+    steps_per_period: int = 256,
+    samples_per_period: int = 64,
+    initial_state: ArrayLike = (0.0, 0.0),
+    method: str = "auto",
+    precision: str = "float64",
+    threads: int | None = None,
+    progress: Progress | None = None,
+    rtol: float = 1e-12,
+    atol: float = 1e-14,
+) -> xr.Dataset:
+    """Run ``model`` for ``discard`` + ``periods`` mesh periods from phase 0.
+
+    ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
+    :class:`PairModel`, or anything with ``derivative(t, y)`` and ``period``.
+    ``initial_state`` (x, x') for all lanes, or an array (lane, 2); for the pair (x, x') or
+    (theta1, theta2, theta1', theta2'). ``samples_per_period`` (0: none) uniform samples of the
+    kept periods, the first of each at phase 0. ``method``: "exact", "rk4" (with
+    ``steps_per_period``, ``precision`` "float64" or "float32"), "adaptive" (``rtol``, ``atol``
+    in half backlashes), or "auto", which records its reason.
+
+    Returns a dataset over ``point`` (lane), ``section`` (start of every kept period and the end
+    of the last) and ``sample``: section_x, section_v, x, v, time, status (a lane with
+    |x| > 1e6 b or a non-finite state is "diverged", its later values NaN, the rest goes on),
+    and, from the exact maps, contact losses, back-side impacts and time shares. Results do not
+    depend on ``threads`` or on which lanes run together, to the last bit.
+
+    Raises InputError for a non-finite start, counts out of range, an unknown method, and
+    ``steps_per_period`` that is not a multiple of ``samples_per_period``.
+    """
+    periods = _count("periods", periods, 1)
+    discard = _count("discard", discard, 0)
+    steps = _count("steps_per_period", steps_per_period, 4)
+    samples = _count("samples_per_period", samples_per_period, 0)
+    chosen, reason = _choose(model, method)
+    if chosen == "rk4" and samples and steps % samples:
+        raise InputError(
+            "samples_per_period", samples, allowed=f"a divisor of steps_per_period = {steps}"
+        )
+    if precision not in ("float64", "float32"):
+        raise InputError("precision", repr(precision), allowed="'float64' | 'float32'")
+    start = np.asarray(initial_state, dtype=float)
+    if not np.all(np.isfinite(start)):
+        raise InputError("initial_state", start.tolist(), allowed="finite numbers")
+    settings: dict[str, object] = {"discard": discard, "periods": periods}
+    if chosen == "rk4":
+        settings |= {"steps_per_period": steps, "precision": precision}
+    if chosen == "adaptive":
+        settings |= {"rtol": rtol, "atol": atol}
+    if not isinstance(model, ClearanceModel):
+        data = _free(model, start, periods, discard, samples, (rtol, atol))
+    elif isinstance(model, PairModel) and chosen != "exact":
+        data = _pair(model, chosen, start, periods, discard, steps, samples, (rtol, atol))
+    else:
+        if isinstance(model, PairModel):
+            state = start if start.size == 4 else model.start(*_two(start))
+            x0, v0 = model.displacement(0.0, state)
+            pair_start, start = state, np.array([float(x0), float(v0)])
+        lanes = model.lanes()
+        try:
+            starts = np.broadcast_to(start, (len(lanes), 2))
+        except ValueError:
+            raise InputError(
+                "initial_state", f"shape {start.shape}", allowed=f"(2,) or ({len(lanes)}, 2)"
+            ) from None
+        result = _Result(len(lanes), periods, samples)
+        work: list[Callable[[Pace], None]] = []
+        if chosen == "exact":
+            for index, borders, marks in exact.layouts(lanes, samples):
+                work.append(
+                    partial(_exact_block, lanes, index, borders, marks, starts, discard, result)
+                )
+        elif chosen == "rk4":
+            kind = np.float64 if precision == "float64" else np.float32
+            for first in range(0, len(lanes), RK4_BLOCK):
+                index = np.arange(first, min(first + RK4_BLOCK, len(lanes)))
+                work.append(
+                    partial(_rk4_block, lanes, index, steps, samples, starts, discard, result, kind)
+                )
+        else:
+            for lane in range(len(lanes)):
+                work.append(
+                    partial(
+                        _adaptive_lane, lanes, lane, samples, starts, discard, result, (rtol, atol)
+                    )
+                )
+        run_blocks(work, len(lanes) * (periods + discard), threads=threads, progress=progress)
+        data = _dataset(result, lanes.period, periods, discard, samples)
+        if isinstance(model, PairModel):
+            data = _with_angles(data, model, pair_start)
+    unit, rate_unit = ("m", "m/s") if isinstance(model, PairModel) else ("1", "1")
+    for name in ("x", "section_x"):
+        data[name].attrs["units"] = unit
+    for name in ("v", "section_v"):
+        data[name].attrs["units"] = rate_unit
+    for name in ("time", "section_time"):
+        data[name].attrs["units"] = "s" if isinstance(model, PairModel) else "1"
+    data.attrs.update(settings)
+    data.attrs.update(
+        {
+            "method": chosen,
+            "method_long_name": METHODS[chosen],
+            "method_reason": reason,
+            "model": type(model).__name__,
+            "thermogear_version": __version__,
+        }
+    )
+    return data
+
+
+def _two(start: Floats) -> tuple[float, float]:
+    if start.shape != (2,):
+        raise InputError("initial_state", f"shape {start.shape}", allowed="(x, x') or 4 numbers")
+    return float(start[0]), float(start[1])
+
+
+def _dataset(
+    result: _Result, period: Floats, periods: int, discard: int, samples: int
+) -> xr.Dataset:
+    lanes = period.size
+    good = np.all(np.isfinite(result.sections), axis=(1, 2))
+    phase = np.arange(periods * samples) / samples if samples else np.empty(0)
+    turns = np.arange(periods + 1)
+    data = xr.Dataset(
+        {
+            "x": (
+                ("point", "sample"),
+                result.samples[:, 0],
+                {"long_name": "relative displacement along the line of action"},
+            ),
+            "v": (
+                ("point", "sample"),
+                result.samples[:, 1],
+                {"long_name": "relative velocity along the line of action"},
+            ),
+            "section_x": (
+                ("point", "section"),
+                result.sections[:, 0],
+                {"long_name": "Poincare section, displacement"},
+            ),
+            "section_v": (
+                ("point", "section"),
+                result.sections[:, 1],
+                {"long_name": "Poincare section, velocity"},
+            ),
+            "status": (
+                "point",
+                np.where(good, 0, DIVERGED).astype(np.int8),
+                {
+                    "long_name": "outcome",
+                    "flag_values": np.arange(len(STATUS), dtype=np.int8),
+                    "flag_meanings": " ".join(STATUS),
+                },
+            ),
+        },
+        coords={
+            "point": ("point", np.arange(lanes), {"long_name": "parameter point"}),
+            "section": (
+                "section",
+                discard + turns,
+                {"long_name": "mesh periods since the start", "units": "1"},
+            ),
+            "phase": (
+                "sample",
+                discard + phase,
+                {"long_name": "mesh phase since the start", "units": "1"},
+            ),
+            "time": (
+                ("point", "sample"),
+                period[:, None] * (discard + phase),
+                {"long_name": "time"},
+            ),
+            "section_time": (
+                ("point", "section"),
+                period[:, None] * (discard + turns),
+                {"long_name": "time of the section"},
+            ),
+            "period": ("point", period, {"long_name": "mesh period"}),
+        },
+    )
+    if np.all(result.losses >= 0):
+        data["contact_losses"] = (
+            "point",
+            result.losses,
+            {"long_name": "losses of drive contact in the kept periods", "units": "1"},
+        )
+        data["back_impacts"] = (
+            "point",
+            result.impacts,
+            {"long_name": "back-side impacts in the kept periods", "units": "1"},
+        )
+        data["time_share"] = (
+            ("point", "side"),
+            result.shares,
+            {
+                "long_name": "share of time in back contact, free flight, drive contact",
+                "units": "1",
+            },
+        )
+        data = data.assign_coords(side=list(SIDES))
+    data["substeps"] = (
+        "point",
+        result.substeps,
+        {"long_name": "sub-steps a period (0: adaptive)", "units": "1"},
+    )
+    return data
+
+
+def _with_angles(data: xr.Dataset, model: PairModel, start: Floats) -> xr.Dataset:
+    """The two rotations from x and the rigid mode, whose momentum changes with T1/r1 - T2/r2."""
+    (i1, i2), (r1, r2), (t1, t2) = model.inertias, model.base_radii, model.torques
+    mass = model.equivalent_mass
+    push = t1 / r1 - t2 / r2
+    first = float(model.momentum(start))
+    level = i1 * start[0] / r1 + i2 * start[1] / r2
+    for kind, prefix in (("sample", ""), ("section", "section_")):
+        time = data["time" if kind == "sample" else "section_time"].values[0]
+        phase = time / model.period
+        rigid = level + (first + 0.5 * push * time) * time
+        moving = first + push * time
+        rate = model.error.derivative() * (1.0 / model.period)
+        x = data[f"{prefix}x"].values[0] + model.error(phase)
+        v = data[f"{prefix}v"].values[0] + rate(phase)
+        values = {
+            "theta1": mass * (r1 * x / i1 + rigid * r1 * r2**2 / (i1 * i2)),
+            "theta2": mass * (-r2 * x / i2 + rigid * r2 * r1**2 / (i1 * i2)),
+            "omega1": mass * (r1 * v / i1 + moving * r1 * r2**2 / (i1 * i2)),
+            "omega2": mass * (-r2 * v / i2 + moving * r2 * r1**2 / (i1 * i2)),
+        }
+        for name, row in values.items():
+            data[prefix + name] = (("point", kind), row[None, :], _angle_attributes(name))
+    return data
+
+
+def _angle_attributes(name: str) -> dict[str, str]:
+    body = "pinion" if name.endswith("1") else "wheel"
+    if name.startswith("theta"):
+        return {"units": "rad", "long_name": f"vibration angle of the {body}"}
+    return {"units": "rad/s", "long_name": f"vibration rate of the {body}"}
+
+
+def _pair(
+    model: PairModel,
+    method: str,
+    start: Floats,
+    periods: int,
+    discard: int,
+    steps: int,
+    samples: int,
+    tolerances: tuple[float, float],
+) -> xr.Dataset:
+    """Both rotations integrated as they stand: four states."""
+    state = np.array(start if start.size == 4 else model.start(*_two(start)), dtype=float)
+    total = discard + periods
+    if method == "rk4":
+        phase = np.arange(2 * steps) / (2 * steps)
+        rate = model.error.derivative() * (1.0 / model.period)
+        tables = np.stack([model.stiffness(phase), model.error(phase), rate(phase)])
+        (i1, i2), (r1, r2), (t1, t2) = model.inertias, model.base_radii, model.torques
+        constants = np.array([i1, i2, r1, r2, t1, t2, model.damping, model.half_backlash])
+        sections = np.empty((total, 4))
+        path = np.empty((total * samples, 4))
+        stride = steps // samples if samples else 1
+        first = state.copy()
+        advance_pair(tables, constants, model.period / steps, state, sections, path, stride)
+        sections = np.vstack([first, sections])
+    else:
+        scale = model.half_backlash / max(model.base_radii)
+        sections, path, _ = adaptive.follow(
+            lambda t, y, _region: model.derivative(t, y),
+            lambda t, y: float(model.displacement(t, y)[0]),
+            model.half_backlash,
+            model.period,
+            state,
+            total,
+            samples,
+            rtol=tolerances[0],
+            atol=tolerances[1] * scale,
+        )
+    kept, path = sections[discard:], path[discard * samples :]
+    result = _Result(1, periods, samples)
+    result.substeps[:] = steps if method == "rk4" else 0
+    # e is periodic, so the phase within the period is enough
+    within = np.tile(np.arange(samples) / samples, periods) if samples else np.empty(0)
+    result.samples[0] = np.stack(model.displacement(within * model.period, path.T))
+    result.sections[0] = np.stack(model.displacement(np.zeros(periods + 1), kept.T))
+    data = _dataset(result, np.array([model.period]), periods, discard, samples)
+    for position, name in enumerate(("theta1", "theta2", "omega1", "omega2")):
+        attributes = _angle_attributes(name)
+        data[name] = (("point", "sample"), path[None, :, position], attributes)
+        data["section_" + name] = (("point", "section"), kept[None, :, position], attributes)
+    return data
+
+
+def _free(
+    model: object,
+    start: Floats,
+    periods: int,
+    discard: int,
+    samples: int,
+    tolerances: tuple[float, float],
+) -> xr.Dataset:
+    """Any model with ``derivative`` and ``period``: the first two states are x and x'."""
+    derivative = getattr(model, "derivative", None)
+    period = getattr(model, "period", None)
+    if derivative is None or period is None:
+        raise InputError("model", type(model).__name__, allowed="derivative(t, y) and period")
+    backlash = getattr(model, "half_backlash", None)
+    sections, path, _ = adaptive.follow(
+        lambda t, y, _region: np.asarray(derivative(t, y), dtype=float),
+        None if backlash is None else _displacement,
+        0.0 if backlash is None else float(backlash),
+        float(period),
+        start,
+        discard + periods,
+        samples,
+        rtol=tolerances[0],
+        atol=tolerances[1],
+    )
+    result = _Result(1, periods, samples)
+    result.sections[0] = sections[discard:, :2].T
+    result.samples[0] = path[discard * samples :, :2].T
+    return _dataset(result, np.array([float(period)]), periods, discard, samples)

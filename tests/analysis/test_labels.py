@@ -1,0 +1,82 @@
+"""Labels of the published parameter rows, and what must never be mistaken."""
+
+import numpy as np
+import pytest
+
+from thermogear.analysis.labels import counts, label, labels
+from thermogear.base.errors import InputError
+from thermogear.dynamics.integrate import simulate
+from thermogear.dynamics.models import TorsionalModel
+
+BASE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+ROW = ["period-1", "period-2", "period-4", "chaotic"]
+
+
+def heated(celsius):
+    rise = (np.asarray(celsius, dtype=float) - 20.0) / 140.0
+    return TorsionalModel(0.1535, 1.300551, 0.335, 0.0136, -0.928, 1 - 0.2 * rise, 0.02 * rise)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("damping_ratio", [0.18, 0.168, 0.114, 0.10]),
+        ("frequency", [1.3, 1.28, 1.13, 1.1]),
+        ("stiffness_amplitude", [0.1, 0.3, 0.53, 0.9]),
+    ],
+)
+def test_rows_of_table_4_2(name, values):
+    found = labels(BASE.replace(**{name: values}))
+    assert [str(one) for one in found] == ROW
+    assert found[3].lyapunov.value > 4 * found[3].lyapunov.error
+    for one in found[:3]:
+        assert abs(one.multipliers[0]) < 1.0
+
+
+def test_heat_of_section_4_1_brings_in_the_half_frequency():
+    found = labels(heated([20, 100, 140, 160]))
+    assert [str(one) for one in found] == ["period-1", "period-1", "period-2", "period-2"]
+    assert found[1].multipliers[0].real == pytest.approx(-0.9958567045590561, abs=1e-7)
+
+
+def test_half_order_amplitudes_of_section_4_1():
+    data = simulate(heated([20, 125, 140]), discard=20_000, periods=32)
+    lines = 2 * np.abs(np.fft.rfft(data.x.values, axis=1)) / data.sizes["sample"]
+    assert lines[:, 16] == pytest.approx([0.0, 0.0044, 0.0088], abs=5e-5)
+
+
+def test_a_long_transient_does_not_fool_the_label():
+    """121 damping ratios where 50 discarded periods mislabel 49 points."""
+    model = TorsionalModel(np.linspace(0.02, 0.14, 121), 1.268, 0.6, 0.056, 0.314, 1.0, 0.03)
+    first = labels(model)
+    longer = labels(model, discard=4000)
+    clear = [
+        (a, b) for a, b in zip(first, longer, strict=True) if "undecided" not in (a.name, b.name)
+    ]
+    assert len(clear) >= 119
+    assert all(str(a) == str(b) for a, b in clear)
+    assert set(counts(first)) <= {
+        "period-2", "period-4", "period-6", "period-8", "period-16", "chaotic", "undecided"
+    }  # fmt: skip
+
+
+def test_a_spiral_is_not_taken_for_a_longer_period():
+    """Complex multipliers near a third of a turn return close after three periods."""
+    model = TorsionalModel(0.01, 0.7, 0.1, 0.1, 0.05)
+    assert str(label(model, initial_state=(1.1, 0.0))) == "period-1"
+
+
+def test_at_the_border_itself_nothing_is_decided():
+    flip = BASE.replace(damping_ratio=0.17004302692235368)
+    assert label(flip).name == "undecided"
+
+
+def test_a_diverging_motion_is_named_so():
+    assert (
+        label(TorsionalModel(0.0, 2.0, 0.9, 0.1, 0.05), initial_state=(1.5, 0.3)).name == "diverged"
+    )
+
+
+def test_one_label_wants_one_lane():
+    with pytest.raises(InputError, match="one lane"):
+        label(BASE.replace(frequency=[1.0, 1.1]))
