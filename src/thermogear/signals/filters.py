@@ -1,0 +1,97 @@
+"""Linear-phase FIR band passes whose delay is taken away and whose edges are dropped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import signal
+
+from thermogear.base.errors import InputError
+from thermogear.signals.spectra import finite_record, positive_rate
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BandPass:
+    """A windowed-sinc band pass (Hamming), an odd number of taps, so a whole delay.
+
+    ``band`` = (low, high) [same unit as ``rate``], 0 < low < high < rate/2; the response is -6 dB
+    at both and 1 in the middle of the band. Too few taps blur the edges: read ``gain`` at the
+    line of interest before trusting its amplitude.
+    """
+
+    rate: float
+    band: tuple[float, float]
+    taps: int
+
+    def __post_init__(self) -> None:
+        positive_rate(self.rate)
+        low, high = self.band
+        if not 0 < low < high < self.rate / 2:
+            raise InputError(
+                "band",
+                f"{low:g}..{high:g}",
+                allowed=f"0 < low < high < {self.rate / 2:g} (half the rate)",
+            )
+        if self.taps < 3 or self.taps % 2 == 0:
+            raise InputError(
+                "taps", self.taps, allowed="an odd number >= 3", why="the delay must be whole"
+            )
+
+    @property
+    def coefficients(self) -> Floats:
+        """The impulse response, symmetric."""
+        return np.asarray(
+            signal.firwin(self.taps, self.band, pass_zero=False, fs=self.rate, window="hamming")
+        )
+
+    @property
+    def delay(self) -> int:
+        """Samples of delay, all of it removed by ``apply``: (taps - 1)/2."""
+        return (self.taps - 1) // 2
+
+    def gain(self, frequency: ArrayLike) -> Floats:
+        """Amplitude gain at ``frequency`` (real: the delay is removed; any shape)."""
+        f = np.asarray(frequency, dtype=float)
+        shift = np.arange(self.taps) - self.delay
+        angle = 2.0 * np.pi * np.multiply.outer(f, shift) / self.rate
+        return np.asarray(np.cos(angle) @ self.coefficients)
+
+    def apply(self, x: ArrayLike) -> Floats:
+        """The filtered record without delay, ``delay`` samples dropped at each end.
+
+        Sample 0 of the result stands at the time of sample ``delay`` of the record. Only samples
+        that every tap saw remain: no padding is invented.
+        """
+        values = finite_record(x)
+        if values.shape[-1] <= self.taps:
+            raise InputError(
+                "taps",
+                self.taps,
+                allowed=f"below the record's {values.shape[-1]} samples",
+                fix="take fewer taps or a longer record",
+            )
+        shape = (1,) * (values.ndim - 1) + (self.taps,)
+        kernel = self.coefficients.reshape(shape)
+        return np.asarray(signal.oaconvolve(values, kernel, mode="valid", axes=-1))
+
+
+def taps_for(rate: float, transition: float) -> int:
+    """Odd number of taps of a Hamming design for a ``transition`` band: 3.3 rate/transition.
+
+    Source: Oppenheim and Schafer, Discrete-Time Signal Processing, window design, table of
+    transition widths (Hamming: 3.3/N of the rate).
+    """
+    positive_rate(rate)
+    if not transition > 0:
+        raise InputError("transition", transition, allowed="> 0")
+    return int(np.ceil(3.3 * rate / transition)) // 2 * 2 + 1
+
+
+def without_trend(x: ArrayLike) -> Floats:
+    """The record less its mean and its straight line (least squares)."""
+    values = finite_record(x)
+    return np.asarray(signal.detrend(values, axis=-1, type="linear"))

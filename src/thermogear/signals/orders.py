@@ -1,0 +1,149 @@
+"""Orders: the angle of a shaft from a tacho or a mesh line, resampling in angle, averages."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import fft, interpolate, signal
+
+from thermogear.base.errors import InputError
+from thermogear.signals.spectra import finite_record, positive_rate
+
+Floats = NDArray[np.float64]
+
+
+def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> Floats:
+    """Times [s] of the rising edges of a tacho signal, interpolated between samples.
+
+    An edge counts when the signal rises through ``level`` (default: midway between its 2nd and
+    98th percentile) after it has been below the lower quarter of its swing: the hysteresis keeps
+    noise at the level from counting twice. Raises InputError when fewer than two edges are found.
+    """
+    values, per_second = finite_record(pulses), positive_rate(rate)
+    bottom, top = np.percentile(values, [2.0, 98.0])
+    middle = 0.5 * (bottom + top) if level is None else float(level)
+    guard = middle - 0.25 * (top - bottom)
+    above = values > middle
+    edges = np.flatnonzero(above[1:] & ~above[:-1])
+    lows = np.flatnonzero(values < guard)
+    kept: list[float] = []
+    last = -1
+    for edge in edges:
+        # the newest sample under the guard must be younger than the edge counted last
+        place = int(np.searchsorted(lows, edge, side="right")) - 1
+        if place >= 0 and lows[place] > last:
+            rise = values[edge + 1] - values[edge]
+            kept.append((edge + (middle - values[edge]) / rise) / per_second)
+            last = int(edge)
+    if len(kept) < 2:
+        raise InputError("tacho", f"{len(kept)} edges", allowed=">= 2 rising edges")
+    return np.asarray(kept)
+
+
+def tacho_angle(times: ArrayLike, pulses_per_turn: float, at: ArrayLike) -> Floats:
+    """Angle [turns] of the shaft at the times ``at`` [s], 0 at the first pulse.
+
+    A cubic spline through (pulse time, pulse number/pulses per turn). Times outside the first and
+    last pulse give NaN: no angle is extrapolated.
+    """
+    edges = finite_record(times, "tacho")
+    if edges.size < 4 or np.any(np.diff(edges) <= 0):
+        raise InputError("tacho", f"{edges.size} pulses", allowed=">= 4 pulses in rising order")
+    if not pulses_per_turn > 0:
+        raise InputError("pulses_per_turn", pulses_per_turn, allowed="> 0")
+    spline = interpolate.CubicSpline(edges, np.arange(edges.size) / pulses_per_turn)
+    return np.asarray(spline(np.asarray(at, dtype=float), extrapolate=False))
+
+
+def line_angle(x: ArrayLike, frequency: float, half_width: float) -> tuple[Floats, int]:
+    """Cycles of the line near ``frequency`` at each sample, from its phase; and samples dropped.
+
+    The record is shifted by -frequency, low-passed to +-``half_width`` (a Hann-shaped FIR, delay
+    removed, edges dropped) and its phase unwrapped: frequency n + phase/(2 pi). ``frequency`` and
+    ``half_width`` [cycles/sample]. The result belongs to samples dropped .. N - dropped.
+
+    Speed changes are followed as far as they stay inside the half width: keep it below the
+    distance to the next line.
+    """
+    values = finite_record(x)
+    if not 0 < half_width <= frequency < 0.5:
+        raise InputError(
+            "half_width", f"{half_width:g} at {frequency:g}", allowed="0 < half width <= f < 0.5"
+        )
+    # the first zero of a Hann-shaped kernel of L samples lies 2/L off
+    length = int(np.ceil(2.0 / half_width)) // 2 * 2 + 1
+    if values.size <= 2 * length:
+        raise InputError(
+            "half_width",
+            half_width,
+            allowed=f"above {4.0 / values.size:.3g} cycles/sample for {values.size} samples",
+        )
+    kernel = np.hanning(length + 2)[1:-1]
+    kernel /= kernel.sum()
+    turn = np.exp(-2j * np.pi * frequency * np.arange(values.size))
+    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="valid")
+    dropped = (length - 1) // 2
+    place = np.arange(dropped, dropped + base.size)
+    angle = np.asarray(frequency * place + np.unwrap(np.angle(base)) / (2.0 * np.pi), float)
+    return angle, dropped
+
+
+def resample_by_angle(
+    x: ArrayLike, angle: ArrayLike, samples_per_turn: int, turns: int | None = None
+) -> Floats:
+    """The record at equal steps of angle, whole turns only, from the first whole turn on.
+
+    ``x`` time last, ``angle`` [turns] of each sample, rising. The record is first made four times
+    finer by its Fourier series, so that the cubic spline through it loses less than 0.1 % up to
+    0.8 of half the rate. Returns (..., turns x samples_per_turn).
+    """
+    values = finite_record(x)
+    turned = finite_record(angle, "angle")
+    if turned.shape != (values.shape[-1],) or np.any(np.diff(turned) <= 0):
+        raise InputError("angle", f"shape {turned.shape}", allowed="rising, one per sample")
+    first = float(np.ceil(turned[0]))
+    whole = int(np.floor(turned[-1] - first))
+    count = whole if turns is None else min(int(turns), whole)
+    if count < 1 or samples_per_turn < 2:
+        raise InputError("turns", count, allowed=">= 1 whole turn and >= 2 samples per turn")
+    wanted = first + np.arange(count * samples_per_turn) / samples_per_turn
+    place = np.interp(wanted, turned, np.arange(turned.size))
+    fine = _finer(values, 4)
+    grid = np.arange(fine.shape[-1]) / 4.0
+    return np.asarray(interpolate.CubicSpline(grid, fine, axis=-1)(place))
+
+
+def _finer(values: Floats, factor: int) -> Floats:
+    """The record on a grid ``factor`` times finer: zero-padded DFT of the record and its mirror.
+
+    The mirror image closes the record on itself, so no step at its ends rings.
+    """
+    count = values.shape[-1]
+    closed = np.concatenate([values, values[..., -2:0:-1]], axis=-1)
+    lines = fft.rfft(closed, axis=-1)
+    fine = fft.irfft(lines, n=factor * closed.shape[-1], axis=-1) * factor
+    return np.asarray(fine[..., : factor * (count - 1) + 1])
+
+
+def synchronous_average(x: ArrayLike, samples_per_turn: int) -> tuple[Floats, Floats]:
+    """Mean turn of an angle-sampled record and what is left over (same length, whole turns).
+
+    Noise falls with the root of the number of turns; lines at whole orders stay exactly.
+    """
+    values = finite_record(x)
+    turns = values.shape[-1] // samples_per_turn
+    if turns < 1:
+        raise InputError(
+            "record", f"{values.shape[-1]} samples", allowed=f">= {samples_per_turn} (one turn)"
+        )
+    whole = values[..., : turns * samples_per_turn]
+    table = whole.reshape(*whole.shape[:-1], turns, samples_per_turn)
+    mean = table.mean(axis=-2)
+    return np.asarray(mean), np.asarray((table - mean[..., None, :]).reshape(whole.shape))
+
+
+def sideband_orders(centre: float, spacing: float, count: int) -> Floats:
+    """Orders of ``count`` sidebands on each side of ``centre``, lowest first, centre included."""
+    if count < 0 or not spacing > 0:
+        raise InputError("spacing", f"{spacing:g} x {count}", allowed="> 0, count >= 0")
+    return np.asarray(centre + spacing * np.arange(-count, count + 1), float)

@@ -1,0 +1,101 @@
+"""Orders: angle from tacho and mesh line, resampling, synchronous average, Welch."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import signal
+
+from thermogear.base.errors import InputError
+from thermogear.signals.density import welch
+from thermogear.signals.orders import (
+    line_angle,
+    resample_by_angle,
+    sideband_orders,
+    synchronous_average,
+    tacho_angle,
+    tacho_times,
+)
+from thermogear.signals.spectra import order_amplitudes
+
+RATE = 8192.0
+
+
+def wandering_turns(seconds: float = 6.0) -> tuple[np.ndarray, np.ndarray]:
+    """Time and shaft angle [turns] of a shaft at 20 turns/s whose speed wanders by 2 %."""
+    t = np.arange(int(RATE * seconds)) / RATE
+    return t, 20.0 * t + 0.1 * np.sin(2 * np.pi * 0.7 * t)
+
+
+def gear(turns: np.ndarray) -> np.ndarray:
+    mesh = np.cos(2 * np.pi * 25 * turns) + 0.3 * np.cos(2 * np.pi * 50 * turns)
+    return mesh + 0.1 * np.cos(2 * np.pi * 26 * turns) + 0.05 * np.cos(2 * np.pi * 24 * turns)
+
+
+def test_tacho_orders_are_sharp_where_the_speed_wanders() -> None:
+    t, turns = wandering_turns()
+    pulse = (np.mod(turns, 1.0) < 0.1).astype(float)
+    smooth = signal.sosfiltfilt(signal.butter(2, 0.3, output="sos"), pulse)
+    times = tacho_times(smooth, RATE)
+    assert times.size == pytest.approx(turns[-1], abs=2)
+    angle = tacho_angle(times, 1.0, t)
+    inside = np.isfinite(angle)
+    y = resample_by_angle(gear(turns)[inside], angle[inside], 256, 100)
+    lines = order_amplitudes(y, 256, 100, [24, 25, 26, 50, 25.5])
+    np.testing.assert_allclose(lines[:4], [0.05, 1.0, 0.1, 0.3], rtol=0.05, atol=0.005)
+    assert lines[4] < 0.005
+
+
+def test_mesh_line_phase_gives_the_angle_without_a_tacho() -> None:
+    t, turns = wandering_turns()
+    rng = np.random.default_rng(1)
+    x = gear(turns) + 0.2 * rng.standard_normal(t.size)
+    # the neighbours at orders 24 and 26 lie 20 Hz off
+    cycles, dropped = line_angle(x, 500.0 / RATE, 15.0 / RATE)
+    expected = 25 * turns[dropped : dropped + cycles.size]
+    difference = cycles - expected
+    assert np.std(difference - np.round(difference.mean())) < 0.02
+    y = resample_by_angle(x[dropped : dropped + cycles.size], cycles / 25.0, 256, 100)
+    lines = order_amplitudes(y, 256, 100, [24, 25, 26, 50])
+    np.testing.assert_allclose(lines, [0.05, 1.0, 0.1, 0.3], atol=0.02)
+
+
+def test_synchronous_average_keeps_whole_orders_and_quiets_noise() -> None:
+    per, turns = 128, 400
+    n = np.arange(per * turns) / per
+    clean = np.cos(2 * np.pi * 3 * n)
+    noise = np.random.default_rng(5).standard_normal(n.size)
+    mean, rest = synchronous_average(clean + noise, per)
+    np.testing.assert_allclose(np.std(mean - clean[:per]), 1 / np.sqrt(turns), rtol=0.2)
+    np.testing.assert_allclose(synchronous_average(clean, per)[0], clean[:per], atol=1e-12)
+    assert rest.shape == n.shape
+    np.testing.assert_allclose(rest + np.tile(mean, turns), clean + noise, atol=1e-12)
+
+
+def test_welch_agrees_with_scipy_in_one_block_and_in_many() -> None:
+    x = np.random.default_rng(2).standard_normal(10_000) + 2.0
+    mine = welch([x], 500.0, 1024)
+    blocks = welch([x[:333], x[333:5000], x[5000:]], 500.0, 1024)
+    _, theirs = signal.welch(x, 500.0, "hann", 1024)
+    np.testing.assert_allclose(mine.density, theirs, rtol=1e-9, atol=1e-18)
+    np.testing.assert_array_equal(blocks.density, mine.density)
+    assert mine.averages == 18
+    assert mine.bin_width == 500.0 / 1024
+
+
+def test_welch_amplitude_of_a_line_at_a_bin() -> None:
+    n = np.arange(8192)
+    density = welch([2.0 * np.cos(2 * np.pi * 64 / 512 * n)], 1.0, 512)
+    assert density.amplitudes[64] == pytest.approx(2.0, rel=1e-9)
+
+
+def test_sidebands_and_refusals() -> None:
+    np.testing.assert_allclose(sideband_orders(32, 0.4, 2), [31.2, 31.6, 32, 32.4, 32.8])
+    with pytest.raises(InputError, match=r"^tacho: got 0 edges; allowed >= 2 rising edges$"):
+        tacho_times(np.zeros(100), 10.0)
+    with pytest.raises(InputError, match=r"^segment: got 64; allowed at most the record's 32"):
+        welch([np.zeros(32)], 1.0, 64)
+    with pytest.raises(InputError, match=r"^angle: got shape \(5,\); allowed rising"):
+        resample_by_angle(np.zeros(5), [0, 1, 1, 2, 3], 8)
+    with pytest.raises(InputError, match=r"^half_width: got 0\.2 at 0\.1"):
+        line_angle(np.zeros(100), 0.1, 0.2)
