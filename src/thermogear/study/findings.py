@@ -1,0 +1,446 @@
+"""What a run found, in words and single figures: notices, facts, citations, summary."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+import thermogear
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS
+from thermogear.mesh.model import CHOICES
+from thermogear.study.case import Case, GearCase
+
+Notice = dict[str, str]
+
+STUDIED_FREQUENCIES = (1.1, 1.3)
+"""Frequency ratios of the thesis's bifurcation study."""
+
+LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
+
+
+def _notice(level: str, text: str) -> Notice:
+    return {"level": level, "text": text}
+
+
+def _rpm(speed: float) -> float:
+    return speed * 30.0 / math.pi
+
+
+# --- notices ------------------------------------------------------------------------------
+
+
+def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+    """What a reader should know before the pictures, most important first."""
+    mesh = groups["mesh"]
+    found = _jammed(mesh) + _regime(case, mesh)
+    if "motion" in groups:
+        found += _motion(groups["motion"])
+    if "temperature" in groups:
+        found += _row_jams(groups["temperature"])
+    names = [str(name) for name in mesh["bundle"].values]
+    if any(model.stiffness.startswith("textbook") for model in case.models):
+        found.append(
+            _notice(
+                "warning",
+                "The mesh stiffness is the textbook sum of uncoupled tooth pairs. Against finite "
+                "elements of a comparable pair (bores 20/60 mm) it is about 14 % too stiff in "
+                "single and 46 to 49 % in double contact; starting the beam at the 30-degree "
+                "section removes 4 to 9 % of the compliance that is counted twice, and so adds to "
+                "this bias.",
+            )
+        )
+    if any(model.thermal_stiffness == "thesis" for model in case.models):
+        found.append(
+            _notice(
+                "info",
+                "The thesis's thermal stiffness k_T has no cold limit (it tends to infinity as "
+                "the growth vanishes); it is set to 0 where nothing has grown.",
+            )
+        )
+    found.append(
+        _notice(
+            "info",
+            "Cold and hot differ in the temperatures of gears and housing alone; the oil entering "
+            "the mesh is equally warm in both, so that friction and flash can be compared.",
+        )
+    )
+    found.append(
+        _notice(
+            "info",
+            "Benedict and Kelley's friction diverges where nothing slides; near the pitch point "
+            "the sliding speed is held above 1 % of the entrainment speed, and the coefficient "
+            "is 0 where the logarithm's argument falls below 1.",
+        )
+    )
+    if len(names) > 1:
+        found.append(_difference(mesh))
+    return found
+
+
+def _jammed(mesh: xr.Dataset) -> list[Notice]:
+    hot = mesh.isel(state=-1)
+    found = []
+    for place, bundle in enumerate(mesh["bundle"].values):
+        here = hot.isel(bundle=place)
+        jammed = int((here["status"] == STATUS.index("jammed")).sum())
+        jam = float(here["jam_temperature"].min())
+        at = f"{jam - ZERO_CELSIUS:.0f} °C" if math.isfinite(jam) else "no temperature"
+        if jammed:
+            found.append(
+                _notice(
+                    "important",
+                    f"{bundle}: {jammed} of {here.sizes['operating']} operating points are jammed "
+                    f"when hot. With both gears rising alike and the housing as it is, the "
+                    f"backlash is used up at {at} of the pinion's addendum. Jammed points have "
+                    "no motion.",
+                )
+            )
+        elif math.isfinite(jam) and jam < ZERO_CELSIUS + 400.0:
+            found.append(
+                _notice(
+                    "info",
+                    f"{bundle}: the pair would jam at {at} of the pinion's addendum, both gears "
+                    "rising alike with the housing as it is.",
+                )
+            )
+    return found
+
+
+def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+    ratios = mesh["frequency_ratio"].isel(bundle=0, state=0).values
+    low, high = STUDIED_FREQUENCIES
+    f_n = float(mesh["natural_frequency"].isel(bundle=0, state=0, operating=0))
+    per_rpm = case.pair.pinion.teeth / 60.0
+    studied = [f_n * ratio / per_rpm for ratio in (low, high)]
+    inside = (ratios >= low) & (ratios <= high)
+    if np.any(inside):
+        return []
+    return [
+        _notice(
+            "important",
+            f"Two regimes: the speeds of this case lie at frequency ratios "
+            f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
+            f"({f_n:.0f} Hz), while the thesis's bifurcation study at {low} to {high} would mean "
+            f"{studied[0]:.0f} to {studied[1]:.0f} rpm. Nothing found in one speaks for the other.",
+        )
+    ]
+
+
+def _motion(motion: xr.Dataset) -> list[Notice]:
+    found = []
+    names = Counter(str(name) for name in motion["label"].values.ravel())
+    if names["undecided"]:
+        found.append(
+            _notice(
+                "warning",
+                f"{names['undecided']} motions are undecided: they neither close nor are they "
+                "provably chaotic; the reason stands with each.",
+            )
+        )
+    if "back_impacts" in motion:
+        impacts = motion["back_impacts"].values
+        moving = np.isfinite(impacts)
+        if moving.any() and not np.any(impacts[moving] > 0.0):
+            found.append(
+                _notice(
+                    "info",
+                    "b' has no effect here: no tooth ever hits the back side, so the backlash "
+                    "can be moved out of the equation; heat acts through stiffness and error "
+                    "alone.",
+                )
+            )
+        elif moving.any():
+            free = int(np.sum(impacts[moving] == 0.0))
+            found.append(
+                _notice(
+                    "info",
+                    f"b' has no effect on {free} of {int(moving.sum())} motions, whose teeth "
+                    "never hit the back side.",
+                )
+            )
+    return found
+
+
+def _row_jams(row: xr.Dataset) -> list[Notice]:
+    jammed = row["status"] == STATUS.index("jammed")
+    found = []
+    for place, bundle in enumerate(row["bundle"].values):
+        here = jammed.isel(bundle=place).any("operating")
+        temperatures = row["gear_temperature"].values[here.values]
+        if temperatures.size:
+            text = ", ".join(f"{t - ZERO_CELSIUS:.0f}" for t in temperatures)
+            found.append(
+                _notice("important", f"{bundle}: jammed at gear temperatures of {text} °C.")
+            )
+    return found
+
+
+def _difference(mesh: xr.Dataset) -> Notice:
+    parts = []
+    for place, bundle in enumerate(mesh["bundle"].values):
+        here = mesh.isel(bundle=place, operating=0)
+        cold, hot = (float(here["mean_stiffness"].isel(state=i)) for i in (0, -1))
+        b = float(here["half_backlash"].isel(state=-1)) * 1e6
+        parts.append(f"{bundle}: stiffness {100 * (hot / cold - 1):+.1f} %, b' = {b:.1f} um")
+    return _notice("important", "What heat does depends on the bundle. " + "; ".join(parts) + ".")
+
+
+def dimensionless_notices(points: xr.Dataset) -> list[Notice]:
+    """The notices of a dimensionless case."""
+    found = [
+        _notice(
+            "info",
+            "These are parameter sets of the dimensionless equation; they are not derived from "
+            "any gear pair.",
+        )
+    ]
+    return found + _motion(points)
+
+
+# --- facts --------------------------------------------------------------------------------
+
+
+def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, object]]:
+    """Single figures worth a table: geometry, masses, frequencies, plausibility."""
+    pair, mesh = case.pair, groups["mesh"]
+    (i1, i2) = case.inertias
+    r1, r2 = pair.pinion.base_radius, pair.wheel.base_radius
+    mass = i1 * i2 / (i1 * r2**2 + i2 * r1**2)
+    table: list[tuple[str, str, float, str]] = [
+        ("geometry", "centre distance", pair.centre_distance * 1e3, "mm"),
+        (
+            "geometry",
+            "operating pressure angle",
+            math.degrees(pair.operating_pressure_angle),
+            "deg",
+        ),
+        ("geometry", "base radius, pinion", r1 * 1e3, "mm"),
+        ("geometry", "base radius, wheel", r2 * 1e3, "mm"),
+        ("geometry", "base pitch", pair.base_pitch * 1e3, "mm"),
+        ("geometry", "contact ratio", pair.contact_ratio, "1"),
+    ]
+    for name, value in pair.path._asdict().items():
+        table.append(("geometry", f"path of contact, {name.upper()}", value * 1e3, "mm"))
+    least, most = case.cold_backlash.least, case.cold_backlash.most
+    table += [
+        ("backlash", "cold half backlash, normal", case.operating.half_backlash * 1e6, "um"),
+        ("backlash", "its least value by the stated tolerances", least * 1e6, "um"),
+        ("backlash", "its greatest value by the stated tolerances", most * 1e6, "um"),
+        ("dynamics", f"inertia, pinion ({case.inertia_kind})", i1, "kg m2"),
+        ("dynamics", f"inertia, wheel ({case.inertia_kind})", i2, "kg m2"),
+        ("dynamics", "equivalent mass on the line of action", mass, "kg"),
+    ]
+    for place, bundle in enumerate(mesh["bundle"].values):
+        cold = mesh.isel(bundle=place, state=0, operating=0)
+        natural = float(cold["natural_frequency"])
+        table += [
+            ("dynamics", f"natural frequency, cold, {bundle}", natural, "Hz"),
+            (
+                "dynamics",
+                f"pinion speed of the mesh resonance, {bundle}",
+                60.0 * natural / pair.pinion.teeth,
+                "rpm",
+            ),
+        ]
+    hot = mesh.isel(bundle=0, state=-1, operating=0)
+    for name in ("pinion", "wheel"):
+        heat = float(hot[f"{name}_shaft_heat"])
+        table.append(
+            ("plausibility", f"heat the assumed field sends into the {name} shaft", heat, "W")
+        )
+    path = groups["path"].isel(bundle=0, state=-1)
+    for place in range(path.sizes["operating"]):
+        here = path.isel(operating=place)
+        rpm = _rpm(float(here["pinion_speed"]))
+        loss = _friction_power(here, pair.face_width, pair.base_pitch)
+        table.append(("plausibility", f"frictional power of the mesh at {rpm:.0f} rpm", loss, "W"))
+    return [{"group": g, "name": n, "value": v, "unit": u} for g, n, v, u in table]
+
+
+def _friction_power(path: xr.Dataset, width: float, base_pitch: float) -> float:
+    """Mean frictional power [W]: sum over the pairs in contact, mean over a base pitch."""
+    s = path["path_position"].values
+    heat = (
+        np.abs(path["friction_coefficient"].values)
+        * path["line_load"].values
+        * np.abs(path["sliding_velocity"].values)
+    )
+    return float(np.trapezoid(heat, s) / base_pitch * width)
+
+
+def choice_meanings() -> dict[str, dict[str, str]]:
+    """What every choice of the mesh model means, for the page's table."""
+    return {field: dict(names) for field, names in CHOICES.items()}
+
+
+def environment(python: str) -> dict[str, str]:
+    """Versions that a result depends on."""
+    found = {"thermogear": thermogear.__version__, "python": python}
+    for name in LIBRARIES:
+        found[name] = importlib.metadata.version(name)
+    return found
+
+
+# --- citations ----------------------------------------------------------------------------
+
+
+def citations(case: Case) -> list[dict[str, str]]:
+    """The sources that this case's results rest on."""
+    found = [
+        (
+            "thesis",
+            "Dynamic Modeling and Analysis of Spur Gear Transmission Systems Considering Thermal "
+            "Deformation (web summary of a thesis)",
+            "the model under study",
+        )
+    ]
+    if isinstance(case, GearCase):
+        found += [
+            (
+                "blok",
+                "H. Blok (1937), flash temperature of a moving heat source",
+                "flash temperature",
+            ),
+            (
+                "benedict-kelley",
+                "G. H. Benedict, B. W. Kelley, ASLE Transactions 4 (1961) 59-70",
+                "friction in mixed lubrication",
+            ),
+            ("johnson", "K. L. Johnson, Contact Mechanics, eqs. 4.43 and 4.45", "Hertzian contact"),
+            (
+                "sainsot",
+                "P. Sainsot, P. Velex, O. Duverger, J. Mech. Design 126 (2004) 748-752",
+                "stiffness of the gear body",
+            ),
+            (
+                "yang-sun",
+                "D. C. H. Yang, Z. S. Sun, J. Mech. Trans. Autom. Des. 107 (1985) 529-535",
+                "contact stiffness and energy method",
+            ),
+            ("walther", "ASTM D341", "viscosity over temperature"),
+            ("oil", case.operating.lubricant.source, f"oil {case.operating.lubricant.name}"),
+            (
+                "material",
+                case.pair.pinion.material.source,
+                f"material {case.pair.pinion.material.name}",
+            ),
+        ]
+    return [{"key": key, "text": text, "used_for": use} for key, text, use in found]
+
+
+# --- summary ------------------------------------------------------------------------------
+
+
+def summary(tree: xr.DataTree) -> dict[str, Any]:
+    """The figures a script wants, JSON-ready (non-finite numbers are None)."""
+    found: dict[str, Any] = {
+        "thermogear": tree.attrs["thermogear"],
+        "title": tree.attrs["title"],
+        "kind": tree.attrs["kind"],
+        "notices": json.loads(tree.attrs["notices"]),
+    }
+    groups = {node.path.strip("/"): node.to_dataset() for node in tree.subtree if node.has_data}
+    if "mesh" in groups:
+        found["operating"] = _operating_summary(groups)
+    if "temperature" in groups:
+        found["temperature_row"] = _temperature_summary(groups["temperature"])
+    sets = {
+        name: data for name, data in groups.items() if name.split("/")[0] in ("points", "base_sets")
+    }
+    if sets:
+        found["points"] = {name.split("/")[-1]: _point_summary(data) for name, data in sets.items()}
+    return found
+
+
+def _number(value: object) -> float | None:
+    number = float(np.asarray(value))
+    return number if math.isfinite(number) else None
+
+
+FIGURES = (
+    "mean_stiffness",
+    "peak_to_peak_stiffness",
+    "half_backlash",
+    "cold_half_backlash",
+    "jam_temperature",
+    "natural_frequency",
+    "frequency_ratio",
+    "stiffness_amplitude",
+    "thermal_stiffness_ratio",
+    "mean_force",
+    "force_amplitude",
+    "half_backlash_ratio",
+)
+MOTION_FIGURES = ("peak_to_peak_displacement", "half_order_amplitude", "contact_loss_share")
+
+
+def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+    mesh, path, motion = groups["mesh"], groups["path"], groups.get("motion")
+    rows = []
+    for b, bundle in enumerate(mesh["bundle"].values):
+        for s, state in enumerate(mesh["state"].values):
+            for o in range(mesh.sizes["operating"]):
+                at = {"bundle": b, "state": s, "operating": o}
+                here, along = mesh.isel(at), path.isel(at)
+                row: dict[str, Any] = {
+                    "bundle": str(bundle),
+                    "state": str(state),
+                    "pinion_speed_rpm": _rpm(float(here["pinion_speed"])),
+                    "pinion_torque_Nm": float(here["pinion_torque"]),
+                    "status": STATUS[int(here["status"])],
+                    "greatest_flash_temperature_K": _number(along["flash_temperature"].max()),
+                    "greatest_friction": _number(along["friction_coefficient"].max()),
+                }
+                row |= {name: _number(here[name]) for name in FIGURES if name in here}
+                if motion is not None and "label" in motion:
+                    moving = motion.isel(at)
+                    row["label"] = str(moving["label"].values)
+                    row |= {n: _number(moving[n]) for n in MOTION_FIGURES if n in moving}
+                rows.append(row)
+    return rows
+
+
+def _temperature_summary(row: xr.Dataset) -> list[dict[str, Any]]:
+    rows = []
+    for b, bundle in enumerate(row["bundle"].values):
+        for t, temperature in enumerate(row["gear_temperature"].values):
+            for o in range(row.sizes["operating"]):
+                here = row.isel(bundle=b, gear_temperature=t, operating=o)
+                found: dict[str, Any] = {
+                    "bundle": str(bundle),
+                    "gear_temperature_K": float(temperature),
+                    "pinion_speed_rpm": _rpm(float(here["pinion_speed"])),
+                    "status": STATUS[int(here["status"])],
+                    "label": str(here["label"].values),
+                }
+                names = FIGURES + MOTION_FIGURES
+                found |= {name: _number(here[name]) for name in names if name in here}
+                rows.append(found)
+    return rows
+
+
+def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
+    rows = []
+    for place in range(points.sizes["point"]):
+        here = points.isel(point=place)
+        rows.append(
+            {
+                "row": str(here["row"].values),
+                "parameter": str(here["parameter"].values),
+                "value": float(here["value"]),
+                "unit": str(here["value_unit"].values),
+                "label": str(here["label"].values),
+                "reason": str(here["label_reason"].values),
+                "expected": str(here["expected"].values),
+                "half_order_amplitude": _number(here["half_order_amplitude"]),
+            }
+        )
+    return rows

@@ -1,0 +1,167 @@
+"""Motion of many operating points: label, history, section and spectrum, as arrays to store."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.labels import labels
+from thermogear.base.excitation import Excitation
+from thermogear.base.vocabulary import STATUS
+from thermogear.dynamics.integrate import simulate
+from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
+from thermogear.signals.spectra import amplitude_spectrum, order_amplitudes
+from thermogear.study.case import Simulation
+
+Floats = NDArray[np.float64]
+Advance = Callable[[int, int], None]
+
+HIGHEST_ORDER = 20.0
+"""Spectral lines are kept up to this order of the mesh frequency."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Settled motion of ``points`` lanes; numbers are dimensionless (X = x/b_c, omega_n t).
+
+    Arrays have the lane first: ``displacement``, ``velocity`` (lane, sample) at ``phase`` (in
+    mesh periods); ``section_displacement``, ``section_velocity`` (lane, section);
+    ``line_amplitude`` (lane, order) at ``order``. Lanes that diverged are NaN.
+    """
+
+    phase: Floats
+    order: Floats
+    discarded: int
+    periods: int
+    values: dict[str, NDArray[np.generic]]
+
+    @property
+    def bin_width(self) -> float:
+        """Distance of two spectral lines in orders."""
+        return 1.0 / self.periods
+
+
+def follow(
+    model: DeadZoneModel | TorsionalModel,
+    simulation: Simulation,
+    advance: Advance | None = None,
+) -> Motion:
+    """Label every lane of ``model``, then follow it long enough to draw it.
+
+    The transient thrown away is the longest any lane's label needed, at least
+    ``simulation.discard`` periods and at most ``most_discarded``.
+    """
+    state = simulation.initial_state
+    found = labels(
+        model,
+        initial_state=state,
+        discard=max(simulation.discard, 1),
+        cap=max(simulation.most_discarded, simulation.discard, 1),
+        progress=advance,
+    )
+    discard = max(
+        simulation.discard,
+        min(max(one.discarded for one in found), simulation.most_discarded),
+    )
+    # an even number of periods holds the half-order line exactly
+    periods = 2 * ((simulation.periods + 1) // 2)
+    data = simulate(
+        model,
+        periods=periods,
+        discard=discard,
+        steps_per_period=simulation.steps_per_period,
+        samples_per_period=simulation.samples,
+        initial_state=state,
+    )
+    x = data["x"].values
+    spectrum = amplitude_spectrum(x, float(simulation.samples))
+    kept = spectrum.frequencies <= HIGHEST_ORDER
+    shown = simulation.samples * min(simulation.sample_periods, periods)
+    diverged = data["status"].values != 0
+    status = np.where(diverged, STATUS.index("diverged"), STATUS.index("ok")).astype(np.int8)
+    lanes = x.shape[0]
+    share = data["time_share"].sel(side="drive").values if "time_share" in data else None
+    impacts = data["back_impacts"].values / periods if "back_impacts" in data else None
+    missing = np.full(lanes, np.nan)
+    values: dict[str, NDArray[np.generic]] = {
+        "displacement": x[:, -shown:],
+        "velocity": data["v"].values[:, -shown:],
+        "section_displacement": data["section_x"].values[:, 1:],
+        "section_velocity": data["section_v"].values[:, 1:],
+        "line_amplitude": spectrum.amplitudes[:, kept],
+        "half_order_amplitude": order_amplitudes(x, simulation.samples, periods, [0.5])[..., 0],
+        "peak_to_peak_displacement": x.max(axis=1) - x.min(axis=1),
+        "contact_loss_share": missing if share is None else 1.0 - share,
+        "back_impacts": missing if impacts is None else impacts,
+        "status": status,
+        "label": np.array([one.name for one in found]),
+        "label_reason": np.array([one.reason for one in found]),
+    }
+    return Motion(
+        phase=np.arange(shown) / simulation.samples,
+        order=spectrum.frequencies[kept],
+        discarded=discard,
+        periods=periods,
+        values=values,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class GearMotion:
+    """:class:`Motion` in SI over a whole array of excitations, jammed points included.
+
+    ``values`` map names to arrays of the excitations' shape, then sample, section or order;
+    jammed points are NaN with the label "jammed".
+    """
+
+    motion: Motion
+    values: dict[str, NDArray[np.generic]]
+
+
+def follow_gears(
+    excitations: Sequence[Excitation | None],
+    simulation: Simulation,
+    advance: Advance | None = None,
+) -> GearMotion | None:
+    """Motion of every excitation that is not jammed; None when all are."""
+    alive = [i for i, one in enumerate(excitations) if one is not None]
+    present = [one for one in excitations if one is not None]
+    if not present:
+        return None
+    motion = follow(from_excitation(present), simulation, advance)
+    length = np.array([one.reference_half_backlash for one in present])
+    rate = np.array([one.natural_frequency for one in present])
+    scales = {"velocity": length * rate, "section_velocity": length * rate}
+    plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason"}
+    values: dict[str, NDArray[np.generic]] = {}
+    for name, rows in motion.values.items():
+        if name not in plain:
+            scale = scales.get(name, length)
+            rows = rows * scale.reshape(-1, *([1] * (rows.ndim - 1)))
+        values[name] = _spread(rows, alive, len(excitations), _missing(name))
+    return GearMotion(motion, values)
+
+
+def _missing(name: str) -> object:
+    """What a jammed point stores."""
+    if name == "label":
+        return "jammed"
+    if name == "label_reason":
+        return "the half backlash is used up: no clearance is left to move in"
+    return STATUS.index("jammed") if name == "status" else np.nan
+
+
+def _spread(
+    rows: NDArray[np.generic], places: list[int], count: int, missing: object
+) -> NDArray[np.generic]:
+    """``rows`` put at ``places`` of ``count``, ``missing`` elsewhere."""
+    if rows.dtype.kind == "U":
+        whole = np.full(count, missing, dtype=object)
+        whole[places] = rows
+        return whole.astype(str)
+    spread = np.full((count, *rows.shape[1:]), missing, dtype=rows.dtype)
+    spread[places] = rows
+    return spread

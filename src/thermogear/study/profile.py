@@ -1,0 +1,55 @@
+"""The tooth's flank cold, as the thesis prints it hot, and consistently hot."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.thermal import HotPair
+from thermogear.study.case import GearCase
+
+Floats = NDArray[np.float64]
+
+POINTS = 61
+
+
+def profiles(case: GearCase) -> xr.Dataset:
+    """One flank of each gear, form circle to tip: coordinates [m], y the tooth's centre line.
+
+    The first operating point's temperatures hold. ``printed`` is the profile with the angle as
+    printed (whose second term carries 1/K), ``consistent`` the repaired one.
+    """
+    hot = HotPair(case.pair, case.operating, MeshModel.consistent())
+    columns: dict[str, list[Floats]] = {}
+    for gear in (case.pair.pinion, case.pair.wheel):
+        r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_radius, POINTS)
+        psi = gear.half_thickness_angle(r)
+        field = hot.field(gear)
+        drawn = {
+            "involute": (r, psi),
+            "printed": tuple(np.atleast_2d(v)[0] for v in profile_as_printed(gear, field, r)),
+            "consistent": tuple(np.atleast_2d(v)[0] for v in deformed_profile(gear, field, r)),
+        }
+        for name, (radius, angle) in drawn.items():
+            columns.setdefault(f"{name}_x", []).append(radius * np.sin(angle))
+            columns.setdefault(f"{name}_y", []).append(radius * np.cos(angle))
+    words = {
+        "involute": "cold involute",
+        "printed": "hot profile as printed",
+        "consistent": "hot profile, repaired",
+    }
+    data = xr.Dataset(
+        {
+            name: (
+                ("gear", "profile_point"),
+                np.stack(rows),
+                {"units": "m", "long_name": f"{words[name[:-2]]}, {name[-1]}"},
+            )
+            for name, rows in columns.items()
+        },
+        {"gear": ["pinion", "wheel"]},
+    )
+    return data.assign_attrs(magnification=1)

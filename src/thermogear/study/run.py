@@ -1,0 +1,370 @@
+"""A run: from a case to the tree of labelled results that pages are drawn from.
+
+The groups of the tree: ``path`` (along the path of contact), ``mesh`` (over the mesh phase, and
+figures per operating point), ``profile``, ``motion``, ``temperature`` (the same over gear
+temperatures) and ``base_sets/...``; a dimensionless case has ``points`` alone.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+import platform
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Excitation
+from thermogear.base.vocabulary import STATUS, attributes, label
+from thermogear.dynamics.models import TorsionalModel
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.excite import excitation
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating
+from thermogear.study import errata, findings
+from thermogear.study.case import Case, DimensionlessCase, GearCase, load_example
+from thermogear.study.motion import Motion, follow, follow_gears
+from thermogear.study.profile import profiles
+from thermogear.study.results import claim_directory, write_results, write_summary
+
+Progress = Callable[[str, int, int], None]
+"""Called as ``progress(stage, done, total)``."""
+
+STATES = ("cold", "hot")
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """No progress wanted."""
+
+
+def run(case: Case, *, progress: Progress = _silent) -> xr.DataTree:
+    """Everything that ``case`` asks for, as one tree of datasets (SI, units as attributes).
+
+    A jammed operating point, a motion that diverges or cannot be labelled is a status in the
+    data, never an exception. Raises InputError where the case as a whole is impossible.
+    """
+    if isinstance(case, DimensionlessCase):
+        groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}
+        notices = findings.dimensionless_notices(groups["points"])
+        own: dict[str, object] = {}
+    elif isinstance(case, GearCase):
+        groups = _gear_groups(case, progress)
+        notices = findings.notices(case, groups)
+        own = {
+            "errata": json.dumps(errata.errata(case, groups)),
+            "facts": json.dumps(findings.facts(case, groups)),
+            "bundles": json.dumps({m.name: m.choices() for m in case.models}),
+            "choices": json.dumps(findings.choice_meanings()),
+        }
+    else:
+        raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
+    tree = xr.DataTree.from_dict(groups)
+    tree.attrs = {
+        "thermogear": thermogear.__version__,
+        "title": case.title,
+        "kind": case.kind,
+        "case": case.text,
+        "overrides": json.dumps([list(pair) for pair in case.overrides]),
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "environment": json.dumps(findings.environment(platform.python_version())),
+        "assumptions": json.dumps(
+            [{"field": a.field, "value": a.value, "reason": a.reason} for a in case.assumptions]
+        ),
+        "notices": json.dumps(notices),
+        "citations": json.dumps(findings.citations(case)),
+        **own,
+    }
+    return tree
+
+
+def run_to_directory(
+    case: Case,
+    directory: Path,
+    *,
+    case_text: str | None = None,
+    progress: Progress = _silent,
+) -> dict[str, Any]:
+    """:func:`run`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
+
+    A directory that holds anything else than earlier results is refused before the run.
+    """
+    claim_directory(directory)
+    tree = run(case if case_text is None else replace(case, text=case_text), progress=progress)
+    summary = findings.summary(tree)
+    write_results(tree, directory)
+    write_summary(summary, directory)
+    return summary
+
+
+# --- gear cases ---------------------------------------------------------------------------
+
+
+def _gear_groups(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
+    groups: dict[str, xr.Dataset] = {}
+    cycles = _cycles(case, progress)
+    groups |= _split(
+        xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
+    )
+    wanted = set(case.pictures)
+    if "profile" in wanted:
+        groups["profile"] = profiles(case)
+    if "motion" in wanted:
+        groups["motion"] = _motion(case, cycles, "state", progress)
+    if "temperature" in wanted and case.gear_temperatures:
+        groups["temperature"] = _temperature_row(case, progress)
+    if "base-sets" in wanted:
+        for name in case.base_sets:
+            base = load_example(name)
+            if isinstance(base, DimensionlessCase):
+                groups[f"base_sets/{name}"] = _points(base, name, progress)
+    return groups
+
+
+def _bundle_axis(case: GearCase) -> xr.DataArray:
+    names = [model.name for model in case.models]
+    return xr.DataArray(names, dims="bundle", name="bundle")
+
+
+def _cycle(case: GearCase, operating: Operating, model: MeshModel) -> xr.Dataset:
+    return mesh_cycle(
+        case.pair,
+        replace(operating, housing=case.housing),
+        model,
+        path_positions=case.path_positions,
+        mesh_positions=case.mesh_positions,
+    )
+
+
+def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
+    """Bundle -> the cycle cold and hot, with everything but the gears' temperatures alike."""
+    found: dict[str, xr.Dataset] = {}
+    hot = case.operating
+    cold = replace(hot, temperatures=hot.temperatures.cold())
+    for number, model in enumerate(case.models):
+        progress("mesh cycle", number, len(case.models))
+        states = [_cycle(case, operating, model) for operating in (cold, hot)]
+        found[model.name] = _with_numbers(
+            case, xr.concat(states, xr.DataArray(list(STATES), dims="state", name="state"))
+        )
+    progress("mesh cycle", len(case.models), len(case.models))
+    return found
+
+
+def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
+    """``cycle`` with the dimensionless numbers of the equation of motion beside it.
+
+    The leading axis is the state, "cold" first, or the gear temperature; thermal stiffness
+    counts from the first of the axis unless the cycle carries its own cold mean.
+    """
+    mass = _equivalent_mass(case)
+    mean = cycle["mean_stiffness"].values
+    turns = cycle["pinion_speed"].values / (2.0 * np.pi)
+    mesh_frequency = np.broadcast_to(case.pair.pinion.teeth * turns, mean.shape)
+    natural = np.sqrt(mean / mass) / (2.0 * np.pi)
+    length = cycle["cold_half_backlash"].values
+    harmonic = 2.0 * np.abs(np.fft.rfft(cycle["mesh_stiffness"].values, axis=-1)[..., 1])
+    samples = cycle.sizes["mesh_phase"]
+    error = case.transmission_error.harmonics
+    amplitude = abs(error[0]) if error else 0.0
+    ratio = mesh_frequency / natural
+    numbers = {
+        "natural_frequency": natural,
+        "mesh_frequency": mesh_frequency,
+        "frequency_ratio": ratio,
+        "damping_ratio": np.full(mean.shape, case.damping_ratio),
+        "stiffness_amplitude": harmonic / samples / mean,
+        "thermal_stiffness_ratio": mean / _cold_mean(cycle) - 1.0,
+        "mean_force": cycle["normal_force"].values / (mean * length),
+        "force_amplitude": amplitude / length * ratio**2,
+        "half_backlash_ratio": cycle["half_backlash"].values / length,
+    }
+    dims = cycle["mean_stiffness"].dims
+    return cycle.assign({name: (dims, v, attributes(name)) for name, v in numbers.items()})
+
+
+def _cold_mean(cycle: xr.Dataset) -> NDArray[np.float64]:
+    if "cold_mean_stiffness" in cycle.attrs:
+        return np.asarray(cycle.attrs["cold_mean_stiffness"])
+    return np.asarray(cycle["mean_stiffness"].values[0])
+
+
+def _equivalent_mass(case: GearCase) -> float:
+    (i1, i2) = case.inertias
+    r1, r2 = case.pair.pinion.base_radius, case.pair.wheel.base_radius
+    return i1 * i2 / (i1 * r2**2 + i2 * r1**2)
+
+
+def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
+    """The path's curves apart from the mesh's; kinematics that all bundles share once."""
+    shared = [
+        "pinion_rolling_velocity",
+        "wheel_rolling_velocity",
+        "sliding_velocity",
+        "entrainment_velocity",
+    ]
+    for name in shared:
+        whole[name] = whole[name].isel(bundle=0, state=0, drop=True)
+    whole["reduced_radius"] = whole["reduced_radius"].isel(bundle=0, state=0, drop=True)
+    springs = [str(n) for n in whole.data_vars if str(n).endswith("_stiffness")]
+    along = [
+        str(n) for n, v in whole.data_vars.items() if "path_position" in v.dims and n not in springs
+    ]
+    rest = [str(n) for n in whole.data_vars if n not in along]
+    path = whole[along].drop_vars("mesh_phase", errors="ignore")
+    return {"path": path, "mesh": whole[rest]}
+
+
+def _excitations(case: GearCase, cycle: xr.Dataset, axis: str) -> list[Excitation | None]:
+    found: list[Excitation | None] = []
+    for place in range(cycle.sizes[axis]):
+        found += excitation(
+            cycle.isel({axis: place}),
+            case.pair,
+            damping_ratio=case.damping_ratio,
+            inertias=case.inertias,
+            transmission_error=case.transmission_error,
+            harmonics=case.harmonics,
+        )
+    return found
+
+
+def _motion(
+    case: GearCase, cycles: Mapping[str, xr.Dataset], axis: str, progress: Progress
+) -> xr.Dataset:
+    """Motion of every bundle, place on ``axis`` and operating point, in SI."""
+    first = next(iter(cycles.values()))
+    excitations = [one for cycle in cycles.values() for one in _excitations(case, cycle, axis)]
+    stage = "motion" if axis == "state" else "motion over temperature"
+    found = follow_gears(
+        excitations, case.simulation, lambda done, total: progress(stage, done, total)
+    )
+    dims = ("bundle", axis, "operating")
+    shape = (len(cycles), first.sizes[axis], first.sizes["operating"])
+    coordinates: dict[str, Any] = {
+        "pinion_speed": (("operating",), first["pinion_speed"].values),
+        "pinion_torque": (("operating",), first["pinion_torque"].values),
+    }
+    if found is None:
+        jammed = np.full(shape, STATUS.index("jammed"), np.int8)
+        data = label({"status": (dims, jammed)}, coordinates)
+        data["label"] = (dims, np.full(shape, "jammed"))
+        return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
+    mesh_frequency = case.pair.pinion.teeth * first["pinion_speed"].values / (2.0 * np.pi)
+    motion = found.motion
+    variables: dict[str, Any] = {
+        "time": (("operating", "sample"), motion.phase / mesh_frequency[:, None]),
+        "order": (("order",), motion.order),
+        "line_frequency": (("operating", "order"), motion.order * mesh_frequency[:, None]),
+    }
+    texts = {}
+    for name, values in found.values.items():
+        shaped = values.reshape(*shape, *values.shape[1:])
+        if name.startswith("label"):
+            texts[name] = (dims, shaped)
+        else:
+            variables[name] = (dims + _last_axis(name), shaped)
+    data = label(variables, coordinates, _motion_attributes(motion, case))
+    return data.assign(texts).assign_coords({"bundle": list(cycles), axis: first[axis].values})
+
+
+def _last_axis(name: str) -> tuple[str, ...]:
+    if name.startswith("section"):
+        return ("section",)
+    if name == "line_amplitude":
+        return ("order",)
+    return ("sample",) if name.endswith(("displacement", "velocity")) and "peak" not in name else ()
+
+
+def _motion_attributes(motion: Motion, case: Case) -> dict[str, Any]:
+    return {
+        "bin_width_orders": motion.bin_width,
+        "window": "rectangular, whole mesh periods",
+        "periods": motion.periods,
+        "discarded": motion.discarded,
+        "initial_state": list(case.simulation.initial_state),
+    }
+
+
+def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
+    """Figures and motion of both gears at each temperature of the row."""
+    cycles: dict[str, xr.Dataset] = {}
+    temperatures = np.asarray(case.gear_temperatures)
+    for model in case.models:
+        row = [_cycle(case, case.operating_at(float(t)), model) for t in temperatures]
+        cold = replace(case.operating, temperatures=case.operating.temperatures.cold())
+        reference = _cycle(case, cold, model)["mean_stiffness"].values
+        axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")
+        axis.attrs = attributes("gear_temperature")
+        joined = xr.concat(row, axis).assign_attrs(cold_mean_stiffness=reference)
+        cycles[model.name] = _with_numbers(case, joined)
+    motion = _motion(case, cycles, "gear_temperature", progress)
+    motion["gear_temperature"].attrs = attributes("gear_temperature")
+    figures = xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
+    scalars = [
+        str(n)
+        for n, v in figures.data_vars.items()
+        if not {"path_position", "mesh_phase"} & set(v.dims) and n not in motion
+    ]
+    kept = figures[scalars].drop_vars(
+        ["path_position", "mesh_phase", "pinion_radius", "wheel_radius"], errors="ignore"
+    )
+    kept.attrs = {}
+    return xr.merge([kept, motion], combine_attrs="override").assign_attrs(motion.attrs)
+
+
+# --- dimensionless cases ------------------------------------------------------------------
+
+
+def _points(case: DimensionlessCase, stage: str, progress: Progress) -> xr.Dataset:
+    """Motion of every point of a dimensionless case."""
+    columns = {
+        name: np.array([point.model_arguments()[name] for point in case.points])
+        for name in case.points[0].model_arguments()
+    }
+    model = TorsionalModel(**columns)
+    motion = follow(model, case.simulation, lambda done, total: progress(stage, done, total))
+    stored = {
+        "damping_ratio": "damping_ratio",
+        "frequency": "frequency_ratio",
+        "stiffness_amplitude": "stiffness_amplitude",
+        "mean_force": "mean_force",
+        "force_amplitude": "force_amplitude",
+        "half_backlash": "half_backlash_ratio",
+        "thermal_stiffness": "thermal_stiffness_ratio",
+    }
+    variables: dict[str, Any] = {
+        stored[name]: (("point",), values) for name, values in columns.items()
+    }
+    plain = {"displacement": "scaled_displacement", "velocity": "scaled_velocity"}
+    texts: dict[str, Any] = {}
+    for name, values in motion.values.items():
+        if name.startswith("label"):
+            texts[name] = (("point",), values)
+            continue
+        axis = _last_axis(name)
+        variables[plain.get(name, name)] = (("point", *axis), values)
+    variables["order"] = (("order",), motion.order)
+    data = label(variables, None, _motion_attributes(motion, case))
+    for name in ("section_displacement", "section_velocity", "line_amplitude"):
+        data[name].attrs["units"] = "1"
+    for name in ("half_order_amplitude", "peak_to_peak_displacement"):
+        data[name].attrs["units"] = "1"
+    texts["row"] = (("point",), [point.row for point in case.points])
+    texts["parameter"] = (("point",), [point.parameter for point in case.points])
+    texts["expected"] = (("point",), [point.expected for point in case.points])
+    data = data.assign(texts)
+    data["value"] = (("point",), [point.value for point in case.points])
+    data["value_unit"] = (("point",), [point.unit for point in case.points])
+    data["phase"] = (
+        ("sample",),
+        motion.phase,
+        {"units": "1", "long_name": "time in mesh periods", "symbol": "t/T"},
+    )
+    return data.assign_attrs(title=case.title)
