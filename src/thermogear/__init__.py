@@ -11,6 +11,11 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
+    "ThermogearError": "thermogear.base.errors",
+    "InputError": "thermogear.base.errors",
+    "GeometryError": "thermogear.base.errors",
+    "ConvergenceError": "thermogear.base.errors",
+    "ValidityWarning": "thermogear.base.errors",
     "Material": "thermogear.base.materials",
     "Lubricant": "thermogear.base.materials",
     "Periodic": "thermogear.base.excitation",

@@ -1,0 +1,246 @@
+"""The quasi-static cycle: cold and uniform limits, balances, hot backlash and jam."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.vocabulary import QUANTITIES, STATUS
+
+T0 = ZERO_CELSIUS + 20.0
+BUNDLES = [MeshModel.consistent(), MeshModel.thesis()]
+
+
+def at(operating: Operating, temperatures: Temperatures) -> Operating:
+    return replace(operating, temperatures=temperatures)
+
+
+def gears_at(addendum: float, drop: float, housing: float) -> Temperatures:
+    """Both gears alike [C], bores ``drop`` below the addendum."""
+    hot = ZERO_CELSIUS + addendum
+    return Temperatures(T0, hot, hot - drop, hot, hot - drop, ZERO_CELSIUS + housing)
+
+
+@pytest.mark.parametrize("model", BUNDLES, ids=lambda m: m.name)
+def test_cold_gears_have_no_deformation_no_thermal_spring_and_all_their_backlash(
+    rig: GearPair, hot_rig: Operating, model: MeshModel
+) -> None:
+    cold = mesh_cycle(rig, at(hot_rig, hot_rig.temperatures.cold()), model)
+    for name in ("pinion_deformation", "wheel_deformation", "thermal_stiffness", "thermal_error"):
+        assert float(np.abs(cold[name]).max()) == 0.0
+    assert np.all(cold["half_backlash_curve"].values == hot_rig.half_backlash)
+    assert np.all(cold["mesh_stiffness"].values == cold["elastic_stiffness"].values)
+    assert np.all(cold["status"].values == STATUS.index("ok"))
+
+
+def test_everything_uniformly_hot_changes_no_backlash_at_all(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    warm = at(hot_rig, Temperatures.uniform(ZERO_CELSIUS + 130.0, T0))
+    cycle = mesh_cycle(rig, warm)
+    assert np.all(cycle["half_backlash_curve"].values == hot_rig.half_backlash)
+    assert np.all(cycle["thermal_error"].values == 0.0)
+    # the flanks did grow: an involute of the larger base circle, lambda tau rho
+    rise = 110.0 * rig.pinion.material.thermal_expansion
+    s = cycle["path_position"].values
+    np.testing.assert_allclose(cycle["pinion_deformation"].values[0], rise * s, rtol=1e-12)
+
+
+def test_uniform_heat_moves_the_elastic_stiffness_by_the_modulus_alone(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    cold = mesh_cycle(rig, at(hot_rig, hot_rig.temperatures.cold()))
+    warm = mesh_cycle(rig, at(hot_rig, Temperatures.uniform(ZERO_CELSIUS + 130.0, T0)))
+    ratio = warm["elastic_stiffness"].values / cold["elastic_stiffness"].values
+    np.testing.assert_allclose(ratio, 1.0 - 3.3e-4 * 110.0, rtol=1e-12)
+    rigid = MeshModel.consistent().override(modulus="constant")
+    np.testing.assert_array_equal(
+        mesh_cycle(rig, at(hot_rig, hot_rig.temperatures), rigid)["elastic_stiffness"].values,
+        cold["elastic_stiffness"].values,
+    )
+
+
+@pytest.mark.parametrize("temperature", [100.0, 120.0, 140.0, 160.0])
+def test_heat_softens_the_mesh_by_two_to_five_per_cent(
+    rig: GearPair, hot_rig: Operating, temperature: float
+) -> None:
+    cold = mesh_cycle(rig, at(hot_rig, hot_rig.temperatures.cold()))
+    hot = mesh_cycle(rig, at(hot_rig, gears_at(temperature, 20.0, temperature - 40.0)))
+    change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
+    assert np.all((change > -0.046) & (change < -0.02))
+    stiffer = mesh_cycle(rig, at(hot_rig, gears_at(temperature, 20.0, 60.0)), MeshModel.thesis())
+    assert np.all(
+        stiffer["mean_stiffness"].values > stiffer["elastic_stiffness"].mean("mesh_phase")
+    )
+
+
+def test_the_thesis_spring_grows_with_load_and_falls_with_heat(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    def spring(addendum: float, torque: float) -> float:
+        state = at(hot_rig, gears_at(addendum, 20.0, 60.0))
+        state = replace(state, torque=np.full(3, torque))
+        return float(mesh_cycle(rig, state, MeshModel.thesis())["thermal_stiffness"].mean())
+
+    assert spring(140.0, 200.0) == pytest.approx(2.0 * spring(140.0, 100.0), rel=1e-12)
+    assert spring(160.0, 100.0) < spring(100.0, 100.0)
+
+
+def test_equal_fields_leave_the_sum_of_the_growths_constant_along_the_path(
+    hot_rig: Operating,
+) -> None:
+    for bores in ((25e-3, 80e-3), (20e-3, 60e-3)):
+        pair = GearPair(Gear(25, 5e-3, bore_radius=bores[0]), Gear(75, 5e-3, bore_radius=bores[1]))
+        cycle = mesh_cycle(pair, at(hot_rig, gears_at(140.0, 20.0, 100.0)))
+        total = cycle["deformation_sum"].values[0]
+        assert np.ptp(total) < 1e-6
+
+
+def test_backlash_lost_with_and_without_the_housing(hot_rig: Operating) -> None:
+    # free bores 25/40 mm, 20 K gradient, addenda 100 .. 160 C
+    pair = GearPair(Gear(25, 5e-3, bore_radius=25e-3), Gear(75, 5e-3, bore_radius=40e-3))
+
+    def lost(addendum: float, housing: float, model: MeshModel) -> float:
+        cycle = mesh_cycle(pair, at(hot_rig, gears_at(addendum, 20.0, housing)), model)
+        return 1e6 * float((cycle["cold_half_backlash"] - cycle["half_backlash"])[0])
+
+    alone = MeshModel.consistent().override(housing="rigid")
+    assert lost(100.0, 20.0, alone) == pytest.approx(72.0, abs=0.7)
+    assert lost(160.0, 20.0, alone) == pytest.approx(132.0, abs=0.7)
+    # the housing 20 K and 50 K below the addendum, whatever the level
+    for addendum in (100.0, 160.0):
+        assert lost(addendum, addendum - 20.0, MeshModel.consistent()) == pytest.approx(14, abs=0.7)
+        assert lost(addendum, addendum - 50.0, MeshModel.consistent()) == pytest.approx(43, abs=0.7)
+
+
+def test_a_pair_with_94_um_of_backlash_jams_48_kelvin_over_a_cold_steel_housing(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    tight = replace(hot_rig, half_backlash=47e-6)
+    warm = mesh_cycle(rig, at(tight, gears_at(21.0, 0.0, 20.0)))
+    jam = float(warm["jam_temperature"][0])
+    # 2 a_w sin(alpha) lambda = 1.967 um/K of total normal backlash
+    slope = 2.0 * rig.centre_distance * np.sin(np.radians(20.0)) * 11.5e-6
+    assert jam - T0 == pytest.approx(94e-6 / slope, rel=1e-9)
+    assert jam - T0 == pytest.approx(48.0, abs=0.5)
+    for offset, status in ((-0.01, "ok"), (0.01, "jammed")):
+        state = at(tight, gears_at(jam - ZERO_CELSIUS + offset, 0.0, 20.0))
+        cycle = mesh_cycle(rig, state)
+        assert np.all(cycle["status"].values == STATUS.index(status))
+        assert float(cycle["jam_temperature"][0]) == pytest.approx(jam, abs=1e-6)
+
+
+def test_gears_colder_than_the_reference_never_jam(rig: GearPair, hot_rig: Operating) -> None:
+    cycle = mesh_cycle(rig, at(hot_rig, gears_at(-20.0, 0.0, 20.0)))
+    assert np.all(cycle["half_backlash"].values > hot_rig.half_backlash)
+
+
+@pytest.mark.parametrize("model", BUNDLES, ids=lambda m: m.name)
+def test_shares_of_the_pairs_in_contact_sum_to_one(
+    rig: GearPair, hot_rig: Operating, model: MeshModel
+) -> None:
+    cycle = mesh_cycle(rig, hot_rig, model, path_positions=1201)
+    s, share = cycle["path_position"].values, cycle["load_share"].values[0]
+    # A itself has its partner at D, where the share jumps between two positions
+    inside = (s > rig.path.a + 1e-5) & (s + rig.base_pitch < rig.path.e)
+    partner = np.interp(s[inside] + rig.base_pitch, s, share)
+    np.testing.assert_allclose(share[inside] + partner, 1.0, atol=2e-6)
+    single = (s > rig.path.b) & (s < rig.path.d)
+    assert np.all(share[single] == 1.0)
+
+
+@pytest.mark.parametrize("model", BUNDLES, ids=lambda m: m.name)
+def test_flash_vanishes_at_the_pitch_point_at_rest_and_without_load(
+    rig: GearPair, hot_rig: Operating, model: MeshModel
+) -> None:
+    c = (rig.path.c - rig.path.a) / (rig.path.e - rig.path.a)
+    cycle = mesh_cycle(rig, hot_rig, model)
+    near = cycle["flash_temperature"].values[:, round(c * 200)]
+    assert np.all(near < 0.02 * cycle["flash_temperature"].values.max(axis=1))
+    idle = replace(hot_rig, torque=np.zeros(3))
+    still = replace(hot_rig, speed=np.zeros(3))
+    for state in (idle, still):
+        assert float(mesh_cycle(rig, state, model)["flash_temperature"].max()) == 0.0
+    assert float(mesh_cycle(rig, idle, model)["hertz_half_width"].max()) == 0.0
+
+
+def test_dry_friction_is_hotter_than_mixed_and_flash_grows_with_speed_and_torque(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    cycle = mesh_cycle(rig, hot_rig)
+    dry, mixed = cycle["flash_temperature_dry"], cycle["flash_temperature_mixed"]
+    assert bool((dry >= mixed).all())
+    greatest = dry.max("path_position").values
+    assert np.all(np.diff(greatest) > 0.0)
+    double = mesh_cycle(rig, replace(hot_rig, torque=np.full(3, 200.0)))
+    # w^(3/4) at constant friction
+    np.testing.assert_allclose(
+        double["flash_temperature_dry"].values, 2.0**0.75 * dry.values, rtol=1e-12
+    )
+
+
+@pytest.mark.parametrize("model", BUNDLES, ids=lambda m: m.name)
+def test_a_batch_of_operating_points_equals_one_by_one(
+    rig: GearPair, hot_rig: Operating, model: MeshModel
+) -> None:
+    whole = mesh_cycle(rig, hot_rig, model)
+    for point in range(3):
+        one = replace(hot_rig, speed=hot_rig.speed[point : point + 1], torque=hot_rig.torque[:1])
+        alone = mesh_cycle(rig, one, model)
+        for name, values in alone.data_vars.items():
+            other = whole[name]
+            if "operating" in other.dims:
+                other = other.isel(operating=[point])
+            np.testing.assert_array_equal(values.values, other.values, err_msg=str(name))
+
+
+def test_temperatures_may_differ_between_operating_points(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    addenda = ZERO_CELSIUS + np.array([100.0, 120.0, 140.0])
+    warm = Temperatures(T0, addenda, addenda - 20, addenda, addenda - 20, addenda - 40)
+    cycle = mesh_cycle(rig, at(hot_rig, warm))
+    for point, addendum in enumerate((100.0, 120.0, 140.0)):
+        alone = mesh_cycle(rig, at(hot_rig, gears_at(addendum, 20.0, addendum - 40.0)))
+        for name in ("half_backlash", "mean_stiffness", "jam_temperature", "contact_temperature"):
+            np.testing.assert_allclose(
+                cycle[name].values[point], alone[name].values[point], rtol=1e-14, err_msg=name
+            )
+
+
+def test_the_printed_stiffness_curve_within_half_a_per_cent(hot_rig: Operating) -> None:
+    pair = GearPair(
+        Gear(25, 5e-3, bore_radius=30e-3, face_width=23.54e-3),
+        Gear(75, 5e-3, bore_radius=100e-3, face_width=23.54e-3),
+    )
+    cold = at(hot_rig, hot_rig.temperatures.cold())
+    k = mesh_cycle(pair, cold, MeshModel.thesis(), mesh_positions=2000)["mesh_stiffness"].values
+    assert k.min() == pytest.approx(3.494e8, rel=5e-3)
+    assert k.max() == pytest.approx(6.255e8, rel=5e-3)
+    assert 0.5 * (k.min() + k.max()) == pytest.approx(4.875e8, rel=5e-3)
+    assert np.ptp(k) == pytest.approx(2.75e8, rel=5e-3)
+
+
+def test_every_stored_name_carries_its_unit_and_words(rig: GearPair, hot_rig: Operating) -> None:
+    cycle = mesh_cycle(rig, hot_rig)
+    for name, values in cycle.variables.items():
+        if name != "status":
+            assert values.attrs["units"] == QUANTITIES[str(name)].unit
+        assert values.attrs["long_name"]
+
+
+def test_too_few_positions_are_refused(rig: GearPair, hot_rig: Operating) -> None:
+    with pytest.raises(InputError, match=r"^path_positions: got 1; allowed >= 2$"):
+        mesh_cycle(rig, hot_rig, path_positions=1)
+
+
+def test_an_unknown_choice_says_the_nearest() -> None:
+    with pytest.raises(InputError, match=r"model.flank: got 'grwth'.*did you mean 'growth'"):
+        MeshModel.consistent().override(flank="grwth")
+    with pytest.raises(InputError, match="did you mean 'flank'"):
+        MeshModel.thesis().override(flnk="growth")
+    assert MeshModel.thesis().override(flank="growth").name == "thesis + flank=growth"

@@ -1,0 +1,63 @@
+"""The excitation that leaves the gears: masses, forces, frequencies, jammed points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermogear import GearPair, InputError, Operating, Periodic, excitation, mesh_cycle
+from thermogear.mesh.excite import disc_inertia
+
+
+def test_the_rig_as_solid_discs_of_pitch_radius(rig: GearPair, hot_rig: Operating) -> None:
+    cycle = mesh_cycle(rig, hot_rig)
+    found = excitation(cycle, rig, damping_ratio=0.07)
+    assert len(found) == 3
+    for one, rpm in zip(found, (1000.0, 2000.0, 3000.0), strict=True):
+        assert one is not None
+        assert one.equivalent_mass == pytest.approx(1.227, abs=5e-4)
+        assert one.mesh_frequency == pytest.approx(2.0 * np.pi * 25.0 * rpm / 60.0, rel=1e-14)
+        assert one.mean_force == pytest.approx(100.0 / rig.pinion.base_radius, rel=1e-14)
+        # torques balance: no angular acceleration of the pair as a whole
+        assert one.torques[0] / one.base_radii[0] == pytest.approx(
+            one.torques[1] / one.base_radii[1], rel=1e-14
+        )
+        assert one.stiffness.mean == pytest.approx(float(cycle["mean_stiffness"][0]), rel=1e-12)
+
+
+def test_disc_inertias_of_tip_and_bored_discs(rig: GearPair) -> None:
+    tip = [disc_inertia(g, g.tip_radius) for g in (rig.pinion, rig.wheel)]
+    bored = [disc_inertia(g, g.pitch_radius, g.bore_radius) for g in (rig.pinion, rig.wheel)]
+    r1, r2 = rig.pinion.base_radius, rig.wheel.base_radius
+
+    def mass(inertias: list[float]) -> float:
+        return inertias[0] * inertias[1] / (inertias[0] * r2**2 + inertias[1] * r1**2)
+
+    assert mass(tip) == pytest.approx(1.633, abs=5e-4)
+    assert mass(bored) == pytest.approx(1.195, abs=5e-4)
+
+
+def test_jammed_points_have_no_excitation(rig: GearPair, hot_rig: Operating) -> None:
+    cycle = mesh_cycle(rig, replace(hot_rig, half_backlash=20e-6))
+    assert excitation(cycle, rig, damping_ratio=0.07) == [None, None, None]
+
+
+def test_perfect_gears_at_equal_uniform_temperature_have_no_error(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    cold = replace(hot_rig, temperatures=hot_rig.temperatures.cold())
+    first = excitation(mesh_cycle(rig, cold), rig, damping_ratio=0.07)[0]
+    assert first is not None
+    assert np.all(first.error.samples(64) == 0.0)
+    given = Periodic(0.0, (5e-6,))
+    first = excitation(mesh_cycle(rig, cold), rig, damping_ratio=0.07, transmission_error=given)[0]
+    assert first is not None
+    assert first.error.samples(4) == pytest.approx([5e-6, 0.0, -5e-6, 0.0], abs=1e-20)
+
+
+def test_motion_without_speed_is_refused(rig: GearPair, hot_rig: Operating) -> None:
+    cycle = mesh_cycle(rig, replace(hot_rig, speed=np.zeros(3)))
+    with pytest.raises(InputError, match=r"operating.speed: got 0 rpm; allowed > 0 rpm"):
+        excitation(cycle, rig, damping_ratio=0.07)
