@@ -1,0 +1,180 @@
+"""From a case to stored results: the whole chain, its statuses and what it says."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thermogear import InputError, run
+from thermogear.base.vocabulary import STATUS
+from thermogear.study.case import load_example
+from thermogear.study.findings import summary
+from thermogear.study.results import RESULTS, SUMMARY
+from thermogear.study.run import run_to_directory
+
+SMALL = [
+    "grid.path_positions=41",
+    "grid.mesh_positions=96",
+    "simulation.periods=16",
+    "simulation.samples=32",
+    'operating.speed=["1000 rpm", "3000 rpm"]',
+]
+
+
+@pytest.fixture(scope="module")
+def small() -> xr.DataTree:
+    return run(load_example("rig", SMALL))
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    directory = tmp_path_factory.mktemp("results") / "out"
+    run_to_directory(load_example("rig", SMALL), directory)
+    return directory
+
+
+def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: xr.DataTree) -> None:
+    assert set(small.children) == {
+        "path",
+        "mesh",
+        "profile",
+        "motion",
+        "temperature",
+        "base_sets",
+    }
+    mesh = small["mesh"]
+    assert list(mesh["bundle"].values) == ["consistent", "thesis"]
+    assert list(mesh["state"].values) == ["cold", "hot"]
+    assert np.all(mesh["status"].values == STATUS.index("ok"))
+    assert set(small["motion"]["label"].values.ravel()) <= {"period-1", "undecided"}
+
+
+def test_every_stored_variable_has_units_and_words(small: xr.DataTree) -> None:
+    texts = {"label", "label_reason", "row", "parameter", "expected", "value", "value_unit"}
+    for node in small.subtree:
+        for name, values in node.data_vars.items():
+            if name in texts or name == "status":
+                continue
+            assert values.attrs.get("units"), f"{node.path}/{name}"
+            assert values.attrs.get("long_name"), f"{node.path}/{name}"
+
+
+def test_dimensionless_numbers_close_with_the_stored_si_values(small: xr.DataTree) -> None:
+    mesh = small["mesh"]
+    np.testing.assert_allclose(
+        mesh["frequency_ratio"].values,
+        (mesh["mesh_frequency"] / mesh["natural_frequency"]).values,
+        rtol=1e-12,
+    )
+    # F_h = (e_a/b) omega_h^2 with e_a = 5 um and b = 125 um
+    np.testing.assert_allclose(
+        mesh["force_amplitude"].values, 0.04 * mesh["frequency_ratio"].values ** 2, rtol=1e-12
+    )
+    mean_deflection = mesh["mean_force"] * mesh["cold_half_backlash"]
+    np.testing.assert_allclose(
+        (mean_deflection * mesh["mean_stiffness"]).values, mesh["normal_force"].values, rtol=1e-12
+    )
+    assert np.all(mesh["thermal_stiffness_ratio"].sel(state="cold").values == 0.0)
+
+
+def test_steady_motion_carries_the_load(small: xr.DataTree) -> None:
+    # without contact loss <k f> = F_n, so the mean deflection is close to F_n/k_m
+    motion, mesh = small["motion"], small["mesh"]
+    x = motion["displacement"].mean("sample") - mesh["half_backlash"]
+    ratio = (x * mesh["mean_stiffness"] / mesh["normal_force"]).values
+    assert np.all((ratio > 0.95) & (ratio < 1.1))
+
+
+def test_results_are_read_back_as_they_were(written: Path, small: xr.DataTree) -> None:
+    stored = xr.open_datatree(written / RESULTS, engine="h5netcdf")
+    for node in small.subtree:
+        for name, values in node.data_vars.items():
+            other = stored[node.path][str(name)]
+            np.testing.assert_array_equal(values.values, other.values)
+            assert other.attrs.get("units") == values.attrs.get("units")
+    told = json.loads((written / SUMMARY).read_text(encoding="utf-8"))
+    fresh = summary(small)
+    assert told["operating"] == json.loads(json.dumps(fresh["operating"]))
+    stored.close()
+
+
+def test_a_second_run_replaces_our_own_results_and_refuses_foreign_files(
+    written: Path, tmp_path: Path
+) -> None:
+    case = load_example("section-4.1")
+    run_to_directory(case, written)
+    assert json.loads((written / SUMMARY).read_text(encoding="utf-8"))["kind"] == "dimensionless"
+    (tmp_path / "thesis.doc").write_text("mine", encoding="utf-8")
+    with pytest.raises(InputError, match="not results of thermogear; name a new or an empty"):
+        run_to_directory(case, tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["thesis.doc"]
+
+
+def test_jammed_points_are_a_status_and_the_rest_goes_on() -> None:
+    tight = [*SMALL, 'backlash.value="0.06 mm"', 'draw.pictures=["path","motion","temperature"]']
+    tree = run(load_example("rig", tight))
+    hot = tree["mesh"].sel(state="hot", bundle="consistent")
+    assert np.all(hot["status"].values == STATUS.index("jammed"))
+    motion = tree["motion"].sel(bundle="consistent")
+    assert np.all(motion["label"].sel(state="hot").values == "jammed")
+    assert np.all(motion["label"].sel(state="cold").values == "period-1")
+    assert np.all(np.isnan(motion["displacement"].sel(state="hot").values))
+    texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
+    assert any("jammed when hot" in text and "°C" in text for text in texts)
+    assert all(row["label"] == "jammed" for row in summary(tree)["temperature_row"][:8])
+
+
+def test_a_pair_that_is_jammed_everywhere_still_gives_a_tree() -> None:
+    changes = [
+        *SMALL,
+        'backlash.value="0.02 mm"',
+        'model.bundle="consistent"',
+        'temperatures.reference="20 degC"',
+        'draw.pictures=["path","temperature"]',
+    ]
+    tree = run(load_example("rig", changes))
+    assert np.all(tree["temperature"]["label"].values == "jammed")
+
+
+def test_table_4_2_and_section_4_1_as_their_files_expect() -> None:
+    for name in ("table-4.2", "section-4.1"):
+        points = run(load_example(name))["points"]
+        for label, expected in zip(points["label"].values, points["expected"].values, strict=True):
+            assert str(label) in str(expected).split(" or ")
+        assert "quasi" not in " ".join(points["label"].values)
+        if name == "section-4.1":
+            # the thesis's direction of heat: first row, 125 C and 140 C
+            first = points["row"].values == points["row"].values[0]
+            half = dict(
+                zip(
+                    points["value"].values[first] - 273.15,
+                    points["half_order_amplitude"].values[first],
+                    strict=True,
+                )
+            )
+            assert half[125.0] == pytest.approx(0.0044, abs=5e-5)
+            assert half[140.0] == pytest.approx(0.0088, abs=5e-5)
+
+
+def test_notices_name_the_regime(small: xr.DataTree) -> None:
+    texts = [notice["text"] for notice in json.loads(small.attrs["notices"])]
+    assert any(text.startswith("Two regimes") for text in texts)
+    assert any("textbook sum" in text for text in texts)
+
+
+def test_errata_carry_both_values_of_the_flash_temperature(small: xr.DataTree) -> None:
+    rows = {row["number"]: row for row in json.loads(small.attrs["errata"])}
+    assert sorted(rows) == list(range(1, 21))
+    assert rows[1]["value_repaired"] > 1e3 * rows[1]["value_as_printed"] > 0.0
+    assert rows[12]["value_repaired"] == pytest.approx(21.5, abs=0.005)
+    assert rows[16]["value_as_printed"] == pytest.approx(7.4, abs=0.05)
+
+
+def test_progress_names_its_stages() -> None:
+    stages: list[str] = []
+    run(load_example("rig", SMALL), progress=lambda stage, done, total: stages.append(stage))
+    assert {"mesh cycle", "motion", "motion over temperature"} <= set(stages)
