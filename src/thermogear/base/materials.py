@@ -250,6 +250,16 @@ LUBRICANTS: dict[str, Lubricant] = {
             "density from its viscosity at 40 C by ISO/TR 15144-1 eq. 21"
         ),
     ),
+    # the Walther line through the two limits of SAE J306 that define the grade: 150 000 mPa s at
+    # -40 C (75W, its greatest) and the middle of 13.5 .. 18.5 mm^2/s at 100 C (90). Not one
+    # maker's oil: for that, take the two viscosities of its data sheet
+    "75W90": Lubricant.from_two_points(
+        "75W90",
+        (ZERO_CELSIUS - 40.0, 150.0 / 900.0),
+        (ZERO_CELSIUS + 100.0, 16e-6),
+        kind="pao",
+        source="representative of the grade from the limits of SAE J306; density by viscosity",
+    ),
 }
 
 

@@ -13,6 +13,29 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
+class PitchPoint:
+    """The pair at its operating pitch circle (SI), what laws of mean friction are stated for.
+
+    ``line_load`` whole normal load per face width [N/m], ``sum_speed`` v1 + v2 there [m/s],
+    ``reduced_radius`` there [m], ``face_width`` [m]. Numbers, or arrays over operating points
+    that broadcast against the contact's other fields (shape (operating, 1)).
+    """
+
+    line_load: ArrayLike
+    sum_speed: ArrayLike
+    reduced_radius: ArrayLike
+    face_width: ArrayLike
+
+    def __post_init__(self) -> None:
+        for name in ("line_load", "sum_speed", "reduced_radius", "face_width"):
+            values = np.asarray(getattr(self, name), dtype=float)
+            object.__setattr__(self, name, values)
+            good = values >= 0.0 if name in ("line_load", "sum_speed") else values > 0.0
+            if not np.all(good & np.isfinite(values)):
+                raise InputError(f"pitch point.{name}", values, allowed="positive, finite")
+
+
+@dataclass(frozen=True, eq=False)
 class ContactState:
     """The contact of one tooth pair (SI), every field a number or an array that broadcasts.
 
@@ -20,7 +43,8 @@ class ContactState:
     and wheel flank; ``reduced_radius`` R [m]; ``pressure`` greatest Hertz pressure [Pa];
     ``viscosity`` eta [Pa s] at the oil's temperature and ambient pressure;
     ``kinematic_viscosity`` nu [m^2/s] likewise; ``roughness`` Ra [m], the mean of both flanks;
-    ``film_parameter`` Lambda [-] where a law blends by it.
+    ``film_parameter`` Lambda [-] where a law blends by it; ``pressure_viscosity`` alpha [1/Pa];
+    ``pitch_point`` for laws of mean friction; ``lubricant_kind`` the base oil's family.
     """
 
     line_load: ArrayLike
@@ -32,6 +56,9 @@ class ContactState:
     roughness: ArrayLike
     kinematic_viscosity: ArrayLike | None = None
     film_parameter: ArrayLike | None = None
+    pressure_viscosity: ArrayLike | None = None
+    pitch_point: PitchPoint | None = None
+    lubricant_kind: str = "mineral"
 
     def __post_init__(self) -> None:
         for name in ("line_load", "speed_1", "speed_2", "pressure", "roughness"):
@@ -42,6 +69,23 @@ class ContactState:
             self._check("kinematic_viscosity", positive=True)
         if self.film_parameter is not None:
             self._check("film_parameter", positive=False)
+        if self.pressure_viscosity is not None:
+            self._check("pressure_viscosity", positive=True)
+
+    def needed(self, name: str, law: str) -> Floats:
+        """An optional field as an array, or an error that says which law needs it."""
+        value = getattr(self, name)
+        if value is None:
+            raise InputError(f"contact.{name}", "nothing", why=f"the law {law!r} needs it")
+        return np.asarray(value)
+
+    def pitch(self, law: str) -> PitchPoint:
+        """The pitch point, or an error that says which law needs it."""
+        if self.pitch_point is None:
+            raise InputError(
+                "contact.pitch_point", "nothing", why=f"the law {law!r} is stated for it"
+            )
+        return self.pitch_point
 
     def _check(self, name: str, *, positive: bool) -> None:
         values = np.asarray(getattr(self, name), dtype=float)
@@ -77,5 +121,7 @@ class ContactState:
     @property
     def shape(self) -> tuple[int, ...]:
         """The common shape of all fields."""
-        given = [np.shape(value) for value in vars(self).values() if value is not None]
+        given = [np.shape(v) for v in vars(self).values() if isinstance(v, np.ndarray)]
+        if self.pitch_point is not None:
+            given += [np.shape(v) for v in vars(self.pitch_point).values()]
         return np.broadcast_shapes(*given)

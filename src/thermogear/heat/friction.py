@@ -6,7 +6,9 @@ holds a law's own parameters and is called with a :class:`ContactState`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -14,18 +16,38 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.heat.contact_state import ContactState
+from thermogear.heat.laws import (
+    CEILING,
+    FZG_LUBRICANT_FACTOR,
+    ISO_LUBRICANT_FACTOR,
+    doleschel_share,
+    fernandes,
+    iso_13989_1,
+    iso_13989_2,
+    lubricant_factor,
+    schlenk,
+    xu_kahraman,
+)
 
 Floats = NDArray[np.float64]
 
 __all__ = [
     "LAWS",
     "BenedictKelley",
+    "Boundary",
     "ConstantDry",
+    "Fernandes",
     "FrictionLaw",
+    "Iso13989Flash",
+    "Iso13989Integral",
+    "LambdaBlend",
+    "Schlenk",
+    "XuKahraman",
     "benedict_kelley",
     "benedict_kelley_as_printed",
     "constant_dry",
     "friction_law",
+    "outside_range",
 ]
 
 ROUGHNESS_LIMIT = 1.13e-6
@@ -38,10 +60,32 @@ class FrictionLaw(Protocol):
     name: ClassVar[str]
     regime: ClassVar[str]
     source: ClassVar[str]
+    ranges: ClassVar[Mapping[str, tuple[float, float]]]
 
     def __call__(self, state: ContactState) -> Floats:
         """|mu| [-] in the common shape of ``state``."""
         ...
+
+
+def outside_range(law: FrictionLaw, state: ContactState) -> NDArray[np.bool_]:
+    """Where ``state`` leaves the range the law's source gives, in the shape of ``state``.
+
+    A law's ``ranges`` name fields of :class:`ContactState` with their least and greatest SI
+    values; a field the state does not carry is not judged.
+    """
+    outside = np.zeros(state.shape, dtype=bool)
+    for name, (low, high) in law.ranges.items():
+        value = getattr(state, name)
+        if value is not None:
+            outside = outside | (np.asarray(value) < low) | (np.asarray(value) > high)
+    return outside
+
+
+def _spread(mu: Floats, state: ContactState) -> Floats:
+    return np.broadcast_to(mu, state.shape).copy()
+
+
+_ANY: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
 
 def benedict_kelley(
@@ -51,7 +95,7 @@ def benedict_kelley(
     viscosity: ArrayLike,
     roughness: ArrayLike,
     pitch_floor: float = 0.01,
-    ceiling: float = 0.5,
+    ceiling: float = CEILING,
 ) -> Floats:
     """Mixed-lubrication friction of Benedict and Kelley, regularised [-].
 
@@ -135,10 +179,13 @@ class BenedictKelley:
     """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`."""
 
     pitch_floor: float = 0.01
-    ceiling: float = 0.5
+    ceiling: float = CEILING
     name: ClassVar[str] = "benedict-kelley"
     regime: ClassVar[str] = "mixed"
     source: ClassVar[str] = "Benedict and Kelley, ASLE Trans. 4 (1961) 59-70"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"roughness": (0.0, 1.13e-6)}
+    )
 
     def __call__(self, state: ContactState) -> Floats:
         mu = benedict_kelley(
@@ -150,7 +197,7 @@ class BenedictKelley:
             self.pitch_floor,
             self.ceiling,
         )
-        return np.broadcast_to(mu, state.shape).copy()
+        return _spread(mu, state)
 
 
 @dataclass(frozen=True)
@@ -161,15 +208,212 @@ class ConstantDry:
     name: ClassVar[str] = "dry"
     regime: ClassVar[str] = "dry"
     source: ClassVar[str] = "constant 0.1..0.5, the thesis's range"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
 
     def __post_init__(self) -> None:
         constant_dry(0.0, self.coefficient)
 
     def __call__(self, state: ContactState) -> Floats:
-        return np.broadcast_to(constant_dry(state.sliding, self.coefficient), state.shape).copy()
+        return _spread(constant_dry(state.sliding, self.coefficient), state)
 
 
-LAWS: dict[str, FrictionLaw] = {law.name: law for law in (BenedictKelley(), ConstantDry())}
+@dataclass(frozen=True)
+class Boundary:
+    """Boundary lubrication, one constant."""
+
+    coefficient: float = 0.10
+    name: ClassVar[str] = "boundary"
+    regime: ClassVar[str] = "boundary"
+    source: ClassVar[str] = "0.10 in public gear code for doped oils, 0.12 in bearing practice"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+
+    def __post_init__(self) -> None:
+        constant_dry(0.0, self.coefficient)
+
+    def __call__(self, state: ContactState) -> Floats:
+        return _spread(constant_dry(state.sliding, self.coefficient), state)
+
+
+@dataclass(frozen=True)
+class XuKahraman:
+    """Xu and Kahraman 2007, local; see :func:`laws.xu_kahraman`.
+
+    ``smooth`` leaves the roughness out, as a blend with boundary friction needs it.
+    """
+
+    smooth: bool = False
+    pitch_floor: float = 0.01
+    ceiling: float = CEILING
+    name: ClassVar[str] = "xu-kahraman"
+    regime: ClassVar[str] = "elastohydrodynamic"
+    source: ClassVar[str] = "Xu and Kahraman, J. Mech. Des. 129 (2007) 58-68"
+    # the regression's roughness enters as exp(S): beyond about 1 um it runs away
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"roughness": (0.0, 1e-6), "viscosity": (1e-3, np.inf)}
+    )
+
+    def __call__(self, state: ContactState) -> Floats:
+        mu = xu_kahraman(
+            state.pressure,
+            state.sliding,
+            state.entrainment,
+            state.viscosity,
+            state.reduced_radius,
+            0.0 if self.smooth else state.roughness,
+            self.pitch_floor,
+            self.ceiling,
+        )
+        return _spread(mu, state)
+
+
+@dataclass(frozen=True)
+class LambdaBlend:
+    """Mixed lubrication: boundary and smooth film friction by Doleschel's share of Lambda.
+
+    mu = xi mu_boundary + (1 - xi) mu_film, xi = (1 - Lambda/2)^2 below 2. The film's law is
+    smooth, so that asperities are not counted twice.
+    """
+
+    boundary: float = 0.10
+    film: XuKahraman = XuKahraman(smooth=True)
+    name: ClassVar[str] = "lambda-blend"
+    regime: ClassVar[str] = "boundary to elastohydrodynamic"
+    source: ClassVar[str] = "Doleschel (FVA) share, smooth Xu and Kahraman film"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"viscosity": (1e-3, np.inf)}
+    )
+
+    def __post_init__(self) -> None:
+        constant_dry(0.0, self.boundary)
+
+    def __call__(self, state: ContactState) -> Floats:
+        share = doleschel_share(state.needed("film_parameter", self.name))
+        mu = share * self.boundary + (1.0 - share) * self.film(state)
+        return _spread(mu, state)
+
+
+@dataclass(frozen=True)
+class Schlenk:
+    """Mean friction of ISO/TR 14179-2; ``factor`` None takes X_L by the base oil."""
+
+    factor: float | None = None
+    ceiling: float = CEILING
+    name: ClassVar[str] = "schlenk"
+    regime: ClassVar[str] = "mixed, mean of the mesh"
+    source: ClassVar[str] = "Schlenk, ISO/TR 14179-2; X_L of FZG tests (Fernandes, Seabra)"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+
+    def __call__(self, state: ContactState) -> Floats:
+        at = state.pitch(self.name)
+        kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
+        factor = kind if self.factor is None else self.factor
+        mu = schlenk(
+            at.line_load,
+            at.sum_speed,
+            at.reduced_radius,
+            state.viscosity,
+            state.roughness,
+            factor,
+            self.ceiling,
+        )
+        return _spread(mu, state)
+
+
+@dataclass(frozen=True)
+class Iso13989Flash:
+    """Mean friction of ISO/TR 13989-1; ``factor`` None takes c by the base oil."""
+
+    factor: float | None = None
+    ceiling: float = CEILING
+    name: ClassVar[str] = "iso-13989-1"
+    regime: ClassVar[str] = "mixed, mean of the mesh"
+    source: ClassVar[str] = "ISO/TR 13989-1 eq. 25-28"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+
+    def __call__(self, state: ContactState) -> Floats:
+        at = state.pitch(self.name)
+        kind = ISO_LUBRICANT_FACTOR.get(state.lubricant_kind, 1.0)
+        factor = kind if self.factor is None else self.factor
+        mu = iso_13989_1(
+            at.line_load,
+            at.sum_speed,
+            at.reduced_radius,
+            state.viscosity,
+            state.roughness,
+            factor,
+            self.ceiling,
+        )
+        return _spread(mu, state)
+
+
+@dataclass(frozen=True)
+class Iso13989Integral:
+    """Mean friction of ISO/TR 13989-2 and 15144-1 (Michaelis); ``factor`` X_L."""
+
+    factor: float = 1.0
+    ceiling: float = CEILING
+    name: ClassVar[str] = "iso-13989-2"
+    regime: ClassVar[str] = "mixed, mean of the mesh"
+    source: ClassVar[str] = "ISO/TR 13989-2 eq. 1-7 = ISO/TR 15144-1 eq. 86"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+
+    def __call__(self, state: ContactState) -> Floats:
+        at = state.pitch(self.name)
+        mu = iso_13989_2(
+            at.line_load,
+            at.sum_speed,
+            at.reduced_radius,
+            state.viscosity,
+            state.roughness,
+            self.factor,
+            self.ceiling,
+        )
+        return _spread(mu, state)
+
+
+@dataclass(frozen=True)
+class Fernandes:
+    """Mean friction by Fernandes 2016; ``factor`` None takes X_L by the base oil."""
+
+    factor: float | None = None
+    ceiling: float = CEILING
+    name: ClassVar[str] = "fernandes"
+    regime: ClassVar[str] = "mixed, mean of the mesh"
+    source: ClassVar[str] = "Fernandes et al., Tribology International 101 (2016) 204"
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+
+    def __call__(self, state: ContactState) -> Floats:
+        at = state.pitch(self.name)
+        kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
+        factor = kind if self.factor is None else self.factor
+        mu = fernandes(
+            at.line_load,
+            at.sum_speed,
+            at.reduced_radius,
+            state.viscosity,
+            state.roughness,
+            state.needed("pressure_viscosity", self.name),
+            at.face_width,
+            factor,
+            self.ceiling,
+        )
+        return _spread(mu, state)
+
+
+LAWS: dict[str, FrictionLaw] = {
+    law.name: law
+    for law in (
+        BenedictKelley(),
+        ConstantDry(),
+        Boundary(),
+        XuKahraman(),
+        LambdaBlend(),
+        Schlenk(),
+        Iso13989Flash(),
+        Iso13989Integral(),
+        Fernandes(),
+    )
+}
 """Every law by its name, with the parameters of its source."""
 
 
