@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.section import Ensemble, ReturnMap, lanes_of, starts_of
+from thermogear.analysis.section import Ensemble, ReturnMap, lanes_of, scales, starts_of
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Progress
 from thermogear.dynamics.tables import Lanes
@@ -180,7 +180,7 @@ def _periodic(
     """The label the last sections support, and whether no lag comes near closing."""
     if not np.all(np.isfinite(window)):
         return Label("diverged", 0, "|x| > 1e6 half backlashes or not finite", elapsed), False
-    unit = np.array([lane.half_backlash[0], 2.0 * np.pi * lane.half_backlash[0] / lane.period[0]])
+    unit = scales(lane)
     scaled = window / unit
     gaps = [
         float(np.max(np.abs(scaled[-lag:] - scaled[-2 * lag : len(scaled) - lag])))

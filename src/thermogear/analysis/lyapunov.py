@@ -67,7 +67,8 @@ def _block(
         total = np.zeros(index.size)
         for _, count in pace.chunks(length, index.size):
             _, stretch, _ = exact.advance(maps, state, count, columns=1, normalise=True)
-            total += stretch.sum(axis=0)
+            # one after the other, so that neither chunks nor company change the last bit
+            total = np.cumsum(np.vstack([total, stretch]), axis=0)[-1]
         means[index, batch] = total / (length * mine.period)
     ends[index, 0], ends[index, 1] = state.x, state.y
 

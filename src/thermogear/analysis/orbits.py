@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.section import ReturnMap, lanes_of
+from thermogear.analysis.section import ReturnMap, lanes_of, scales
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.tables import Lanes
 
@@ -19,12 +19,14 @@ Complexes = NDArray[np.complex128]
 class Orbit:
     """A closed orbit of ``period`` mesh periods.
 
-    ``points`` (period, 2) on the section, ``jacobian`` D P^n at the first of them,
+    ``model`` it belongs to, ``points`` (period, 2) on the section, ``jacobian`` D P^n at the
+    first of them,
     ``residual`` |P^n z - z| in units of the half backlash, counts and shares over one orbit,
     ``iterations`` of Newton. :attr:`minimal_period` says whether it closes sooner.
     """
 
     lanes: Lanes = field(repr=False)
+    model: object = field(repr=False)
     period: int
     points: Floats
     jacobian: Floats
@@ -62,7 +64,7 @@ class Orbit:
     @property
     def minimal_period(self) -> int:
         """The smallest number of mesh periods after which the orbit closes."""
-        unit = ReturnMap(self.lanes).unit
+        unit = scales(self.lanes)
         for lag in range(1, self.period):
             if self.period % lag == 0:
                 gap = np.max(np.abs(self.points[lag] - self.points[0]) / unit)
@@ -123,6 +125,19 @@ def multipliers(jacobian: Floats, determinant: float) -> Complexes:
     return np.array([large, determinant / large], complex)
 
 
+def contact_multipliers(model: object) -> Complexes:
+    """Multipliers of one period in lasting drive contact: Hill's equation x'' + c x' + k(t) x = 0.
+
+    The largest modulus above 1 means that the motion cannot stay in contact, whatever the force.
+    ``model`` has one lane; backlash and force do not enter.
+    """
+    section = ReturnMap(lanes_of(model))
+    product = np.eye(2)
+    for maps in section.maps.maps[:, :4, 0]:
+        product = np.array([[maps[0], maps[2]], [maps[1], maps[3]]]) @ product
+    return multipliers(product, section.determinant(1))
+
+
 def shoot(
     section: ReturnMap,
     guess: Floats,
@@ -130,6 +145,7 @@ def shoot(
     *,
     tolerance: float = 1e-13,
     most: int = 30,
+    model: object = None,
 ) -> Orbit | None:
     """Newton from ``guess`` to a fixed point of P^n; None when it does not settle.
 
@@ -167,9 +183,25 @@ def shoot(
     if best is None or best[0] > 1e-9:
         return None
     residual, z = best
-    visit = section.visit(z, period)
+    return closed(section, z, period, model=model, residual=residual, iterations=used)
+
+
+def closed(
+    section: ReturnMap,
+    state: Floats,
+    period: int,
+    *,
+    model: object = None,
+    residual: float | None = None,
+    iterations: int = 0,
+) -> Orbit:
+    """The orbit through ``state``, which is taken to close after ``period`` periods."""
+    visit = section.visit(state, period)
+    if residual is None:
+        residual = float(section.distance(visit.points[-1], visit.points[0]))
     return Orbit(
         section.lanes,
+        model,
         period,
         visit.points[:-1],
         visit.jacobian,
@@ -177,7 +209,7 @@ def shoot(
         visit.contact_losses,
         visit.back_impacts,
         visit.shares,
-        used,
+        iterations,
     )
 
 
@@ -197,7 +229,7 @@ def periodic_orbit(
     if start.shape != (2,) or not np.all(np.isfinite(start)):
         raise InputError("guess", start.tolist(), allowed="two finite numbers (x, x')")
     section = ReturnMap(lanes_of(model))
-    orbit = shoot(section, start, int(period), tolerance=tolerance)
+    orbit = shoot(section, start, int(period), tolerance=tolerance, model=model)
     if orbit is None:
         raise ConvergenceError(
             f"no orbit of period {period} reached from {start.tolist()}: Newton did not settle "

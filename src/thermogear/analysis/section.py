@@ -42,6 +42,12 @@ def starts_of(initial_state: ArrayLike, lanes: int) -> Floats:
     return np.array(np.broadcast_to(start, (lanes, 2)))
 
 
+def scales(lanes: Lanes) -> Floats:
+    """Scales of (x, x') for distances, of the first lane: b and 2 pi b/period."""
+    backlash = float(lanes.half_backlash[0])
+    return np.array([backlash, 2.0 * np.pi * backlash / float(lanes.period[0])])
+
+
 @dataclass(frozen=True)
 class Visit:
     """Where ``n`` periods of one lane lead.
@@ -74,7 +80,7 @@ class ReturnMap:
     @property
     def unit(self) -> Floats:
         """Scales of (x, x') for distances: b and 2 pi b/period."""
-        return np.array([self.backlash, 2.0 * np.pi * self.backlash / self.period])
+        return scales(self.lanes)
 
     def distance(self, one: Floats, other: Floats) -> Floats:
         """Largest component of the difference in units of :attr:`unit`, over leading axes."""

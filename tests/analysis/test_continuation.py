@@ -1,0 +1,135 @@
+"""Folds, flips and grazing against independent values; the cascades of table 4.2."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermogear.analysis.continuation import (
+    BIRTH,
+    FLIP,
+    FOLD,
+    GRAZING,
+    cascade,
+    continuation,
+    switch_branch,
+)
+from thermogear.analysis.orbits import periodic_orbit
+from thermogear.base.errors import InputError
+from thermogear.dynamics.models import TorsionalModel
+
+TRUTH = json.loads((Path(__file__).parents[1] / "dynamics" / "truth.json").read_text())
+BIFURCATIONS = {case["id"]: case for case in TRUTH["bifurcations"]}
+BASE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+ROWS = {
+    "damping_ratio": (0.18, 0.10, "SEED_z"),
+    "frequency": (1.3, 1.1, "SEED_w"),
+    "stiffness_amplitude": (0.1, 0.9, "SEED_eps"),
+}
+# 1->2, 2->4, 4->8, 8->16; the second and fourth stand only here
+FLIPS = {
+    "damping_ratio": (0.170043027, 0.115498003, 0.109948814, 0.108382524),
+    "frequency": (1.291353857, 1.139990476, 1.116251550, 1.105775851),
+    "stiffness_amplitude": (0.258236471, 0.523447310, 0.562794274, 0.579050411),
+}
+
+
+def agrees(found, case):
+    assert found.value == pytest.approx(case["value"], abs=1e-6)
+    assert found.state == pytest.approx(case["orbit_state"], abs=1e-6)
+    expected = np.sort_complex([complex(*pair) for pair in case["multipliers"]])
+    assert np.sort_complex(found.multipliers) == pytest.approx(expected, abs=1e-5)
+
+
+@pytest.mark.parametrize("parameter", ROWS)
+def test_cascade_of_table_4_2(parameter):
+    first, last, name = ROWS[parameter]
+    orbit = periodic_orbit(BASE.replace(**{parameter: first}), 1, (1.08, -0.25))
+    found = cascade(orbit, parameter, last)
+    assert [flip.period for flip in found.flips] == [1, 2, 4, 8]
+    assert [flip.value for flip in found.flips] == pytest.approx(FLIPS[parameter], abs=6e-10)
+    for flip, suffix in ((found.flips[0], "_1"), (found.flips[2], "_4")):
+        case = BIFURCATIONS[name + suffix]
+        assert flip.value == pytest.approx(case["value"], abs=1e-9)
+        assert np.sort(flip.multipliers.real) == pytest.approx(
+            np.sort([pair[0] for pair in case["multipliers"]]), abs=1e-7
+        )
+        # another point of the same orbit may be the first one
+        assert np.abs(flip.orbit.points - case["orbit_state"]).max(axis=1).min() < 1e-7
+    assert found.ratios[-1] > 2.0
+
+
+def test_grazing_and_fold_of_the_lower_branch():
+    orbit = periodic_orbit(TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05), 1, (1.1776, 0.0074))
+    branch = continuation(orbit, "frequency", 0.9)
+    assert [b.kind for b in branch.bifurcations] == [GRAZING, FOLD]
+    grazing, fold = branch.bifurcations
+    assert grazing.note == "contact losses per orbit 0 -> 1"
+    agrees(grazing, BIFURCATIONS["BP1"])
+    agrees(fold, BIFURCATIONS["BP2"])
+    assert branch.ended == "left the range where it began"
+    assert branch.stable[0]
+    assert not branch.stable[-1]
+
+
+def test_flip_of_the_small_family_with_falling_frequency():
+    orbit = periodic_orbit(TorsionalModel(0.05, 1.4, 0.2, 0.1, 0.2), 1, (0.9, 0.03))
+    branch = continuation(orbit, "frequency", 1.1)
+    (flip,) = branch.bifurcations
+    assert flip.kind == FLIP
+    agrees(flip, BIFURCATIONS["BP4_1"])
+    assert branch.values[-1] == pytest.approx(1.1, abs=1e-14)
+    # beyond the flip the branch goes on as the saddle known at the end
+    case = next(c for c in TRUTH["cases"] if c["id"] == "D3")
+    assert branch.states[-1] == pytest.approx(case["poincare_points"][0], abs=1e-9)
+    assert not branch.orbit(-1).stable
+
+
+def test_a_doubled_branch_walked_back_shrinks_into_its_mother():
+    orbit = periodic_orbit(BASE, 2, (1.1335, -0.2792))
+    branch = continuation(orbit, "damping_ratio", 0.2)
+    last = branch.bifurcations[-1]
+    assert last.kind == BIRTH
+    assert last.value == pytest.approx(BIFURCATIONS["SEED_z_1"]["value"], abs=1e-6)
+    assert branch.ended == "the orbit shrank into one of half its period"
+
+
+def test_the_doubled_orbit_beside_a_flip_has_twice_the_period():
+    orbit = periodic_orbit(BASE.replace(damping_ratio=0.18), 1, (1.08, -0.25))
+    (flip,) = continuation(orbit, "damping_ratio", 0.16).of_kind(FLIP)
+    doubled = switch_branch(flip)
+    assert doubled.orbit.period == 2
+    assert doubled.orbit.minimal_period == 2
+    assert doubled.orbit.stable
+    assert doubled.value < flip.value
+
+
+def test_a_family_may_be_any_function_of_a_number():
+    """Heat of section 4.1 as temperature: the flip stands at 120 C."""
+
+    def heated(celsius):
+        rise = (celsius - 20.0) / 140.0
+        return TorsionalModel(0.1535, 1.300551, 0.335, 0.0136, -0.928, 1 - 0.2 * rise, 0.02 * rise)
+
+    orbit = periodic_orbit(heated(20.0), 1, (1.08, -0.2))
+    branch = continuation(orbit, "temperature", 160.0, family=heated, start=20.0)
+    (flip,) = branch.of_kind(FLIP)
+    assert flip.value == pytest.approx(120.0, abs=0.02)
+
+
+def test_backlash_moves_no_flip_while_the_back_side_is_not_hit():
+    values = []
+    for backlash in (1.0, 0.75):
+        model = BASE.replace(damping_ratio=0.18, half_backlash=backlash)
+        orbit = periodic_orbit(model, 1, (0.08 + backlash, -0.28))
+        values.append(continuation(orbit, "damping_ratio", 0.16).of_kind(FLIP)[0].value)
+    assert values[0] == pytest.approx(values[1], abs=1e-10)
+
+
+def test_what_cannot_be_walked_is_refused():
+    orbit = periodic_orbit(BASE, 2, (1.1335, -0.2792))
+    with pytest.raises(InputError, match="did you mean 'damping_ratio'"):
+        continuation(orbit, "damping_ration", 0.2)
+    with pytest.raises(InputError, match=r"allowed a finite number other than 0\.1535"):
+        continuation(orbit, "damping_ratio", 0.1535)
