@@ -32,6 +32,19 @@ def pair_positions(pair: GearPair, phase: ArrayLike) -> Floats:
     return np.where(s < pair.path.e, s, np.nan)
 
 
+def mirror_position(pair: GearPair) -> float:
+    """K = 2 s_C + p_b/2 + r_b1 psi_1(r_w1) - r_b2 psi_2(r_w2) [m]: s^c = K - s on one tooth.
+
+    Half the difference of the tooth thicknesses on the rolling circles moves it off the
+    standard pair's 2 s_C + p_b/2; backlash is shared evenly between both gears.
+    """
+    (r1, r2), p, w = pair.operating_radii, pair.pinion, pair.wheel
+    thicker = p.base_radius * float(p.half_thickness_angle(r1)) - w.base_radius * float(
+        w.half_thickness_angle(r2)
+    )
+    return 2.0 * pair.path.c + 0.5 * pair.base_pitch + thicker
+
+
 def back_flank_position(pair: GearPair, s: ArrayLike) -> Floats:
     """Where the back flanks touch when the drive flanks touch at ``s`` [m].
 
@@ -41,12 +54,8 @@ def back_flank_position(pair: GearPair, s: ArrayLike) -> Floats:
     pitch point; equal tooth thickness on the rolling circles leaves 2 s_C + p_b/2 - s.
     Returned in [s_A, s_A + p_b), the shape of ``s``.
     """
-    (r1, r2), p, w = pair.operating_radii, pair.pinion, pair.wheel
-    thicker = p.base_radius * float(p.half_thickness_angle(r1)) - w.base_radius * float(
-        w.half_thickness_angle(r2)
-    )
-    mirrored = 2.0 * pair.path.c + 0.5 * pair.base_pitch + thicker - np.asarray(s, dtype=float)
-    return pair.path.a + np.mod(mirrored - pair.path.a, pair.base_pitch)
+    mirrored = mirror_position(pair) - np.asarray(s, dtype=float)
+    return np.asarray(pair.path.a + np.mod(mirrored - pair.path.a, pair.base_pitch))
 
 
 def curvature_radii(pair: GearPair, s: ArrayLike) -> tuple[Floats, Floats]:

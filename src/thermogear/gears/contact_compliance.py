@@ -1,4 +1,8 @@
-"""Approach of two flanks in line contact: Hertzian laws by three sources."""
+"""Approach of two flanks in line contact: Hertzian laws by three sources.
+
+Every law here has the form delta = F (A - C ln F) + K F^0.9; :class:`ContactLaw` carries
+those coefficients to the load-sharing solver, the functions say the formulas.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+
+CONTACT_LAWS = {
+    "weber-banaschek": "logarithmic, depth to each tooth's axis",
+    "yang-sun": "linear, independent of load",
+    "palmgren": "roller on plane, F^0.9",
+}
+PALMGREN_EXPONENT = 0.9
 
 
 def yang_sun_stiffness(modulus: ArrayLike, face_width: ArrayLike) -> Floats:
@@ -16,3 +27,41 @@ def yang_sun_stiffness(modulus: ArrayLike, face_width: ArrayLike) -> Floats:
     Source: Yang & Sun 1985, J. Mech. Trans. Autom. 107, 529.
     """
     return np.asarray(0.5 * np.pi * np.asarray(modulus) * np.asarray(face_width), dtype=float)
+
+
+def weber_approach(
+    force: ArrayLike,
+    depth: ArrayLike,
+    half_width: ArrayLike,
+    modulus: ArrayLike,
+    poisson: float,
+    face_width: float,
+) -> Floats:
+    """Approach [m] of one flank to its tooth's axis under a Hertzian line load.
+
+    delta_i = F 2 (1 - nu^2)/(pi E b) [ ln(2 h_i/a) - nu/(2 (1 - nu)) ]
+
+    force: F [N] >= 0 of the tooth pair; depth: h_i = x_p/cos(beta) [m], from the contact along
+    the force to the tooth axis; half_width: a [m] of the contact; modulus, poisson: of this
+    gear; face_width: b [m]. The pair's approach is the sum over its two teeth. Any shapes;
+    zero load gives 0 (F ln a -> 0). Plane strain near the contact; meant for a << h_i.
+    Source: Weber & Banaschek 1953, eq. for delta_H.
+    """
+    f, a = np.asarray(force, dtype=float), np.asarray(half_width, dtype=float)
+    loaded = f > 0.0
+    ratio = 2.0 * np.asarray(depth, dtype=float) / np.where(loaded, a, 1.0)
+    bracket = np.log(ratio) - poisson / (2.0 * (1.0 - poisson))
+    scale = 2.0 * (1.0 - poisson**2) / (np.pi * np.asarray(modulus, dtype=float) * face_width)
+    return np.asarray(np.where(loaded, f * scale * bracket, 0.0))
+
+
+def palmgren_approach(force: ArrayLike, modulus: ArrayLike, face_width: ArrayLike) -> Floats:
+    """Approach [m] of a roller pair, delta = 3.81 (1/(pi E*))^0.9 F^0.9/b^0.8.
+
+    force: F [N] >= 0; modulus: E* [Pa]; face_width: b [m]. For steel on steel the familiar
+    3.84e-5 F^0.9/b^0.8 (N, mm). Zero load gives 0. Empirical, for bearing rollers.
+    Source: Palmgren 1959, Ball and Roller Bearing Engineering.
+    """
+    f = np.asarray(force, dtype=float)
+    scale = (1.0 / (np.pi * np.asarray(modulus, dtype=float))) ** PALMGREN_EXPONENT
+    return np.asarray(3.81 * scale * f**PALMGREN_EXPONENT / np.asarray(face_width) ** 0.8)

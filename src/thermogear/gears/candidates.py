@@ -1,0 +1,67 @@
+"""Which tooth pairs may carry load at a mesh phase, where they touch, and which teeth they are."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.gears.contact import mirror_position
+from thermogear.gears.corner import ContactPoint, contact_point
+from thermogear.gears.deviations import Contacts
+from thermogear.gears.geometry import GearPair
+
+Floats = NDArray[np.float64]
+
+
+class MeshPoints(NamedTuple):
+    """The candidates for contact at each mesh position, arrays (position, pair)."""
+
+    s: Floats
+    point: ContactPoint
+    contacts: Contacts
+
+
+def mesh_points(
+    pair: GearPair, phase: ArrayLike, flank: str = "drive", extended: bool = True
+) -> MeshPoints:
+    """All tooth pairs that may touch at ``phase`` (periods, one axis, any real numbers).
+
+    Drive flanks: s_j = s_A + (frac(phase) + j) p_b, j = -1 .. ceil(contact ratio), one pair to
+    each side of the path. Pair j of period N joins pinion tooth N - j. Back flanks run against
+    it: s^c = K - s_j, K = 2 s_C + p_b/2 + r_b1 psi_1 - r_b2 psi_2, and join the wheel tooth that
+    enters next.
+    """
+    phi = np.atleast_1d(np.asarray(phase, dtype=float))
+    if phi.ndim != 1 or not np.all(np.isfinite(phi)):
+        raise InputError("phase", f"shape {phi.shape}", allowed="one axis of finite numbers")
+    if flank not in ("drive", "back"):
+        raise InputError(
+            "flank", repr(flank), allowed="drive | back", fix=nearest(flank, ("drive", "back"))
+        )
+    pitch, start = pair.base_pitch, pair.path.a
+    ranks = np.arange(-1, int(np.ceil(pair.contact_ratio - 1e-12)) + 1)
+    if flank == "drive":
+        period = np.floor(phi)
+        number = period[:, None] - ranks
+        following = number
+    else:
+        mirror = (mirror_position(pair) - 2.0 * start) / pitch
+        phi = mirror - phi
+        period = np.floor(phi)
+        number = ranks - period[:, None]
+        following = number + 1
+    s = start + ((phi - period)[:, None] + ranks) * pitch
+    point = contact_point(pair, s, extended)
+    contacts = Contacts(
+        pair,
+        s,
+        point.pinion,
+        point.wheel,
+        np.mod(number, pair.pinion.teeth).astype(np.int64),
+        np.mod(following, pair.wheel.teeth).astype(np.int64),
+        flank,
+    )
+    return MeshPoints(s, point, contacts)

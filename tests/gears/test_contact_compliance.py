@@ -1,0 +1,63 @@
+"""Hertzian approach laws: a numerical half-space, limits and familiar figures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermogear.gears.contact import hertz_half_width, reduced_modulus
+from thermogear.gears.contact_compliance import (
+    palmgren_approach,
+    weber_approach,
+    yang_sun_stiffness,
+)
+
+E, NU, B = 206e9, 0.3, 20e-3
+E_STAR = float(reduced_modulus(E, NU, E, NU))
+
+
+def test_weber_is_the_half_plane_under_the_hertz_ellipse() -> None:
+    """Strain under the centre of the load, integrated down to the depth h >> a.
+
+    On the axis below a semi-elliptic pressure (Johnson eq. 4.46), plane strain.
+    """
+    force, rho, h = 4000.0, 0.016, 5e-3
+    a = float(hertz_half_width(force / B, rho, E_STAR))
+    p0 = 2.0 * force / (B * np.pi * a)
+    x, w = np.polynomial.legendre.leggauss(400)
+    # z = a sinh(u): the strains fall as 1/z
+    top = np.arcsinh(h / a)
+    u = 0.5 * top * (1.0 + x)
+    z = a * np.sinh(u)
+    root = np.sqrt(a * a + z * z)
+    sigma_x = -p0 * ((a * a + 2 * z * z) / (a * root) - 2 * z / a)
+    sigma_z = -p0 * a / root
+    strain = ((1 - NU**2) * sigma_z - NU * (1 + NU) * sigma_x) / E
+    pressed = -np.sum(strain * a * np.cosh(u) * 0.5 * top * w)
+    got = float(weber_approach(force, h, a, E, NU, B))
+    # the formula drops terms of order (a/h)^2
+    assert got == pytest.approx(pressed, rel=(a / h) ** 2)
+
+
+def test_weber_at_zero_load_and_over_shapes() -> None:
+    force = np.array([[0.0], [1e3], [4e3]])
+    depth = np.array([4e-3, 6e-3])
+    half = hertz_half_width(force / B, 0.016, E_STAR)
+    got = weber_approach(force, depth, half, E, NU, B)
+    assert got.shape == (3, 2)
+    assert np.array_equal(got[0], [0.0, 0.0])
+    assert np.all(np.diff(got, axis=0) > 0)
+
+
+def test_palmgren_for_steel_in_its_own_units() -> None:
+    force, length = np.array([0.0, 1e3, 2e4]), 20.0
+    millimetres = 3.84e-5 * force**0.9 / length**0.8
+    assert 1e3 * palmgren_approach(force, E_STAR, 1e-3 * length) == pytest.approx(
+        millimetres, rel=5e-3
+    )
+
+
+def test_yang_sun_is_linear_in_width() -> None:
+    assert np.allclose(
+        yang_sun_stiffness(E_STAR, [0.01, 0.02]), 0.5 * np.pi * E_STAR * np.array([0.01, 0.02])
+    )

@@ -1,0 +1,362 @@
+"""Loaded tooth contact: published figures, equilibrium, invariances, limits, hot tables."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import InputError
+from thermogear.gears.contact import back_flank_position
+from thermogear.gears.contact_compliance import CONTACT_LAWS, weber_approach
+from thermogear.gears.deviations import BasePitchDifference, PathTable, Relief
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.loaded import LoadedModel, loaded_contact, solve_mesh
+from thermogear.gears.ring import ring_compliance
+from thermogear.gears.stiffness import Moduli
+from thermogear.gears.tooth import flank_point, tooth_compliances
+
+WIDTH = 20e-3
+PAIR = GearPair(
+    Gear(25, 5e-3, face_width=WIDTH, bore_radius=20e-3),
+    Gear(75, 5e-3, face_width=WIDTH, bore_radius=60e-3),
+)
+UNCOUPLED_LINEAR = LoadedModel(contact="yang-sun", coupled=False, extended=False)
+IN_PATH = LoadedModel(extended=False)
+EXPANSION = 11.5e-6
+
+
+def per_width(values: object) -> np.ndarray:
+    """N/m -> N/(mm um)."""
+    return np.asarray(values) / WIDTH / 1e9
+
+
+def two_pairs(data: object) -> np.ndarray:
+    return np.asarray((data.contact_pairs > 1).mean("mesh_phase"))  # type: ignore[attr-defined]
+
+
+class TestPublishedFigures:
+    @pytest.mark.parametrize(
+        ("extended", "stiffness", "error", "fraction"),
+        [
+            (True, (15.040, 11.480, 15.799), (13.998, 5.043), 0.860),
+            (False, (14.473, 11.380, 15.799), (14.454, 5.197), 0.715),
+        ],
+    )
+    def test_whole_mesh_at_200_n_per_mm(
+        self,
+        extended: bool,
+        stiffness: tuple[float, ...],
+        error: tuple[float, ...],
+        fraction: float,
+    ) -> None:
+        got = loaded_contact(PAIR, 200e3 * WIDTH, model=LoadedModel(extended=extended))
+        k = per_width(got.tangent_stiffness)
+        assert (k.mean(), k.min(), k.max()) == pytest.approx(stiffness, rel=5e-3)
+        te = 1e6 * got.transmission_error.to_numpy()
+        assert (te.mean(), np.ptp(te)) == pytest.approx(error, rel=1e-2)
+        assert float(two_pairs(got)) == pytest.approx(fraction, abs=0.005)
+        assert float(got.double_contact_length) == pytest.approx(
+            fraction * PAIR.base_pitch, rel=0.01
+        )
+
+    def test_load_dependence(self) -> None:
+        loads = np.array([20.0, 50.0, 100.0, 200.0, 400.0, 800.0]) * 1e3 * WIDTH
+        got = loaded_contact(PAIR, loads)
+        assert per_width(got.mean_stiffness) == pytest.approx(
+            [13.878, 14.292, 14.644, 15.040, 15.521, 16.067], rel=5e-3
+        )
+        assert two_pairs(got) == pytest.approx([0.760, 0.790, 0.820, 0.860, 0.920, 0.995], abs=6e-3)
+
+    def test_finite_elements(self) -> None:
+        """2-D plane stress, quadratic elements, contact mesh converged; no corner contact."""
+        phase = np.array([0.030, 0.245, 0.460, 0.674, 0.724, 0.857, 0.990])
+        got = loaded_contact(PAIR, 200e3 * WIDTH, phase, model=IN_PATH)
+        elements = [15.09, 15.41, 15.42, 15.13, 11.13, 11.26, 11.26]
+        assert per_width(got.secant_stiffness) == pytest.approx(elements, rel=0.03)
+        share = got.load_share[:4, 1].to_numpy()
+        assert share == pytest.approx([0.401, 0.457, 0.516, 0.580], abs=0.015)
+
+    def test_rim_reading_without_the_hub(self) -> None:
+        clamped = loaded_contact(PAIR, 200e3 * WIDTH, model=IN_PATH)
+        rim = loaded_contact(PAIR, 200e3 * WIDTH, model=LoadedModel(body="rim", extended=False))
+        assert per_width(clamped.mean_stiffness) == pytest.approx(14.49, rel=5e-3)
+        assert per_width(rim.mean_stiffness) == pytest.approx(18.72, rel=5e-3)
+        # a torsion of both hubs in series with everything else
+        both = 3.78e-10 + 3.86e-10
+        assert np.allclose(
+            1.0 / clamped.tangent_stiffness, 1.0 / rim.tangent_stiffness + both, rtol=3e-3
+        )
+        assert np.allclose(clamped.load_share, rim.load_share, rtol=0, atol=1e-9)
+
+
+class TestHot:
+    @pytest.mark.parametrize(
+        ("celsius", "stiffness"),
+        [(20, 3.7602e8), (100, 3.6625e8), (120, 3.6380e8), (140, 3.6215e8), (160, 3.5975e8)],
+    )
+    def test_modulus_of_temperature(self, celsius: float, stiffness: float) -> None:
+        pair = GearPair(
+            Gear(25, 5e-3, face_width=25e-3, bore_radius=20e-3),
+            Gear(75, 5e-3, face_width=25e-3, bore_radius=60e-3),
+        )
+        hot = Moduli.at(pair.pinion, 273.15 + celsius, 273.15 + celsius)
+        got = loaded_contact(pair, 200e3 * 25e-3, pinion=hot, wheel=hot)
+        assert float(got.mean_stiffness) == pytest.approx(stiffness, rel=5e-3)
+
+    @pytest.mark.parametrize(
+        ("line_load", "difference", "peak", "change", "fraction", "share"),
+        [
+            (100, 0, 2.63, None, 0.825, 0.49),
+            (100, 20, 3.59, -0.002, 0.825, 0.24),
+            (100, 40, 4.72, -0.126, 0.433, 0.00),
+            (200, 20, 5.75, -0.002, 0.858, 0.36),
+            (200, 40, 6.79, -0.004, 0.858, 0.23),
+            (400, 0, 9.62, None, 0.917, 0.49),
+            (400, 60, 11.73, -0.001, 0.917, 0.29),
+        ],
+    )
+    def test_base_pitch_difference(
+        self,
+        line_load: float,
+        difference: float,
+        peak: float,
+        change: float | None,
+        fraction: float,
+        share: float,
+    ) -> None:
+        hot = BasePitchDifference(EXPANSION * difference)
+        got = loaded_contact(PAIR, line_load * 1e3 * WIDTH, 120, deviations=[hot])
+        te = 1e6 * got.transmission_error.to_numpy()
+        assert np.ptp(te) == pytest.approx(peak, rel=0.01)
+        # one position more or less
+        assert float(two_pairs(got)) == pytest.approx(fraction, abs=1.02 / 120)
+        middle = round(0.5 * (PAIR.contact_ratio - 1.0) * 120)
+        assert float(got.load_share[middle, 1]) == pytest.approx(share, abs=0.006)
+        if change is not None:
+            cold = loaded_contact(PAIR, line_load * 1e3 * WIDTH, 120)
+            got_change = float(got.mean_stiffness / cold.mean_stiffness) - 1.0
+            assert got_change == pytest.approx(change, abs=0.003)
+
+    def test_hotter_pinion_and_hotter_wheel_are_no_mirror_images(self) -> None:
+        strain = EXPANSION * np.array([20.0, 0.0, -20.0])
+        got = loaded_contact(PAIR, 100e3 * WIDTH, deviations=[BasePitchDifference(strain)])
+        entering = got.load_share[:, 70, 1].to_numpy()
+        assert entering[0] < entering[1] < entering[2]
+        peak = np.ptp(got.transmission_error.to_numpy(), axis=-1)
+        assert abs(peak[0] - peak[2]) > 0.02 * peak[1]
+
+
+class TestEquilibrium:
+    LOADS = np.array([[1.0], [4e3], [3e5]])
+
+    def test_forces_carry_the_load_and_no_flank_pulls(self) -> None:
+        relief = [Relief("wheel", 20e-6, 4e-3), Relief("pinion", 10e-6, 3e-3, shape="parabolic")]
+        mesh = solve_mesh(PAIR, self.LOADS, np.arange(60) / 60, deviations=relief)
+        assert np.all(mesh.settled)
+        assert np.all(mesh.force >= 0.0)
+        assert np.allclose(mesh.force.sum(axis=-1), self.LOADS[..., None], rtol=1e-11)
+
+    def test_every_gap_closes_or_stays_open(self) -> None:
+        """Overlap rebuilt from the public parts: 0 where a pair carries, <= 0 elsewhere."""
+        table = PathTable(np.linspace(5e-3, 36e-3, 7), 1e-6 * np.array([-9, 3, 0, 4, -2, 1, -8.0]))
+        phase = np.arange(40) / 40
+        load = 3e3
+        mesh = solve_mesh(PAIR, load, phase, deviations=[table])
+        point, count = mesh.points.point, mesh.force.shape[-1]
+        gap = point.gap + table.gap(mesh.points.contacts)
+        t1, t2 = point.pinion / PAIR.pinion.base_radius, point.wheel / PAIR.wheel.base_radius
+        reduced = point.pinion * point.wheel / (point.pinion + point.wheel)
+        e_star = 206e9 / (2 * 0.91)
+        loaded = 0
+        for p in range(phase.size):
+            half = np.sqrt(4 * mesh.force[p] / WIDTH * reduced[p] / (np.pi * e_star))
+            for j in range(count):
+                if not np.isfinite(gap[p, j]):
+                    assert mesh.force[p, j] == 0.0
+                    continue
+                closing = gap[p, j]
+                for gear, t, sign in ((PAIR.pinion, t1, -1), (PAIR.wheel, t2, 1)):
+                    own = flank_point(gear, t[p, j])
+                    closing += mesh.force[p, j] * float(tooth_compliances(gear, t[p, j]).total)
+                    closing += float(
+                        weber_approach(
+                            mesh.force[p, j], own.x / np.cos(own.beta), half[j], 206e9, 0.3, WIDTH
+                        )
+                    )
+                    for k in range(count):
+                        if mesh.force[p, k] > 0.0:
+                            closing += mesh.force[p, k] * float(
+                                ring_compliance(gear, t[p, j], t[p, k], pitches=sign * (j - k))
+                            )
+                if mesh.force[p, j] > 0.0:
+                    loaded += 1
+                    assert closing == pytest.approx(float(mesh.deflection[p]), rel=1e-9)
+                else:
+                    assert closing >= mesh.deflection[p] * (1 - 1e-9)
+        assert loaded > phase.size
+
+    def test_tangent_stiffness_is_the_slope_of_load_over_error(self) -> None:
+        h = 1e-5
+        loads = 4e3 * np.array([1 - h, 1.0, 1 + h])
+        mesh = solve_mesh(PAIR, loads, np.arange(33) / 33)
+        slope = 2 * h * 4e3 / (mesh.deflection[2] - mesh.deflection[0])
+        same = np.all((mesh.force > 0) == (mesh.force[1] > 0), axis=(0, 2))
+        assert same.sum() >= 31
+        assert np.allclose(mesh.tangent[1][same], slope[same], rtol=1e-6)
+
+    def test_linear_uncoupled_contact_has_a_closed_form(self) -> None:
+        """Springs side by side: k = k1 + k2, shares as the stiffnesses, secant = tangent."""
+        mesh = solve_mesh(PAIR, 4e3, np.array([0.2, 0.8]), model=UNCOUPLED_LINEAR)
+        k = np.zeros((2, 4))
+        point = mesh.points.point
+        for gear, rho in ((PAIR.pinion, point.pinion), (PAIR.wheel, point.wheel)):
+            t = np.where(np.isfinite(point.gap), rho / gear.base_radius, 0.36)
+            k += tooth_compliances(gear, t).total + ring_compliance(gear, t)
+        k = np.where(np.isfinite(point.gap), 1.0 / (k + 1.0 / 3.555868607909e9), 0.0)
+        assert mesh.tangent == pytest.approx(k.sum(axis=-1), rel=1e-9)
+        assert mesh.secant == pytest.approx(mesh.tangent, rel=1e-11)
+        assert mesh.share == pytest.approx(k / k.sum(axis=-1, keepdims=True), abs=1e-9)
+
+    def test_how_far_the_contact_laws_are_apart(self) -> None:
+        """At 200 N/mm the linear law, which forgets the depth of the tooth, is 12 % too stiff."""
+        k = {
+            law: float(
+                per_width(loaded_contact(PAIR, 200e3 * WIDTH, 50, model=model).mean_stiffness)
+            )
+            for law in CONTACT_LAWS
+            for model in [LoadedModel(contact=law)]
+        }
+        assert k["yang-sun"] / k["weber-banaschek"] == pytest.approx(1.12, abs=0.01)
+        assert k["palmgren"] / k["weber-banaschek"] == pytest.approx(1.0, abs=0.08)
+
+    def test_uncoupled_bodies_are_too_stiff(self) -> None:
+        """Two teeth on one body lean on each other: without that +20 % in double contact."""
+        phase = np.array([0.3, 0.85])
+        loose = solve_mesh(PAIR, 4e3, phase, model=LoadedModel(coupled=False, extended=False))
+        coupled = solve_mesh(PAIR, 4e3, phase, model=IN_PATH)
+        assert loose.tangent[0] > 1.15 * coupled.tangent[0]
+        assert loose.tangent[1] == pytest.approx(coupled.tangent[1], rel=1e-12)
+
+
+class TestInvariances:
+    def test_constant_shift_of_the_flanks_moves_only_the_error(self) -> None:
+        shift = PathTable([0.0, 0.1], [60e-6, 60e-6])
+        plain = solve_mesh(PAIR, 4e3, np.arange(100) / 100)
+        moved = solve_mesh(PAIR, 4e3, np.arange(100) / 100, deviations=[shift])
+        assert np.abs(moved.tangent / plain.tangent - 1.0).max() < 1e-12
+        assert np.abs(moved.secant / plain.secant - 1.0).max() < 1e-9
+        assert np.abs(moved.share - plain.share).max() < 1e-12
+        assert np.allclose(moved.deflection, plain.deflection - 60e-6, rtol=0, atol=1e-18 + 1e-17)
+
+    def test_swapped_gears_run_backwards(self) -> None:
+        pair = GearPair(
+            Gear(21, 3e-3, profile_shift=0.3, face_width=15e-3),
+            Gear(50, 3e-3, profile_shift=-0.1, face_width=12e-3, bore_radius=40e-3),
+        )
+        phase = np.linspace(0.013, 0.987, 60)
+        hot = 2e-4
+        one = solve_mesh(pair, 2e3, phase, deviations=[BasePitchDifference(hot)])
+        two = solve_mesh(
+            pair.swapped(), 2e3, pair.contact_ratio - phase, deviations=[BasePitchDifference(-hot)]
+        )
+        assert np.allclose(one.tangent, two.tangent, rtol=1e-9)
+        assert np.allclose(one.deflection, two.deflection, rtol=0, atol=1e-15)
+
+    def test_the_module_is_only_a_scale(self) -> None:
+        small = GearPair(Gear(25, 1e-3), Gear(75, 1e-3))
+        large = GearPair(Gear(25, 8e-3), Gear(75, 8e-3))
+        phase = np.arange(40) / 40
+        one = solve_mesh(small, 1e3, phase)
+        two = solve_mesh(large, 64e3, phase)
+        assert np.allclose(two.tangent, 8.0 * one.tangent, rtol=1e-9)
+        assert np.allclose(two.deflection, 8.0 * one.deflection, rtol=1e-9)
+        assert np.allclose(one.pressure, two.pressure, rtol=1e-9)
+
+    def test_moduli_scale_the_stiffness(self) -> None:
+        """Half the modulus at half the load: the same deflection."""
+        half = Moduli(103e9, 103e9)
+        phase = np.arange(40) / 40
+        one = solve_mesh(PAIR, 4e3, phase)
+        two = solve_mesh(PAIR, 2e3, phase, pinion=half, wheel=half)
+        assert np.allclose(one.tangent, 2.0 * two.tangent, rtol=1e-10)
+        assert np.allclose(one.deflection, two.deflection, rtol=1e-11)
+
+    def test_batch_is_one_by_one(self) -> None:
+        loads = np.array([1e3, 4e3, 16e3])
+        warm = Moduli(np.array([[206e9], [195e9]]), np.array([[206e9], [200e9]]))
+        slope = BasePitchDifference(np.array([0.0, 1e-4, 3e-4]))
+        phase = np.arange(25) / 25
+        every = loaded_contact(PAIR, loads, phase, pinion=warm, deviations=[slope])
+        assert every.tangent_stiffness.dims == ("temperature", "load", "mesh_phase")
+        for i, j in itertools.product(range(2), range(3)):
+            one = loaded_contact(
+                PAIR,
+                loads[j],
+                phase,
+                pinion=Moduli(float(warm.tooth[i, 0]), float(warm.body[i, 0])),  # type: ignore[index]
+                deviations=[BasePitchDifference(float(slope.strain[j]))],  # type: ignore[index]
+            )
+            for name in ("tangent_stiffness", "transmission_error", "load_share", "pair_force"):
+                assert np.array_equal(every[name].to_numpy()[i, j], one[name].to_numpy())
+
+    def test_back_flanks_of_perfect_gears(self) -> None:
+        """A back flank at s^c is as stiff as a drive flank there."""
+        pair = GearPair(Gear(25, 5e-3, profile_shift=0.2), Gear(60, 5e-3), centre_distance=213.9e-3)
+        phase = np.array([0.05, 0.4, 0.77])
+        s = pair.path.a + phase * pair.base_pitch
+        there = (back_flank_position(pair, s) - pair.path.a) / pair.base_pitch
+        back = solve_mesh(pair, 4e3, phase, flank="back")
+        drive = solve_mesh(pair, 4e3, there)
+        assert np.allclose(back.tangent, drive.tangent, rtol=1e-9)
+
+    def test_a_period_later_all_is_the_same(self) -> None:
+        phase = np.array([0.1, 0.6])
+        one, two = solve_mesh(PAIR, 4e3, phase), solve_mesh(PAIR, 4e3, phase + 7.0)
+        assert np.allclose(one.tangent, two.tangent, rtol=1e-9)
+
+
+class TestEdges:
+    def test_zero_load(self) -> None:
+        got = loaded_contact(PAIR, np.array([0.0, 20.0]), 20)
+        assert np.array_equal(got.pair_force[0], np.zeros((20, 4)))
+        assert np.array_equal(got.contact_pressure[0], np.zeros((20, 4)))
+        assert np.array_equal(got.transmission_error[0], got.unloaded_error[0])
+        # stiffness and shares are those at 1 N/mm
+        assert np.array_equal(got.tangent_stiffness[0], got.tangent_stiffness[1])
+        assert np.array_equal(got.load_share[0], got.load_share[1])
+
+    @pytest.mark.parametrize("load", [1e-6, 1.0, 1e7])
+    def test_any_load_settles(self, load: float) -> None:
+        mesh = solve_mesh(PAIR, load, np.arange(400) / 400)
+        assert np.all(mesh.settled)
+
+    def test_high_contact_ratio_and_undercut(self) -> None:
+        from thermogear.gears.geometry import Rack
+
+        rack = Rack(1.25, 1.5, 0.25)
+        high = GearPair(Gear(60, 2e-3, rack=rack), Gear(70, 2e-3, rack=rack))
+        assert high.contact_ratio > 2.0
+        mesh = solve_mesh(high, 5e3, np.arange(100) / 100)
+        assert np.all(mesh.settled)
+        assert (mesh.force > 0).sum(axis=-1).min() >= 2
+
+    def test_refusals(self) -> None:
+        with pytest.raises(InputError, match=r"normal_force: got -1\.0 N; allowed >= 0, finite"):
+            loaded_contact(PAIR, -1.0)
+        with pytest.raises(InputError, match="phase: got 0; allowed one position or more"):
+            loaded_contact(PAIR, 1.0, 0)
+        with pytest.raises(InputError, match=r"flank: got 'bak'; allowed drive \| back; did you"):
+            loaded_contact(PAIR, 1.0, flank="bak")
+        with pytest.raises(InputError, match=r"loaded\.body: got 'hub'; .*known: bore_clamped"):
+            LoadedModel(body="hub")
+        with pytest.raises(InputError, match=r"dimensions: got .*allowed 1 names"):
+            loaded_contact(PAIR, [1.0, 2.0], dimensions=("a", "b"))
+
+    def test_dataset_says_units_and_choices(self) -> None:
+        got = loaded_contact(PAIR, [1e3], 4)
+        assert got.tangent_stiffness.attrs["units"] == "N/m"
+        assert all("long_name" in v.attrs for v in got.variables.values())
+        assert got.attrs["body"] == "bore_clamped"
+        assert int(got.status.max()) == 0
