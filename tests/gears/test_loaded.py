@@ -126,16 +126,17 @@ class TestHot:
         fraction: float,
         share: float,
     ) -> None:
-        hot = BasePitchDifference(EXPANSION * difference)
-        got = loaded_contact(PAIR, line_load * 1e3 * WIDTH, 120, deviations=[hot])
-        te = 1e6 * got.transmission_error.to_numpy()
+        """The figures are those of 120 positions: a jump of the pairs is placed to half of one."""
+        hot = [BasePitchDifference(EXPANSION * difference)]
+        load = line_load * 1e3 * WIDTH
+        te = 1e6 * loaded_contact(PAIR, load, 120, deviations=hot).transmission_error.to_numpy()
         assert np.ptp(te) == pytest.approx(peak, rel=0.01)
-        # one position more or less
-        assert float(two_pairs(got)) == pytest.approx(fraction, abs=1.02 / 120)
-        middle = round(0.5 * (PAIR.contact_ratio - 1.0) * 120)
+        got = loaded_contact(PAIR, load, 1200, deviations=hot)
+        assert float(two_pairs(got)) == pytest.approx(fraction, abs=0.5 / 120 + 1.1e-3)
+        middle = round(0.5 * (PAIR.contact_ratio - 1.0) * 1200)
         assert float(got.load_share[middle, 1]) == pytest.approx(share, abs=0.006)
         if change is not None:
-            cold = loaded_contact(PAIR, line_load * 1e3 * WIDTH, 120)
+            cold = loaded_contact(PAIR, load, 1200)
             got_change = float(got.mean_stiffness / cold.mean_stiffness) - 1.0
             assert got_change == pytest.approx(change, abs=0.003)
 
