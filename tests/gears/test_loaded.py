@@ -126,13 +126,13 @@ class TestHot:
         fraction: float,
         share: float,
     ) -> None:
-        """The figures are those of 120 positions: a jump of the pairs is placed to half of one."""
+        """The figures are those of 120 positions: a jump of the pairs is placed to one of them."""
         hot = [BasePitchDifference(EXPANSION * difference)]
         load = line_load * 1e3 * WIDTH
         te = 1e6 * loaded_contact(PAIR, load, 120, deviations=hot).transmission_error.to_numpy()
         assert np.ptp(te) == pytest.approx(peak, rel=0.01)
         got = loaded_contact(PAIR, load, 1200, deviations=hot)
-        assert float(two_pairs(got)) == pytest.approx(fraction, abs=0.5 / 120 + 1.1e-3)
+        assert float(two_pairs(got)) == pytest.approx(fraction, abs=1 / 120 + 5e-4)
         middle = round(0.5 * (PAIR.contact_ratio - 1.0) * 1200)
         assert float(got.load_share[middle, 1]) == pytest.approx(share, abs=0.006)
         if change is not None:
