@@ -1,0 +1,205 @@
+"""One record: channels with their units, the rate where it is known, and what was noticed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.measured.units import factor_of, kind_of, known_unit
+
+Floats = NDArray[np.float64]
+
+BLOCK = 1 << 20
+"""Samples read at once from a channel that stays on disk."""
+
+
+class Samples(Protocol):
+    """What a channel needs of its store: an array in memory, a memory map, a stored data set."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, key: slice, /) -> Any: ...
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Something the reader saw: ``level`` "info", "warning" or "important", one line of text."""
+
+    level: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One signal: ``unit`` a known name or None (the file does not say), ``samples`` its store.
+
+    A value is ``scale`` x sample + ``offset`` in ``unit``.
+    """
+
+    name: str
+    samples: Samples = field(repr=False)
+    unit: str | None = None
+    scale: float = 1.0
+    offset: float = 0.0
+    needs_scale: bool = False  # integer full scale: a unit alone does not calibrate it
+
+    def __len__(self) -> int:
+        return len(self.samples)
+
+    def values(self, start: int = 0, stop: int | None = None) -> Floats:
+        """Samples start..stop in the channel's own unit, as floats."""
+        raw = np.asarray(self.samples[start : len(self) if stop is None else stop], dtype=float)
+        if self.scale == 1.0 and self.offset == 0.0:
+            return raw
+        return raw * self.scale + self.offset
+
+    def blocks(self, size: int = BLOCK) -> Iterator[Floats]:
+        """The whole channel block by block: no more than ``size`` samples in memory."""
+        for start in range(0, len(self), size):
+            yield self.values(start, min(start + size, len(self)))
+
+    @property
+    def si_factor(self) -> float:
+        """SI units in one of the channel's; refused when the unit is unknown."""
+        if self.unit is None:
+            raise InputError(
+                f"channel {self.name!r}.unit",
+                "none",
+                why="the file states no unit and none is guessed",
+                fix="give it, for example --unit g or --unit m/s^2",
+            )
+        if self.needs_scale:
+            raise InputError(
+                f"channel {self.name!r}.scale",
+                "none",
+                why=f"samples are fractions of full scale, so {self.unit} alone does not "
+                "calibrate them",
+                fix=f"give --scale, the {self.unit} at full scale",
+            )
+        return factor_of(self.unit)
+
+
+@dataclass(frozen=True)
+class Record:
+    """Channels sampled together. ``rate`` [samples/s] is None where the file does not tell it.
+
+    ``rate_origin`` says where the rate is from; ``start`` [s] is the time of the first sample;
+    ``tacho`` names the tacho channel; ``notices`` are the traps met while reading.
+    """
+
+    channels: tuple[Channel, ...]
+    source: str
+    rate: float | None = None
+    rate_origin: str = ""
+    start: float = 0.0
+    tacho: str | None = None
+    notices: tuple[Notice, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.channels:
+            raise InputError("record", self.source, why="it holds no channel of numbers")
+        lengths = {len(c) for c in self.channels}
+        if len(lengths) != 1:
+            raise InputError("record", f"channels of {sorted(lengths)} samples", allowed="one")
+        if self.rate is not None and not (np.isfinite(self.rate) and self.rate > 0):
+            raise InputError("rate", self.rate, allowed="> 0 samples per second")
+        if self.tacho is not None:
+            self.channel(self.tacho)
+
+    @property
+    def samples(self) -> int:
+        """Samples of each channel."""
+        return len(self.channels[0])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Channel names in the file's order."""
+        return tuple(c.name for c in self.channels)
+
+    @property
+    def duration(self) -> float | None:
+        """Length [s], None while the rate is unknown."""
+        return None if self.rate is None else self.samples / self.rate
+
+    def channel(self, name: str | int) -> Channel:
+        """A channel by name, or by its number counted from 1."""
+        if isinstance(name, str) and name in self.names:
+            return self.channels[self.names.index(name)]
+        if isinstance(name, int) or (name.isdigit() and name not in self.names):
+            number = int(name)
+            if 1 <= number <= len(self.channels):
+                return self.channels[number - 1]
+            raise InputError("channel", number, allowed=f"1..{len(self.channels)}")
+        raise InputError("channel", repr(name), fix=nearest(name, self.names))
+
+    def signals(self) -> tuple[Channel, ...]:
+        """The vibration channels: not the tacho, not time, speed, torque or temperature."""
+        other = {"time", "speed", "torque", "temperature", "angle", "frequency"}
+        found = tuple(
+            c
+            for c in self.channels
+            if c.name != self.tacho and (c.unit is None or kind_of(c.unit) not in other)
+        )
+        if not found:
+            raise InputError(
+                "channel", ", ".join(self.names), why="none of them is a vibration", fix="--channel"
+            )
+        return found
+
+    def supplied(
+        self,
+        rate: float | None = None,
+        unit: str | None = None,
+        scale: float | None = None,
+        tacho: str | int | None = None,
+    ) -> Record:
+        """The record with what the file lacks. What the file states and the user contradicts is
+        kept as the user says, with an important notice."""
+        record = self
+        if tacho is not None:
+            record = replace(record, tacho=record.channel(tacho).name)
+        if rate is not None:
+            if not (np.isfinite(rate) and rate > 0):
+                raise InputError("rate", rate, allowed="> 0 samples per second")
+            if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3:
+                record = record.noting(
+                    "important",
+                    f"the rate given, {rate:g}/s, is not the file's, {self.rate:g}/s "
+                    f"({self.rate_origin}): factor {rate / self.rate:.4g}",
+                )
+            record = replace(record, rate=float(rate), rate_origin="given")
+        if unit is not None or scale is not None:
+            name = None if unit is None else known_unit(unit)
+            vibrating = {c.name for c in record.signals()}
+            new, contradicted = [], []
+            for c in record.channels:
+                if c.name in vibrating:
+                    if name is not None and c.unit not in (None, name):
+                        contradicted.append(f"{c.name} ({c.unit})")
+                    c = replace(c, unit=name or c.unit)
+                    if scale is not None:
+                        if not (np.isfinite(scale) and scale != 0):
+                            raise InputError("scale", scale, allowed="a finite number, not 0")
+                        c = replace(
+                            c,
+                            scale=c.scale * float(scale),
+                            offset=c.offset * float(scale),
+                            needs_scale=False,
+                        )
+                new.append(c)
+            record = replace(record, channels=tuple(new))
+            if contradicted:
+                record = record.noting(
+                    "important",
+                    f"the unit given, {name}, replaces the file's of {', '.join(contradicted)}",
+                )
+        return record
+
+    def noting(self, level: str, text: str) -> Record:
+        """The record with one more notice."""
+        return replace(self, notices=(*self.notices, Notice(level, text)))

@@ -1,0 +1,253 @@
+"""Traps of real files, recognised and named: zeros, gaps, doubled variables, broken time."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.units import factor_of, kind_of, unit
+
+Floats = NDArray[np.float64]
+
+_TIME = re.compile(r"^(x[_ ]?value|time|zeit|temps|tijd|时间|t)(?:[ _]?(?:stamp|axis))?$", re.I)
+_TACHO = re.compile(r"tach|key[ _-]?phas|once[ _-]?per|转速脉冲|键相", re.I)
+_RATE = re.compile(
+    r"^(fs|f_s|sr|samp(?:ling|le)?[ _-]?(?:rate|freq(?:uency)?)|rate|采样频率|采样率)"
+    r"(?:[ _]?(?:\[?\(?hz\)?\]?))?$",
+    re.I,
+)
+
+
+def is_time_name(name: str) -> bool:
+    """Whether a column's name (without its unit) says time."""
+    return bool(_TIME.match(name.strip()))
+
+
+def is_tacho_name(name: str) -> bool:
+    """Whether a column's name says tacho or keyphasor."""
+    return bool(_TACHO.search(name))
+
+
+def is_rate_name(name: str) -> bool:
+    """Whether a variable's name says sampling rate."""
+    return bool(_RATE.match(name.strip()))
+
+
+def split_unit(name: str) -> tuple[str, str | None]:
+    """A header cell as (name, known unit): "a1 [g]", "Time(ms)", "acc / m/s²", "加速度(m/s²)"."""
+    text = name.strip().strip("\"'").strip()
+    for pattern in (r"^(.*?)\s*[\[(（{]([^\])）}]*)[\])）}]\s*$", r"^(.*?)\s+(?:/|in)\s+(.+)$"):
+        found = re.match(pattern, text)
+        if found and found.group(1).strip():
+            known = unit(found.group(2))
+            if known is not None:
+                return found.group(1).strip(), known
+    return text, None
+
+
+@dataclass(frozen=True)
+class TimeBase:
+    """What a time column says: rate [1/s] (None: it cannot be told), start, rows to drop."""
+
+    rate: float | None
+    start: float
+    origin: str
+    drop: tuple[int, ...] = ()
+    notices: tuple[Notice, ...] = ()
+
+
+def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int]) -> TimeBase:
+    """Rate and start from a time column, or why it gives none.
+
+    ``t`` in the column's own unit; ``rows_equal``: rows whose every value repeats the row
+    before. A time without a unit gives no rate. A doubled stamp on a row that is doubled as a
+    whole is one row written twice and is dropped; any other irregularity gives no rate.
+    """
+    notes: list[Notice] = []
+    label = f"time column {name!r}"
+    if unit_name is None or kind_of(unit_name) != "time":
+        notes.append(
+            Notice("important", f"{label} states no unit: no rate is taken from it (give --rate)")
+        )
+        return TimeBase(None, 0.0, "", (), tuple(notes))
+    seconds = t * factor_of(unit_name)
+    if t.size < 3 or not np.all(np.isfinite(seconds)):
+        notes.append(Notice("important", f"{label} holds gaps: no rate is taken from it"))
+        return TimeBase(None, 0.0, "", (), tuple(notes))
+    steps = np.diff(seconds)
+    twice = {int(i) + 1 for i in np.flatnonzero(steps == 0.0)}
+    drop = tuple(sorted(twice & rows_equal))
+    if drop:
+        keep = np.ones(seconds.size, bool)
+        keep[list(drop)] = False
+        seconds = seconds[keep]
+        steps = np.diff(seconds)
+        notes.append(
+            Notice(
+                "warning",
+                f"{label}: {_count(len(drop), 'row')} written twice (first: row {drop[0] + 1}), "
+                "the repetition dropped",
+            )
+        )
+    mean = (seconds[-1] - seconds[0]) / (seconds.size - 1) if seconds.size > 1 else 0.0
+    if mean <= 0 or np.any(steps < 0):
+        place = int(np.argmax(steps < 0)) + 2
+        notes.append(
+            Notice("important", f"{label} does not rise (row {place}): no rate is taken from it")
+        )
+        return TimeBase(None, float(seconds[0]), "", drop, tuple(notes))
+    # stamps written with few digits wander by half a digit around a straight line; anything
+    # more than half a step off is a missing, extra or irregular sample
+    line = seconds[0] + mean * np.arange(seconds.size)
+    wander = float(np.max(np.abs(seconds - line))) / mean
+    step = float(np.median(steps))
+    bad = np.flatnonzero(np.abs(steps - step) > 0.5 * step)
+    if wander > 0.5 or (bad.size and bad.size < 0.01 * steps.size):
+        first = int(bad[0]) + 2 if bad.size else int(np.argmax(np.abs(seconds - line))) + 1
+        doubled = np.flatnonzero(steps == 0.0)
+        what = (
+            f"a time stamp appears twice (row {int(doubled[0]) + 2}) with other values"
+            if doubled.size
+            else f"steps are not uniform (row {first}: off by up to {wander:.3g} steps)"
+        )
+        notes.append(
+            Notice("important", f"{label}: {what}; no rate is taken from it (give --rate)")
+        )
+        return TimeBase(None, float(seconds[0]), "", drop, tuple(notes))
+    if unit_name != "s":
+        notes.append(Notice("info", f"{label} is in {unit_name}"))
+    return TimeBase(1.0 / mean, float(seconds[0]), label, drop, tuple(notes))
+
+
+@dataclass(frozen=True)
+class Health:
+    """Facts about one channel found in a single pass: gaps, zeros, constancy, clipping."""
+
+    missing: int
+    longest_gap: int
+    zeros: bool
+    constant: bool
+    rms: float
+    peak: float
+
+
+def health(channel: Channel) -> Health:
+    """One pass over a channel, block by block."""
+    missing = gap = longest = count = 0
+    total = square = 0.0
+    low, high = np.inf, -np.inf
+    for block in channel.blocks():
+        good = np.isfinite(block)
+        bad = np.flatnonzero(~good)
+        missing += bad.size
+        if bad.size:
+            edges = np.flatnonzero(np.diff(bad) > 1)
+            firsts = bad[np.concatenate([[0], edges + 1])]
+            lasts = bad[np.concatenate([edges, [bad.size - 1]])]
+            runs = lasts - firsts + 1
+            if firsts[0] == 0:
+                runs[0] += gap
+            longest = max(longest, int(runs.max()))
+            gap = int(runs[-1]) if lasts[-1] == block.size - 1 else 0
+        else:
+            gap = 0
+        values = block[good]
+        if values.size:
+            count += values.size
+            total += float(values.sum())
+            square += float(np.dot(values, values))
+            low, high = min(low, float(values.min())), max(high, float(values.max()))
+    mean = total / count if count else 0.0
+    return Health(
+        missing=missing,
+        longest_gap=longest,
+        zeros=count > 0 and low == high == 0.0,
+        constant=count > 0 and low == high,
+        rms=float(np.sqrt(max(square / count - mean**2, 0.0))) if count else 0.0,
+        peak=float(max(abs(low), abs(high))) if count else 0.0,
+    )
+
+
+def examined(record: Record) -> Record:
+    """The record with a notice for every channel that is zero, constant or has gaps."""
+    for channel in record.channels:
+        found = health(channel)
+        if found.missing == len(channel):
+            record = record.noting("important", f"channel {channel.name!r} holds no number at all")
+        elif found.missing:
+            record = record.noting(
+                "important",
+                f"channel {channel.name!r}: {_count(found.missing, 'sample')} missing (NaN), the "
+                f"longest gap {found.longest_gap}; nothing is filled in",
+            )
+        if found.zeros:
+            record = record.noting("important", f"channel {channel.name!r} is zero throughout")
+        elif found.constant:
+            record = record.noting("important", f"channel {channel.name!r} is constant")
+    return record
+
+
+def without_doubles(
+    channels: list[Channel], source: str
+) -> tuple[list[Channel], tuple[Notice, ...]]:
+    """Channels with the doubled names resolved: an all-zero twin is left aside, never chosen.
+
+    Twins that hold the same samples are one; twins that differ both stay, numbered.
+    """
+    notes: list[Notice] = []
+    kept: list[Channel] = []
+    for channel in channels:
+        twins = [i for i, c in enumerate(kept) if c.name == channel.name]
+        if not twins:
+            kept.append(channel)
+            continue
+        place = twins[0]
+        first = kept[place]
+        if health(first).zeros:
+            kept[place] = channel
+            notes.append(
+                Notice(
+                    "warning",
+                    f"{channel.name!r} is stored twice; the first is zero throughout and is left "
+                    "aside",
+                )
+            )
+        elif health(channel).zeros:
+            notes.append(
+                Notice(
+                    "warning",
+                    f"{channel.name!r} is stored twice; the second is zero throughout and is left "
+                    "aside",
+                )
+            )
+        elif len(first) == len(channel) and _same(first, channel):
+            notes.append(Notice("info", f"{channel.name!r} is stored twice, the same; one is kept"))
+        else:
+            number = 1 + sum(c.name.startswith(f"{channel.name} (") for c in kept) + 1
+            kept.append(replace(channel, name=f"{channel.name} ({number})"))
+            notes.append(
+                Notice(
+                    "important",
+                    f"{channel.name!r} is stored twice with other values; the second is called "
+                    f"'{channel.name} ({number})'",
+                )
+            )
+    if not kept:
+        raise InputError("file", source, why="it holds no channel of numbers")
+    return kept, tuple(notes)
+
+
+def _same(one: Channel, other: Channel) -> bool:
+    return all(
+        np.array_equal(a, b, equal_nan=True)
+        for a, b in zip(one.blocks(), other.blocks(), strict=True)
+    )
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -1,0 +1,105 @@
+"""Units that records carry, as one table: what kind of quantity and how many SI units."""
+
+from __future__ import annotations
+
+import re
+
+from thermogear.base.errors import InputError, nearest
+
+STANDARD_GRAVITY = 9.80665  # m/s^2, CGPM 1901
+
+_TABLE: dict[str, tuple[str, float]] = {
+    "m/s^2": ("acceleration", 1.0),
+    "mm/s^2": ("acceleration", 1e-3),
+    "cm/s^2": ("acceleration", 1e-2),
+    "g": ("acceleration", STANDARD_GRAVITY),
+    "mg": ("acceleration", 1e-3 * STANDARD_GRAVITY),
+    "m/s": ("velocity", 1.0),
+    "mm/s": ("velocity", 1e-3),
+    "m": ("displacement", 1.0),
+    "mm": ("displacement", 1e-3),
+    "um": ("displacement", 1e-6),
+    "nm": ("displacement", 1e-9),
+    "s": ("time", 1.0),
+    "ms": ("time", 1e-3),
+    "us": ("time", 1e-6),
+    "min": ("time", 60.0),
+    "V": ("voltage", 1.0),
+    "mV": ("voltage", 1e-3),
+    "rpm": ("speed", 1.0 / 60.0),
+    "Hz": ("frequency", 1.0),
+    "kHz": ("frequency", 1e3),
+    "N m": ("torque", 1.0),
+    "degC": ("temperature", 1.0),
+    "deg": ("angle", 1.0 / 360.0),
+    "rad": ("angle", 0.15915494309189535),
+}
+_SPELLINGS = {
+    "m/s2": "m/s^2",
+    "m/s**2": "m/s^2",
+    "m/s/s": "m/s^2",
+    "ms^-2": "m/s^2",
+    "m s^-2": "m/s^2",
+    "m*s^-2": "m/s^2",
+    "m/sec^2": "m/s^2",
+    "mm/s2": "mm/s^2",
+    "mm/s**2": "mm/s^2",
+    "cm/s2": "cm/s^2",
+    "gn": "g",
+    "g_n": "g",
+    "grav": "g",
+    "gs": "g",
+    "mum": "um",
+    "micron": "um",
+    "microns": "um",
+    "sec": "s",
+    "secs": "s",
+    "second": "s",
+    "seconds": "s",
+    "msec": "ms",
+    "usec": "us",
+    "volt": "V",
+    "volts": "V",
+    "v": "V",
+    "mv": "mV",
+    "hz": "Hz",
+    "khz": "kHz",
+    "1/min": "rpm",
+    "r/min": "rpm",
+    "n m": "N m",
+    "nm(torque)": "N m",
+    "n*m": "N m",
+    "n·m": "N m",
+    "°c": "degC",
+    "deg c": "degC",
+}
+_SIGNS = str.maketrans({"²": "2", "µ": "u", "μ": "u", "−": "-", "\u00a0": " ", "⁻": "-", "㎡": "2"})
+
+
+def unit(text: str) -> str | None:
+    """The known name of a unit as written in a file ("m/s²", "[g]", "G", "msec"), else None."""
+    bare = text.strip().strip("[](){}").strip().translate(_SIGNS)
+    if bare in _TABLE:
+        return bare
+    low = re.sub(r"\s+", " ", bare.lower())
+    if low in _SPELLINGS:
+        return _SPELLINGS[low]
+    return low if low in _TABLE else None
+
+
+def known_unit(text: str, field: str = "unit") -> str:
+    """The unit a user gave; an unknown one is refused with the nearest name."""
+    found = unit(text)
+    if found is None:
+        raise InputError(field, repr(text), fix=nearest(text, _TABLE))
+    return found
+
+
+def kind_of(name: str) -> str:
+    """The kind of quantity of a known unit: acceleration, displacement, time, ..."""
+    return _TABLE[name][0]
+
+
+def factor_of(name: str) -> float:
+    """SI units (turns per second for rpm, turns for angles) in one of a known unit."""
+    return _TABLE[name][1]

@@ -1,0 +1,106 @@
+"""WAV (RIFF and RF64): integer and float samples, left on disk as a memory map."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.tables import Column
+
+_PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
+
+
+class _Packed24:
+    """24-bit integers, three bytes each, unpacked slice by slice; shape (frames, channels)."""
+
+    def __init__(self, raw: Any) -> None:
+        self._raw = raw  # (frames, channels, 3) bytes
+        self.shape = raw.shape[:2]
+
+    def __getitem__(self, key: tuple[slice, int]) -> Any:
+        part = np.asarray(self._raw[key[0], key[1]]).astype(np.int32)
+        value = part[..., 0] | part[..., 1] << 8 | part[..., 2] << 16
+        return (value ^ 0x800000) - 0x800000
+
+
+def read_wave(path: Path, options: ReadOptions) -> Record:
+    """A record from a WAV file. The rate stands in it, the unit never does.
+
+    Integer samples become fractions of full scale (so ``scale`` must say what full scale is);
+    float samples keep their values.
+    """
+    size = path.stat().st_size
+    form: bytes | None = None
+    place: tuple[int, int] | None = None
+    long_data: int | None = None
+    with path.open("rb") as file:
+        head = file.read(12)
+        if len(head) < 12 or head[:4] not in (b"RIFF", b"RF64") or head[8:] != b"WAVE":
+            raise refused(path, "WAV", "no RIFF WAVE header")
+        for _ in range(1024):
+            chunk = file.read(8)
+            if len(chunk) < 8:
+                break
+            name, length = chunk[:4], struct.unpack("<I", chunk[4:])[0]
+            here = file.tell()
+            if name == b"ds64":
+                body = file.read(min(length, 28))
+                if len(body) >= 16:
+                    long_data = struct.unpack("<Q", body[8:16])[0]
+            elif name == b"fmt ":
+                form = file.read(min(length, 64))
+            elif name == b"data":
+                if length == 0xFFFFFFFF and long_data is not None:
+                    length = long_data
+                place = (here, length)
+                break
+            file.seek(here + length + length % 2)
+    if form is None or len(form) < 16 or place is None:
+        raise refused(path, "WAV", "no format or no data chunk")
+    code, channels, rate, _, block, bits = struct.unpack("<HHIIHH", form[:16])
+    if code == _EXTENSIBLE and len(form) >= 26:
+        code = struct.unpack("<H", form[24:26])[0]
+    if channels == 0 or rate == 0 or block == 0 or block != channels * ((bits + 7) // 8):
+        raise refused(
+            path, "WAV", f"{channels} channels, {rate} samples/s, {bits} bits, blocks of {block}"
+        )
+    offset, length = place
+    notes: list[Notice] = []
+    if offset + length > size:
+        notes.append(Notice("warning", "the file ends before its data: the cut end is dropped"))
+        length = size - offset
+    frames = length // block
+    if frames < 1:
+        raise refused(path, "WAV", "it holds no samples")
+    data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
+    names = [f"channel {i + 1}" for i in range(channels)]
+    found = tuple(
+        Channel(name, Column(data, i, 0), None, scale, shift, integer)
+        for i, name in enumerate(names)
+        if not options.keep or name in options.keep or str(i + 1) in options.keep
+    )
+    return Record(found, path.name, float(rate), "WAV header", 0.0, None, tuple(notes))
+
+
+def _samples(
+    path: Path, code: int, bits: int, offset: int, frames: int, channels: int
+) -> tuple[Any, float, float, bool]:
+    """Stored samples with scale and offset to fractions of full scale, and whether integer."""
+    shape = (frames, channels)
+    if code == _FLOAT and bits in (32, 64):
+        kind = "<f4" if bits == 32 else "<f8"
+        return np.memmap(path, kind, "r", offset, shape), 1.0, 0.0, False
+    if code == _PCM and bits == 8:  # unsigned, 128 is zero
+        return np.memmap(path, "u1", "r", offset, shape), 1 / 128, -1.0, True
+    if code == _PCM and bits in (16, 32):
+        kind = "<i2" if bits == 16 else "<i4"
+        return np.memmap(path, kind, "r", offset, shape), 2.0 ** (1 - bits), 0.0, True
+    if code == _PCM and bits == 24:
+        raw = np.memmap(path, "u1", "r", offset, (*shape, 3))
+        return _Packed24(raw), 2.0**-23, 0.0, True
+    raise refused(path, "WAV", f"format {code} with {bits} bits is not supported")
