@@ -1,6 +1,8 @@
 """``python -m thermogear`` is the command line."""
 
+import sys
+
 from thermogear.front.cli import main
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -115,11 +115,17 @@ class GearCase(Case):
         """The material of the housing."""
         return self.operating.housing
 
+    @property
+    def equivalent_mass(self) -> float:
+        """m_e = I1 I2/(I1 r_b2^2 + I2 r_b1^2) [kg]."""
+        (i1, i2), r1, r2 = self.inertias, self.pair.pinion.base_radius, self.pair.wheel.base_radius
+        return i1 * i2 / (i1 * r2**2 + i2 * r1**2)
+
     def operating_at(self, gear_temperature: float) -> Operating:
         """The operating points with both addenda at ``gear_temperature`` [K]."""
         return replace(
             self.operating,
-            oil_temperature=self.temperature_rule.oil.at(gear_temperature),
+            oil_temperature=self.temperature_rule.oil_at(gear_temperature),
             temperatures=self.temperature_rule.at(gear_temperature, gear_temperature),
         )
 
@@ -191,7 +197,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
             speed=np.repeat(speeds, len(torques)),
             torque=np.tile(torques, len(speeds)),
             lubricant=parts.lubricant(file),
-            oil_temperature=rule.oil.at(file.temperatures.pinion_addendum),
+            oil_temperature=rule.oil_at(file.temperatures.pinion_addendum),
             temperatures=temperatures,
             half_backlash=backlash.half,
             housing=housing,
@@ -203,7 +209,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         damping_ratio=file.dynamics.damping_ratio,
         transmission_error=parts.transmission_error(file),
         cold_backlash=backlash,
-        models=parts.models(file),
+        models=parts.models(file, pair),
         speeds=speeds,
         torques=torques,
         harmonics=file.grid.harmonics,

@@ -69,7 +69,13 @@ class Measure(Reader):
         return f"{low}..{high} {unit}" if same else f"{self.low}..{self.high}"
 
     def read(self, raw: object) -> float:
-        value = read_quantity(raw, self.kind)
+        try:
+            value = read_quantity(raw, self.kind)
+        except InputError as error:
+            allowed = self.allowed or f"a text: number and unit of {self.kind}"
+            raise InputError(
+                "", error.got, allowed=allowed, why=error.why, fix=error.fix
+            ) from error
         if self.kind == "temperature" and value <= 0.0:
             raise InputError(
                 "",
@@ -220,7 +226,7 @@ class Several(Reader):
     @property
     def example(self) -> str:  # type: ignore[override]
         """A list to copy."""
-        return f"[{self.one.example}]"
+        return f"[{', '.join([self.one.example] * max(self.least, 1))}]"
 
     def read(self, raw: object) -> tuple[Any, ...]:
         if self.single and isinstance(raw, self._KINDS_OF_ONE):
@@ -228,10 +234,11 @@ class Several(Reader):
         if not isinstance(raw, list | tuple):
             raise InputError("", short(raw), allowed="a list", fix=f"write {self.example}")
         if not self.least <= len(raw) <= self.most:
+            several = f"{self.least}..{self.most}" if self.least < self.most else f"{self.least}"
             raise InputError(
                 "",
                 f"a list of {len(raw)}",
-                allowed=f"{self.least}..{self.most} entries",
+                allowed=f"{several} entries",
                 fix=f"write for instance {self.example}",
             )
         values = []

@@ -21,6 +21,7 @@ from thermogear.base.materials import (
     Material,
 )
 from thermogear.gears.geometry import Gear, GearPair, Rack
+from thermogear.heat.friction import ROUGHNESS_LIMIT
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.study.backlash import Backlash, from_tolerances, from_value
@@ -41,6 +42,18 @@ class Follows:
         """The temperature [K] beside an ``addendum`` [K]."""
         return addendum - self.value if self.below else self.value
 
+    def checked(self, addendum: float, field: str) -> float:
+        """The same, refused under the name of its ``field`` where it falls to 0 K."""
+        temperature = self.at(addendum)
+        if temperature <= 0.0:
+            raise InputError(
+                f"{field}_below_addendum",
+                f"{self.value:.6g} K",
+                allowed=f"< {addendum:.6g} K, the addendum's temperature",
+                why="nothing is colder than 0 K",
+            )
+        return temperature
+
 
 @dataclass(frozen=True)
 class TemperatureRule:
@@ -60,11 +73,15 @@ class TemperatureRule:
         return Temperatures(
             self.reference,
             pinion_addendum,
-            self.pinion_bore.at(pinion_addendum),
+            self.pinion_bore.checked(pinion_addendum, "temperatures.pinion_bore"),
             wheel_addendum,
-            self.wheel_bore.at(wheel_addendum),
-            self.housing.at(pinion_addendum),
+            self.wheel_bore.checked(wheel_addendum, "temperatures.wheel_bore"),
+            self.housing.checked(pinion_addendum, "temperatures.housing"),
         )
+
+    def oil_at(self, pinion_addendum: float) -> float:
+        """The oil's temperature [K] beside the pinion's addendum [K]."""
+        return self.oil.checked(pinion_addendum, "oil.temperature")
 
 
 def own_materials(file: GearFile) -> dict[str, Material]:
@@ -83,7 +100,7 @@ def named_material(name: str, at: str, known: Mapping[str, Material]) -> Materia
             at,
             short(name),
             allowed=" | ".join(known),
-            fix=f"{nearest(name, known)} or describe it in [materials.{name}]"
+            fix=f"{nearest(name, known)} Or describe it in [materials.{name}]"
             if name.isidentifier()
             else nearest(name, known),
         )
@@ -166,7 +183,7 @@ def lubricant(file: GearFile) -> Lubricant:
                 "oil.name",
                 short(oil.name),
                 allowed=" | ".join(LUBRICANTS),
-                fix=f"{nearest(oil.name, LUBRICANTS)} or give viscosity_40, viscosity_100 and "
+                fix=f"{nearest(oil.name, LUBRICANTS)} Or give viscosity_40, viscosity_100 and "
                 "density_15",
             )
         return LUBRICANTS[oil.name]
@@ -230,10 +247,20 @@ def transmission_error(file: GearFile) -> Periodic:
     return Periodic(0.0, tuple(parts.get(q, 0j) for q in range(1, max(parts, default=0) + 1)))
 
 
-def models(file: GearFile) -> tuple[MeshModel, ...]:
+def models(file: GearFile, pair: GearPair) -> tuple[MeshModel, ...]:
     """The bundles to compute with, single choices put in their place."""
     choices = file.model.model_dump(exclude_none=True)
     bundle = choices.pop("bundle")
     bundles = {"consistent": MeshModel.consistent, "thesis": MeshModel.thesis}
     names = tuple(bundles) if bundle == "both" else (bundle,)
-    return tuple(bundles[name]().override(**choices) for name in names)
+    chosen = tuple(bundles[name]().override(**choices) for name in names)
+    roughness = 0.5 * (pair.pinion.roughness + pair.wheel.roughness)
+    if roughness >= ROUGHNESS_LIMIT and any(m.friction == "benedict-kelley" for m in chosen):
+        raise InputError(
+            "gears.pinion.roughness",
+            f"{1e6 * roughness:.4g} um, the mean of both flanks",
+            allowed=f"< {1e6 * ROUGHNESS_LIMIT:.4g} um",
+            why="the friction law of Benedict and Kelley ends there",
+            fix='use smoother flanks, or model.friction = "dry"',
+        )
+    return chosen

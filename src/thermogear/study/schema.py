@@ -57,8 +57,10 @@ def _one_of(table: Table, first: str, second: str) -> None:
     """Refuse a table that holds both of two rivals, or neither."""
     given = [name for name in (first, second) if getattr(table, name) is not None]
     if len(given) != 1:
-        got = "both" if given else "neither"
-        raise InputError("", f"{got} {first} and {second}", allowed="exactly one of the two")
+        got, fix = ("both", "leave one out") if given else ("neither", f"write {first} = ...")
+        raise InputError(
+            "", f"{got} {first} and {second}", allowed="exactly one of the two", fix=fix
+        )
 
 
 class RackTable(Table):

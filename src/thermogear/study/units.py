@@ -66,8 +66,19 @@ _TEXT = re.compile(
     r"\s*(?P<unit>.*?)\s*",
     re.IGNORECASE | re.DOTALL,
 )
-_UNIT = re.compile(r"[\w°·*/^().\s²³⁻¹-]{1,40}")  # what a unit is written with, and not too long
-_SLIPS = {"C": "degC", "°": "deg", "F": "degF", "cst": "cSt", "RPM": "rpm", "Nm": "N m"}
+# Names with small powers, multiplied and divided. pint itself would also work out arithmetic, such
+# as 9**9**9**9, for as long as that takes.
+_NAME = r"[A-Za-zµμ°Ω_]+(?:(?:\^|\*\*)?-?[0-9]{1,2}|[⁻¹²³]{1,2})?"
+_UNIT = re.compile(rf"(?:1\s*/\s*)?\(?{_NAME}(?:(?:\s*[/*·]\s*|\s+)\(?{_NAME}\)?){{0,5}}\)?")
+_HABITS = {("torque", "Nm"): "N m"}  # pint reads Nm as a yarn count
+_SLIPS = {
+    "temperature": {"C": "degC", "c": "degC", "°": "degC", "F": "degF"},
+    "temperature difference": {"C": "K", "degC": "K", "°C": "K", "°": "K"},
+    "angle": {"°C": "deg", "degC": "deg"},
+    "rotational speed": {"RPM": "rpm", "Rpm": "rpm", "U/min": "rpm", "1/min": "rpm"},
+    "torque": {"nm": "N m", "J": "N m"},
+    "kinematic viscosity": {"cst": "cSt", "CST": "cSt"},
+}
 
 
 @lru_cache(maxsize=1)
@@ -83,94 +94,66 @@ def convert(number: float, unit: str, kind: Kind) -> float:
     Raises :class:`InputError` (with an empty field; the reader knows which) where the unit is
     unknown or of another kind.
     """
-    registry = _registry()
-    got = f"{number:g} {unit}"
     example = f'write for instance "{kind.example}"'
-    if not _UNIT.fullmatch(unit):
-        raise InputError("", repr(f"{number:g} {unit}")[:80], why="not a unit", fix=example)
+    meant = _SLIPS.get(kind.name, {}).get(unit)
+    slip = f'did you mean "{number:g} {meant}"?' if meant else example
+
+    def refused(why: str, fix: str) -> InputError:
+        return InputError("", f"{number:g} {unit}", why=why, fix=fix)
+
+    unit = _HABITS.get((kind.name, unit), unit)
+    if len(unit) > 40 or not _UNIT.fullmatch(unit):
+        raise refused(f"what follows the number is no unit of {kind.name}", example)
+    registry = _registry()
     try:
         parsed = registry.parse_units(unit)
-        wrong = parsed.dimensionality != registry.parse_units(kind.si).dimensionality
-        names = str(parsed)
+        fits = parsed.dimensionality == registry.parse_units(kind.si).dimensionality
     except Exception as cause:
         # pint answers nonsense with errors of many classes (lookup, syntax, tokens, arithmetic)
-        slip = _SLIPS.get(unit)
-        raise InputError(
-            "",
-            repr(got),
-            allowed=f"a unit of {kind.name}",
-            why=f"unit {unit!r} is not known",
-            fix=f'did you mean "{slip}"?' if slip else example,
-        ) from cause
-    if not wrong and kind.parts:
-        wrong = not any(part in names for part in kind.parts)
-    if not wrong and kind.name == "temperature" and "delta" in names:
-        wrong = True
-    if wrong:
-        slip = _SLIPS.get(unit)
-        raise InputError(
-            "",
-            repr(got),
-            allowed=f"a unit of {kind.name}",
-            why=f"{unit!r} is no unit of {kind.name}",
-            fix=f'did you mean "{number:g} {slip}"?' if slip else example,
-        )
+        raise refused(f"unit {unit!r} is not known", slip) from cause
+    names = str(parsed)
+    if kind.parts:
+        fits = fits and any(part in names for part in kind.parts)
+    if kind.name == "temperature":
+        fits = fits and "delta" not in names
+    if not fits:
+        raise refused(f"{unit!r} is no unit of {kind.name}", slip)
     if kind.name == "temperature difference" and parsed != registry.kelvin and "delta" not in names:
-        raise InputError(
-            "",
-            repr(got),
-            allowed="a difference of temperatures",
-            why=f"{unit!r} has its zero elsewhere",
-            fix=f'write "{number:g} K"',
-        )
+        raise refused(f"{unit!r} has its zero elsewhere, a difference has none", slip)
     try:
         return float(registry.Quantity(number, parsed).to(kind.si).magnitude)
     except Exception as cause:  # offset units inside a product, overflow
-        raise InputError(
-            "", repr(got), why=f"{unit!r} cannot be turned into {kind.si}", fix=example
-        ) from cause
+        raise refused(f"{unit!r} cannot be turned into {kind.si}", example) from cause
 
 
 def read_quantity(text: object, kind_name: str) -> float:
     """An SI number out of a text with a unit; a bare number is refused with an example."""
     kind = KINDS[kind_name]
     example = f'write for instance "{kind.example}"'
-    if isinstance(text, bool) or not isinstance(text, str | int | float):
-        raise InputError(
-            "", short(text), allowed=f"a text: number and unit of {kind.name}", fix=example
-        )
-    if isinstance(text, int | float):
-        raise InputError(
-            "",
-            short(text),
-            allowed=f"a text: number and unit of {kind.name}",
-            why="a bare number has no unit",
-            fix=f'write for instance "{short(text)} {kind.shown}"'
-            if math.isfinite(text)
-            else example,
-        )
+
+    def refused(why: str, fix: str = example) -> InputError:
+        return InputError("", short(text), why=why, fix=fix)
+
+    if isinstance(text, int | float) and not isinstance(text, bool):
+        finite = math.isfinite(text)
+        fix = f'write for instance "{short(text)} {kind.shown}"' if finite else example
+        raise refused("a bare number has no unit", fix)
+    if not isinstance(text, str):
+        raise refused(f"not a text with number and unit of {kind.name}")
+    if re.match(r"\s*[+-]?\d+,\d", text):
+        raise refused("decimals follow a point, not a comma")
     match = _TEXT.fullmatch(text)
     if match is None:
-        comma = re.match(r"\s*[+-]?\d+,\d+", text) is not None
-        raise InputError(
-            "",
-            short(text),
-            allowed=f"a text: number and unit of {kind.name}",
-            why="decimals follow a point, not a comma" if comma else "no number at its start",
-            fix=example,
-        )
+        raise refused("no number at its start")
     number, unit = float(match["number"]), match["unit"]
     if not math.isfinite(number):
-        raise InputError("", short(text), allowed="finite numbers", fix=example)
+        raise refused("not finite")
     if not unit:
-        raise InputError(
-            "",
-            short(text),
-            allowed=f"a text: number and unit of {kind.name}",
-            why="the unit is missing",
-            fix=f'write for instance "{match["number"]} {kind.shown}"',
-        )
-    return convert(number, unit, kind)
+        raise refused("the unit is missing", f'write for instance "{match["number"]} {kind.shown}"')
+    try:
+        return convert(number, unit, kind)
+    except InputError as error:
+        raise InputError("", short(text), why=error.why, fix=error.fix) from error
 
 
 def shown(value: float, kind_name: str, digits: int = 6) -> str:

@@ -1,0 +1,215 @@
+"""``thermogear`` on the command line.
+
+Nothing heavy is imported before a command needs it, so that help is instant. Every error a user
+can make is one line on the error stream and exit code 2.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from thermogear import __version__
+from thermogear.base.errors import ThermogearError, nearest
+from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
+
+if TYPE_CHECKING:
+    from thermogear.study.case import DimensionlessCase, GearCase
+
+USER_ERROR = 2
+INTERRUPTED = 130
+
+
+class _Commands(click.Group):
+    """Commands in the order of use; an unknown one is answered with the nearest."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and not args[0].startswith("-") and args[0] not in self.commands:
+            raise click.UsageError(
+                f"unknown command {args[0]!r}; {nearest(args[0], self.commands)}", ctx=ctx
+            )
+        return super().resolve_command(ctx, args)
+
+
+_overrides = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Put a value in place of the file's, as gears.pinion.teeth=30. May be repeated.",
+)
+_case = click.argument("case", metavar="CASE")
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="thermogear", message="%(prog)s %(version)s")
+def cli() -> None:
+    """Dynamics of spur gear pairs that get hot.
+
+    From a case file to a report: friction, flash and body temperature, hot backlash, mesh
+    stiffness and nonlinear vibration.
+
+    \b
+      thermogear example rig > rig.toml
+      thermogear run rig.toml -o results
+    """
+
+
+@cli.command()
+@_case
+@click.option(
+    "-o", "--output", required=True, metavar="DIR", help="Directory of the results; made if new."
+)
+@_overrides
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+@click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
+def run(case: str, output: str, overrides: tuple[str, ...], as_json: bool, force: bool) -> None:
+    """Run CASE and write results.nc, summary.json, CSV curves and report.html to DIR."""
+    from thermogear.study.results import claim_directory
+    from thermogear.study.size import require_room
+
+    read = _load(case, overrides)
+    require_room(read, forced=force)
+    directory = Path(output)
+    claim_directory(directory)
+
+    from thermogear.front.progress import progress
+    from thermogear.study.run import run_to_directory
+
+    with progress(wanted=not as_json) as report_progress:
+        summary = run_to_directory(
+            read, directory, case_text=_text_of(read), progress=report_progress
+        )
+    _report(directory)
+    if as_json:
+        click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
+    else:
+        _print_summary(summary, directory)
+
+
+@cli.command()
+@click.argument("directory", metavar="DIR")
+def report(directory: str) -> None:
+    """Draw report.html anew from the results stored in DIR."""
+    click.echo(_report(Path(directory)))
+
+
+@cli.command()
+@_case
+@_overrides
+@click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
+def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Check CASE without running it, and print the numbers it amounts to."""
+    from thermogear.study.facts import facts
+    from thermogear.study.size import estimated_bytes
+
+    read = _load(case, overrides)
+    found = facts(read)
+    if as_json:
+        rows = [{"group": f.group, "name": f.name, "value": f.value, "unit": f.unit} for f in found]
+        ours = [{"field": a.field, "value": a.value, "reason": a.reason} for a in read.assumptions]
+        content = {"title": read.title, "kind": read.kind, "facts": rows, "assumptions": ours}
+        click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        return
+    click.echo(read.title)
+    group = ""
+    for fact in found:
+        if fact.group != group:
+            group = fact.group
+            click.echo(f"\n{group}")
+        value = f"{fact.value:.7g}" if isinstance(fact.value, float) else str(fact.value)
+        click.echo(f"  {fact.name:<38} {value} {fact.unit}".rstrip())
+    click.echo(
+        f"\n{len(read.assumptions)} values are ours; a run takes about "
+        f"{estimated_bytes(read) / 2**20:.3g} MiB of memory"
+    )
+
+
+@cli.command()
+@click.argument("name", required=False)
+def example(name: str | None) -> None:
+    """Print the ready-made case NAME; without a name, list them."""
+    from thermogear.study.ready import EXAMPLES, example_text
+
+    if name is None:
+        for known, words in EXAMPLES.items():
+            click.echo(f"{known:<12} {words}")
+        return
+    click.echo(example_text(name), nl=False)
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON schema of a case file."""
+    from thermogear.study.schema import json_schema
+
+    click.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+
+
+def _load(case: str, overrides: Sequence[str]) -> GearCase | DimensionlessCase:
+    from thermogear.study.case import load_case
+
+    return load_case(Path(case), overrides)
+
+
+def _text_of(case: GearCase | DimensionlessCase) -> str:
+    """The file as read; what the command line put in its place stands below as comments."""
+    notes = "".join(f"# on the command line: {path} = {value}\n" for path, value in case.overrides)
+    return f"{case.text.rstrip()}\n\n{notes}" if notes else case.text
+
+
+def _report(directory: Path) -> Path:
+    from thermogear.views.report import write_report
+
+    return write_report(directory)
+
+
+def _print_summary(summary: dict[str, Any], directory: Path) -> None:
+    for notice in summary.get("notices", ()):
+        text = notice.get("text", "") if isinstance(notice, dict) else notice
+        click.echo(f"- {one_line(text)}")
+    click.echo(directory / "report.html")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code: 0, 2 after a user's error, 130 after Ctrl+C."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        with warnings_as_lines(), cli.make_context("thermogear", arguments) as context:
+            cli.invoke(context)
+    except click.exceptions.Exit as leaving:
+        return leaving.exit_code
+    except click.exceptions.NoArgsIsHelpError as without:
+        click.echo(without.format_message())
+        return USER_ERROR
+    except click.ClickException as error:
+        say("error", error.format_message())
+        return USER_ERROR
+    except ThermogearError as error:
+        say("error", error)
+        return USER_ERROR
+    except (KeyboardInterrupt, click.Abort):
+        say("interrupted", "stopped on request; what was finished stays")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # the reader of the output left (as `head` does); there is nobody to tell
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        say("error", system_error(error))
+        return USER_ERROR
+    except (MemoryError, RecursionError) as error:
+        say("error", f"{type(error).__name__}: the case is too large for this machine")
+        return USER_ERROR
+    return 0

@@ -1,0 +1,52 @@
+"""Everything that goes wrong, as one line for a person to read."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+
+def one_line(text: object) -> str:
+    """``text`` without line breaks, tabs or control characters."""
+    flat = " ".join(str(text).split())
+    return "".join(c if c.isprintable() else "?" for c in flat)
+
+
+def say(kind: str, text: object) -> None:
+    """``kind: text`` as one line on the error stream."""
+    print(f"{kind}: {one_line(text)}", file=sys.stderr, flush=True)
+
+
+def system_error(error: OSError) -> str:
+    """What the system refused, and where."""
+    reason = error.strerror or str(error) or type(error).__name__
+    return f"{error.filename}: {reason}" if error.filename is not None else reason
+
+
+@contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """Print each warning once, as one line, for as long as the block runs."""
+    from thermogear.base.errors import ValidityWarning
+
+    said: set[str] = set()
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        text = one_line(message)
+        if text not in said:
+            said.add(text)
+            say("warning", text)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", ValidityWarning)
+        warnings.showwarning = show
+        yield
