@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.kernels.exact import advance_exact, prepare
+from thermogear.dynamics.kernels.affine import prepare
+from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.tables import Lanes, Pieces
 
 Floats = NDArray[np.float64]
@@ -18,7 +19,7 @@ Whole = NDArray[np.int64]
 
 ORDER = 12
 BLOCK = 128
-_COUNTS = tuple(base * 2**k for k in range(12) for base in (16, 24))
+_COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 
 
 def _bounds(lanes: Lanes, name: str) -> tuple[Floats, Floats]:

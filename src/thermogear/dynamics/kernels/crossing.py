@@ -1,0 +1,270 @@
+"""One lane through one sub-step with everything that can happen: turns, grazing, many edges.
+
+A contact change is a root of the sub-step's polynomial, where the state is handed to the
+polynomials of the next region. No fastmath, see ``rk4``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
+
+Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+MOST_CROSSINGS = 64
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _value(p: Real, u: float) -> float:
+    total = 0.0
+    for m in range(p.shape[0] - 1, -1, -1):
+        total = total * u + p[m]
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _slope(p: Real, u: float) -> float:
+    total = 0.0
+    for m in range(p.shape[0] - 1, 0, -1):
+        total = total * u + m * p[m]
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _root(p: Real, level: float, low: float, high: float) -> float:
+    """The root of p(u) = level in a monotone piece [low, high]: Newton inside a bracket."""
+    at_low = _value(p, low) - level
+    at_high = _value(p, high) - level
+    if at_low == 0.0 or (at_low > 0.0) == (at_high > 0.0):
+        # both ends on one side: the start is on the edge but for rounding
+        return low
+    a = low
+    b = high
+    # cubic Hermite start from the two ends
+    width = high - low
+    s0 = _slope(p, low) * width
+    s1 = _slope(p, high) * width
+    delta = at_high - at_low
+    t = -at_low / delta
+    for _ in range(2):
+        c3 = s0 + s1 - 2.0 * delta
+        c2 = 3.0 * delta - 2.0 * s0 - s1
+        down = (3.0 * c3 * t + 2.0 * c2) * t + s0
+        if down != 0.0:
+            t -= (((c3 * t + c2) * t + s0) * t + at_low) / down
+    u = low + width * t
+    if not (a < u < b):
+        u = low + width * (-at_low / delta)
+    for _ in range(60):
+        value = 0.0
+        rate = 0.0
+        for m in range(p.shape[0] - 1, 0, -1):
+            value = value * u + p[m]
+            rate = rate * u + m * p[m]
+        value = value * u + p[0] - level
+        if value == 0.0:
+            return u
+        if (value > 0.0) == (at_high > 0.0):
+            b = u
+        else:
+            a = u
+        move = value / rate if rate != 0.0 else np.inf
+        new = u - move
+        if not (a <= new <= b):
+            new = 0.5 * (a + b)
+        if abs(new - u) <= 4e-16:
+            return new
+        u = new
+    return u
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _turns(p: Real, start: float, found: Real, work: Real) -> int:
+    """Roots of p' in (start, 1), ascending, into ``found``; their number.
+
+    Each derivative is monotone between the roots of the next one; the fourth is taken to keep
+    its sign on the halves of a sub-step, which its width guarantees.
+    """
+    width = p.shape[0]
+    # quick exit: the straight part of the slope beats everything above it
+    tail = 0.0
+    for m in range(3, width):
+        tail += m * abs(p[m])
+    first = p[1] + 2.0 * p[2] * start
+    last = p[1] + 2.0 * p[2]
+    if (first > tail and last > tail) or (first < -tail and last < -tail):
+        return 0
+    count = 1
+    found[0] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
+    for level in range(3, 0, -1):
+        # work = level-th derivative
+        for m in range(width - level):
+            factor = 1.0
+            for i in range(level):
+                factor *= m + level - i
+            work[m] = factor * p[m + level]
+        q = work[: width - level]
+        fresh = 0
+        a = start
+        fa = _value(q, a)
+        old = found[:count].copy()
+        for i in range(count + 1):
+            b = old[i] if i < count else 1.0
+            fb = _value(q, b)
+            if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < found.shape[0]:
+                found[fresh] = _root(q, 0.0, a, b)
+                fresh += 1
+            a = b
+            fa = fb
+        count = fresh
+    return count
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def step_through(
+    polys: Real,
+    maps: Real,
+    lane: int,
+    h: float,
+    b: float,
+    state: Real,
+    region: int,
+    jacobian: Real,
+    counts: Whole,
+    spent: Real,
+    scratch: Real,
+    found: Real,
+) -> int:
+    """One sub-step of one lane with contact changes, turning points and grazing.
+
+    ``polys`` (lane, 5, K + 1) and ``maps`` (10, lane) of this sub-step; ``state`` (2,) in and
+    out; ``jacobian`` (4,) out: d end/d start row by row; ``counts`` losses of drive contact,
+    back-side impacts; ``spent`` (3,) net time in back, free, drive. Returns the last region.
+    """
+    width = polys.shape[2]
+    p = scratch[0, :width]
+    jacobian[0] = 1.0
+    jacobian[1] = 0.0
+    jacobian[2] = 0.0
+    jacobian[3] = 1.0
+    x0 = state[0] - region * b
+    y0 = state[1]
+    start = -1.0
+    skip = 2  # the edge just crossed (0 lower, 1 upper), not to be crossed in the first piece
+    for _ in range(MOST_CROSSINGS):
+        if region != 0:
+            for m in range(width):
+                p[m] = polys[lane, PHI, m] * x0 + polys[lane, PSI, m] * y0 + polys[lane, NU, m]
+        else:
+            for m in range(width):
+                p[m] = polys[lane, FREE_PSI, m] * y0 + polys[lane, FREE_NU, m]
+            p[0] += x0
+        low = -np.inf
+        high = np.inf
+        if region == 1:
+            low = 0.0
+        elif region == 0:
+            low = -b
+            high = b
+        else:
+            high = 0.0
+        turns = _turns(p, start, found, scratch[1])
+        a = start
+        at = 2.0
+        edge = 2
+        for i in range(turns + 1):
+            e = found[i] if i < turns else 1.0
+            value = _value(p, e)
+            if value < low and skip != 0:
+                at = _root(p, low, a, e)
+                edge = 0
+                break
+            if value > high and skip != 1:
+                at = _root(p, high, a, e)
+                edge = 1
+                break
+            skip = 2
+            a = e
+        if edge == 2:
+            break
+        y = _slope(p, at) / h
+        # Phi of the region left behind, at the crossing
+        time = h * at
+        spent[region + 1] += time
+        if region != 0:
+            f11 = _value(polys[lane, PHI], at)
+            f12 = _value(polys[lane, PSI], at)
+            f21 = _slope(polys[lane, PHI], at) / h
+            f22 = _slope(polys[lane, PSI], at) / h
+        else:
+            f11 = 1.0
+            f12 = _value(polys[lane, FREE_PSI], at)
+            f21 = 0.0
+            f22 = _slope(polys[lane, FREE_PSI], at) / h
+        j11 = f11 * jacobian[0] + f12 * jacobian[2]
+        j12 = f11 * jacobian[1] + f12 * jacobian[3]
+        j21 = f21 * jacobian[0] + f22 * jacobian[2]
+        j22 = f21 * jacobian[1] + f22 * jacobian[3]
+        if edge == 0:
+            if region == 1:
+                counts[0] += 1
+            else:
+                counts[1] += 1
+            # upper edge of the region below; contact is measured from its own edge
+            x = b if region == 1 else 0.0
+            region -= 1
+            skip = 1
+        else:
+            x = 0.0 if region == 0 else -b
+            region += 1
+            skip = 0
+        spent[region + 1] -= time
+        if region != 0:
+            f11 = _value(polys[lane, PHI], at)
+            f12 = _value(polys[lane, PSI], at)
+            f21 = _slope(polys[lane, PHI], at) / h
+            f22 = _slope(polys[lane, PSI], at) / h
+            x -= _value(polys[lane, NU], at)
+            y -= _slope(polys[lane, NU], at) / h
+        else:
+            f11 = 1.0
+            f12 = _value(polys[lane, FREE_PSI], at)
+            f21 = 0.0
+            f22 = _slope(polys[lane, FREE_PSI], at) / h
+            x -= _value(polys[lane, FREE_NU], at)
+            y -= _slope(polys[lane, FREE_NU], at) / h
+        det = f11 * f22 - f12 * f21
+        x0 = (f22 * x - f12 * y) / det
+        y0 = (f11 * y - f21 * x) / det
+        jacobian[0] = (f22 * j11 - f12 * j21) / det
+        jacobian[1] = (f22 * j12 - f12 * j22) / det
+        jacobian[2] = (f11 * j21 - f21 * j11) / det
+        jacobian[3] = (f11 * j22 - f21 * j12) / det
+        start = at
+    if region != 0:
+        f11 = maps[0, lane]
+        f21 = maps[1, lane]
+        f12 = maps[2, lane]
+        f22 = maps[3, lane]
+        state[0] = f11 * x0 + f12 * y0 + maps[4, lane] + region * b
+        state[1] = f21 * x0 + f22 * y0 + maps[5, lane]
+    else:
+        f11 = 1.0
+        f21 = 0.0
+        f12 = maps[6, lane]
+        f22 = maps[7, lane]
+        state[0] = x0 + f12 * y0 + maps[8, lane]
+        state[1] = f22 * y0 + maps[9, lane]
+    j11 = f11 * jacobian[0] + f12 * jacobian[2]
+    j12 = f11 * jacobian[1] + f12 * jacobian[3]
+    j21 = f21 * jacobian[0] + f22 * jacobian[2]
+    j22 = f21 * jacobian[1] + f22 * jacobian[3]
+    jacobian[0] = j11
+    jacobian[1] = j12
+    jacobian[2] = j21
+    jacobian[3] = j22
+    return region
