@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_bvp, solve_ivp
-from scipy.interpolate import CubicSpline
 
 from thermogear.base.errors import InputError
 
@@ -29,7 +29,7 @@ TRANSITION = 2.5e5
 """Reynolds number omega r^2/nu at which the flow over a rotating face is taken turbulent."""
 
 _FAR = 24.0  # thickness of the layer in sqrt(nu/omega): the flow decays as exp(-0.884 z)
-_PRANDTL = (0.05, 1e5)
+_PRANDTL = (0.05, 2e6)
 
 
 @cache
@@ -69,7 +69,7 @@ def rotating_disc_gradient(prandtl: float, exponent: float) -> float:
     p' = p^2 + Pr H p - Pr m F and is integrated from the far field, where p = Pr |H|, to the
     wall: stable for every Pr. Then h = k sqrt(omega/nu) p(0).
 
-    ``prandtl`` 0.05..1e5, ``exponent`` m >= 0. Raises outside.
+    ``prandtl`` 0.05..2e6, ``exponent`` m >= 0. Raises outside.
     """
     if not _PRANDTL[0] <= prandtl <= _PRANDTL[1]:
         raise InputError("prandtl", prandtl, allowed=f"{_PRANDTL[0]} .. {_PRANDTL[1]:g}")
@@ -88,24 +88,28 @@ def rotating_disc_gradient(prandtl: float, exponent: float) -> float:
 
 
 @cache
-def _gradient_table(exponent: float) -> CubicSpline:
-    """ln(-theta'(0)) over ln Pr: smooth, so that few knots give six digits."""
-    knots = np.linspace(np.log(_PRANDTL[0]), np.log(_PRANDTL[1]), 40)
-    values = [np.log(rotating_disc_gradient(float(np.exp(k)), exponent)) for k in knots[1:-1]]
-    return CubicSpline(knots[1:-1], values)
+def _gradient_table(exponent: float) -> Chebyshev:
+    """ln(-theta'(0)) over ln Pr: smooth, so that a low degree gives six digits."""
+
+    def logarithm(ln_pr: Floats) -> Floats:
+        values = [np.log(rotating_disc_gradient(float(np.exp(p)), exponent)) for p in ln_pr]
+        return np.asarray(values)
+
+    ends = [np.log(_PRANDTL[0]), np.log(_PRANDTL[1])]
+    return Chebyshev.interpolate(logarithm, 26, domain=ends)
 
 
 def disc_nusselt(prandtl: ArrayLike, exponent: float = 2.0) -> Floats:
     """Nu/sqrt(Re) of a laminar rotating face [-], for arrays of Prandtl numbers.
 
-    ``prandtl`` Pr [-] 0.1..5e4 of any shape, ``exponent`` m of the wall's excess temperature
+    ``prandtl`` Pr [-] 0.1..1e6 of any shape, ``exponent`` m of the wall's excess temperature
     ~ r^m (0 uniform, 2 growing towards the rim). Interpolates
-    :func:`rotating_disc_gradient` to better than 1e-5. Limits: (8/3)... Pr^(1/3) growth for
-    large Pr; m = 2, Pr = 1 is the Reynolds analogy, -G'(0) = 0.61592.
+    :func:`rotating_disc_gradient` to better than 1e-5. Grows as Pr^(1/3)
+    for large Pr; m = 2, Pr = 1 is the Reynolds analogy, -G'(0) = 0.61592.
     """
     pr = np.asarray(prandtl, dtype=float)
-    if not np.all((pr >= 0.1) & (pr <= 5e4)):
-        raise InputError("prandtl", f"{pr.min():.3g} .. {pr.max():.3g}", allowed="0.1 .. 5e4")
+    if not np.all((pr >= 0.1) & (pr <= 1e6)):
+        raise InputError("prandtl", f"{pr.min():.3g} .. {pr.max():.3g}", allowed="0.1 .. 1e6")
     return np.asarray(np.exp(_gradient_table(float(exponent))(np.log(pr))))
 
 

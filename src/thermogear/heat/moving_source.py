@@ -90,6 +90,7 @@ def moving_source_rise(position: ArrayLike, peclet: float, distribution: str = "
 
 
 _LOWEST, _HIGHEST = 1e-4, 1e5
+_STILL = 1e-8
 
 
 @cache
@@ -269,9 +270,13 @@ def flash_temperature(
     spread_1, spread_2 = (
         m.thermal_conductivity / (m.density * m.specific_heat) for m in (material_1, material_2)
     )
-    for at in zip(*np.nonzero(q), strict=True):
-        peak, _ = exact_two_body(
-            float(v1[at] * b[at] / spread_1), float(v2[at] * b[at] / spread_2), distribution, ratio
+    for at in np.ndindex(q.shape):
+        if q[at] == 0.0:
+            continue
+        # a flank at rest is the limit of a very slow one: it takes next to no heat
+        pe_1, pe_2 = (
+            max(float(v[at] * b[at] / a), _STILL) for v, a in ((v1, spread_1), (v2, spread_2))
         )
+        peak, _ = exact_two_body(pe_1, pe_2, distribution, ratio)
         result[at] = q[at] / one * peak
     return result

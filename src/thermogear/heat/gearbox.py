@@ -1,0 +1,240 @@
+"""The thermal network of a gear pair in its housing, built from geometry, oil and losses.
+
+Nodes: ambient, housing, oil, and of pinion and wheel tooth, body and shaft. The tooth node is
+the T_a, the shaft node the T_x of the radial temperature field. What the drawing of a pair
+does not say - areas, wetting, shaft lengths - stands in :class:`Surroundings`, all of it ours
+and meant to be replaced by a user who knows better.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.base.materials import Lubricant, Material
+from thermogear.heat.convection import rotating_face_convection
+from thermogear.heat.expansion import GearLike
+from thermogear.heat.lubrication import density, kinematic_viscosity
+from thermogear.heat.network import Link, ThermalNetwork
+
+Floats = NDArray[np.float64]
+
+__all__ = [
+    "Losses",
+    "Surroundings",
+    "body_conductances",
+    "face_conductance",
+    "oil_prandtl",
+    "thermal_network",
+]
+
+
+class BodyLike(GearLike, Protocol):
+    """What the heat path through a gear needs besides its profile (SI)."""
+
+    @property
+    def teeth(self) -> int: ...
+
+    @property
+    def face_width(self) -> float: ...
+
+    @property
+    def bore_radius(self) -> float: ...
+
+    @property
+    def tip_radius(self) -> float: ...
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Housing, oil bath, shafts and ambient of a gear pair; every default is ours.
+
+    ``ambient`` [K]; ``housing_area`` [m^2] outside and in touch with the oil mist;
+    ``housing_coefficient`` [W/(m^2 K)] to the air (10..25 by installation);
+    ``oil_housing_coefficient`` [W/(m^2 K)]; ``wetted_share`` of a gear's surface that oil
+    covers (0..1), pinion and wheel; ``shaft_length`` [m] from the gear to its bearings on
+    each side; ``bearing_conductance`` [W/K] of one bearing into the housing; ``oil_mass``,
+    ``housing_mass`` [kg] for the warm-up.
+    """
+
+    ambient: float = 293.15
+    housing_area: float = 0.6
+    housing_coefficient: float = 15.0
+    oil_housing_coefficient: float = 200.0
+    wetted_share: tuple[float, float] = (0.3, 0.3)
+    shaft_length: float = 0.06
+    bearing_conductance: float = 10.0
+    oil_mass: float = 3.0
+    housing_mass: float = 40.0
+    housing_specific_heat: float = 470.0
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            values = np.asarray(getattr(self, entry.name), dtype=float)
+            if not np.all(np.isfinite(values) & (values > 0.0)):
+                raise InputError(f"surroundings.{entry.name}", values, allowed="> 0, finite")
+        if max(self.wetted_share) > 1.0:
+            raise InputError("surroundings.wetted_share", self.wetted_share, allowed="0 < x <= 1")
+
+
+@dataclass(frozen=True, eq=False)
+class Losses:
+    """Heat sources [W], numbers or arrays over operating points.
+
+    ``mesh`` and the share ``partition_1`` of it that enters the pinion's flank; ``churning`` into
+    the oil; ``bearing_1``, ``bearing_2`` (with seals) into the shafts.
+    """
+
+    mesh: ArrayLike
+    partition_1: ArrayLike = 0.5
+    churning: ArrayLike = 0.0
+    bearing_1: ArrayLike = 0.0
+    bearing_2: ArrayLike = 0.0
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            values = np.asarray(getattr(self, entry.name), dtype=float)
+            object.__setattr__(self, entry.name, values)
+            if not np.all(np.isfinite(values) & (values >= 0.0)):
+                raise InputError(f"losses.{entry.name}", f"{values} W", allowed=">= 0, finite")
+        if np.any(np.asarray(self.partition_1) > 1.0):
+            raise InputError("losses.partition_1", self.partition_1, allowed="0 .. 1")
+
+
+def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
+    """Pr = nu rho c/k of an oil [-]; ``temperature`` [K], any shape."""
+    heat = density(lubricant, temperature) * lubricant.specific_heat
+    diffusivity = lubricant.thermal_conductivity / heat
+    return np.asarray(kinematic_viscosity(lubricant, temperature) / diffusivity)
+
+
+def face_conductance(
+    speed: ArrayLike,
+    inner_radius: float,
+    outer_radius: float,
+    lubricant: Lubricant,
+    oil_temperature: ArrayLike,
+) -> Floats:
+    """int h(r) 2 pi r dr over one wetted face of a rotating ring [W/K].
+
+    ``speed`` omega [rad/s], radii [m], ``oil_temperature`` [K] for the oil's properties. h of
+    :func:`rotating_face_convection` with the excess growing as r^2. Shape of speed and
+    temperature; 0 at rest.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    half = 0.5 * (outer_radius - inner_radius)
+    r = 0.5 * (outer_radius + inner_radius) + half * nodes
+    omega, kelvin = np.broadcast_arrays(
+        np.asarray(speed, dtype=float), np.asarray(oil_temperature, dtype=float)
+    )
+    film = rotating_face_convection(
+        omega[..., None],
+        r,
+        kinematic_viscosity(lubricant, kelvin)[..., None],
+        lubricant.thermal_conductivity,
+        oil_prandtl(lubricant, kelvin)[..., None],
+    )
+    return np.asarray(np.sum(film * 2.0 * np.pi * r * half * weights, axis=-1))
+
+
+def body_conductances(gear: BodyLike) -> tuple[float, float]:
+    """(tooth to body, body to bore) conductances of a gear by steady conduction [W/K].
+
+    The body node lies at r_m = sqrt((r_x^2 + r_f^2)/2), which halves the ring's area:
+    ring parts 2 pi k b/ln(r_o/r_i). The teeth carry the heat from the pitch circle to the root
+    circle through z times the pitch thickness. In series, without other exchange, bore and
+    root circle differ by Q ln(r_f/r_x)/(2 pi k b), the radial field's own value.
+    """
+    k, b = gear.material.thermal_conductivity, gear.face_width
+    middle = float(np.sqrt(0.5 * (gear.bore_radius**2 + gear.root_radius**2)))
+    ring = 2.0 * np.pi * k * b
+    pitch = gear.pitch_radius
+    thickness = 2.0 * pitch * float(gear.half_thickness_angle(pitch))
+    through_teeth = (pitch - gear.root_radius) / (k * b * thickness * gear.teeth)
+    outer = through_teeth + np.log(gear.root_radius / middle) / ring
+    return float(1.0 / outer), float(ring / np.log(middle / gear.bore_radius))
+
+
+def _heat_capacity(material: Material, area: float, width: float) -> float:
+    return material.density * material.specific_heat * area * width
+
+
+def thermal_network(
+    pinion: BodyLike,
+    wheel: BodyLike,
+    speed: ArrayLike,
+    losses: Losses,
+    lubricant: Lubricant,
+    oil_temperature: ArrayLike,
+    surroundings: Surroundings | None = None,
+    measured: dict[str, ArrayLike] | None = None,
+) -> ThermalNetwork:
+    """The heat balance of a gear pair as a :class:`ThermalNetwork`.
+
+    Nodes ambient, housing, oil, pinion_tooth, pinion_body, pinion_shaft, wheel_tooth,
+    wheel_body, wheel_shaft.
+
+    ``speed`` pinion [rad/s], ``losses``, ``oil_temperature`` [K] at which the oil's properties
+    are taken (a guess; repeat with the result), ``surroundings`` (default: ours), ``measured``
+    temperatures [K] that hold single nodes, such as {"oil": 353.15} of a tempered bath.
+    Arrays over operating points of one shape. Flanks and faces give heat to the oil by the
+    similarity solution over the wetted share, teeth with the coefficient at their pitch
+    circle.
+    """
+    around = surroundings or Surroundings()
+    omega_1 = np.asarray(speed, dtype=float)
+    omegas = omega_1, omega_1 * pinion.teeth / wheel.teeth
+    links = [
+        Link("oil", "housing", around.oil_housing_coefficient * around.housing_area),
+        Link("housing", "ambient", around.housing_coefficient * around.housing_area),
+    ]
+    capacities = {
+        "oil": around.oil_mass * lubricant.specific_heat,
+        "housing": around.housing_mass * around.housing_specific_heat,
+    }
+    nu = kinematic_viscosity(lubricant, oil_temperature)
+    prandtl = oil_prandtl(lubricant, oil_temperature)
+    for name, gear, omega, share in zip(
+        ("pinion", "wheel"), (pinion, wheel), omegas, around.wetted_share, strict=True
+    ):
+        tooth, body, shaft = f"{name}_tooth", f"{name}_body", f"{name}_shaft"
+        outer, inner = body_conductances(gear)
+        height = gear.tip_radius - gear.root_radius
+        flanks = 2.0 * gear.teeth * gear.face_width * height
+        film = rotating_face_convection(
+            omega, gear.pitch_radius, nu, lubricant.thermal_conductivity, prandtl
+        )
+        faces = 2.0 * face_conductance(
+            omega, gear.bore_radius, gear.root_radius, lubricant, oil_temperature
+        )
+        steel, bore = gear.material, gear.bore_radius
+        along = steel.thermal_conductivity * np.pi * bore**2 / around.shaft_length
+        mount = 2.0 / (1.0 / along + 1.0 / around.bearing_conductance)
+        links += [
+            Link(tooth, body, outer),
+            Link(body, shaft, inner),
+            Link(tooth, "oil", share * film * flanks),
+            Link(body, "oil", share * faces),
+            Link(shaft, "housing", mount),
+        ]
+        ring = np.pi * (gear.root_radius**2 - bore**2)
+        rim = 0.5 * np.pi * (gear.tip_radius**2 - gear.root_radius**2)
+        capacities[tooth] = _heat_capacity(steel, rim, gear.face_width)
+        capacities[body] = _heat_capacity(steel, ring, gear.face_width)
+        capacities[shaft] = _heat_capacity(
+            steel, np.pi * bore**2, gear.face_width + 2.0 * around.shaft_length
+        )
+    heat = np.asarray(losses.mesh)
+    sources = {
+        "pinion_tooth": heat * losses.partition_1,
+        "wheel_tooth": heat * (1.0 - np.asarray(losses.partition_1)),
+        "oil": losses.churning,
+        "pinion_shaft": losses.bearing_1,
+        "wheel_shaft": losses.bearing_2,
+    }
+    fixed = {"ambient": around.ambient, **(measured or {})}
+    return ThermalNetwork(tuple(links), sources, fixed, capacities)

@@ -1,0 +1,271 @@
+"""What a thermometer says against what the surface has: infrared and embedded thermocouple.
+
+The corrected temperature comes with its standard uncertainty, which carries into the T_a and
+T_x of the radial field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.constants import Boltzmann, Planck, speed_of_light
+from scipy.optimize import brentq
+
+from thermogear.base.errors import InputError
+
+Floats = NDArray[np.float64]
+
+__all__ = [
+    "InfraredReading",
+    "ThermocoupleReading",
+    "band_radiance",
+    "field_uncertainty",
+    "infrared_signal",
+    "infrared_temperature",
+    "surface_temperature",
+]
+
+Band = tuple[float, float] | None
+_C2 = Planck * speed_of_light / Boltzmann  # m K
+_LEAST, _GREATEST = 150.0, 3000.0  # K, where the inversion looks
+
+
+def band_radiance(temperature: ArrayLike, band: Band = None) -> Floats:
+    """Black-body radiance a detector collects, up to a constant factor [-].
+
+    ``band`` None: all wavelengths, T^4. (l1, l2) [m]: Planck's law integrated over the band;
+    l1 = l2: at one wavelength, 1/[exp(c2/(l T)) - 1].
+
+    ``temperature`` [K] > 0, any shape. Only ratios matter in the correction.
+    """
+    t = np.asarray(temperature, dtype=float)
+    if not np.all(np.isfinite(t) & (t > 0.0)):
+        raise InputError("temperature", f"{t} K", allowed="> 0 K, finite")
+    if band is None:
+        return np.asarray((t / 300.0) ** 4)
+    low, high = band
+    if not 0.0 < low <= high:
+        raise InputError("band", f"{low} .. {high} m", allowed="0 < shorter <= longer")
+    if low == high:
+        return np.asarray(1.0 / np.expm1(_C2 / (low * t)))
+    nodes, weights = np.polynomial.legendre.leggauss(32)
+    wave = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+    spectrum = (low / wave) ** 5 / np.expm1(_C2 / (wave * t[..., None]))
+    return np.asarray(0.5 * np.sum(weights * spectrum, axis=-1))
+
+
+def infrared_signal(
+    temperature: ArrayLike,
+    emissivity: ArrayLike,
+    transmission: ArrayLike,
+    surroundings: ArrayLike,
+    path: ArrayLike,
+    band: Band = None,
+) -> Floats:
+    """S = eps tau L(T) + (1 - eps) tau L(T_env) + (1 - tau) L(T_path), L of the band [-].
+
+    ``temperature`` T [K] of the surface, ``emissivity`` eps, ``transmission`` tau of window and
+    air, ``surroundings`` T_env [K] that the surface mirrors, ``path`` T_path [K] of the window.
+    Any shape. eps = tau = 1 gives L(T).
+    """
+    eps, tau = np.asarray(emissivity, dtype=float), np.asarray(transmission, dtype=float)
+    own = eps * tau * band_radiance(temperature, band)
+    mirrored = (1.0 - eps) * tau * band_radiance(surroundings, band)
+    return np.asarray(own + mirrored + (1.0 - tau) * band_radiance(path, band))
+
+
+def _invert(radiance: float, band: Band) -> float:
+    if not radiance > band_radiance(_LEAST, band):
+        raise InputError(
+            "infrared reading",
+            radiance,
+            why="reflections and the window alone are brighter than the reading",
+            fix="check emissivity, transmission and the surroundings' temperature",
+        )
+    return float(
+        brentq(lambda t: float(band_radiance(t, band)) - radiance, _LEAST, _GREATEST, xtol=1e-10)
+    )
+
+
+def infrared_temperature(
+    indicated: ArrayLike,
+    emissivity: float,
+    transmission: float,
+    surroundings: float,
+    path: float,
+    band: Band = None,
+    indicated_emissivity: float = 1.0,
+) -> Floats:
+    """True surface temperature behind an infrared reading [K].
+
+    Solves :func:`infrared_signal` (T; eps, tau) = signal that made the instrument, set to
+    ``indicated_emissivity`` and no window, say ``indicated`` [K].
+
+    ``emissivity`` eps in (0, 1], ``transmission`` tau in (0, 1], ``surroundings``, ``path`` [K].
+    Any shape. Raises when the reading is darker than its own reflections.
+    """
+    for name, value in (
+        ("emissivity", emissivity),
+        ("transmission", transmission),
+        ("indicated emissivity", indicated_emissivity),
+    ):
+        if not 0.0 < value <= 1.0:
+            raise InputError(name, value, allowed="0 < value <= 1")
+    reading = np.asarray(indicated, dtype=float)
+    flat = [
+        _corrected(
+            float(value), emissivity, transmission, surroundings, path, band, indicated_emissivity
+        )
+        for value in np.ravel(reading)
+    ]
+    return np.asarray(flat).reshape(reading.shape)
+
+
+def _corrected(
+    indicated: float,
+    emissivity: float,
+    transmission: float,
+    surroundings: float,
+    path: float,
+    band: Band,
+    set_to: float = 1.0,
+) -> float:
+    signal = infrared_signal(indicated, set_to, 1.0, surroundings, path, band)
+    mirrored = (1.0 - emissivity) * transmission * band_radiance(surroundings, band)
+    window = (1.0 - transmission) * band_radiance(path, band)
+    return _invert(float((signal - mirrored - window) / (emissivity * transmission)), band)
+
+
+def surface_temperature(
+    indicated: ArrayLike, flux: ArrayLike, depth: ArrayLike, conductivity: ArrayLike
+) -> Floats:
+    """Surface temperature above an embedded thermocouple, T + q d/k [K].
+
+    ``indicated`` T [K] at depth, ``flux`` q [W/m^2] through the surface inwards, ``depth`` d [m]
+    below it, ``conductivity`` k [W/(m K)]. Any shape: steady conduction, one dimension.
+    """
+    drop = np.asarray(flux, dtype=float) * np.asarray(depth) / np.asarray(conductivity)
+    return np.asarray(np.asarray(indicated, dtype=float) + drop)
+
+
+def _propagate(
+    value: Callable[..., float], best: dict[str, float], spread: dict[str, float]
+) -> tuple[float, dict[str, float]]:
+    """Standard uncertainty by central differences, independent inputs; each one's part [K]."""
+    parts: dict[str, float] = {}
+    for name, sigma in spread.items():
+        if sigma == 0.0:
+            parts[name] = 0.0
+            continue
+        step = 1e-3 * sigma
+        up = value(**{**best, name: best[name] + step})
+        down = value(**{**best, name: best[name] - step})
+        parts[name] = abs(up - down) / (2.0 * step) * sigma
+    return float(np.sqrt(sum(p**2 for p in parts.values()))), parts
+
+
+@dataclass(frozen=True)
+class InfraredReading:
+    """One infrared reading with what is known of its circumstances; ``u_...`` are sigmas.
+
+    ``indicated`` [K] by an instrument set to emissivity 1, ``emissivity``, ``transmission`` of
+    the window, ``surroundings`` and ``path`` [K], ``band`` (l1, l2) [m] or None for total
+    radiation.
+    """
+
+    indicated: float
+    emissivity: float
+    surroundings: float
+    transmission: float = 1.0
+    path: float = 293.15
+    band: Band = None
+    u_indicated: float = 0.0
+    u_emissivity: float = 0.0
+    u_transmission: float = 0.0
+    u_surroundings: float = 0.0
+    u_path: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("emissivity", "transmission"):
+            if not 0.0 < getattr(self, name) <= 1.0:
+                raise InputError(name, getattr(self, name), allowed="0 < value <= 1")
+        self.temperature()
+
+    def _value(self, **changed: float) -> float:
+        return _corrected(**changed, band=self.band)
+
+    def _inputs(self) -> dict[str, float]:
+        names = ("indicated", "emissivity", "transmission", "surroundings", "path")
+        return {name: getattr(self, name) for name in names}
+
+    def temperature(self) -> float:
+        """Corrected surface temperature [K]."""
+        return self._value(**self._inputs())
+
+    def uncertainty(self) -> float:
+        """Its standard uncertainty [K]."""
+        spread = {name: getattr(self, f"u_{name}") for name in self._inputs()}
+        return _propagate(self._value, self._inputs(), spread)[0]
+
+
+@dataclass(frozen=True)
+class ThermocoupleReading:
+    """One embedded thermocouple: ``indicated`` [K] at ``depth`` [m] under ``flux`` [W/m^2]."""
+
+    indicated: float
+    flux: float
+    depth: float
+    conductivity: float
+    u_indicated: float = 0.0
+    u_flux: float = 0.0
+    u_depth: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.depth >= 0.0 and self.conductivity > 0.0 and self.indicated > 0.0):
+            raise InputError(
+                "thermocouple",
+                f"{self.indicated} K at {self.depth} m",
+                allowed="> 0 K, depth >= 0, conductivity > 0",
+            )
+
+    def temperature(self) -> float:
+        """Surface temperature [K]."""
+        return float(surface_temperature(self.indicated, self.flux, self.depth, self.conductivity))
+
+    def uncertainty(self) -> float:
+        """Its standard uncertainty [K]."""
+
+        def value(indicated: float, flux: float, depth: float) -> float:
+            return indicated + flux * depth / self.conductivity
+
+        best = {"indicated": self.indicated, "flux": self.flux, "depth": self.depth}
+        spread = {name: getattr(self, f"u_{name}") for name in best}
+        return _propagate(value, best, spread)[0]
+
+
+def field_uncertainty(
+    function: Callable[[float, float], float],
+    addendum: tuple[float, float],
+    bore: tuple[float, float],
+) -> float:
+    """Standard uncertainty of anything computed from T_a and T_x, independent readings.
+
+    ``function`` (T_a, T_x) [K] -> value, ``addendum`` and ``bore`` each (temperature,
+    uncertainty) [K]. Central differences over one hundredth of a sigma: first order.
+    """
+    total = 0.0
+    pairs = (addendum, bore)
+    for index, (_, sigma) in enumerate(pairs):
+        if sigma == 0.0:
+            continue
+        step = 0.01 * sigma
+        ends = []
+        for sign in (1.0, -1.0):
+            point = [p[0] for p in pairs]
+            point[index] += sign * step
+            ends.append(function(point[0], point[1]))
+        total += ((ends[0] - ends[1]) / (2.0 * step) * sigma) ** 2
+    return float(np.sqrt(total))

@@ -1,0 +1,205 @@
+"""Lumped thermal networks: nodes, conductances, heat sources; steady state and warm-up.
+
+G T = q steadily and C dT/dt = q - G T in time, with given temperatures on some nodes. Every
+conductance, source and given temperature may be an array over operating points: one call
+solves them all. Within one call the network is linear, so that the time course is exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError, nearest
+
+Floats = NDArray[np.float64]
+
+__all__ = ["Link", "SteadyState", "ThermalNetwork"]
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A thermal conductance [W/K] between two named nodes; number or array, >= 0."""
+
+    first: str
+    second: str
+    conductance: ArrayLike
+
+    def __post_init__(self) -> None:
+        values = np.asarray(self.conductance, dtype=float)
+        object.__setattr__(self, "conductance", values)
+        if self.first == self.second:
+            raise InputError("link", f"{self.first} to itself", allowed="two different nodes")
+        if not np.all(np.isfinite(values) & (values >= 0.0)):
+            raise InputError(
+                f"conductance {self.first}-{self.second}", values, allowed=">= 0 W/K, finite"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """Temperatures [K] by node, heat [W] that leaves through each given node, and the residual.
+
+    ``residual`` is the greatest heat imbalance of a free node [W].
+    """
+
+    temperatures: Mapping[str, Floats]
+    heat_out: Mapping[str, Floats]
+    residual: Floats
+
+    def __getitem__(self, node: str) -> Floats:
+        return self.temperatures[node]
+
+
+@dataclass(frozen=True, eq=False)
+class ThermalNetwork:
+    """Nodes joined by conductances, heated by sources, some held at given temperatures.
+
+    ``links``; ``sources`` [W] by node; ``fixed`` [K] by node (the ambient, a measured node);
+    ``capacities`` [J/K] by node, needed for the time course only. Numbers or arrays of one
+    broadcastable shape. Raises for unknown nodes, and when a node has no way to a given
+    temperature.
+    """
+
+    links: tuple[Link, ...]
+    sources: Mapping[str, ArrayLike]
+    fixed: Mapping[str, ArrayLike]
+    capacities: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = self.nodes
+        for group in (self.sources, self.fixed, self.capacities):
+            for name in group:
+                if name not in names:
+                    raise InputError("thermal node", repr(name), fix=nearest(name, names))
+        for name, value in self.fixed.items():
+            kelvin = np.asarray(value, dtype=float)
+            if not np.all(np.isfinite(kelvin) & (kelvin > 0.0)):
+                raise InputError(f"temperature of {name}", f"{kelvin} K", allowed="> 0 K, finite")
+        reached = set(self.fixed)
+        for _ in names:
+            for link in self.links:
+                ends = {link.first, link.second}
+                if ends & reached and np.all(np.asarray(link.conductance) > 0.0):
+                    reached |= ends
+        lost = [name for name in names if name not in reached]
+        if lost:
+            raise InputError(
+                "thermal network",
+                ", ".join(lost),
+                why="no conductance leads from there to a given temperature",
+                fix="give the ambient, or a temperature on that node",
+            )
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """All node names in the order the links name them."""
+        seen: dict[str, None] = {}
+        for link in self.links:
+            seen[link.first] = None
+            seen[link.second] = None
+        return tuple(seen)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The nodes whose temperature is computed."""
+        return tuple(name for name in self.nodes if name not in self.fixed)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Common shape of all conductances, sources and given temperatures."""
+        values = [link.conductance for link in self.links]
+        values += [*self.sources.values(), *self.fixed.values()]
+        return np.broadcast_shapes(*(np.shape(v) for v in values))
+
+    def with_fixed(self, **temperatures: ArrayLike) -> ThermalNetwork:
+        """The same network with further nodes held at given (measured) temperatures [K]."""
+        return ThermalNetwork(
+            self.links, self.sources, {**self.fixed, **temperatures}, self.capacities
+        )
+
+    def _matrices(self) -> tuple[Floats, Floats, Floats]:
+        """(Laplacian over all nodes, sources, given temperatures or 0), batch axes first."""
+        names, shape = self.nodes, self.shape
+        index = {name: i for i, name in enumerate(names)}
+        laplacian = np.zeros((*shape, len(names), len(names)))
+        for link in self.links:
+            i, j = index[link.first], index[link.second]
+            conductance = np.asarray(link.conductance, dtype=float)
+            laplacian[..., i, i] += conductance
+            laplacian[..., j, j] += conductance
+            laplacian[..., i, j] -= conductance
+            laplacian[..., j, i] -= conductance
+        heat = np.zeros((*shape, len(names)))
+        for name, value in self.sources.items():
+            heat[..., index[name]] += np.asarray(value, dtype=float)
+        given = np.zeros((*shape, len(names)))
+        for name, value in self.fixed.items():
+            given[..., index[name]] = value
+        return laplacian, heat, given
+
+    def _indices(self) -> tuple[list[int], list[int]]:
+        names = self.nodes
+        free = [i for i, name in enumerate(names) if name not in self.fixed]
+        return free, [i for i in range(len(names)) if i not in free]
+
+    def _solve(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """(free Laplacian, all temperatures, Laplacian, sources)."""
+        laplacian, heat, given = self._matrices()
+        free, held = self._indices()
+        temperature = given.copy()
+        inner = laplacian[..., free, :][..., :, free]
+        if free:
+            across = laplacian[..., free, :][..., :, held]
+            # relative to one given temperature: no digits lost to the absolute scale
+            datum = given[..., held[:1]]
+            push = heat[..., free] - np.einsum("...ij,...j->...i", across, given[..., held] - datum)
+            rise = np.linalg.solve(inner, push[..., None])[..., 0]
+            temperature[..., free] = rise + datum
+        return inner, temperature, laplacian, heat
+
+    def steady(self) -> SteadyState:
+        """The steady state; every array has the network's ``shape``."""
+        _, temperature, laplacian, heat = self._solve()
+        free, held = self._indices()
+        datum = temperature[..., :1]
+        flow = heat - np.einsum("...ij,...j->...i", laplacian, temperature - datum)
+        names = self.nodes
+        imbalance = np.max(np.abs(flow[..., free]), axis=-1) if free else np.zeros(self.shape)
+        return SteadyState(
+            {name: temperature[..., i] for i, name in enumerate(names)},
+            {names[i]: flow[..., i] for i in held},
+            np.asarray(imbalance),
+        )
+
+    def transient(self, times: ArrayLike, initial: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+        """Temperatures [K] at ``times`` [s] from ``initial`` [K] by node, shape (..., times).
+
+        Exact for constant conductances: the modes of C^-1/2 G C^-1/2 decay as exp(-lambda t).
+        Raises when a free node has no capacity or no initial temperature.
+        """
+        names = self.nodes
+        free, held = self._indices()
+        for label, group in (("capacity", self.capacities), ("initial temperature", initial)):
+            missing = [names[i] for i in free if names[i] not in group]
+            if missing:
+                raise InputError(f"{label} of", ", ".join(missing), why="the warm-up needs it")
+        inner, steady, _, _ = self._solve()
+        root = np.sqrt(np.array([self.capacities[names[i]] for i in free], dtype=float))
+        if not np.all(root > 0.0):
+            raise InputError("capacity", root**2, allowed="> 0 J/K")
+        rates, modes = np.linalg.eigh(inner / (root[:, None] * root[None, :]))
+        start = np.stack(
+            [np.broadcast_to(np.asarray(initial[names[i]], float), self.shape) for i in free], -1
+        )
+        away = np.einsum("...ji,...j->...i", modes, root * (start - steady[..., free]))
+        t = np.asarray(times, dtype=float)
+        decay = np.exp(-rates[..., None] * t)
+        back = np.einsum("...ij,...j,...jt->...it", modes, away, decay) / root[:, None]
+        out = {names[i]: steady[..., i, None] + np.zeros(t.shape) for i in held}
+        for k, i in enumerate(free):
+            out[names[i]] = steady[..., i, None] + back[..., k, :]
+        return {name: out[name] for name in names}

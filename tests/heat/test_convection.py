@@ -1,0 +1,126 @@
+"""Rotating faces: the similarity solution's published numbers, analogies, drag."""
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_simpson, simpson, solve_ivp
+
+from thermogear.base.errors import InputError
+from thermogear.heat.convection import (
+    TRANSITION,
+    disc_nusselt,
+    disc_torque,
+    rotating_disc_flow,
+    rotating_disc_gradient,
+    rotating_face_convection,
+)
+
+
+def test_von_karman_flow_meets_its_known_wall_values() -> None:
+    radial, swirl, inflow = rotating_disc_flow()
+    assert radial == pytest.approx(0.51023, abs=5e-6)
+    assert swirl == pytest.approx(-0.61592, abs=5e-6)
+    assert inflow == pytest.approx(0.88447, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("prandtl", "uniform", "growing"),
+    [
+        (0.71, 0.3259, 0.5185),
+        (1.0, 0.3962, 0.6159),
+        (10.0, 1.1341, 1.6206),
+        (300.0, 3.9632, 5.4879),
+        (1000.0, 6.0161, 8.2972),
+    ],
+)
+def test_published_gradients_to_four_digits(prandtl: float, uniform: float, growing: float) -> None:
+    assert rotating_disc_gradient(prandtl, 0.0) == pytest.approx(uniform, abs=6e-5)
+    assert rotating_disc_gradient(prandtl, 2.0) == pytest.approx(growing, abs=6e-5)
+    assert disc_nusselt(prandtl, 0.0) == pytest.approx(uniform, abs=6e-5)
+
+
+def test_reynolds_analogy() -> None:
+    """T ~ r^2 at Pr = 1 obeys the equation of the swirl: -theta'(0) = -G'(0)."""
+    assert rotating_disc_gradient(1.0, 2.0) == pytest.approx(-rotating_disc_flow()[1], rel=1e-7)
+
+
+def test_uniform_disc_against_its_closed_integral() -> None:
+    """m = 0: theta' ~ exp(Pr int H), an independent integration of the flow from the wall."""
+    radial, swirl, _ = rotating_disc_flow()
+
+    def slope(z: float, y: np.ndarray) -> list[float]:
+        f, df, g, dg, h = y
+        return [df, f**2 - g**2 + h * df, dg, 2 * f * g + h * dg, -2 * f]
+
+    z = np.linspace(0.0, 4.0, 4001)
+    flow = solve_ivp(slope, (0, 4), [0, radial, 1, swirl, 0], t_eval=z, rtol=1e-10, atol=1e-12)
+    weight = np.exp(10.0 * cumulative_simpson(flow.y[4], x=z, initial=0.0))
+    assert 1.0 / simpson(weight, x=z) == pytest.approx(rotating_disc_gradient(10.0, 0.0), rel=1e-5)
+
+
+def test_large_prandtl_grows_as_the_cube_root_and_gear_formula_is_far_off() -> None:
+    ratio = rotating_disc_gradient(8e5, 2.0) / rotating_disc_gradient(1e5, 2.0)
+    assert ratio == pytest.approx(2.0, rel=5e-3)
+    assert rotating_disc_gradient(1000.0, 0.0) == pytest.approx(0.62 * 10.0, rel=0.05)
+    assert rotating_disc_gradient(1000.0, 2.0) == pytest.approx(0.85 * 10.0, rel=0.05)
+    usual = 0.308 * np.sqrt(4.0) * np.sqrt(np.array([0.71, 300.0, 1000.0]))
+    excess = usual / disc_nusselt([0.71, 300.0, 1000.0], 2.0) - 1.0
+    assert excess == pytest.approx([0.001, 0.94, 1.35], abs=0.01)
+
+
+def test_interpolation_is_as_good_as_the_solution() -> None:
+    probe = np.geomspace(0.11, 9e5, 12)
+    exact = [rotating_disc_gradient(float(p), 2.0) for p in probe]
+    assert disc_nusselt(probe) == pytest.approx(exact, rel=1e-5)
+
+
+def test_face_coefficient_laminar_turbulent_and_at_rest() -> None:
+    nu, k, pr, omega = 2e-5, 0.135, 300.0, 100.0
+    laminar = rotating_face_convection(omega, [0.05, 0.1], nu, k, pr)
+    expected = 5.4879 * k * np.sqrt(omega / nu)
+    assert laminar == pytest.approx(np.full(2, expected), rel=1e-4)
+    assert rotating_face_convection(0.0, 0.1, nu, k, pr) == 0.0
+    radius = np.sqrt(2.0 * TRANSITION * nu / omega)
+    turbulent = rotating_face_convection(omega, radius, nu, k, pr)
+    assert turbulent > rotating_face_convection(omega, 0.5 * radius, nu, k, pr)
+
+
+def test_turbulent_law_is_the_analogy_of_von_karmans_torque() -> None:
+    """m = 2, Pr = 1: Nu = 0.0267 Re^0.8, the wall stress of C_M = 0.073 Re^-0.2 per face."""
+    nusselt = rotating_face_convection(1.0, 1.0, 1e-6, 1.0, 1.0) / (1e6) ** 0.8
+    assert nusselt == pytest.approx(0.073 * 4.6 / (4.0 * np.pi), rel=5e-3)
+
+
+def test_torque_of_a_wholly_immersed_disc() -> None:
+    """C_M = 3.87/sqrt(Re) laminar and 0.146 Re^-0.2 turbulent, both faces."""
+    rho, nu, big = 850.0, 4e-5, 0.1
+    for omega, coefficient in ((50.0, 3.87), (4000.0, 0.146)):
+        reynolds = omega * big**2 / nu
+        power = -0.5 if reynolds < TRANSITION else -0.2
+        expected = coefficient * reynolds**power * 0.5 * rho * omega**2 * big**5
+        assert disc_torque(omega, big, rho, nu) == pytest.approx(expected, rel=5e-3)
+
+
+def test_torque_grows_with_immersion_and_halves_at_the_axis() -> None:
+    depths = np.linspace(0.0, 2.0, 21)
+    torque = disc_torque(50.0, 0.1, 850.0, 4e-5, depths)
+    assert torque[0] == 0.0
+    assert np.all(np.diff(torque) > 0.0)
+    assert torque[10] == pytest.approx(0.5 * torque[20], rel=1e-6)
+    # what is not wetted below is wetted above: the two parts make a whole disc
+    assert torque + torque[::-1] == pytest.approx(np.full(21, torque[20]), rel=1e-5)
+    assert disc_torque(0.0, 0.1, 850.0, 4e-5, 1.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: disc_nusselt(0.01), "prandtl: got 0.01 .. 0.01; allowed 0.1 .. 1e6"),
+        (lambda: rotating_disc_gradient(1.0, -1.0), "exponent: got -1.0; allowed >= 0"),
+        (lambda: rotating_disc_gradient(1e8, 2.0), "prandtl: got 100000000.0; allowed 0.05"),
+        (lambda: disc_torque(1.0, 0.1, 850.0, 4e-5, 2.5), "immersion: got 2.5 .. 2.5"),
+    ],
+)
+def test_impossible_input_is_refused(call, message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError) as caught:
+        call()
+    assert str(caught.value).startswith(message)

@@ -1,0 +1,90 @@
+"""Losses: the loss factor against its own integral, published cases, momentum and units."""
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.heat.laws import schlenk
+from thermogear.heat.losses import (
+    bearing_loss,
+    churning_loss,
+    efficiency,
+    gear_loss_factor,
+    jet_loss,
+    mesh_loss,
+    seal_loss,
+)
+
+
+def fzg_c() -> GearPair:
+    """16/24, module 4.5 mm, x 0.1817/0.1715, b 14 mm."""
+    pinion = Gear(16, 4.5e-3, profile_shift=0.1817, face_width=0.014, bore_radius=0.015)
+    wheel = Gear(24, 4.5e-3, profile_shift=0.1715, face_width=0.014, bore_radius=0.02)
+    return GearPair(pinion, wheel, centre_distance=0.0915003)
+
+
+def factor_of(pair: GearPair) -> float:
+    path, pitch = pair.path, pair.base_pitch
+    approach, recess = (path.c - path.a) / pitch, (path.e - path.c) / pitch
+    return float(gear_loss_factor(pair.pinion.teeth, pair.ratio, approach, recess))
+
+
+def test_published_loss_factor_and_loss_of_fzg_c() -> None:
+    """H_V 0.1986; 200 Nm at 1500 1/min with mu 0.0449: 280.0 W."""
+    pair = fzg_c()
+    factor = factor_of(pair)
+    assert factor == pytest.approx(0.1986, abs=1e-4)
+    mu = schlenk(5912.1 / 0.014, 4.38893, 8.38224e-3, 13.28e-3, 0.355e-6)
+    loss = mesh_loss(200.0 * 1500.0 * np.pi / 30.0, mu, factor)
+    assert loss == pytest.approx(280.0, rel=1e-3)
+
+
+def test_published_loss_factor_of_a_30_30_pair() -> None:
+    """Module 2 mm, 30/30, a = 60 mm: H_V 0.1494, contact ratio 1.65, path 9.76 mm."""
+    pair = GearPair(Gear(30, 2e-3), Gear(30, 2e-3), centre_distance=0.060)
+    assert factor_of(pair) == pytest.approx(0.1494, abs=1e-4)
+    assert pair.contact_ratio == pytest.approx(1.65, abs=5e-3)
+    assert (pair.path.e - pair.path.a) * 1e3 == pytest.approx(9.76, abs=5e-3)
+
+
+@pytest.mark.parametrize("pair", [fzg_c(), GearPair(Gear(25, 5e-3), Gear(75, 5e-3))])
+def test_loss_factor_is_its_own_integral(pair: GearPair) -> None:
+    """Mean of |v_s| times the halved load over the transmitted power, piece by piece."""
+    path, pitch = pair.path, pair.base_pitch
+    lost = 0.0
+    for start, end, share in (
+        (path.a, path.b, 0.5),
+        (path.b, path.c, 1.0),
+        (path.c, path.d, 1.0),
+        (path.d, path.e, 0.5),
+    ):
+        s = np.linspace(start, end, 201)
+        lost += simpson(share * np.abs(s - path.c), x=s)
+    slip = (1.0 + 1.0 / pair.ratio) / pair.pinion.base_radius
+    assert slip * lost / pitch == pytest.approx(factor_of(pair), rel=1e-9)
+
+
+def test_churning_is_torque_times_speed_and_grows_with_both() -> None:
+    speed = np.array([0.0, 50.0, 100.0])
+    loss = churning_loss(speed, 0.1, 850.0, 4e-5, 0.4)
+    assert loss[0] == 0.0
+    assert loss[2] / loss[1] == pytest.approx(2.0**2.5, rel=1e-12)  # laminar
+
+
+def test_jet_is_the_momentum_theorem() -> None:
+    """Oil at rest brought to the pitch speed takes twice its kinetic energy."""
+    v, flow = 100.0 * 0.05, 1e-5
+    assert jet_loss(100.0, 0.05, 850.0, flow) == pytest.approx(850.0 * flow * v**2)
+    assert jet_loss(100.0, 0.05, 850.0, flow, -v) == 0.0
+
+
+def test_seal_in_the_units_of_its_source() -> None:
+    """7.69e-6 d^2 n with mm and 1/min."""
+    assert seal_loss(0.030, 1500.0 * np.pi / 30.0) == pytest.approx(7.69e-6 * 900.0 * 1500.0)
+
+
+def test_bearing_and_efficiency() -> None:
+    assert bearing_loss(2000.0, 0.03, 100.0) == pytest.approx(0.0015 * 2000.0 * 0.015 * 100.0)
+    assert efficiency(1000.0, 20.0) == pytest.approx(0.98)
+    assert np.isnan(efficiency(0.0, 20.0))
