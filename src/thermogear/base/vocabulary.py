@@ -83,6 +83,10 @@ QUANTITIES: dict[str, Quantity] = {
     "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
     "cold_half_backlash": Quantity("m", "cold half backlash", "b"),
     "thermal_error": Quantity("m", "kinematic error made by heat", "e_th"),
+    "spring_error": Quantity(
+        "m", "error of the one-spring mesh force, mean removed (elasticity not in it)", "e_0"
+    ),
+    "transmission_error": Quantity("m", "static transmission error under load", "δ"),
     "jam_temperature": Quantity(
         "K",
         "pinion addendum temperature at which the backlash is used up, "
@@ -104,6 +108,12 @@ QUANTITIES: dict[str, Quantity] = {
     "pinion_body_stiffness": Quantity("N/m", "body stiffness, pinion", "k_f1"),
     "wheel_body_stiffness": Quantity("N/m", "body stiffness, wheel", "k_f2"),
     "mean_stiffness": Quantity("N/m", "mesh stiffness, time mean", "k_m"),
+    "rim_stiffness": Quantity(
+        "N/m", "mean stiffness of the loaded contact, body without wind-up (rim)", "k_rim"
+    ),
+    "bore_clamped_stiffness": Quantity(
+        "N/m", "mean stiffness of the loaded contact, body clamped at its bore", "k_bore"
+    ),
     "peak_to_peak_stiffness": Quantity("N/m", "mesh stiffness, peak to peak", "Δk"),
     "mid_range_stiffness": Quantity("N/m", "mesh stiffness, mid-range (max + min)/2", "k_mid"),
     # dimensionless numbers of the equation of motion

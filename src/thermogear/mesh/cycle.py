@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -20,6 +21,7 @@ from thermogear.gears.contact import (
     rolling_velocities,
     sliding_velocity,
 )
+from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.contact_state import ContactState
 from thermogear.heat.expansion import base_circle_growth
@@ -32,7 +34,7 @@ from thermogear.heat.temperature import (
     flash_factor,
     heat_partition,
 )
-from thermogear.mesh.elastic import ElasticPair
+from thermogear.mesh.elastic import ElasticPair, elastic_pair, mean_stiffness_of_body
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, hot_backlash, thesis_thermal_stiffness
@@ -50,6 +52,7 @@ def mesh_cycle(
     operating: Operating,
     model: MeshModel | None = None,
     *,
+    deviations: Sequence[Deviation] = (),
     path_positions: int = 201,
     mesh_positions: int = 512,
 ) -> xr.Dataset:
@@ -63,15 +66,16 @@ def mesh_cycle(
     jam temperature, and ``status``: ``ok``, or ``jammed`` where the least half backlash over the
     phase is <= 0 (the values stay, for they say how far it is jammed).
 
-    ``model`` defaults to :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash;
-    zero speed gives zero flash; the pitch point has its limit values. Warns outside the ranges
-    of the sources; raises InputError for fewer than 2 positions.
+    ``deviations`` of the flanks (relief, pitch errors, ...) enter the loaded contact; heat's own
+    is added there. ``model`` defaults to :meth:`MeshModel.consistent`. Zero torque gives zero
+    contact and flash; zero speed gives zero flash; the pitch point has its limit values. Warns
+    outside the ranges of the sources; raises InputError for fewer than 2 positions.
     """
     for name, count in (("path_positions", path_positions), ("mesh_positions", mesh_positions)):
         if count < 2:
             raise InputError(name, count, allowed=">= 2")
     hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
-    elastic = ElasticPair.of(hot)
+    elastic = elastic_pair(hot, deviations)
     s = path_of_contact(pair, path_positions)
     phase = np.arange(mesh_positions) / mesh_positions
 
@@ -205,7 +209,7 @@ def _deformation(hot: HotPair, s: Floats) -> Variables:
 
 def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
     """Stiffness and backlash over the mesh phase, with the figures made of them."""
-    k = elastic.mesh_stiffness(phase)
+    k, error, loaded_error = elastic.over(phase)
     thermal = (
         thesis_thermal_stiffness(hot, phase, elastic.pair_stiffness)
         if hot.model.thermal_stiffness == "thesis"
@@ -224,7 +228,11 @@ def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
         "mesh_stiffness": (PHASE, total),
         "half_backlash_curve": (PHASE, backlash.half_backlash),
         "thermal_error": (PHASE, backlash.error),
+        "spring_error": (PHASE, backlash.error if error is None else error),
+        "transmission_error": (PHASE, loaded_error),
         "mean_stiffness": (POINT, total.mean(axis=1)),
+        "rim_stiffness": (POINT, mean_stiffness_of_body(elastic, phase, "rim")),
+        "bore_clamped_stiffness": (POINT, mean_stiffness_of_body(elastic, phase, "bore-clamped")),
         "peak_to_peak_stiffness": (POINT, highest - lowest),
         "mid_range_stiffness": (POINT, 0.5 * (highest + lowest)),
         "half_backlash": (POINT, backlash.half_backlash.mean(axis=1)),

@@ -39,8 +39,10 @@ def excitation(
     """The excitation of every operating point of ``cycle``; None where the pair is jammed.
 
     k(t) keeps ``harmonics`` harmonics of the mesh stiffness (thermal stiffness included where
-    the model has one). e(t) is the kinematic ``transmission_error`` [m] plus the part that heat
-    adds, both over the mesh phase: unloaded errors, so that elasticity is not counted twice.
+    the model has one). e(t) is the kinematic ``transmission_error`` [m] plus the cycle's
+    ``spring_error``, the error that belongs to that stiffness (deviations and heat in it), both
+    over the mesh phase; the loaded transmission error never enters, so that elasticity is not
+    counted twice.
     The half backlash is its mean over the phase, the length scale the cold one. ``inertias``
     [kg m^2] default to solid discs of pitch radius. Torques balance: T2 = T1 z2/z1.
     Raises for a speed of 0, where no mesh frequency exists.
@@ -67,7 +69,7 @@ def excitation(
             continue
         torque = float(here["pinion_torque"])
         stiffness = Periodic.from_samples(here["mesh_stiffness"].values, harmonics)
-        heat = Periodic.from_samples(here["thermal_error"].values, harmonics)
+        heat = Periodic.from_samples(here["spring_error"].values, harmonics)
         found.append(
             Excitation(
                 stiffness=stiffness,

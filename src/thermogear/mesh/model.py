@@ -38,15 +38,25 @@ CHOICES: dict[str, dict[str, str]] = {
         "constant": "E at 20 C",
     },
     "stiffness": {
+        "loaded": "loaded contact: coupled ring bodies, Weber contact, corner contact",
         "textbook-root-circle": "potential-energy sum from the root circle, Sainsot, no coupling",
         "textbook-30-degree": "the same sum from the 30-degree section",
+    },
+    "spring": {
+        "tangent": "tangent stiffness with its error delta - F_n/k at the mean load",
+        "secant": "secant stiffness with the unloaded error",
     },
     "thermal_stiffness": {
         "none": "heat is an offset, not a spring",
         "thesis": "k_T = F_n/Delta f in series, added to k",
     },
+    "body": {
+        "rim": "no wind-up of the body against its bore: its inertia takes that torque",
+        "bore-clamped": "body clamped at its bore: statics",
+    },
     "sharing": {
-        "stiffness": "load shared by the pair stiffnesses, no deviations",
+        "loaded": "load shared by the loaded contact, deviations included",
+        "stiffness": "load shared by the textbook pair stiffnesses, no deviations",
         "equal": "equal shares in double contact",
     },
 }
@@ -64,9 +74,11 @@ class MeshModel:
     bore: str = "free"
     housing: str = "expands"
     modulus: str = "of-temperature"
-    stiffness: str = "textbook-30-degree"
+    stiffness: str = "loaded"
+    body: str = "rim"
+    spring: str = "tangent"
     thermal_stiffness: str = "none"
-    sharing: str = "stiffness"
+    sharing: str = "loaded"
 
     def __post_init__(self) -> None:
         for field, known in CHOICES.items():

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.gears.contact import back_flank_position, flank_radii, pair_positions
+from thermogear.gears.deviations import Contacts
 from thermogear.gears.geometry import Gear, GearPair
 from thermogear.heat.expansion import RadialField, centre_distance_growth, flank_growth
 from thermogear.heat.thesis_profile import thesis_flank_growth
@@ -136,6 +137,23 @@ class HotPair:
         teeth = gear.material.youngs_modulus_at(field.temperature(gear.pitch_radius))
         body = gear.material.youngs_modulus_at(field.area_mean(gear.root_radius))
         return teeth[:, 0], body[:, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class ThermalDeviation:
+    """The added material of both hot flanks as a deviation of the loaded contact."""
+
+    hot: HotPair
+
+    def gap(self, at: Contacts) -> Floats:
+        """-(S_1 + S_2) [m] at the contacts, (count, position, pair).
+
+        A tip corner off the path carries the growth of the path's end: what shifts every flank
+        alike then changes nothing.
+        """
+        s = np.clip(at.s, at.pair.path.a, at.pair.path.e)
+        added = self.hot.added_material(s.ravel())
+        return np.asarray(-added.reshape(self.hot.count, *s.shape))
 
 
 @dataclass(frozen=True, eq=False)

@@ -163,7 +163,7 @@ def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
     The leading axis is the state, "cold" first, or the gear temperature; thermal stiffness
     counts from the first of the axis unless the cycle carries its own cold mean.
     """
-    mass = _equivalent_mass(case)
+    mass = case.equivalent_mass
     mean = cycle["mean_stiffness"].values
     turns = cycle["pinion_speed"].values / (2.0 * np.pi)
     mesh_frequency = np.broadcast_to(case.pair.pinion.teeth * turns, mean.shape)
@@ -193,12 +193,6 @@ def _cold_mean(cycle: xr.Dataset) -> NDArray[np.float64]:
     if "cold_mean_stiffness" in cycle.attrs:
         return np.asarray(cycle.attrs["cold_mean_stiffness"])
     return np.asarray(cycle["mean_stiffness"].values[0])
-
-
-def _equivalent_mass(case: GearCase) -> float:
-    (i1, i2) = case.inertias
-    r1, r2 = case.pair.pinion.base_radius, case.pair.wheel.base_radius
-    return i1 * i2 / (i1 * r2**2 + i2 * r1**2)
 
 
 def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
