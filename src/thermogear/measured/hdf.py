@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from thermogear.base.errors import InputError
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Record
 from thermogear.measured.tables import MOST_CHANNELS, Named, record_of
@@ -47,7 +48,7 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
         common = dict(file.attrs)
         file.visititems(visit)
         return record_of(path, "HDF5", arrays, options, common)
+    except InputError:
+        raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
-        if type(error).__module__.startswith("thermogear"):
-            raise
         raise refused(path, "HDF5", error) from error

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from thermogear.base.errors import InputError
 from thermogear.measured.options import ReadOptions, refused, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import Named, record_of
@@ -90,6 +91,8 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
                         arrays += _matrix(content, order, "", 0)
             elif kind == _MATRIX:
                 arrays += _matrix(body, order, "", 0)
+    except InputError:
+        raise
     except (_Malformed, zlib.error, struct.error, ValueError, OverflowError) as error:
         raise refused(path, "MAT", error) from error
     return record_of(path, "MAT", arrays, options, {})

@@ -11,6 +11,7 @@ from typing import IO
 import numpy as np
 from numpy.lib import format as npy
 
+from thermogear.base.errors import InputError
 from thermogear.measured.options import ReadOptions, refused, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import Named, record_of
@@ -39,6 +40,8 @@ def read_npz(path: Path, options: ReadOptions) -> Record:
                     arrays.append(Named(name, array, array.shape))
     except (zipfile.BadZipFile, zlib.error, OSError, EOFError) as error:
         raise refused(path, "NPZ", error) from error
+    except InputError:
+        raise
     except (ValueError, NotImplementedError, RuntimeError, KeyError) as error:
         raise refused(path, "NPZ", error) from error
     return record_of(path, "NPZ", arrays, options, {})
@@ -55,7 +58,9 @@ def read_npy(path: Path, options: ReadOptions) -> Record:
         data = np.memmap(
             path, dtype, "r", offset=offset, shape=shape, order="F" if fortran else "C"
         )
-    except (OSError, ValueError, EOFError, OverflowError) as error:
+    except InputError:
+        raise
+    except (OSError, ValueError, EOFError, OverflowError, SyntaxError, TypeError) as error:
         raise refused(path, "NPY", error) from error
     return record_of(path, "NPY", [Named(path.stem, data, shape)], options, {})
 

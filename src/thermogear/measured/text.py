@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import gzip
 import io
-import re
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import IO
@@ -16,42 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.measured.layout import MISSING, NUMBER, Layout, cells_of, find_layout
 from thermogear.measured.options import ReadOptions, refused, too_large
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.store import ColumnStore
 from thermogear.measured.traps import (
-    is_rate_name,
     is_tacho_name,
     is_time_name,
     read_time,
-    split_unit,
     without_doubles,
 )
-from thermogear.measured.units import factor_of, kind_of, unit
 
 Floats = NDArray[np.float64]
 
 _HEAD = 1 << 16
 _LINES = 1 << 15  # rows parsed at once
 _LONGEST = 1 << 20  # characters of one line
-_NUMBER = re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
-_MISSING = {"", "nan", "na", "n/a", "null", "-", "--", "inf", "-inf", "#n/a", "-nan", "1.#qnan"}
-_META = re.compile(r"^[\s#%;/!\"']*([^:=,;\t]{2,40}?)\s*[:=,;\t]\s*\"?([^\s\"]+)\s*\"?([^\s\"]*)")
-
-
-@dataclass
-class Layout:
-    """How the numbers of a text file stand: found from its first lines."""
-
-    separator: str | None  # None: runs of blanks
-    decimal: str
-    paired: bool  # comma separators and decimal commas: two fields make one number
-    columns: int
-    names: list[str]
-    units: list[str | None]
-    skip: int  # lines before the first row
-    rate: float | None = None
-    notices: list[Notice] = field(default_factory=list)
 
 
 def read_text(path: Path, options: ReadOptions) -> Record:
@@ -59,7 +37,7 @@ def read_text(path: Path, options: ReadOptions) -> Record:
     encoding, notes = _encoding(path)
     with _open(path, encoding, options) as lines:
         head = _head(lines)
-    layout = _layout(head, path, options)
+    layout = find_layout(head, path, options)
     layout.notices[:0] = notes
     keep = _kept(layout, options)
     size = path.stat().st_size * (8 if path.suffix == ".gz" else 1)
@@ -152,194 +130,6 @@ def _head(lines: io.TextIOWrapper) -> list[str]:
     return found
 
 
-# --- layout --------------------------------------------------------------------------------------
-
-
-def _cells(line: str, separator: str | None) -> list[str]:
-    if separator is None:
-        return line.split()
-    cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
-    if len(cells) > 1 and cells[-1] == "":  # a separator at the end of each row
-        cells.pop()
-    return cells
-
-
-def _is_number(cell: str) -> bool:
-    return bool(_NUMBER.match(cell)) or cell.lower() in _MISSING
-
-
-def _is_row(cells: list[str]) -> bool:
-    return bool(cells) and all(map(_is_number, cells)) and any(map(_NUMBER.match, cells))
-
-
-def _layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
-    body = [line for line in head if line.strip()]
-    if not body:
-        raise refused(path, "text", "it is empty")
-    separator, decimal = _separator(body, options, path)
-    swap = str.maketrans(",", ".") if decimal == "," and separator != "," else None
-
-    def cells(line: str) -> list[str]:
-        return _cells(line.translate(swap) if swap else line, separator)
-
-    rows = [i for i, line in enumerate(head) if _is_row(cells(line))]
-    # the table starts at the first row that a second one of equal width follows
-    start = next(
-        (
-            i
-            for i, j in zip(rows, [*rows[1:], -1], strict=True)
-            if j == -1 or (j == i + 1 and len(cells(head[i])) == len(cells(head[j])))
-        ),
-        None,
-    )
-    if start is None:
-        raise refused(path, "text", "no row of numbers in its first lines")
-    width = len(cells(head[start]))
-    layout = Layout(separator, decimal, False, width, [], [None] * width, start)
-    above = [line for line in head[:start] if line.strip()]
-    named = _names(layout, above, separator)
-    if separator == "," and options.decimal != ".":
-        _paired(layout, named, head[start:], cells, path, options)
-    if not layout.names:
-        layout.names = [f"column {i + 1}" for i in range(layout.columns)]
-    if len(layout.units) != layout.columns:
-        layout.units = [None] * layout.columns
-    _facts(layout, above)
-    return layout
-
-
-def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str]:
-    sample = body[len(body) // 2 :]  # the second half: past the header
-    for separator in ("\t", ";"):
-        if sum(separator in line for line in sample) > 0.8 * len(sample):
-            commas = sum(bool(re.search(r"\d,\d", line)) for line in sample)
-            points = sum(bool(re.search(r"\d\.\d", line)) for line in sample)
-            if commas and points and options.decimal is None:
-                raise refused(path, "text", "it holds both 1,2 and 1.2: give --decimal")
-            return separator, options.decimal or ("," if commas else ".")
-    if sum("," in line for line in sample) > 0.5 * len(sample):
-        blanks = sum(bool(re.search(r"\d\s+[-+\d]", line.strip())) for line in sample)
-        if blanks > 0.8 * len(sample):
-            return None, ","
-        return ",", options.decimal or "."
-    return None, options.decimal or "."
-
-
-def _names(layout: Layout, above: list[str], separator: str | None) -> int:
-    """Names and units from the lines above the table; returns how many names stand there."""
-    lines = [_cells(line.lstrip("#%").strip(), separator) for line in above]
-    if separator is None and above:
-        # names may be parted by commas or tabs though the numbers are parted by blanks
-        for other in ("\t", ",", ";"):
-            if above[-1].count(other) + 1 == layout.columns and layout.columns > 1:
-                lines = [_cells(line.lstrip("#%").strip(), other) for line in above]
-                break
-    if not lines:
-        return 0
-    units: list[str | None] = [None] * layout.columns
-    last = lines[-1]
-    known = [unit(cell) for cell in last]
-    blank = [cell.strip("[]() -") == "" for cell in last]
-    is_units = (
-        len(lines) > 1
-        and any(known)
-        and all(bool(k) or b for k, b in zip(known, blank, strict=True))
-    )
-    if is_units:
-        lines.pop()
-        if len(known) == layout.columns:
-            units = known
-    split = [split_unit(cell) for cell in lines[-1]]
-    names = [name for name, _ in split]
-    if len(names) == layout.columns and all(names):
-        layout.names = names
-        layout.units = [u or v for u, (_, v) in zip(units, split, strict=True)]
-    elif len(names) > 1 or layout.columns == 1:
-        layout.units = units
-        return len(names) if len(names) != 1 or layout.columns != 1 else 1
-    return len(names) if len(names) > 1 or layout.columns <= 2 else 0
-
-
-def _paired(
-    layout: Layout,
-    named: int,
-    table: list[str],
-    cells: object,
-    path: Path,
-    options: ReadOptions,
-) -> None:
-    """Comma separators: decide whether two fields make one number (decimal comma)."""
-    rows = [row for row in (_cells(line, ",") for line in table) if _is_row(row)]
-    width = layout.columns
-    whole = all("." not in cell for row in rows for cell in row)
-    halves = width % 2 == 0 and all(
-        re.fullmatch(r"\d+([eE][+-]?\d+)?", cell) for row in rows for cell in row[1::2]
-    )
-    if named == width and options.decimal is None:
-        return
-    if options.decimal == "," or (named and 2 * named == width):
-        if not (whole and halves):
-            raise refused(path, "text", "the fields do not pair into numbers with a decimal comma")
-        layout.paired, layout.columns = True, width // 2
-        layout.notices.append(
-            Notice("warning", "commas part both numbers and decimals: two fields make one number")
-        )
-        layout.units = [None] * layout.columns
-        header = [i for i in range(1) if named == layout.columns]
-        layout.names = [] if not header else layout.names
-        return
-    if whole and named and named < width < 2 * named:
-        raise refused(
-            path,
-            "text",
-            f"{named} names over rows of {width} fields: some commas part numbers and some are "
-            "decimal; save it with another separator",
-        )
-    if whole and halves and not named:
-        raise refused(
-            path,
-            "text",
-            f"rows of {width} whole fields may be {width} integers or {width // 2} numbers with "
-            "a decimal comma: give --decimal . or --decimal ,",
-        )
-
-
-def _facts(layout: Layout, above: list[str]) -> None:
-    """What the lines above the names state: rate, count of channels, unit."""
-    for line in above:
-        found = _META.match(line)
-        if not found:
-            continue
-        key, value, tail = found.groups()
-        number = value.replace(",", ".")
-        key_name, key_unit = split_unit(key)
-        if is_rate_name(key_name) and _NUMBER.match(number):
-            said = unit(tail) or key_unit
-            if said is None or kind_of(said) != "frequency":
-                layout.notices.append(
-                    Notice(
-                        "important",
-                        f"the header says {key.strip()} = {value} without a unit: it is not used "
-                        "(give --rate)",
-                    )
-                )
-            elif float(number) > 0:
-                layout.rate = float(number) * factor_of(said)
-        elif re.match(r"(number of )?channels?( count)?$", key_name.strip(), re.I) and re.fullmatch(
-            r"\d+", number
-        ):
-            signals = sum(not is_time_name(name) for name in layout.names)
-            if int(number) not in (signals, layout.columns):
-                layout.notices.append(
-                    Notice(
-                        "important",
-                        f"the header says {number} channels, the rows hold {signals}",
-                    )
-                )
-        elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):
-            layout.units = [u or unit(value) for u in layout.units]
-
-
 def _kept(layout: Layout, options: ReadOptions) -> list[int]:
     if not options.keep:
         return list(range(layout.columns))
@@ -398,7 +188,7 @@ def _cut_end(block: list[str], layout: Layout) -> None:
 def _fields(line: str, layout: Layout) -> list[str]:
     if layout.decimal == "," and layout.separator != ",":
         line = line.replace(",", ".")
-    cells = _cells(line, layout.separator)
+    cells = cells_of(line, layout.separator)
     if layout.paired:
         whole = iter(cells)
         cells = [f"{left}.{right}" for left, right in zip(whole, whole, strict=False)]
@@ -441,9 +231,9 @@ def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool
 
 
 def _value(cell: str) -> float:
-    if _NUMBER.match(cell):
+    if NUMBER.match(cell):
         return float(cell)
-    if cell.lower() in _MISSING:
+    if cell.lower() in MISSING:
         return float("nan")
     raise ValueError(f"{cell[:40]!r} is not a number")
 

@@ -1,0 +1,122 @@
+"""The processing chain as one object: the same for a record and for a computed motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.signals.filters import BandPass, taps_for, without_trend
+from thermogear.signals.integration import integrate_twice, integrate_twice_trapezoid
+from thermogear.signals.lines import Line, line_in
+from thermogear.signals.spectra import Spectrum, amplitude_spectrum
+from thermogear.signals.windows import Window
+
+Floats = NDArray[np.float64]
+
+METHODS = {
+    "frequency": "FIR band pass, then division by omega^2 in the frequency domain",
+    "line": "acceleration line over omega^2, no filter",
+    "trapezoid": "as in the thesis: FIR band pass, then two running trapezoidal sums",
+}
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Mean and trend off, band pass, double integration, line reading.
+
+    ``band`` [Hz, or cycles/sample at rate 1] and ``taps`` None: chosen from the mesh line, from
+    half of it to 0.45 of the rate, with a transition of 0.4 of it. ``low_cut`` None: 0.4 of the
+    mesh line. ``window`` reads the amplitude. ``kind`` is what the record is: acceleration,
+    velocity is refused, displacement is not integrated.
+    """
+
+    method: str = "frequency"
+    band: tuple[float, float] | None = None
+    taps: int | None = None
+    low_cut: float | None = None
+    window: str = "flattop"
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError("method", repr(self.method), fix=nearest(self.method, METHODS))
+        Window(self.window)
+
+    def settled(self, rate: float, samples: int, mesh: float) -> Chain:
+        """The chain with every number it leaves open chosen for this rate, length and line."""
+        if self.method == "line":
+            return self
+        low, high = 0.5 * mesh, 0.45 * rate
+        band = self.band or ((low, high) if low < 0.9 * high else (0.5 * low, 0.49 * rate))
+        most = max(3, (samples // 4 - 1) // 2 * 2 + 1)
+        taps = self.taps or min(most, taps_for(rate, 0.4 * mesh))
+        return replace(self, band=band, taps=taps, low_cut=self.low_cut or 0.4 * mesh)
+
+    def filter(self, rate: float) -> BandPass | None:
+        """The band pass of a settled chain, None for the line method."""
+        if self.method == "line" or self.band is None or self.taps is None:
+            return None
+        return BandPass(rate, self.band, self.taps)
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """One channel through the chain: what lines are read from.
+
+    ``displacement`` is None where the record is no acceleration or no rate is known.
+    """
+
+    rate: float
+    acceleration: Floats
+    displacement: Floats | None
+    chain: Chain
+    spectrum: Spectrum
+    displacement_spectrum: Spectrum | None
+
+    def read(self, near: float, half_width: float) -> tuple[Line, float]:
+        """The line near a frequency in the unfiltered record, and its displacement (nan: none).
+
+        The filter's gain at the line is divided out of the displacement, except in the thesis's
+        own way.
+        """
+        line = line_in(self.acceleration, self.spectrum, near, half_width, self.chain.window)
+        if self.chain.method == "line":
+            return line, line.amplitude / (2.0 * np.pi * line.frequency) ** 2
+        if self.displacement is None or self.displacement_spectrum is None:
+            return line, float("nan")
+        found = line_in(
+            self.displacement,
+            self.displacement_spectrum,
+            line.frequency,
+            1.5 * self.displacement_spectrum.bin_width,
+            self.chain.window,
+        ).amplitude
+        band = self.chain.filter(self.rate)
+        gain = float(band.gain(line.frequency)) if band else 1.0
+        if self.chain.method == "trapezoid" or gain < 0.5:
+            return line, found
+        return line, found / gain
+
+
+def reduced(values: Floats, rate: float, chain: Chain, integrate: bool) -> Reduced:
+    """One channel (SI, or the file's unit with ``integrate`` False) through a settled chain."""
+    centred = without_trend(values)
+    spectrum = amplitude_spectrum(centred, rate, "hann")
+    displacement: Floats | None = None
+    band = chain.filter(rate)
+    if integrate and band is not None and chain.low_cut is not None:
+        filtered = band.apply(centred)
+        if chain.method == "trapezoid":
+            displacement = without_trend(integrate_twice_trapezoid(filtered, rate))
+        else:
+            displacement = integrate_twice(filtered, rate, chain.low_cut)
+    return Reduced(
+        rate,
+        centred,
+        displacement,
+        chain,
+        spectrum,
+        None if displacement is None else amplitude_spectrum(displacement, rate, "hann"),
+    )

@@ -1,0 +1,216 @@
+"""How the numbers of a text file stand: separator, decimal sign, names, units, stated facts."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.record import Notice
+from thermogear.measured.traps import is_rate_name, is_time_name, split_unit
+from thermogear.measured.units import factor_of, kind_of, unit
+
+NUMBER = re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+MISSING = {"", "nan", "na", "n/a", "null", "-", "--", "inf", "-inf", "#n/a", "-nan", "1.#qnan"}
+_META = re.compile(r"^[\s#%;/!\"']*([^:=,;\t]{2,40}?)\s*[:=,;\t]\s*\"?([^\s\"]+)\s*\"?([^\s\"]*)")
+
+
+@dataclass
+class Layout:
+    """How the numbers of a text file stand: found from its first lines.
+
+    ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
+    fields make one number. ``skip``: lines before the first row.
+    """
+
+    separator: str | None
+    decimal: str
+    paired: bool
+    columns: int
+    names: list[str]
+    units: list[str | None]
+    skip: int
+    rate: float | None = None
+    notices: list[Notice] = field(default_factory=list)
+
+
+def cells_of(line: str, separator: str | None) -> list[str]:
+    """The fields of a line, without quotes and without the empty one after a last separator."""
+    if separator is None:
+        return line.split()
+    cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
+    if len(cells) > 1 and cells[-1] == "":
+        cells.pop()
+    return cells
+
+
+def _is_row(cells: list[str]) -> bool:
+    numbers = [bool(NUMBER.match(cell)) for cell in cells]
+    return any(numbers) and all(
+        number or cell.lower() in MISSING for number, cell in zip(numbers, cells, strict=True)
+    )
+
+
+def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
+    """The layout of the file that starts with these lines; what is ambiguous is refused."""
+    body = [line for line in head if line.strip()]
+    if not body:
+        raise refused(path, "text", "it is empty")
+    separator, decimal = _separator(body, options, path)
+    swap = decimal == "," and separator != ","
+    table = [cells_of(line.replace(",", ".") if swap else line, separator) for line in head]
+    rows = [i for i, cells in enumerate(table) if _is_row(cells)]
+    # the table starts at the first row that another one of equal width follows at once
+    follows = dict(itertools.pairwise(rows))
+    start = next(
+        (
+            i
+            for i in rows
+            if i not in follows or (follows[i] == i + 1 and len(table[i]) == len(table[i + 1]))
+        ),
+        None,
+    )
+    if start is None:
+        raise refused(path, "text", "no row of numbers in its first lines")
+    width = len(table[start])
+    above = [line for line in head[:start] if line.strip()]
+    names, units = _header(above, separator, width)
+    paired = separator == "," and _paired(
+        [table[i] for i in rows if i >= start], len(names), path, options
+    )
+    columns = width // 2 if paired else width
+    layout = Layout(separator, decimal, paired, columns, names, units, start)
+    if paired:
+        layout.notices.append(
+            Notice("warning", "commas part both numbers and decimals: two fields make one number")
+        )
+    if len(names) != columns:
+        if len(names) > 1:
+            layout.notices.append(
+                Notice(
+                    "important",
+                    f"{len(names)} names over rows of {columns} numbers: the columns are numbered "
+                    "instead",
+                )
+            )
+        layout.names = [f"column {i + 1}" for i in range(columns)]
+        layout.units = [None] * columns
+    _facts(layout, above)
+    return layout
+
+
+def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str | None, str]:
+    sample = body[len(body) // 2 :]  # the second half: past the header
+    for separator in ("\t", ";"):
+        if sum(separator in line for line in sample) > 0.8 * len(sample):
+            commas = sum(bool(re.search(r"\d,\d", line)) for line in sample)
+            points = sum(bool(re.search(r"\d\.\d", line)) for line in sample)
+            if commas and points and options.decimal is None:
+                raise refused(path, "text", "it holds both 1,2 and 1.2: give --decimal")
+            return separator, options.decimal or ("," if commas else ".")
+    if sum("," in line for line in sample) > 0.5 * len(sample):
+        blanks = sum(bool(re.search(r"\d\s+[-+\d]", line.strip())) for line in sample)
+        if blanks > 0.8 * len(sample):
+            return None, ","
+        return ",", options.decimal or "."
+    return None, options.decimal or "."
+
+
+def _header(
+    above: list[str], separator: str | None, width: int
+) -> tuple[list[str], list[str | None]]:
+    """Names and units from the lines above the table (as many as stand there)."""
+    if not above:
+        return [], []
+    parted = separator
+    if separator is None and width > 1:
+        # names may be parted by tabs or commas though the numbers are parted by blanks
+        parted = next((c for c in "\t,;" if above[-1].count(c) + 1 == width), None)
+    lines = [cells_of(line.strip().lstrip("#%").strip(), parted) for line in above]
+    if separator is None and parted is None and width == 1:
+        lines = [[line.strip()] for line in above]  # one column: its name may hold blanks
+    units: list[str | None] = [unit(cell) for cell in lines[-1]]
+    blank = [cell.strip("[]() -") == "" for cell in lines[-1]]
+    only_units = any(units) and all(
+        bool(known) or empty for known, empty in zip(units, blank, strict=True)
+    )
+    if only_units and len(lines) > 1 and len(lines[-2]) == len(lines[-1]):
+        names = [split_unit(cell) for cell in lines[-2]]
+    else:
+        names = [split_unit(cell) for cell in lines[-1]]
+        units = [None] * len(names)
+    if len(names) == 1 and width > 2:
+        return [], []  # a title, not a name
+    return (
+        [name or f"column {i + 1}" for i, (name, _) in enumerate(names)],
+        [known or said for known, (_, said) in zip(units, names, strict=True)],
+    )
+
+
+def _paired(rows: list[list[str]], named: int, path: Path, options: ReadOptions) -> bool:
+    """Comma separators: whether two fields make one number with a decimal comma."""
+    width = len(rows[0])
+    if options.decimal == "." or (named == width and options.decimal is None):
+        return False
+    rows = [row for row in rows if len(row) == width]
+    whole = all("." not in cell for row in rows for cell in row)
+    halves = width % 2 == 0 and all(
+        re.fullmatch(r"\d+([eE][+-]?\d+)?", cell) for row in rows for cell in row[1::2]
+    )
+    if options.decimal == "," or (named and 2 * named == width):
+        if not (whole and halves):
+            raise refused(path, "text", "the fields do not pair into numbers with a decimal comma")
+        return True
+    if whole and 0 < named < width < 2 * named:
+        raise refused(
+            path,
+            "text",
+            f"{named} names over rows of {width} fields: some commas part numbers and some are "
+            "decimal; save it with another separator",
+        )
+    if whole and halves and not named:
+        raise refused(
+            path,
+            "text",
+            f"rows of {width} whole fields may be {width} integers or {width // 2} numbers with "
+            "a decimal comma: give --decimal . or --decimal ,",
+        )
+    return False
+
+
+def _facts(layout: Layout, above: list[str]) -> None:
+    """What the lines above the names state: rate, count of channels, unit."""
+    for line in above:
+        found = _META.match(line)
+        if not found:
+            continue
+        key, value, tail = found.groups()
+        number = value.replace(",", ".")
+        key_name, key_unit = split_unit(key)
+        if is_rate_name(key_name) and NUMBER.match(number):
+            said = unit(tail) or key_unit
+            if said is None or kind_of(said) != "frequency":
+                layout.notices.append(
+                    Notice(
+                        "important",
+                        f"the header says {key.strip()} = {value} without a unit: it is not used "
+                        "(give --rate)",
+                    )
+                )
+            elif float(number) > 0:
+                layout.rate = float(number) * factor_of(said)
+        elif re.match(r"(number of )?channels?( count)?$", key_name.strip(), re.I) and re.fullmatch(
+            r"\d+", number
+        ):
+            signals = sum(not is_time_name(name) for name in layout.names)
+            if int(number) not in (signals, layout.columns):
+                layout.notices.append(
+                    Notice(
+                        "important",
+                        f"the header says {number} channels, the rows hold {signals}",
+                    )
+                )
+        elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):
+            layout.units = [u or unit(value) for u in layout.units]

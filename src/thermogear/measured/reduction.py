@@ -1,0 +1,441 @@
+"""``measure``: from a record to lines with amplitude, order, uncertainty and the settings used."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.measured.chain import METHODS, Chain, Reduced, reduced
+from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.readers import read_record
+from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.traps import health
+from thermogear.measured.units import STANDARD_GRAVITY, kind_of
+from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.windows import Window
+
+Floats = NDArray[np.float64]
+
+LONGEST = 1 << 22
+"""Samples per channel reduced at once; a longer record is cut there with a notice."""
+
+_FACTORS = {
+    10.0: "ten times too high",
+    0.1: "ten times too low",
+    100.0: "a hundred times too high",
+    0.01: "a hundred times too low",
+    1000.0: "a thousand times too high (milliseconds read as seconds?)",
+    0.001: "a thousand times too low (seconds read as milliseconds?)",
+    2.0: "twice too high",
+    0.5: "twice too low",
+    2.56: "2.56 times too high (bandwidth and rate exchanged?)",
+    1 / 2.56: "2.56 times too low (bandwidth and rate exchanged?)",
+    60.0: "sixty times too high (turns per minute and per second exchanged?)",
+    1 / 60.0: "sixty times too low (turns per minute and per second exchanged?)",
+}
+
+
+@dataclass(frozen=True)
+class MeasuredLine:
+    """One line of one channel. What the record does not allow is nan, never guessed.
+
+    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "second mesh" or "line". ``order``
+    of the first shaft, ``position`` [cycles/sample], ``frequency`` [Hz]; ``reading`` peak
+    amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m];
+    ``uncertainty``: relative standard uncertainty u_D (noise, scatter between quarters of the
+    record, sensor); ``bin_offset`` [bins]; ``prominence`` over the floor beside.
+    """
+
+    channel: str
+    kind: str
+    name: str
+    order: float
+    position: float
+    frequency: float
+    reading: float
+    acceleration: float
+    displacement: float
+    uncertainty: float
+    bin_offset: float
+    prominence: float
+    shaft_speed: float
+
+    @property
+    def acceleration_g(self) -> float:
+        """The acceleration in standard gravities."""
+        return self.acceleration / STANDARD_GRAVITY
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A record reduced: lines, gearing with evidence, settings and notices."""
+
+    record: Record
+    channels: tuple[str, ...]
+    samples: int
+    chain: Chain
+    gearing: Gearing | None
+    teeth: int | None
+    lines: tuple[MeasuredLine, ...]
+    notices: tuple[Notice, ...]
+    start: int
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """What must be told with every amplitude: rate, N, bin width, window, ENBW, filter."""
+        rate, window = self.record.rate, Window(self.chain.window)
+        unit = "cycles/sample" if rate is None else "Hz"
+        band, taps = self.chain.band, self.chain.taps
+        return {
+            "rate": "unknown" if rate is None else f"{rate:g} /s ({self.record.rate_origin})",
+            "samples": str(self.samples),
+            "bin width": f"{(rate or 1.0) / self.samples:.6g} {unit}",
+            "window": f"{window.name}, noise bandwidth {window.noise_bandwidth:.4g} bins, "
+            f"line at the interpolated frequency",
+            "method": METHODS[self.chain.method],
+            "band": "none" if band is None else f"{band[0]:.6g}..{band[1]:.6g} {unit}",
+            "taps": "none" if taps is None else str(taps),
+            "low cut": "none" if self.chain.low_cut is None else f"{self.chain.low_cut:.6g} {unit}",
+            "amplitudes": "peak",
+        }
+
+
+def measure(
+    record: Record | str | Path,
+    *,
+    channels: Sequence[str | int] = (),
+    teeth: int | None = None,
+    speed: float | None = None,
+    harmonics: int = 3,
+    sidebands: int = 2,
+    chain: Chain | None = None,
+    sensor_tolerance: float | None = None,
+) -> Measurement:
+    """Lines of a record: mesh harmonics, sidebands, further meshes, with their uncertainty.
+
+    ``record`` a Record or a file (``read_record``); ``channels`` those to reduce (default: all
+    that vibrate); ``teeth`` and ``speed`` [rad/s] of the first shaft where they are known: they
+    are checked against what the lines say; ``sensor_tolerance`` the sensor's relative standard
+    uncertainty. Without a rate the lines are given in orders and cycles per sample, without a
+    unit in the file's own numbers.
+
+    Raises InputError for a record without a line or a channel without a signal.
+    """
+    if not isinstance(record, Record):
+        record = read_record(record)
+    if harmonics < 1 or sidebands < 0:
+        raise InputError("harmonics, sidebands", f"{harmonics}, {sidebands}", allowed=">= 1, >= 0")
+    if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
+        raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
+    notices = list(record.notices)
+    chosen = _chosen(record, channels, notices)
+    start, table = _stretch(chosen, notices)
+    gearing = _gearing(table, notices, _expected(record, teeth, speed))
+    teeth = _teeth(gearing, teeth, notices)
+    if gearing is not None:
+        _check_rate(record, gearing, teeth, speed, notices)
+    rate = record.rate or 1.0
+    mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
+    wanted = (chain or Chain()).settled(rate, table.shape[-1], mesh)
+    lines: list[MeasuredLine] = []
+    for channel, values in zip(chosen, table, strict=True):
+        lines += _lines(
+            record, channel, values, gearing, teeth, wanted, harmonics, sidebands, sensor_tolerance
+        )
+    if record.rate is None:
+        notices.append(
+            Notice("important", "no rate is known: lines are in orders and cycles per sample")
+        )
+    if any(c.unit is None for c in chosen):
+        notices.append(
+            Notice("important", "no unit is known: amplitudes are the file's own numbers")
+        )
+    if sensor_tolerance is None:
+        notices.append(
+            Notice("info", "no sensor tolerance is stated: u_D holds noise and scatter alone")
+        )
+    band = wanted.filter(rate)
+    if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
+        notices.append(
+            Notice(
+                "warning",
+                f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
+                "line (divided out, but in the thesis's own way)",
+            )
+        )
+    return Measurement(
+        record,
+        tuple(c.name for c in chosen),
+        int(table.shape[-1]),
+        wanted,
+        gearing,
+        teeth,
+        tuple(lines),
+        tuple(notices),
+        start,
+    )
+
+
+def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]) -> list[Channel]:
+    if channels:
+        picked = [record.channel(name) for name in channels]
+        for channel in picked:
+            if health(channel).constant:
+                raise InputError("channel", repr(channel.name), why="it is constant throughout")
+        return picked
+    alive = []
+    for channel in record.signals():
+        found = health(channel)
+        if found.constant or found.missing == len(channel):
+            notices.append(Notice("warning", f"channel {channel.name!r} holds no signal: left out"))
+        else:
+            alive.append(channel)
+    if not alive:
+        raise InputError("record", record.source, why="no channel holds a signal")
+    if len({c.unit for c in alive}) > 1:
+        first = alive[0].unit
+        notices.append(Notice("info", f"channels of several units; those in {first} are reduced"))
+        alive = [c for c in alive if c.unit == first]
+    return alive
+
+
+def _stretch(channels: list[Channel], notices: list[Notice]) -> tuple[int, Floats]:
+    """The longest stretch in which no channel has a gap, at most LONGEST samples of it."""
+    count = len(channels[0])
+    table = np.stack([c.values(0, min(count, LONGEST)) for c in channels])
+    start = 0
+    bad = np.flatnonzero(~np.all(np.isfinite(table), axis=0))
+    if bad.size:
+        edges = np.concatenate([[-1], bad, [table.shape[-1]]])
+        longest = int(np.argmax(np.diff(edges)))
+        start, stop = int(edges[longest]) + 1, int(edges[longest + 1])
+        table = table[:, start:stop]
+        notices.append(
+            Notice(
+                "warning",
+                f"gaps: only the longest whole stretch is used, samples {start}..{stop - 1}",
+            )
+        )
+    if count > LONGEST:
+        notices.append(
+            Notice("info", f"the first {LONGEST} of {count} samples are reduced to lines")
+        )
+    if table.shape[-1] < 256:
+        raise InputError("record", f"{table.shape[-1]} samples without a gap", allowed=">= 256")
+    return start, table
+
+
+def _expected(record: Record, teeth: int | None, speed: float | None) -> float | None:
+    if teeth is not None and teeth < 1:
+        raise InputError("teeth", teeth, allowed=">= 1")
+    if speed is not None and not (np.isfinite(speed) and speed > 0):
+        raise InputError("speed", speed, allowed="> 0")
+    if record.rate is None or teeth is None or speed is None:
+        return None
+    return teeth * speed / (2.0 * np.pi) / record.rate
+
+
+def _gearing(table: Floats, notices: list[Notice], expected: float | None) -> Gearing | None:
+    """What the lines say by themselves; the expected place only where it stands out as well."""
+    try:
+        free: Gearing | None = find_gearing(list(table))
+    except InputError as error:
+        notices.append(Notice("important", str(error)))
+        free = None
+    if expected is None or (free and abs(free.mesh_frequency / expected - 1.0) < 0.03):
+        return free
+    if 5.0 / table.shape[-1] < expected < 0.45:
+        try:
+            near = find_gearing(list(table), expected)
+        except InputError:
+            return free  # nothing stands where teeth and speed put the mesh line
+        heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
+        if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
+            return near
+    return free
+
+
+def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
+    if gearing is None:
+        return teeth
+    seen = [shaft.teeth for shaft in gearing.shafts]
+    if teeth is None:
+        return gearing.teeth
+    if seen and teeth not in seen:
+        notices.append(
+            Notice(
+                "important",
+                f"the sidebands say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
+                "mesh line over shaft line must be a whole number of teeth",
+            )
+        )
+    return teeth
+
+
+def _check_rate(
+    record: Record,
+    gearing: Gearing,
+    teeth: int | None,
+    speed: float | None,
+    notices: list[Notice],
+) -> None:
+    if teeth is None:
+        return
+    turns = gearing.mesh_frequency / teeth  # turns per sample
+    if record.rate is None:
+        if speed is not None:
+            notices.append(
+                Notice(
+                    "info",
+                    f"if the shaft turns at the {speed * 30 / np.pi:.6g} rpm given, the rate is "
+                    f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
+                )
+            )
+        return
+    implied = turns * record.rate
+    notices.append(
+        Notice(
+            "info",
+            f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
+            f"{60 * implied:.6g} rpm",
+        )
+    )
+    if 2.56 * gearing.mesh_frequency > 1.0:
+        notices.append(
+            Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
+        )
+    if speed is None:
+        return
+    ratio = implied / (speed / (2 * np.pi))
+    if abs(ratio - 1.0) <= 0.1:
+        return
+    named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
+    what = (
+        f"the rate looks {_FACTORS[named]}"
+        if abs(ratio / named - 1.0) <= 0.1
+        else f"rate, teeth or speed is wrong by a factor {ratio:.4g}"
+    )
+    notices.append(
+        Notice(
+            "important",
+            f"{what}: the mesh line at {gearing.mesh_frequency:.6f} cycles/sample over {teeth} "
+            f"teeth makes {60 * implied:.6g} rpm at {record.rate:g} samples/s, the speed given is "
+            f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
+        )
+    )
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    kind: str
+    name: str
+    position: float  # cycles/sample
+    half_width: float
+
+
+def _wanted(
+    gearing: Gearing | None, teeth: int | None, harmonics: int, sidebands: int, values: Floats
+) -> list[_Wanted]:
+    count = values.size
+    bins = 3.0 / count
+    if gearing is None:
+        spectrum = amplitude_spectrum(values - values.mean(), 1.0, "hann")
+        tops = np.argsort(-spectrum.amplitudes[3:-3])[: 8 * harmonics] + 3
+        found: list[_Wanted] = []
+        for top in tops:
+            place = float(top) / count
+            if all(abs(place - other.position) > 2 * bins for other in found):
+                found.append(_Wanted("line", f"line {len(found) + 1}", place, bins))
+        return found[:harmonics]
+    mesh = gearing.mesh_frequency
+    found = []
+    for rank in range(1, harmonics + 1):
+        if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
+            break
+        # speed wander spreads a harmonic in proportion to its rank
+        reach = max(bins, 2e-4 * rank * mesh)
+        found.append(_Wanted("mesh", f"mesh x {rank}", rank * mesh, reach))
+        for shaft in gearing.shafts:
+            for n in range(1, sidebands + 1):
+                for sign in (-1, 1):
+                    place = rank * mesh + sign * n * mesh / shaft.teeth
+                    label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{shaft.teeth}"
+                    found.append(_Wanted("sideband", label, place, reach))
+    for number, other in enumerate(gearing.meshes, start=2):
+        place = other.order * mesh / gearing.shafts[0].teeth
+        found.append(_Wanted("second mesh", f"mesh {number}", place, max(bins, 2e-4 * place)))
+    if not found:
+        found.append(_Wanted("mesh", "mesh x 1", mesh, max(bins, 2e-4 * mesh)))
+    return [w for w in found if bins < w.position < 0.5 - bins]
+
+
+def _lines(
+    record: Record,
+    channel: Channel,
+    values: Floats,
+    gearing: Gearing | None,
+    teeth: int | None,
+    chain: Chain,
+    harmonics: int,
+    sidebands: int,
+    sensor_tolerance: float | None,
+) -> list[MeasuredLine]:
+    rate = record.rate or 1.0
+    known = channel.unit is not None and not channel.needs_scale
+    factor = channel.si_factor if known else 1.0
+    accelerates = known and channel.unit is not None and kind_of(channel.unit) == "acceleration"
+    moves = known and channel.unit is not None and kind_of(channel.unit) == "displacement"
+    through = reduced(values * factor, rate, chain, accelerates and record.rate is not None)
+    quarters = np.array_split(through.acceleration, 4)
+    found = []
+    for want in _wanted(gearing, teeth, harmonics, sidebands, values):
+        line, displacement = through.read(want.position * rate, want.half_width * rate)
+        scatter = _scatter(quarters, through, line.frequency, want.half_width * rate)
+        parts = [line.amplitude_error / line.amplitude, scatter, sensor_tolerance or 0.0]
+        position = line.frequency / rate
+        shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
+        turning = 2 * np.pi * rate * shaft if record.rate is not None else float("nan")
+        in_hertz = record.rate is not None
+        found.append(
+            MeasuredLine(
+                channel=channel.name,
+                kind=want.kind,
+                name=want.name,
+                order=position / shaft,
+                position=position,
+                frequency=line.frequency if in_hertz else float("nan"),
+                reading=line.amplitude / factor,
+                acceleration=line.amplitude if accelerates else float("nan"),
+                displacement=line.amplitude
+                if moves
+                else displacement
+                if accelerates and in_hertz
+                else float("nan"),
+                uncertainty=float(np.sqrt(sum(p**2 for p in parts))),
+                bin_offset=line.bin_offset,
+                prominence=line.prominence,
+                shaft_speed=turning,
+            )
+        )
+    return found
+
+
+def _scatter(quarters: list[Floats], whole: Reduced, frequency: float, reach: float) -> float:
+    """Relative standard error of the mean amplitude over four quarters of the record."""
+    amplitudes = []
+    for quarter in quarters:
+        spectrum = amplitude_spectrum(quarter, whole.rate, "hann")
+        width = max(reach, spectrum.bin_width)
+        low = max(1, int((frequency - width) / spectrum.bin_width))
+        high = min(spectrum.amplitudes.size, int((frequency + width) / spectrum.bin_width) + 2)
+        if low < high:
+            amplitudes.append(float(np.sqrt(np.sum(spectrum.amplitudes[low:high] ** 2))))
+    mean = float(np.mean(amplitudes)) if amplitudes else 0.0
+    return (
+        float(np.std(amplitudes, ddof=1) / mean / 2.0) if mean > 0 and len(amplitudes) > 1 else 0.0
+    )

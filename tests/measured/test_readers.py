@@ -1,0 +1,195 @@
+"""Readers: the same synthetic rig read back blind through every format."""
+
+from __future__ import annotations
+
+import struct
+import sys
+import types
+import wave
+import zipfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from record_makers import RATE, WRITERS, G, csv_text, mesh_train, quantised
+from scipy import io
+
+from thermogear.base.errors import InputError
+from thermogear.measured.readers import format_of, read_record
+from thermogear.measured.record import Channel, Record
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_every_format_gives_the_same_record(tmp_path: Path, name: str) -> None:
+    table = quantised(mesh_train(3000))
+    path = tmp_path / name
+    said = WRITERS[name](path, table)
+    record = read_record(path, **said)  # type: ignore[arg-type]
+    assert record.rate == pytest.approx(RATE, rel=1e-7)
+    assert record.samples == 3000
+    assert len(record.channels) == 2
+    for channel, truth in zip(record.channels, table, strict=True):
+        acceleration = channel.values() * channel.si_factor
+        np.testing.assert_allclose(acceleration, truth * G, atol=2e-6 * G)
+    assert [n for n in record.notices if n.level == "important"] == []
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_blocks_and_slices_agree_with_the_whole(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    said = WRITERS[name](path, quantised(mesh_train(1000)))
+    channel = read_record(path, **said).channels[1]  # type: ignore[arg-type]
+    whole = channel.values()
+    np.testing.assert_array_equal(np.concatenate(list(channel.blocks(77))), whole)
+    np.testing.assert_array_equal(channel.values(10, 20), whole[10:20])
+
+
+def test_the_bytes_tell_the_format_not_the_name(tmp_path: Path) -> None:
+    table = mesh_train(300)
+    (tmp_path / "a.npz").write_text(csv_text(table))
+    WRITERS["five.mat"](tmp_path / "five.mat", table)
+    assert format_of(tmp_path / "five.mat") == "MAT"
+    np.savez(tmp_path / "b.npz", a=table[0])
+    (tmp_path / "b.npz").rename(tmp_path / "b.csv")
+    assert format_of(tmp_path / "b.csv") == "NPZ"
+
+
+@pytest.mark.parametrize("bits", [8, 16, 24, 32])
+def test_wave_integers_become_fractions_of_full_scale(tmp_path: Path, bits: int) -> None:
+    x = np.linspace(-1.0, 1.0, 300, endpoint=False)
+    whole = np.round(x * 2 ** (bits - 1)).astype(np.int64)
+    path = tmp_path / "x.wav"
+    width = bits // 8
+    data = (whole + (128 if bits == 8 else 0)) % 2**bits
+    raw = b"".join(int(v).to_bytes(width, "little") for v in data)
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(width)
+        file.setframerate(1000)
+        file.writeframes(raw)
+    record = read_record(path)
+    np.testing.assert_allclose(record.channels[0].values(), whole / 2 ** (bits - 1), atol=1e-15)
+    message = r"scale: got none; samples are fractions of full scale, so g alone does not"
+    with pytest.raises(InputError, match=message):
+        _ = read_record(path, unit="g").channels[0].si_factor
+
+
+def test_wave_floats_keep_their_values_and_rf64_its_length(tmp_path: Path) -> None:
+    x = np.linspace(-3, 3, 101).astype("<f4")
+    form = struct.pack("<HHIIHH", 3, 1, 500, 2000, 4, 32)
+    body = b"WAVE" + b"ds64" + struct.pack("<IQQQI", 28, 0, x.nbytes, 101, 0)
+    body += b"fmt " + struct.pack("<I", 16) + form
+    body += b"data" + struct.pack("<I", 0xFFFFFFFF) + x.tobytes()
+    path = tmp_path / "x.wav"
+    path.write_bytes(b"RF64" + struct.pack("<I", 0xFFFFFFFF) + body)
+    record = read_record(path)
+    np.testing.assert_array_equal(record.channels[0].values(), x)
+    assert (record.rate, record.channels[0].unit) == (500.0, None)
+
+
+def test_mat_structures_big_endian_and_uncompressed(tmp_path: Path) -> None:
+    x = np.arange(50.0)
+    path = tmp_path / "s.mat"
+    io.savemat(path, {"run": {"acc": x, "fs": 100.0, "who": "me"}, "n": np.int8(3)})
+    record = read_record(path)
+    assert record.names == ("run.acc",)
+    assert record.rate == 100.0
+    np.testing.assert_array_equal(record.channels[0].values(), x)
+
+
+def test_npz_refuses_bombs_pickles_and_lies(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.npz"
+    np.savez_compressed(path, a=np.zeros(4_000_000))
+    message = r"^file: got bomb\.npz; allowed up to 0\.000977 GiB; unpacked it is 0\.0298 GiB"
+    with pytest.raises(InputError, match=message):
+        read_record(path, limit=1 << 20)
+    np.savez(tmp_path / "p.npz", a=np.array([{}] * 10, dtype=object))
+    with pytest.raises(InputError, match=r"p\.npz; cannot be read as NPZ: it holds no array"):
+        read_record(tmp_path / "p.npz")
+    with zipfile.ZipFile(tmp_path / "lie.npz", "w") as file:
+        head = b"{'descr': '<f8', 'fortran_order': False, 'shape': (999999999,), }"
+        head = head.ljust(117) + b"\n"
+        file.writestr("a.npy", b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head)
+    with pytest.raises(InputError, match=r"a member states 7999999992 bytes and has 128$"):
+        read_record(tmp_path / "lie.npz")
+
+
+def test_gzip_bomb_is_stopped_while_it_unpacks(tmp_path: Path) -> None:
+    import gzip
+
+    path = tmp_path / "b.csv.gz"
+    with gzip.open(path, "wb") as file:
+        file.write(b"a\n" + b"1.5\n" * 2_000_000)
+    with pytest.raises(InputError, match=r"allowed up to 0\.00391 GiB"):
+        read_record(path, limit=4 << 20)
+
+
+@pytest.mark.parametrize(("name", "module"), [("a.tdms", "nptdms"), ("a.uff", "pyuff")])
+def test_a_missing_extra_is_one_line_that_names_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: str
+) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    (tmp_path / name).write_bytes(b"TDSm" if name.endswith("tdms") else b"    -1\n")
+    with pytest.raises(InputError, match=rf"needs {module}; .*thermogear\[measure\]") as caught:
+        read_record(tmp_path / name)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_mdf_reader_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "asammdf", None)
+    (tmp_path / "a.mf4").write_bytes(b"MDF     4.10")
+    with pytest.raises(InputError, match=r"reading MDF needs asammdf; install thermogear"):
+        read_record(tmp_path / "a.mf4")
+
+
+def test_tdms_channels_keep_rate_and_unit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Item:
+        def __init__(self, name: str, data: np.ndarray, properties: dict[str, object]) -> None:
+            self.name, self._data, self.properties = name, data, properties
+
+        def __getitem__(self, key: slice) -> np.ndarray:
+            return self._data[key]
+
+    said = {"wf_increment": 1 / 2048, "unit_string": "m/s^2"}
+    group = types.SimpleNamespace(
+        name="g", channels=lambda: [Item("x", np.arange(20.0), said), Item("y", np.ones(20), said)]
+    )
+    reader = types.SimpleNamespace(read=lambda path: types.SimpleNamespace(groups=lambda: [group]))
+    monkeypatch.setitem(sys.modules, "nptdms", types.SimpleNamespace(TdmsFile=reader))
+    (tmp_path / "a.tdms").write_bytes(b"TDSm")
+    record = read_record(tmp_path / "a.tdms")
+    assert record.names == ("g/x", "g/y")
+    assert record.rate == pytest.approx(2048.0)
+    assert record.channels[0].unit == "m/s^2"
+
+
+def test_records_refuse_the_impossible() -> None:
+    with pytest.raises(InputError, match=r"^record: got x; it holds no channel of numbers$"):
+        Record((), "x")
+    one, two = Channel("a", np.zeros(5)), Channel("b", np.zeros(6))
+    with pytest.raises(InputError, match=r"^record: got channels of \[5, 6\] samples; allowed one"):
+        Record((one, two), "x")
+    with pytest.raises(InputError, match=r"^channel: got 'c'; known: a$"):
+        Record((one,), "x").channel("c")
+    with pytest.raises(InputError, match=r"^channel: got 2; allowed 1\.\.1$"):
+        Record((one,), "x").channel(2)
+    with pytest.raises(InputError, match=r"^unit: got 'm/s\^3'; did you mean 'm/s\^2'\?$"):
+        Record((one,), "x").supplied(unit="m/s^3")
+    with pytest.raises(InputError, match=r"^rate: got -1; allowed > 0 samples per second$"):
+        Record((one,), "x").supplied(rate=-1)
+    with pytest.raises(InputError, match=r"unit: got none; the file states no unit"):
+        _ = one.si_factor
+    with pytest.raises(InputError, match=r"^file: got nowhere\.csv; there is no such file$"):
+        read_record("nowhere.csv")
+
+
+def test_groups_of_other_files_and_text_are_not_followed(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["secret"] = np.arange(100.0)
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file["link"] = h5py.ExternalLink("other.h5", "/secret")
+        file["x"] = np.arange(64.0)
+        file["note"] = "text"
+    assert read_record(path).names == ("x",)

@@ -1,0 +1,304 @@
+"""The traps met in real files: each is recognised, named, and never read silently wrong."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import io
+
+from thermogear.base.errors import InputError
+from thermogear.measured.readers import read_record
+from thermogear.measured.record import Record
+from thermogear.measured.traps import split_unit
+from thermogear.measured.units import unit
+
+
+def read(tmp_path: Path, text: str | bytes, name: str = "r.csv", **said: object) -> Record:
+    path = tmp_path / name
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return read_record(path, **said)  # type: ignore[arg-type]
+
+
+def notes(record: Record) -> str:
+    return "\n".join(n.text for n in record.notices)
+
+
+def rows(count: int = 30, time: str | None = "s", step: float = 0.001) -> list[str]:
+    head = f"time [{time}],a [g]" if time else "a [g]"
+    body = [f"{j * step:.6f},{np.sin(j):.6f}" if time else f"{np.sin(j):.6f}" for j in range(count)]
+    return [head, *body]
+
+
+def lines(rows: list[str]) -> str:
+    return "\n".join(rows) + "\n"
+
+
+def test_nothing_is_guessed_where_nothing_is_stated(tmp_path: Path) -> None:
+    record = read(tmp_path, lines(["a1,a2"] + [f"{j}.5,{j}.25" for j in range(20)]))
+    assert (record.rate, record.channels[0].unit) == (None, None)
+    assert record.channels[1].values()[3] == 3.25
+
+
+def test_time_in_milliseconds(tmp_path: Path) -> None:
+    record = read(tmp_path, lines(rows(time="ms", step=0.5)))
+    assert record.rate == pytest.approx(2000.0)
+    assert "is in ms" in notes(record)
+
+
+def test_time_without_a_unit_gives_no_rate(tmp_path: Path) -> None:
+    text = lines(["time,a"] + [f"{j},{j * j}.0" for j in range(20)])
+    record = read(tmp_path, text)
+    assert record.rate is None
+    assert "states no unit: no rate is taken from it" in notes(record)
+    assert record.names == ("a",)
+
+
+def test_a_row_written_twice_is_dropped_and_named(tmp_path: Path) -> None:
+    text = rows()
+    text.insert(11, text[10])
+    record = read(tmp_path, lines(text))
+    assert record.samples == 30
+    assert record.rate == pytest.approx(1000.0)
+    assert "1 row written twice (first: row 11), the repetition dropped" in notes(record)
+
+
+def test_a_stamp_written_twice_with_other_values_gives_no_rate(tmp_path: Path) -> None:
+    text = rows()
+    text[11] = text[10].split(",")[0] + ",0.123456"
+    record = read(tmp_path, lines(text))
+    assert record.rate is None
+    assert "a time stamp appears twice (row 11) with other values" in notes(record)
+
+
+def test_a_missing_row_is_seen_in_the_time_column(tmp_path: Path) -> None:
+    text = rows(200)
+    del text[50]
+    record = read(tmp_path, lines(text))
+    assert record.rate is None
+    assert "steps are not uniform (row 50" in notes(record)
+
+
+def test_time_running_backwards_gives_no_rate(tmp_path: Path) -> None:
+    text = rows()
+    text[10], text[11] = text[11], text[10]
+    record = read(tmp_path, lines(text))
+    assert record.rate is None
+    assert "does not rise" in notes(record)
+
+
+def test_a_rate_off_by_ten_in_the_header_is_used_by_neither(tmp_path: Path) -> None:
+    text = lines(["Sampling rate: 10000 Hz", *rows()])
+    record = read(tmp_path, text)
+    assert record.rate is None
+    assert "the header says 10000 samples/s, the time column 'time' 1000 (factor 10)" in notes(
+        record
+    )
+    given = read(tmp_path, text, rate=1000.0)
+    assert given.rate == 1000.0
+
+
+def test_a_header_rate_needs_its_unit(tmp_path: Path) -> None:
+    body = [f"{np.sin(j):.6f}" for j in range(20)]
+    stated = read(tmp_path, lines(["fs: 25.6 kHz", "a [g]", *body]))
+    assert (stated.rate, stated.rate_origin) == (25600.0, "header")
+    bare = read(tmp_path, lines(["fs: 25600", "a [g]", *body]))
+    assert bare.rate is None
+    assert "without a unit: it is not used" in notes(bare)
+
+
+def test_a_contradicted_rate_is_said(tmp_path: Path) -> None:
+    record = read(tmp_path, lines(rows()), rate=10000.0)
+    assert record.rate == 10000.0
+    assert "the rate given, 10000/s, is not the file's, 1000/s" in notes(record)
+
+
+def test_truncated_last_row(tmp_path: Path) -> None:
+    whole = lines(rows())
+    few_fields = read(tmp_path, whole + "0.03")
+    assert few_fields.samples == 30
+    assert "the last row is cut off and is dropped" in notes(few_fields)
+    cut_number = read(tmp_path, whole[:-4])
+    assert cut_number.samples == 29
+    no_end = read(tmp_path, whole[:-1])
+    assert no_end.samples == 30
+    assert "no line end" in notes(no_end)
+
+
+def test_a_short_row_inside_is_refused(tmp_path: Path) -> None:
+    text = rows()
+    text[12] = "0.011"
+    with pytest.raises(InputError, match=r"line 13 has 1 fields, the others 2$"):
+        read(tmp_path, lines(text))
+    text[12] = "0.011,x7"
+    with pytest.raises(InputError, match=r"line 13: 'x7' is not a number$"):
+        read(tmp_path, lines(text))
+
+
+def test_gaps_are_counted_and_not_filled(tmp_path: Path) -> None:
+    text = rows()
+    text[5], text[6], text[20] = "0.004,", "0.005,NaN", "0.019,n/a"
+    record = read(tmp_path, lines(text))
+    assert "3 samples missing (NaN), the longest gap 2; nothing is filled in" in notes(record)
+    assert np.isnan(record.channels[0].values()[[4, 5, 19]]).all()
+
+
+def test_decimal_comma_with_semicolons_and_with_blanks(tmp_path: Path) -> None:
+    text = "t (s);a (m/s²)\n" + "".join(f"{j / 10:.1f};{j}.25\n" for j in range(20))
+    record = read(tmp_path, text.replace(".", ","))
+    np.testing.assert_allclose(record.channels[0].values(), np.arange(20) + 0.25)
+    assert record.channels[0].unit == "m/s^2"
+    assert record.rate == pytest.approx(10.0)
+    blank = read(tmp_path, "".join(f"{j},5   -{j},75\n" for j in range(20)))
+    np.testing.assert_allclose(blank.channels[1].values(), -np.arange(20) - 0.75)
+
+
+def test_comma_decimals_with_comma_separators(tmp_path: Path) -> None:
+    body = [f"{j},25,-{j},0{j % 7}" for j in range(20)]
+    paired = read(tmp_path, lines(["a [g],b [g]", *body]))
+    assert paired.names == ("a", "b")
+    np.testing.assert_allclose(paired.channels[0].values(), np.arange(20) + 0.25)
+    assert "two fields make one number" in notes(paired)
+    with pytest.raises(InputError, match=r"may be 4 integers or 2 numbers with a decimal comma"):
+        read(tmp_path, lines(body))
+    told = read(tmp_path, lines(body), decimal=",")
+    np.testing.assert_allclose(told.channels[0].values(), np.arange(20) + 0.25)
+    whole = read(tmp_path, lines(body), decimal=".")
+    assert len(whole.channels) == 4
+
+
+def test_a_mixture_of_whole_and_comma_numbers_is_refused(tmp_path: Path) -> None:
+    body = [f"{j},25,{j}" for j in range(20)]
+    with pytest.raises(InputError, match=r"2 names over rows of 3 fields: some commas part"):
+        read(tmp_path, lines(["a,b", *body]))
+
+
+def test_both_decimals_in_one_file_are_refused(tmp_path: Path) -> None:
+    body = [f"{j}.5;{j},5" for j in range(20)]
+    with pytest.raises(InputError, match=r"it holds both 1,2 and 1\.2: give --decimal$"):
+        read(tmp_path, lines(body))
+
+
+@pytest.mark.parametrize(
+    ("encoding", "said"),
+    [
+        ("utf-8", ""),
+        ("utf-8-sig", ""),
+        ("utf-16", "UTF-16"),
+        ("utf-16-le", "UTF-16 without its mark"),
+        ("gbk", "GBK"),
+    ],
+)
+def test_encodings(tmp_path: Path, encoding: str, said: str) -> None:
+    text = "时间(s),加速度(m/s²)\n".replace("²", "2")
+    text += "".join(f"{j / 1000:.4f},{j}.5\n" for j in range(40))
+    record = read(tmp_path, text.encode(encoding))
+    assert record.names == ("加速度",)
+    assert record.channels[0].unit == "m/s^2"
+    assert record.rate == pytest.approx(1000.0)
+    assert said in notes(record)
+
+
+def test_units_row_and_comment_lines(tmp_path: Path) -> None:
+    text = "% rig 7\n% a note\ntime\ta1\ta2\ns\tg\tm/s^2\n"
+    text += "".join(f"{j / 100:.2f}\t{j}.5\t{j}.25\n" for j in range(20))
+    record = read(tmp_path, text, "r.txt")
+    assert [c.unit for c in record.channels] == ["g", "m/s^2"]
+    assert record.rate == pytest.approx(100.0)
+
+
+def test_more_channels_than_the_text_says(tmp_path: Path) -> None:
+    names = ",".join(f"c{i}" for i in range(27))
+    body = [",".join(f"{i + j}.5" for i in range(28)) for j in range(20)]
+    record = read(tmp_path, lines([names, *body]))
+    assert len(record.channels) == 28
+    assert record.names[0] == "column 1"
+    assert "27 names over rows of 28 numbers: the columns are numbered instead" in notes(record)
+    header = ",".join(f"c{i}" for i in range(28))
+    counted = read(tmp_path, lines(["Channels: 27", header, *body]))
+    assert "the header says 27 channels, the rows hold 28" in notes(counted)
+
+
+def test_a_variable_stored_twice_the_first_all_zeros(tmp_path: Path) -> None:
+    zeros, data = np.zeros(100), np.sin(np.arange(100.0))
+    one, two = tmp_path / "one.mat", tmp_path / "two.mat"
+    io.savemat(one, {"acc": zeros}, do_compression=False)
+    io.savemat(two, {"acc": data}, do_compression=False)
+    both = tmp_path / "both.mat"
+    both.write_bytes(one.read_bytes() + two.read_bytes()[128:])
+    record = read_record(both, rate=1000, unit="g")
+    assert record.names == ("acc",)
+    np.testing.assert_array_equal(record.channels[0].values(), data)
+    assert "'acc' is stored twice; the first is zero throughout and is left aside" in notes(record)
+    both.write_bytes(two.read_bytes() + one.read_bytes()[128:])
+    np.testing.assert_array_equal(read_record(both).channels[0].values(), data)
+    io.savemat(one, {"acc": data + 1.0}, do_compression=False)
+    both.write_bytes(one.read_bytes() + two.read_bytes()[128:])
+    differing = read_record(both)
+    assert differing.names == ("acc", "acc (2)")
+    assert "is stored twice with other values" in notes(differing)
+
+
+def test_zero_and_constant_channels_are_named(tmp_path: Path) -> None:
+    text = lines(["a,b,c"] + [f"0.0,3.5,{j}.5" for j in range(20)])
+    record = read(tmp_path, text)
+    assert "channel 'a' is zero throughout" in notes(record)
+    assert "channel 'b' is constant" in notes(record)
+
+
+def test_two_rates_in_one_file_are_used_by_neither(tmp_path: Path) -> None:
+    path = tmp_path / "r.npz"
+    np.savez(path, a=np.arange(50.0), fs=1000.0, rate=10000.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        record = read_record(path)
+    assert record.rate is None
+    assert "neither is used" in notes(record)
+
+
+def test_arrays_of_other_lengths_are_left_aside_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "r.npz"
+    np.savez(path, a=np.arange(50.0), b=np.arange(20.0))
+    record = read_record(path)
+    assert record.names == ("a",)
+    assert "shorter than 50 samples, left aside: b" in notes(record)
+
+
+@pytest.mark.parametrize(
+    ("cell", "expected"),
+    [
+        ("a1 [g]", ("a1", "g")),
+        ("Time(ms)", ("Time", "ms")),
+        ("acc / m/s²", ("acc", "m/s^2")),
+        ('"Speed (rpm)"', ("Speed", "rpm")),
+        ("a [left]", ("a [left]", None)),
+    ],
+)
+def test_units_in_names(cell: str, expected: tuple[str, str | None]) -> None:
+    assert split_unit(cell) == expected
+
+
+def test_spellings_of_units() -> None:
+    assert [unit(u) for u in ("m/s²", "G", "[g]", "µm", "msec", "furlong")] == [
+        "m/s^2",
+        "g",
+        "g",
+        "um",
+        "ms",
+        None,
+    ]
+
+
+def test_a_supplied_unit_that_contradicts_is_said(tmp_path: Path) -> None:
+    record = read(tmp_path, lines(rows()), unit="m/s^2")
+    assert record.channels[0].unit == "m/s^2"
+    assert "the unit given, m/s^2, replaces the file's of a (g)" in notes(record)
+
+
+def test_tacho_is_recognised_by_name_and_can_be_named(tmp_path: Path) -> None:
+    text = lines(["acc [g],Tacho [V]"] + [f"{j}.5,{j % 2}" for j in range(20)])
+    record = read(tmp_path, text)
+    assert record.tacho == "Tacho"
+    assert [c.name for c in record.signals()] == ["acc"]
