@@ -128,6 +128,131 @@ class LoadedMesh(NamedTuple):
     points: MeshPoints
 
 
+@dataclass(frozen=True, eq=False)
+class MeshSystem:
+    """The compliances and gaps of a mesh at its positions: what the kernel solves.
+
+    Built once for a pair, its phases, moduli and deviations; ``lead`` is the shape those (and
+    ``shape``, that of the loads) broadcast to.
+    """
+
+    pair: GearPair
+    points: MeshPoints
+    lead: tuple[int, ...]
+    gaps: Floats
+    tooth: Floats
+    body: Floats
+    depth: Floats
+    radius: Floats
+    tooth_modulus: Floats
+    body_modulus: Floats
+    reduced: Floats
+    law: str
+
+    @classmethod
+    def of(
+        cls,
+        pair: GearPair,
+        shape: tuple[int, ...],
+        phase: ArrayLike,
+        moduli: tuple[Moduli, Moduli],
+        deviations: Sequence[Deviation],
+        model: LoadedModel,
+        flank: str,
+    ) -> MeshSystem:
+        """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments."""
+        points = mesh_points(pair, phase, flank, model.extended)
+        positions, count = points.s.shape
+        gears = (pair.pinion, pair.wheel)
+        gap = points.point.gap
+        for deviation in deviations:
+            gap = gap + deviation.gap(points.contacts)
+        lead = np.broadcast_shapes(
+            shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
+        )
+        cases = int(np.prod(lead, dtype=np.int64))
+        if gap.ndim == 2:
+            gaps = gap[None]
+        else:
+            gaps = np.broadcast_to(gap, (*lead, positions, count)).reshape(cases, positions, count)
+
+        strings = (points.point.pinion, points.point.wheel)
+        parameters = [rho / gear.base_radius for gear, rho in zip(gears, strings, strict=True)]
+        nu = [gear.material.poisson_ratio for gear in gears]
+        depth = np.empty((2, positions, count))
+        for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
+            at = flank_point(gear, t)
+            # a candidate whose corner misses the flank has no depth; it never carries
+            h = np.maximum(at.x / np.cos(at.beta), 1e-3 * gear.module)
+            depth[i] = np.log(2.0 * h) - nu[i] / (2.0 * (1.0 - nu[i]))
+        tooth_modulus = np.stack([_flat(m.tooth, lead) for m in moduli], axis=-1)
+        return cls(
+            pair=pair,
+            points=points,
+            lead=lead,
+            gaps=np.ascontiguousarray(gaps),
+            tooth=np.stack(
+                [_tooth_unit(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
+            ),
+            # the pinion's load points against its rotation, the wheel's along it
+            body=np.stack(
+                [
+                    _body_unit(g, t, sign, model)
+                    for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
+                ]
+            ),
+            depth=depth,
+            radius=np.maximum(
+                strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
+            ),
+            tooth_modulus=tooth_modulus,
+            body_modulus=np.stack([_flat(m.body, lead) for m in moduli], axis=-1),
+            reduced=reduced_modulus(tooth_modulus[:, 0], nu[0], tooth_modulus[:, 1], nu[1]),
+            law=model.contact,
+        )
+
+    def solve(
+        self, asked: Floats, by_load: bool
+    ) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+        """(force, deflection, tangent stiffness, settled) for loads > 0 or for deflections.
+
+        asked: one value a case, shape (case,). Returns shapes (case, position[, pair]).
+        """
+        from thermogear.gears.sharing_kernel import share_many
+
+        width = self.pair.face_width
+        nu = [g.material.poisson_ratio for g in (self.pair.pinion, self.pair.wheel)]
+        cases, (positions, count) = asked.size, self.points.s.shape
+        force = np.empty((cases, positions, count))
+        delta = np.empty((cases, positions))
+        stiffness = np.empty((cases, positions))
+        settled = np.empty((cases, positions), dtype=np.bool_)
+        share_many(
+            asked,
+            by_load,
+            self.gaps,
+            self.tooth,
+            self.body,
+            self.depth,
+            np.log(4.0 * self.radius),
+            1.0 / (self.tooth_modulus * width),
+            1.0 / (self.body_modulus * width),
+            _contact_coefficients(self.law, self.tooth_modulus, nu, self.reduced, width),
+            force,
+            delta,
+            stiffness,
+            settled,
+        )
+        return force, delta, stiffness, settled
+
+
+def _flat(values: ArrayLike, lead: tuple[int, ...]) -> Floats:
+    """``values`` broadcast to ``lead``, one axis of cases."""
+    return np.ascontiguousarray(
+        np.broadcast_to(np.asarray(values, dtype=float), lead).reshape(-1), dtype=float
+    )
+
+
 def solve_mesh(
     pair: GearPair,
     normal_force: ArrayLike,
@@ -140,93 +265,24 @@ def solve_mesh(
     flank: str = "drive",
 ) -> LoadedMesh:
     """The arrays behind :func:`loaded_contact`, which says what they mean."""
-    from thermogear.gears.sharing_kernel import share_many
-
-    choice = LoadedModel() if model is None else model
-    points = mesh_points(pair, phase, flank, choice.extended)
-    positions, count = points.s.shape
-    gears = (pair.pinion, pair.wheel)
-    moduli = (
-        Moduli.of(pair.pinion) if pinion is None else pinion,
-        Moduli.of(pair.wheel) if wheel is None else wheel,
-    )
-
-    gap = points.point.gap
-    for deviation in deviations:
-        gap = gap + deviation.gap(points.contacts)
     load = np.asarray(normal_force, dtype=float)
     if not np.all(np.isfinite(load) & (load >= 0.0)):
         raise InputError("normal_force", f"{load} N", allowed=">= 0, finite")
-    lead = np.broadcast_shapes(
-        load.shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
+    moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
+    system = MeshSystem.of(
+        pair, load.shape, phase, moduli, deviations, model or LoadedModel(), flank
     )
-    cases = int(np.prod(lead, dtype=np.int64))
+    lead, width = system.lead, pair.face_width
+    asked = _flat(load, lead)
+    carried = np.where(asked == 0.0, LEAST_LINE_LOAD * width, asked)
+    force, delta, stiffness, settled = system.solve(carried, by_load=True)
 
-    def flat(values: ArrayLike) -> Floats:
-        return np.ascontiguousarray(np.broadcast_to(np.asarray(values, float), lead).reshape(cases))
-
-    width = pair.face_width
-    least = LEAST_LINE_LOAD * width
-    asked = flat(load)
-    carried = np.where(asked == 0.0, least, asked)
-    if gap.ndim == 2:
-        gaps = gap[None]
-    else:
-        gaps = np.broadcast_to(gap, (*lead, positions, count)).reshape(cases, positions, count)
-
-    strings = (points.point.pinion, points.point.wheel)
-    parameters = [rho / gear.base_radius for gear, rho in zip(gears, strings, strict=True)]
-    tooth = np.stack(
-        [_tooth_unit(g, t, choice.start) for g, t in zip(gears, parameters, strict=True)]
-    )
-    # the pinion's load points against its rotation, the wheel's along it
-    body = np.stack(
-        [
-            _body_unit(g, t, sign, choice)
-            for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
-        ]
-    )
-    nu = [gear.material.poisson_ratio for gear in gears]
-    depth = np.empty((2, positions, count))
-    for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
-        at = flank_point(gear, t)
-        # a candidate whose corner misses the flank has no depth; it never carries
-        h = np.maximum(at.x / np.cos(at.beta), 1e-3 * gear.module)
-        depth[i] = np.log(2.0 * h) - nu[i] / (2.0 * (1.0 - nu[i]))
-    radius = np.maximum(
-        strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
-    )
-
-    tooth_modulus = np.stack([flat(m.tooth) for m in moduli], axis=-1)
-    body_modulus = np.stack([flat(m.body) for m in moduli], axis=-1)
-    reduced = reduced_modulus(tooth_modulus[:, 0], nu[0], tooth_modulus[:, 1], nu[1])
-    contact = _contact_coefficients(choice.contact, tooth_modulus, nu, reduced, width)
-
-    force = np.empty((cases, positions, count))
-    delta = np.empty((cases, positions))
-    stiffness = np.empty((cases, positions))
-    settled = np.empty((cases, positions), dtype=np.bool_)
-    share_many(
-        carried,
-        np.ascontiguousarray(gaps),
-        np.ascontiguousarray(tooth),
-        np.ascontiguousarray(body),
-        depth,
-        np.log(4.0 * radius),
-        1.0 / (tooth_modulus * width),
-        1.0 / (body_modulus * width),
-        contact,
-        force,
-        delta,
-        stiffness,
-        settled,
-    )
     share = force / carried[:, None, None]
     force[asked == 0.0] = 0.0
-    unloaded = np.broadcast_to(gaps.min(axis=-1), (cases, positions))
+    unloaded = np.broadcast_to(system.gaps.min(axis=-1), delta.shape)
     secant = carried[:, None] / (delta - unloaded)
     delta = np.where(asked[:, None] == 0.0, unloaded, delta)
-    pressure = hertz_pressure(force / width, radius, reduced[:, None, None])
+    pressure = hertz_pressure(force / width, system.radius, system.reduced[:, None, None])
 
     def shaped(values: Floats) -> Floats:
         return values.reshape(*lead, *values.shape[1:])
@@ -236,11 +292,50 @@ def solve_mesh(
         shaped(np.array(unloaded)),
         shaped(stiffness),
         shaped(secant),
-        settled.reshape(*lead, positions),
+        settled.reshape(*lead, *settled.shape[1:]),
         shaped(force),
         shaped(share),
         shaped(pressure),
-        points,
+        system.points,
+    )
+
+
+def mesh_force(
+    pair: GearPair,
+    deflection: ArrayLike,
+    phase: ArrayLike,
+    *,
+    pinion: Moduli | None = None,
+    wheel: Moduli | None = None,
+    deviations: Sequence[Deviation] = (),
+    model: LoadedModel | None = None,
+    flank: str = "drive",
+) -> tuple[Floats, Floats]:
+    """Load-shared force of one flank side at a given deflection: the inverse of the mesh.
+
+    F = sum_j F_j with sum_k C_jk F_k + delta_H(F_j) + e_j = delta where F_j > 0, >= delta
+    elsewhere: every tooth pair comes into and out of contact by itself, which the one spring
+    k(t) f(x) cannot show.
+
+    deflection: delta [m], shape ``lead``; with half backlash b and displacement y of the
+    pinion's base circle over the wheel's it is y - b on the drive flank and -y - b on the back
+    flank. Deviations carry their full S_j (thermal growth less the axes' movement).
+    Other arguments as :func:`loaded_contact`; ``model`` defaults to the "rim" body, the reading
+    of a lumped model whose inertia takes up the hub's torsion. Returns (F [N], dF/d delta
+    [N/m]) of shape (*lead, position); both 0 before the first pair touches.
+    """
+    delta = np.asarray(deflection, dtype=float)
+    if not np.all(np.isfinite(delta)):
+        raise InputError("deflection", f"{delta} m", allowed="finite")
+    moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
+    system = MeshSystem.of(
+        pair, delta.shape, phase, moduli, deviations, model or LoadedModel(body="rim"), flank
+    )
+    force, _, stiffness, settled = system.solve(_flat(delta, system.lead), by_load=False)
+    total = np.where(settled, force.sum(axis=-1), np.nan)
+    return (
+        total.reshape(*system.lead, *total.shape[1:]),
+        stiffness.reshape(*system.lead, *total.shape[1:]),
     )
 
 

@@ -3,8 +3,9 @@
 Minimises the elastic energy of the mesh over F_j >= 0 with sum F_j = F_n: the conditions are
 
     sum_k C_jk F_k + delta_H(F_j) + e_j = delta   where F_j > 0,
-    sum_k C_jk F_k + e_j >= delta                 where F_j = 0,
+    sum_k C_jk F_k + e_j >= delta                 where F_j = 0
 
+(or, for a prescribed delta, over F_j >= 0 alone, with the same conditions),
 delta_H(F) = F (A_j - C ln F) + K F^0.9. Pairs enter one by one where they would overlap and
 leave where Newton's step would pull (Lawson and Hanson's scheme); the energy is convex, so
 the answer is unique and does not depend on the order.
@@ -58,7 +59,8 @@ def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
 
 @_compiled
 def _share_one(
-    load: float,
+    asked: float,
+    by_load: bool,
     gap: Floats,
     compliance: Floats,
     linear: Floats,
@@ -66,7 +68,10 @@ def _share_one(
     power: float,
     force: Floats,
 ) -> tuple[float, float, bool]:
-    """Forces of one position into ``force``; returns (delta, tangent stiffness, settled)."""
+    """Forces of one position into ``force``; returns (delta, tangent stiffness, settled).
+
+    ``asked`` is the load F_n > 0, or delta where ``by_load`` is false.
+    """
     count = gap.size
     force[:] = 0.0
     active = np.zeros(count, dtype=np.bool_)
@@ -79,9 +84,15 @@ def _share_one(
             first = j
     # gaps are counted from the nearest pair: a common shift changes no bit of the forces
     origin = gap[first]
+    load, delta, stiffness = asked, 0.0, 0.0
+    if not by_load:
+        delta = asked - origin
+        if not delta > 0.0:
+            return asked, 0.0, True
+        # a first guess, and the scale of the tolerances
+        load = delta / (compliance[first, first] + abs(linear[first]))
     active[first] = True
     force[first] = load
-    delta, stiffness = 0.0, 0.0
     least = 1e-14 * load
     for _ in range(MOST_STEPS):
         size = 0
@@ -111,7 +122,7 @@ def _share_one(
         for a in range(size):
             stiffness += right[a, 1]
             slack -= right[a, 0]
-        advance = slack / stiffness
+        advance = slack / stiffness if by_load else 0.0
         step, leaving, largest = 1.0, -1, 0.0
         for a in range(size):
             j = index[a]
@@ -149,7 +160,8 @@ def _share_one(
 
 @_compiled
 def share_many(
-    load: Floats,
+    asked: Floats,
+    by_load: bool,
     gap: Floats,
     tooth: Floats,
     body: Floats,
@@ -165,11 +177,11 @@ def share_many(
 ) -> None:
     """All cases x positions into ``force``, ``delta``, ``stiffness``, ``settled``.
 
-    load [case]; gap [case or 1, position, pair]; tooth [2, position, pair] and body
-    [2, position, pair, pair]: compliances of both gears for unit modulus and width; depth
-    [2, position, pair]: ln(2 h_i) - nu/(2 (1 - nu)); curvature [position, pair]: ln(4 rho*);
-    tooth_softness, body_softness [case, 2]: 1/(E b); contact [case, 6]: factors of the two
-    depths, C, ln(pi b E*), K, and a constant compliance.
+    asked [case]: loads, or deflections where ``by_load`` is false; gap [case or 1, position,
+    pair]; tooth [2, position, pair] and body [2, position, pair, pair]: compliances of both
+    gears for unit modulus and width; depth [2, position, pair]: ln(2 h_i) - nu/(2 (1 - nu));
+    curvature [position, pair]: ln(4 rho*); tooth_softness, body_softness [case, 2]: 1/(E b);
+    contact [case, 6]: factors of the two depths, C, ln(pi b E*), K, and a constant compliance.
     """
     cases, positions, count = force.shape
     compliance = np.empty((count, count))
@@ -193,7 +205,8 @@ def share_many(
                     + contact[c, 5]
                 )
             delta[c, p], stiffness[c, p], settled[c, p] = _share_one(
-                load[c],
+                asked[c],
+                by_load,
                 gap[own, p],
                 compliance,
                 linear,
