@@ -58,9 +58,6 @@ def _row(name: str, row: RowTable, file: DimensionlessFile) -> list[Point]:
         given = getattr(file.base, parameter) if own is None else own
         at = f"base.{parameter}" if own is None else f"{where}.{parameter}"
         columns[parameter] = _stretched(given, count, at)
-    expected: tuple[str, ...] = ("",) * count
-    if row.expected:
-        expected = _stretched(row.expected, count, f"{where}.expected")
     unit = "K" if row.parameter == "temperature" else "1"
     for place, (value, unit_of_value) in enumerate(row.values):
         if unit_of_value != unit:
@@ -76,6 +73,9 @@ def _row(name: str, row: RowTable, file: DimensionlessFile) -> list[Point]:
             _swept(value, row.parameter, f"{where}.values[{place}]")
             for place, (value, _) in enumerate(row.values)
         )
+    expected: tuple[str, ...] = ("",) * count
+    if row.expected:
+        expected = _stretched(row.expected, count, f"{where}.expected")
     return [
         Point(
             row=name,

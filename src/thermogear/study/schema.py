@@ -498,6 +498,13 @@ def json_schema() -> dict[str, Any]:
     _, schema = models_json_schema(
         [(GearFile, "validation"), (DimensionlessFile, "validation")], title="thermogear case file"
     )
+    for table in schema["$defs"].values():
+        for entry in table["properties"].values():
+            # a default is an SI number or nothing; neither could be written in a file as it is
+            if entry.get("type") == "string" and not isinstance(entry.get("default"), str):
+                entry.pop("default", None)
+            if entry.get("default", "") is None:
+                del entry["default"]
     kinds = {"GearFile": "gear", "DimensionlessFile": "dimensionless"}
     for name, kind in kinds.items():
         schema["$defs"][name]["properties"]["kind"]["enum"] = [kind]
