@@ -17,6 +17,7 @@ from thermogear.heat.film import (
     pressure_viscosity_gold,
     pressure_viscosity_iso,
     regime,
+    regime_shares,
     roelands,
     thermal_reduction,
 )
@@ -164,3 +165,8 @@ def test_film_parameter_and_regime() -> None:
         film_parameter(1e-6, 0.0, 0.0)
     with pytest.raises(InputError, match=r"^regime limits: got 3.0 and 1.0"):
         regime(1.0, 3.0, 1.0)
+
+
+def test_shares_of_the_path() -> None:
+    shares = regime_shares([[0.5, 0.6, 1.5, 4.0], [5.0, 5.0, 5.0, 5.0]])
+    assert shares.tolist() == [[0.5, 0.25, 0.25], [0.0, 0.0, 1.0]]

@@ -99,8 +99,8 @@ def test_body_temperature_of_the_fzg_test_against_regression_and_standard() -> N
     """Measured: 80 + 0.23 T1 C with the oil at about 80 + 0.09 T1 C.
 
     The network's pinion body, nothing fitted, lies within 6 K of the measured line, the
-    estimate of ISO/TR 15144-1 1 to 17 K below it. The hottest node, the pinion's teeth, is up to 28 K
-    above the line, which is a mean of both gears.
+    estimate of ISO/TR 15144-1 1 to 17 K below it. The hottest node, the pinion's teeth, is up
+    to 28 K above the line, which is a mean of both gears.
     """
     pair, torque, omega = fzg_test()
     oil = ZERO_CELSIUS + 80.0 + 0.09 * torque

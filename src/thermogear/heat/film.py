@@ -32,6 +32,7 @@ __all__ = [
     "pressure_viscosity_gold",
     "pressure_viscosity_iso",
     "regime",
+    "regime_shares",
     "roelands",
     "thermal_reduction",
 ]
@@ -307,3 +308,15 @@ def regime(
         )
     index = np.digitize(np.asarray(film_parameter), [boundary_below, full_film_above])
     return np.asarray(index, dtype=np.int64)
+
+
+def regime_shares(
+    film_parameter: ArrayLike, boundary_below: float = 1.0, full_film_above: float = 3.0
+) -> Floats:
+    """Share of the path (the last axis) spent in each of :data:`REGIMES` [-].
+
+    ``film_parameter`` Lambda (..., position), positions evenly spaced; limits as
+    :func:`regime`. Returns (..., 3), each row adding up to 1.
+    """
+    index = regime(film_parameter, boundary_below, full_film_above)
+    return np.stack([np.mean(index == k, axis=-1) for k in range(len(REGIMES))], axis=-1)
