@@ -81,7 +81,8 @@ def tables(name: str, text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as cause:
         match = re.fullmatch(r"(?P<what>.*) \(at (?P<where>.*)\)", str(cause), re.DOTALL)
         what, where = (match["what"], match["where"]) if match else (str(cause), "some line")
-        fix = 'texts with units stand in quotes: module = "5 mm"' if "value" in what else None
+        unquoted = what.startswith(("Invalid value", "Expected newline"))
+        fix = 'a value with its unit stands in quotes: "5 mm"' if unquoted else None
         raise InputError(name, f"invalid TOML at {where}", why=what, fix=fix) from cause
     except (ValueError, RecursionError) as cause:
         raise InputError(name, "a number or a nesting beyond reason", allowed="TOML") from cause

@@ -167,7 +167,7 @@ def short(value: object) -> str:
     elif isinstance(value, dict):
         text = "a table"
     elif isinstance(value, int) and abs(value) >= 10**20:
-        text = f"a whole number of about {value.bit_length() * 0.30103:.0f} digits"
+        text = f"a whole number of about {int(value.bit_length() * 0.30103) + 1} digits"
     elif isinstance(value, int | float):
         text = f"{value:.15g}" if isinstance(value, float) else str(value)
     elif isinstance(value, str):

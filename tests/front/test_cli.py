@@ -1,0 +1,313 @@
+"""The command line does what it says, leaves no traceback, and starts light."""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+import types
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import thermogear
+from thermogear.base.errors import ThermogearError
+from thermogear.front import cli as command_line
+from thermogear.front.cli import main
+from thermogear.front.lines import one_line, system_error
+from thermogear.front.progress import progress
+from thermogear.study.case import Case
+from thermogear.study.ready import EXAMPLES, example_text
+
+HEAVY = (
+    "numpy",
+    "scipy",
+    "numba",
+    "xarray",
+    "h5py",
+    "matplotlib",
+    "pydantic",
+    "pint",
+    "rich",
+    "jinja2",
+)
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Path:
+    path = tmp_path / "rig.toml"
+    path.write_text(example_text("rig"), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """A run and a report that only note how they were called."""
+    seen: dict[str, Any] = {}
+
+    def run_to_directory(
+        case: Case,
+        directory: Path,
+        *,
+        case_text: str,
+        progress: Callable[[str, int, int], None],
+    ) -> dict[str, Any]:
+        seen.update(case=case, directory=directory, case_text=case_text)
+        progress("mesh cycle", 1, 2)
+        progress("mesh cycle", 2, 2)
+        if "effect" in seen:
+            raise seen["effect"]
+        return {"thermogear": "0", "notices": [{"level": "info", "text": "two\nlines"}]}
+
+    def write_report(directory: Path) -> Path:
+        seen["reported"] = directory
+        return directory / "report.html"
+
+    running = types.ModuleType("thermogear.study.run")
+    running.run_to_directory = run_to_directory  # type: ignore[attr-defined]
+    reporting = types.ModuleType("thermogear.views.report")
+    reporting.write_report = write_report  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "thermogear.study.run", running)
+    monkeypatch.setitem(sys.modules, "thermogear.views.report", reporting)
+    return seen
+
+
+def started(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "thermogear", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        **options,
+    )
+
+
+# --- light ------------------------------------------------------------------------------
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["--version"], ["example"]])
+def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
+    code = (
+        "import sys\n"
+        "from thermogear.front.cli import main\n"
+        f"assert main({arguments!r}) == 0\n"
+        f"print([m for m in {HEAVY!r} if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "[]"
+    assert done.stdout.strip()
+
+
+# --- as a program -------------------------------------------------------------------------
+def test_module_and_errors_as_a_program(tmp_path: Path) -> None:
+    version = started("--version")
+    assert (version.returncode, version.stdout) == (0, f"thermogear {thermogear.__version__}\n")
+    wrong = started("check", str(tmp_path / "none.toml"))
+    assert wrong.returncode == 2
+    assert wrong.stdout == ""
+    assert wrong.stderr == (
+        "error: none.toml: got no such file; `thermogear example rig > rig.toml` writes one\n"
+    )
+
+
+def test_a_reader_that_leaves_is_no_error() -> None:
+    code = "import sys; from thermogear.front.cli import main; sys.exit(main(['schema']))"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as program:
+        assert program.stdout is not None
+        assert program.stderr is not None
+        program.stdout.close()
+        assert program.stderr.read() == b""
+        assert program.wait() == 1
+
+
+# --- commands -----------------------------------------------------------------------------
+def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    assert "thermogear example rig > rig.toml" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_prints_the_file_as_it_is(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["example", name]) == 0
+    assert capsys.readouterr().out == example_text(name)
+
+
+def test_example_without_a_name_lists_them(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["example"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(EXAMPLES)
+
+
+def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert set(schema) >= {"$schema", "$defs", "anyOf", "title"}
+
+
+def test_check_prints_the_numbers_of_the_case(
+    rig: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(rig)]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == ""
+    for line in ("contact ratio                          1.714426", "1.227327 kg", "416.6667 Hz"):
+        assert line in shown.out
+
+
+def test_check_as_json(rig: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(rig), "--json", "--set", "gears.pinion.face_width=30 mm"]) == 0
+    shown = json.loads(capsys.readouterr().out)
+    facts = {f["name"]: f["value"] for f in shown["facts"]}
+    assert facts["centre distance"] == pytest.approx(250.0)
+    fields = {a["field"] for a in shown["assumptions"]}
+    assert "gears.wheel.face_width" in fields
+    assert "gears.pinion.face_width" not in fields
+
+
+def test_warnings_are_lines_said_once(rig: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    change = "temperatures.pinion_addendum=190 degC"
+    assert main(["check", str(rig), "--set", change]) == 0
+    assert capsys.readouterr().err == (
+        "warning: temperatures.pinion_addendum: got 190 degC; valid -60..180 degC; "
+        "above the tempering temperature of steel\n"
+    )
+
+
+def test_run_hands_case_and_directory_on(
+    rig: Path, tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = tmp_path / "results"
+    assert main(["run", str(rig), "-o", str(results), "--set", "operating.torque=150 N m"]) == 0
+    shown = capsys.readouterr()
+    assert shown.out == f"- two lines\n{results / 'report.html'}\n"
+    assert shown.err == ""
+    assert pretended["case"].torques == (150.0,)
+    assert pretended["directory"] == pretended["reported"] == results
+    assert results.is_dir()
+    text = pretended["case_text"]
+    assert text.startswith(example_text("rig").rstrip())
+    assert text.endswith("\n# on the command line: operating.torque = 150 N m\n")
+
+
+def test_run_without_overrides_hands_the_text_on_as_it_is(
+    rig: Path, tmp_path: Path, pretended: dict[str, Any]
+) -> None:
+    assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == 0
+    assert pretended["case_text"] == example_text("rig")
+
+
+def test_run_for_scripts_prints_json_alone(
+    rig: Path, tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(rig), "-o", str(tmp_path / "results"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["thermogear"] == "0"
+    assert pretended["directory"] == tmp_path / "results"
+
+
+def test_results_of_ours_are_written_over(
+    rig: Path, tmp_path: Path, pretended: dict[str, Any]
+) -> None:
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "summary.json").write_text('{"thermogear": "0"}', encoding="utf-8")
+    assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == 0
+    assert "reported" in pretended
+
+
+def test_a_case_too_large_needs_force(
+    rig: Path,
+    tmp_path: Path,
+    pretended: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr("thermogear.study.size.free_bytes", lambda: 2**20)
+    results = tmp_path / "results"
+    assert main(["run", str(rig), "-o", str(results)]) == 2
+    assert "70 % of the free memory" in capsys.readouterr().err
+    assert not results.exists()
+    assert main(["run", str(rig), "-o", str(results), "--force"]) == 0
+    assert pretended["directory"] == results
+
+
+@pytest.mark.parametrize(
+    ("effect", "code", "line"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted: stopped on request; what was finished stays\n"),
+        (ThermogearError("it did not\nsettle"), 2, "error: it did not settle\n"),
+        (
+            PermissionError(13, "Permission denied", "results.nc"),
+            2,
+            "error: results.nc: Permission denied\n",
+        ),
+        (OSError(28, "No space left on device"), 2, "error: No space left on device\n"),
+        (MemoryError(), 2, "error: MemoryError: the case is too large for this machine\n"),
+    ],
+)
+def test_what_stops_a_run_is_one_line(
+    effect: BaseException,
+    code: int,
+    line: str,
+    rig: Path,
+    tmp_path: Path,
+    pretended: dict[str, Any],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    pretended["effect"] = effect
+    assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == code
+    shown = capsys.readouterr()
+    assert shown.err == line
+    assert shown.out == ""
+
+
+def test_a_defect_of_the_program_is_not_hidden(
+    rig: Path, tmp_path: Path, pretended: dict[str, Any]
+) -> None:
+    pretended["effect"] = ZeroDivisionError()
+    with pytest.raises(ZeroDivisionError):
+        main(["run", str(rig), "-o", str(tmp_path / "results")])
+
+
+def test_report_draws_the_page_anew(
+    tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["report", str(tmp_path)]) == 0
+    assert pretended["reported"] == tmp_path
+    assert capsys.readouterr().out == f"{tmp_path / 'report.html'}\n"
+
+
+def test_arguments_come_from_the_program_when_not_given(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command_line.sys, "argv", ["thermogear", "--version"])
+    assert main() == 0
+    assert capsys.readouterr().out == f"thermogear {thermogear.__version__}\n"
+
+
+# --- lines and progress -----------------------------------------------------------------
+def test_control_characters_never_reach_the_terminal() -> None:
+    assert one_line("a\x1b[31m\r\nb\tc") == "a?[31m b c"
+    assert system_error(OSError("odd")) == "odd"
+
+
+def test_progress_is_silent_where_nobody_watches(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress() as report:
+        report("mesh cycle", 1, 2)
+    assert capsys.readouterr().err == ""
+
+
+def test_progress_draws_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    with progress() as report:
+        report("mesh cycle", 1, 2)
+        report("mesh cycle", 2, 2)
+        report("motion", 1, 1)
+    assert "mesh cycle" in terminal.getvalue()
+    assert "motion" in terminal.getvalue()
