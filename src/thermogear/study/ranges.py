@@ -25,10 +25,11 @@ def warn_of_temperatures(pair: GearPair, states: dict[str, Operating]) -> None:
                 _warn(f"{where}.{body}_{place}", value, gear.material)
         _warn(f"{where}.housing", float(np.max(bodies.housing)), state.housing)
         low, high = state.lubricant.temperature_range
-        if not low <= state.oil_temperature <= high:
-            field = "oil.temperature" if where == "temperatures" else f"{where}, oil"
-            why = f"outside the viscosity fit of {state.lubricant.name}"
-            _say(field, state.oil_temperature, low, high, why)
+        for oil in np.unique(np.asarray(state.oil_temperature, dtype=float)):
+            if not low <= oil <= high:
+                field = "oil.temperature" if where == "temperatures" else f"{where}, oil"
+                why = f"outside the viscosity fit of {state.lubricant.name}"
+                _say(field, float(oil), low, high, why)
 
 
 def _warn(where: str, value: float, material: Material) -> None:
