@@ -20,7 +20,7 @@ from thermogear.heat.gearbox import (
 )
 from thermogear.heat.laws import iso_13989_2, schlenk
 from thermogear.heat.losses import gear_loss_factor, mesh_loss
-from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity
+from thermogear.heat.lubrication import density, dynamic_viscosity, kinematic_viscosity
 from thermogear.heat.scuffing import body_temperature_15144
 
 OIL = lubricant("M100")
@@ -75,6 +75,17 @@ def test_warm_up_ends_steady() -> None:
     steady = network.steady()
     assert np.all(np.diff(curve["pinion_tooth"]) > 0.0)
     assert curve["pinion_tooth"][-1] == pytest.approx(float(steady["pinion_tooth"]), rel=1e-10)
+
+
+def test_supplied_oil_carries_its_heat_away() -> None:
+    """Steady: rho c Q (T_oil - T_supply) leaves with the oil, the rest through the housing."""
+    around = Surroundings(oil_flow=1e-4, supply_temperature=330.0)
+    state = thermal_network(PINION, WHEEL, 150.0, Losses(3000.0), OIL, 350.0, around).steady()
+    carried = float(density(OIL, 330.0)) * OIL.specific_heat * 1e-4 * (state["oil"] - 330.0)
+    assert state.heat_out["supply"] == pytest.approx(float(carried), rel=1e-10)
+    assert state.heat_out["supply"] + state.heat_out["ambient"] == pytest.approx(3000.0, rel=1e-10)
+    with pytest.raises(InputError, match=r"^surroundings.oil_flow: got -1.0"):
+        Surroundings(oil_flow=-1.0)
 
 
 def fzg_test() -> tuple[GearPair, np.ndarray, float]:

@@ -1,5 +1,7 @@
 """The exact moving source: published table, closed forms, two bodies against Blok."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -159,6 +161,23 @@ def test_methods_agree_for_fast_flanks_and_vanish_together() -> None:
         rest = {**given, "speed_1": 0.0, "speed_2": 0.0}
         assert flash_temperature(**rest, method=method) == 0.0
         assert flash_temperature(**{**given, "line_load": 0.0}, method=method) == 0.0
+
+
+def test_unlike_materials_and_a_flank_at_rest() -> None:
+    """Fast flanks of unlike thermal data follow Blok; one at rest leaves the heat to the other."""
+    bronze = dataclasses.replace(STEEL, thermal_conductivity=90.0, density=8800.0)
+    given = {**point(2000.0, 900.0), "material_2": bronze}
+    blok, corrected, exact = (
+        float(flash_temperature(**given, method=m)) for m in ("blok", "peclet", "exact")
+    )
+    assert corrected == pytest.approx(blok, rel=1e-3)
+    assert exact == pytest.approx(blok, rel=2e-3)
+    still = {**point(20.0, 1.0), "speed_2": 0.0}
+    lone, pair = (float(flash_temperature(**still, method=m)) for m in ("peclet", "exact"))
+    single = float(peclet_factor(20.0)) / np.sqrt(20.0)
+    heat = 0.06 * 2e5 * float(still["speed_1"])  # type: ignore[arg-type]
+    assert lone == pytest.approx(single * heat / STEEL.thermal_conductivity, rel=1e-6)
+    assert pair == pytest.approx(lone, rel=0.1)
 
 
 def test_blok_method_is_bloks_formula() -> None:

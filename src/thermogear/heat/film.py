@@ -86,12 +86,13 @@ def pressure_viscosity_iso(
 
     ``viscosity_38`` eta [Pa s] at 38 C, ``temperature`` [K], ``kind`` mineral, pao or pag.
     Any shape. Source: ISO/TR 15144-1 eq. 8-11. 24 % low on the mean against 38 measured
-    mineral values: the film is uncertain by about 15 %.
+    mineral values: the film is uncertain by about 15 %. 0 above 781 K, where the bracket
+    would turn negative, far outside any oil's life.
     """
     c, e = _of_kind(kind, _ISO, "ISO/TR 15144-1")
     alpha_38 = c * np.asarray(viscosity_38, dtype=float) ** e
     bracket = 1.0 + 516.0 * (1.0 / np.asarray(temperature, dtype=float) - 1.0 / 311.0)
-    return np.asarray(alpha_38 * bracket)
+    return np.asarray(alpha_38 * np.maximum(bracket, 0.0))
 
 
 def pressure_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:

@@ -58,7 +58,8 @@ class Surroundings:
     ``oil_housing_coefficient`` [W/(m^2 K)]; ``wetted_share`` of a gear's surface that oil
     covers (0..1), pinion and wheel; ``shaft_length`` [m] from the gear to its bearings on
     each side; ``bearing_conductance`` [W/K] of one bearing into the housing; ``oil_mass``,
-    ``housing_mass`` [kg] for the warm-up.
+    ``housing_mass`` [kg] for the warm-up. ``oil_flow`` [m^3/s] of oil supplied at
+    ``supply_temperature`` [K] and drawn off as warm as the bath; 0 for a closed bath.
     """
 
     ambient: float = 293.15
@@ -71,11 +72,14 @@ class Surroundings:
     oil_mass: float = 3.0
     housing_mass: float = 40.0
     housing_specific_heat: float = 470.0
+    oil_flow: float = 0.0
+    supply_temperature: float = 333.15
 
     def __post_init__(self) -> None:
         for entry in fields(self):
             values = np.asarray(getattr(self, entry.name), dtype=float)
-            if not np.all(np.isfinite(values) & (values > 0.0)):
+            least = values >= 0.0 if entry.name == "oil_flow" else values > 0.0
+            if not np.all(np.isfinite(values) & least):
                 raise InputError(f"surroundings.{entry.name}", values, allowed="> 0, finite")
         if max(self.wetted_share) > 1.0:
             raise InputError("surroundings.wetted_share", self.wetted_share, allowed="0 < x <= 1")
@@ -175,8 +179,8 @@ def thermal_network(
 ) -> ThermalNetwork:
     """The heat balance of a gear pair as a :class:`ThermalNetwork`.
 
-    Nodes ambient, housing, oil, pinion_tooth, pinion_body, pinion_shaft, wheel_tooth,
-    wheel_body, wheel_shaft.
+    Nodes ambient, housing, oil (and supply with an oil flow), pinion_tooth, pinion_body,
+    pinion_shaft, wheel_tooth, wheel_body, wheel_shaft.
 
     ``speed`` pinion [rad/s], ``losses``, ``oil_temperature`` [K] at which the oil's properties
     are taken (a guess; repeat with the result), ``surroundings`` (default: ours), ``measured``
@@ -192,6 +196,12 @@ def thermal_network(
         Link("oil", "housing", around.oil_housing_coefficient * around.housing_area),
         Link("housing", "ambient", around.housing_coefficient * around.housing_area),
     ]
+    fixed: dict[str, ArrayLike] = {"ambient": around.ambient}
+    if around.oil_flow > 0.0:
+        # well mixed: what flows off is as warm as the bath
+        carried = density(lubricant, around.supply_temperature) * lubricant.specific_heat
+        links.append(Link("oil", "supply", carried * around.oil_flow))
+        fixed["supply"] = around.supply_temperature
     capacities = {
         "oil": around.oil_mass * lubricant.specific_heat,
         "housing": around.housing_mass * around.housing_specific_heat,
@@ -236,5 +246,5 @@ def thermal_network(
         "pinion_shaft": losses.bearing_1,
         "wheel_shaft": losses.bearing_2,
     }
-    fixed = {"ambient": around.ambient, **(measured or {})}
+    fixed.update(measured or {})
     return ThermalNetwork(tuple(links), sources, fixed, capacities)
