@@ -1,4 +1,4 @@
-"""Continuation of periodic orbits in one parameter: folds, flips, grazing, branch switching."""
+"""Continuation of periodic orbits in one parameter: branches, branch switching, cascades."""
 
 from __future__ import annotations
 
@@ -8,82 +8,43 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from thermogear.analysis.orbits import Orbit, closed, multipliers, shoot
-from thermogear.analysis.section import ReturnMap, Visit, lanes_of, scales
+from thermogear.analysis.bifurcations import (
+    BIRTH,
+    FLIP,
+    FOLD,
+    GRAZING,
+    LONGEST_STEP,
+    Bifurcation,
+    Curve,
+    Family,
+    Point,
+    birth_of,
+    locate,
+    passed_mother,
+)
+from thermogear.analysis.orbits import Orbit, closed, multipliers
+from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.base.errors import ConvergenceError, InputError, nearest
 
+__all__ = [
+    "BIRTH",
+    "FLIP",
+    "FOLD",
+    "GRAZING",
+    "Bifurcation",
+    "Branch",
+    "Cascade",
+    "cascade",
+    "continuation",
+    "family_of",
+    "switch_branch",
+]
+
 Floats = NDArray[np.float64]
-Family = Callable[[float], object]
 
-FOLD = "fold"
-FLIP = "period doubling"
-GRAZING = "grazing"
-BIRTH = "period halving"
 SHRUNK = "the orbit shrank into one of half its period"
-
-NEWTON_TOLERANCE = 1e-14
-LONGEST_STEP = 0.05
 SHORTEST_STEP = 1e-7
-
-
-@dataclass(frozen=True)
-class Bifurcation:
-    """Where a branch changes: ``kind`` fold, period doubling, grazing or period halving.
-
-    ``parameter`` and its ``value``, the ``orbit`` there; ``note`` says what a grazing begins
-    or ends.
-    """
-
-    kind: str
-    parameter: str
-    value: float
-    orbit: Orbit
-    note: str = ""
-
-    @property
-    def period(self) -> int:
-        """Mesh periods of the orbit that bifurcates."""
-        return self.orbit.period
-
-    @property
-    def state(self) -> Floats:
-        """(x, x') of the orbit at phase 0."""
-        return self.orbit.state
-
-    @property
-    def multipliers(self) -> NDArray[np.complex128]:
-        """Floquet multipliers of the orbit."""
-        return self.orbit.multipliers
-
-
-@dataclass(frozen=True)
-class Point:
-    """A converged point of a branch in scaled coordinates, with its tangent."""
-
-    scaled: Floats
-    tangent: Floats
-    visit: Visit
-    determinant: float
-
-    @property
-    def trace(self) -> float:
-        return float(self.visit.jacobian[0, 0] + self.visit.jacobian[1, 1])
-
-    @property
-    def fold(self) -> float:
-        """(1 - mu_1)(1 - mu_2)."""
-        return 1.0 - self.trace + self.determinant
-
-    @property
-    def flip(self) -> float:
-        """(1 + mu_1)(1 + mu_2)."""
-        return 1.0 + self.trace + self.determinant
-
-    @property
-    def contacts(self) -> tuple[int, int]:
-        return self.visit.contact_losses, self.visit.back_impacts
 
 
 @dataclass(frozen=True)
@@ -118,95 +79,6 @@ class Branch:
         """The orbit at one point."""
         model = self.family(float(self.values[index]))
         return closed(ReturnMap(lanes_of(model)), self.states[index], self.period, model=model)
-
-
-class _Curve:
-    """G(z, p) = P^n(z; p) - z in coordinates scaled by b, 2 pi b/T and the parameter's range."""
-
-    def __init__(
-        self, family: Family, parameter: str, period: int, start: float, span: float
-    ) -> None:
-        self.family = family
-        self.parameter = parameter
-        self.period = period
-        self.span = span
-        self.unit = np.append(scales(lanes_of(family(start))), span)
-
-    def map_at(self, value: float) -> ReturnMap:
-        return ReturnMap(lanes_of(self.family(value)))
-
-    def residual(self, scaled: Floats) -> tuple[Floats, Visit]:
-        value = scaled * self.unit
-        visit = self.map_at(float(value[2])).visit(value[:2], self.period)
-        return (visit.points[-1] - visit.points[0]) / self.unit[:2], visit
-
-    def derivative(self, scaled: Floats, visit: Visit) -> Floats:
-        """D G (2, 3); the parameter by central differences of the map."""
-        out = np.empty((2, 3))
-        two = self.unit[:2]
-        out[:, :2] = visit.jacobian / two[:, None] * two - np.eye(2)
-        small = 1e-6
-        ends = []
-        for sign in (1.0, -1.0):
-            moved = scaled.copy()
-            moved[2] += sign * small
-            ends.append(self.residual(moved)[0])
-        out[:, 2] = (ends[0] - ends[1]) / (2.0 * small)
-        return out
-
-    def correct(
-        self, guess: Floats, normal: Floats, old: Floats | None = None, reach: float = np.inf
-    ) -> Point | None:
-        """Newton onto the curve inside the plane through ``guess`` normal to ``normal``."""
-        scaled = guess.copy()
-        gap, visit = self.residual(scaled)
-        matrix = np.empty((3, 3))
-        matrix[2] = normal
-        best = np.inf
-        for count in range(12):
-            size = float(np.max(np.abs(gap)))
-            if not np.isfinite(size):
-                return None
-            if count == 0 or size > NEWTON_TOLERANCE:
-                matrix[:2] = self.derivative(scaled, visit)
-            if size <= NEWTON_TOLERANCE or (size >= best and best < 1e-10):
-                break
-            best = min(best, size)
-            try:
-                step = np.linalg.solve(matrix, [-gap[0], -gap[1], -normal @ (scaled - guess)])
-            except np.linalg.LinAlgError:
-                return None
-            scaled = scaled + step
-            if float(np.linalg.norm(scaled - guess)) > reach:
-                return None
-            gap, visit = self.residual(scaled)
-        else:
-            return None
-        null = np.linalg.svd(matrix[:2])[2][2]
-        direction = normal if old is None else old
-        if null @ direction < 0.0:
-            null = -null
-        value = float(scaled[2] * self.unit[2])
-        lanes = lanes_of(self.family(value))
-        determinant = float(np.exp(-lanes.damping[0] * lanes.period[0] * self.period))
-        return Point(scaled, null, visit, determinant)
-
-    def orbit(self, point: Point) -> Orbit:
-        value = point.scaled * self.unit
-        model = self.family(float(value[2]))
-        return closed(ReturnMap(lanes_of(model)), value[:2], self.period, model=model)
-
-    def between(self, a: Point, step: float) -> Point:
-        """The point a distance ``step`` along the tangent of ``a``."""
-        if step == 0.0:
-            return a
-        point = self.correct(a.scaled + step * a.tangent, a.tangent)
-        if point is None:
-            raise ConvergenceError(
-                f"continuation in {self.parameter}: no orbit between two orbits of the branch "
-                f"near {float(a.scaled[2] * self.span)!r}"
-            )
-        return point
 
 
 def family_of(model: object, parameter: str) -> tuple[Family, float]:
@@ -262,7 +134,7 @@ def continuation(
     if not np.isfinite(to) or to == start:
         raise InputError("to", to, allowed=f"a finite number other than {start}")
     span = abs(to - start)
-    curve = _Curve(family, parameter, orbit.period, start, span)
+    curve = Curve(family, parameter, orbit.period, start, span)
     guess = np.append(orbit.state, start) / curve.unit
     heading = np.array([0.0, 0.0, float(np.sign(to - start))])
     if direction is None:
@@ -275,16 +147,16 @@ def continuation(
     points = [first]
     found: list[Bifurcation] = []
     ended = f"{most_points} points"
-    for point in _walk(curve, first, start, to, most_points):
+    for point in _walk(curve, first, start, to, most_points, 0.01 if direction is None else 5e-4):
         if isinstance(point, str):
             ended = point
             break
-        if _halved(curve, point):
-            # the corrector slid onto the mother orbit walked twice: end where they meet
-            found.append(_birth(curve, points[-1], point))
+        if passed_mother(curve, points[-1], point):
+            birth = birth_of(curve, points[-1])
+            found += [] if birth is None else [birth]
             ended = SHRUNK
             break
-        fresh = _events(curve, points[-1], point)
+        fresh = locate(curve, points[-1], point)
         found += fresh
         points.append(point)
         if progress is not None:
@@ -307,11 +179,12 @@ def continuation(
     )
 
 
-def _walk(curve: _Curve, first: Point, start: float, to: float, most: int) -> Iterator[Point | str]:
+def _walk(
+    curve: Curve, first: Point, start: float, to: float, most: int, step: float
+) -> Iterator[Point | str]:
     """Points of the branch, then the reason for its end."""
     here = first
     side = np.sign(to - start)
-    step = 0.01
     low, high = sorted((start / curve.span, to / curve.span))
     for _ in range(most):
         while True:
@@ -321,7 +194,13 @@ def _walk(curve: _Curve, first: Point, start: float, to: float, most: int) -> It
                 point = curve.correct(guess, here.tangent, here.tangent, 0.5 * step)
             except InputError:
                 point = None  # the step left the parameter's range
-            if point is not None and point.tangent @ here.tangent > 0.9:
+            # near its birth a doubled orbit's corrector may slide onto the mother or the
+            # half-shifted side: such a step must be short to be believed
+            if (
+                point is not None
+                and point.tangent @ here.tangent > 0.9
+                and (step < 2e-4 or not passed_mother(curve, here, point))
+            ):
                 break
             step *= 0.5
             if step < SHORTEST_STEP:
@@ -344,96 +223,12 @@ def _walk(curve: _Curve, first: Point, start: float, to: float, most: int) -> It
             step *= 0.7
 
 
-def _land(curve: _Curve, a: Point, b: Point, value: float) -> Point | None:
+def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
     """The orbit exactly at the border value of the parameter."""
     weight = (value - a.scaled[2]) / (b.scaled[2] - a.scaled[2])
     guess = a.scaled + weight * (b.scaled - a.scaled)
     guess[2] = value
     return curve.correct(guess, np.array([0.0, 0.0, 1.0]), a.tangent)
-
-
-def _events(curve: _Curve, a: Point, b: Point) -> list[Bifurcation]:
-    """Bifurcations between two neighbouring points, in the order of the walk."""
-    length = float((b.scaled - a.scaled) @ a.tangent)
-    events: list[tuple[float, Bifurcation]] = []
-
-    def locate(name: str) -> float:
-        return float(
-            brentq(
-                lambda s: getattr(curve.between(a, s), name),
-                0.0,
-                length,
-                xtol=1e-14,
-                rtol=8.9e-16,
-            )
-        )
-
-    def at(step: float, kind: str, note: str = "") -> None:
-        orbit = curve.orbit(curve.between(a, step))
-        value = float(curve.between(a, step).scaled[2] * curve.span)
-        events.append((step, Bifurcation(kind, curve.parameter, value, orbit, note)))
-
-    if a.fold * b.fold < 0.0:
-        at(locate("fold"), FOLD)
-    if a.flip * b.flip < 0.0:
-        at(locate("flip"), FLIP)
-    if a.contacts != b.contacts:
-        low, high = 0.0, length
-        before, after = a.contacts, b.contacts
-        while high - low > 1e-13:
-            middle = 0.5 * (low + high)
-            seen = curve.between(a, middle).contacts
-            if seen == before:
-                low = middle
-            else:
-                high, after = middle, seen
-            if middle in (low, high) and high - low <= np.spacing(high):
-                break
-        at(0.5 * (low + high), GRAZING, _grazed(before, after))
-    return [event for _, event in sorted(events, key=lambda pair: pair[0])]
-
-
-def _halved(curve: _Curve, point: Point) -> bool:
-    """Whether the orbit closes after half its period already."""
-    if curve.period % 2:
-        return False
-    points = point.visit.points
-    gap = (points[curve.period // 2] - points[0]) / curve.unit[:2]
-    return bool(np.max(np.abs(gap)) < 1e-9)
-
-
-def _birth(curve: _Curve, a: Point, b: Point) -> Bifurcation:
-    """The flip of the mother orbit between a doubled orbit ``a`` and ``b`` on the mother."""
-    half = curve.period // 2
-
-    def mother(value: float) -> Orbit:
-        model = curve.family(value)
-        weight = (value / curve.span - b.scaled[2]) / (a.scaled[2] - b.scaled[2])
-        centre = 0.5 * (a.visit.points[0] + a.visit.points[half])
-        guess = b.visit.points[0] + weight * (centre - b.visit.points[0])
-        orbit = shoot(ReturnMap(lanes_of(model)), guess, half, model=model)
-        if orbit is None:
-            raise ConvergenceError(
-                f"continuation in {curve.parameter}: no orbit of period {half} at {value!r}, "
-                f"where one of period {curve.period} ends"
-            )
-        return orbit
-
-    def flip(value: float) -> float:
-        orbit = mother(value)
-        return float(1.0 + np.trace(orbit.jacobian) + orbit.determinant)
-
-    ends = [float(p.scaled[2] * curve.span) for p in (a, b)]
-    value = float(brentq(flip, *ends, xtol=1e-14)) if flip(ends[0]) * flip(ends[1]) < 0 else ends[1]
-    return Bifurcation(BIRTH, curve.parameter, value, mother(value))
-
-
-def _grazed(before: tuple[int, int], after: tuple[int, int]) -> str:
-    parts = []
-    for name, old, new in zip(("contact losses", "back-side impacts"), before, after, strict=True):
-        if old != new:
-            parts.append(f"{name} per orbit {old} -> {new}")
-    return ", ".join(parts)
 
 
 @dataclass(frozen=True)
@@ -458,7 +253,7 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
         family, _ = family_of(orbit.model, bifurcation.parameter)
     value = bifurcation.value
     span = max(abs(value), 1e-3)
-    curve = _Curve(family, bifurcation.parameter, 2 * orbit.period, value, span)
+    curve = Curve(family, bifurcation.parameter, 2 * orbit.period, value, span)
     two = curve.unit[:2]
     matrix = orbit.jacobian / two[:, None] * two
     direction = np.linalg.svd(matrix + np.eye(2))[2][1]

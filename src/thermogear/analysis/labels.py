@@ -6,8 +6,9 @@ that never closes is chaotic or has not settled.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -72,7 +73,9 @@ def label(
     approaches, every shorter lag differs by more than a thousand closure tolerances, and the
     largest Floquet multiplier stays below ``near_border`` in modulus. Chaotic: no lag up to
     ``max_period`` closes and the largest Lyapunov exponent is positive by more than four
-    standard errors, in both halves of its record. Everything else is undecided.
+    standard errors, in both halves of its record. The label stands only when the same motion
+    on twice as many sub-steps of the event-exact maps earns it too; everything else is
+    undecided.
     """
     lanes = lanes_of(model)
     if len(lanes) != 1:
@@ -108,36 +111,86 @@ def labels(
         if int(value) != value or value < least:
             raise InputError(name, value, allowed=f"a whole number >= {least}")
     lanes = lanes_of(model)
-    state = starts_of(initial_state, len(lanes))
+    start = starts_of(initial_state, len(lanes))
+    search = _Search(max_period, discard, cap, near_border, batches, batch_periods, threads)
+    total = 2 * len(lanes)
+    first = _settle(
+        lanes, start, search, 1, None if progress is None else partial(_tell, progress, 0, total)
+    )
+    again = _settle(
+        lanes,
+        start,
+        search,
+        2,
+        None if progress is None else partial(_tell, progress, len(lanes), total),
+    )
+    return [_agreed(one, other) for one, other in zip(first, again, strict=True)]
+
+
+@dataclass(frozen=True)
+class _Search:
+    max_period: int
+    discard: int
+    cap: int
+    near_border: float
+    batches: int
+    batch_periods: int
+    threads: int | None
+
+
+def _tell(progress: Progress, before: int, total: int, done: int) -> None:
+    progress(before + done, total)
+
+
+def _agreed(one: Label, other: Label) -> Label:
+    """A label stands when another rounding of the same motion leads there too."""
+    if str(one) == str(other):
+        return one
+    if "undecided" in (one.name, other.name):
+        return one if one.name == "undecided" else other
+    reason = f"where the transient ends depends on rounding: {one} or {other}"
+    return Label("undecided", 0, reason, max(one.discarded, other.discarded))
+
+
+def _settle(
+    lanes: Lanes,
+    start: Floats,
+    search: _Search,
+    refine: int,
+    progress: Callable[[int], None] | None,
+) -> list[Label]:
+    """Labels from one run with ``refine`` times the sub-steps."""
+    state = start.copy()
     found: list[Label | None] = [None] * len(lanes)
     waiting = np.arange(len(lanes))
     elapsed = 0
-    length = discard
-    keep = 2 * max_period
-    while waiting.size and elapsed < cap:
-        group = Ensemble(lanes.take(waiting), state[waiting], threads=threads)
+    length = search.discard
+    keep = 2 * search.max_period
+    while waiting.size and elapsed < search.cap:
+        group = Ensemble(lanes.take(waiting), state[waiting], threads=search.threads, refine=refine)
         window = group.run(length + keep, keep)
         elapsed += length + keep
         state[waiting] = group.state
         silent: list[int] = []
         for row, lane in enumerate(waiting.tolist()):
             verdict, quiet = _periodic(
-                lanes.take(lane), window[row], max_period, elapsed, near_border
+                lanes.take(lane), window[row], search.max_period, elapsed, search.near_border
             )
             found[lane] = verdict
             if quiet:
                 silent.append(lane)
         # no lag closes: chaos is asked once the transient had a fair chance
-        last = elapsed >= cap
+        last = elapsed >= search.cap
         asked = [lane for lane in silent if found[lane] is None]
-        if asked and (elapsed >= 4 * discard or last):
+        if asked and (elapsed >= 4 * search.discard or last):
             proofs = lyapunov_exponents(
                 lanes.take(np.array(asked)),
                 initial_state=state[asked],
                 discard=0,
-                batches=batches,
-                batch_periods=batch_periods,
-                threads=threads,
+                batches=search.batches,
+                batch_periods=search.batch_periods,
+                threads=search.threads,
+                refine=refine,
             )
             for lane, proof in zip(asked, proofs, strict=True):
                 state[lane] = proof.state
@@ -149,11 +202,10 @@ def labels(
                         elapsed,
                         lyapunov=proof,
                     )
-            elapsed += batches * batch_periods
         waiting = np.array([i for i in waiting if found[i] is None], dtype=int)
         length *= 2
         if progress is not None:
-            progress(len(lanes) - waiting.size, len(lanes))
+            progress(len(lanes) - waiting.size)
     for lane in waiting.tolist():
         found[lane] = Label(
             "undecided",

@@ -82,8 +82,9 @@ def lyapunov_exponents(
     batch_periods: int = 1000,
     threads: int | None = None,
     progress: Progress | None = None,
+    refine: int = 1,
 ) -> list[Lyapunov]:
-    """:func:`lyapunov_exponent` of every lane of ``model``."""
+    """:func:`lyapunov_exponent` of every lane of ``model``; ``refine`` times the sub-steps."""
     for name, value, least in (
         ("discard", discard, 0),
         ("batches", batches, 2),
@@ -97,7 +98,7 @@ def lyapunov_exponents(
     ends = np.full((len(lanes), 2), np.nan)
     work = [
         partial(_block, lanes, index, borders, marks, start, discard, means, ends, batch_periods)
-        for index, borders, marks in exact.layouts(lanes)
+        for index, borders, marks in exact.layouts(lanes, refine=refine)
     ]
     total = len(lanes) * (discard + batches * batch_periods)
     run_blocks(work, total, threads=threads, progress=progress)

@@ -110,13 +110,15 @@ class ReturnMap:
 class Ensemble:
     """Many lanes running side by side, with the last stretch of their sections kept."""
 
-    def __init__(self, lanes: Lanes, start: Floats, *, threads: int | None = None) -> None:
+    def __init__(
+        self, lanes: Lanes, start: Floats, *, threads: int | None = None, refine: int = 1
+    ) -> None:
         self.lanes = lanes
         self.threads = threads
         self.elapsed = 0
         self._blocks = [
             (index, exact.prepare_maps(lanes.take(index), borders, marks))
-            for index, borders, marks in exact.layouts(lanes)
+            for index, borders, marks in exact.layouts(lanes, refine=refine)
         ]
         self._states = [
             exact.State.start(start[index, 0], start[index, 1], lanes.half_backlash[index])

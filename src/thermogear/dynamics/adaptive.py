@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.tables import Lanes
@@ -53,6 +52,8 @@ def follow(
     no events). ``samples`` per period (0: none) are taken at uniform phases, the first at 0.
     The step never exceeds a 64th of the period, so that a graze is not stepped over.
     """
+    from scipy.integrate import solve_ivp  # a third of a second that most runs never need
+
     y = np.array(start, dtype=float)
     region = 0
     if gap is not None:

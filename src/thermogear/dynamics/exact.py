@@ -186,13 +186,14 @@ def prepare_maps(
 
 
 def layouts(
-    lanes: Lanes, samples: int = 0, block: int = BLOCK
+    lanes: Lanes, samples: int = 0, block: int = BLOCK, refine: int = 1
 ) -> Iterator[tuple[Whole, Floats, NDArray[np.uint8]]]:
     """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
 
     The sub-steps of a lane depend on that lane alone, so results do not depend on company.
+    ``refine`` multiplies their number: another rounding of the same motion.
     """
-    needed = substeps(lanes)
+    needed = substeps(lanes) * refine
     keys = [(int(needed[i]), lanes.jumps(i)) for i in range(len(lanes))]
     for key in sorted(set(keys)):
         count, jumps = key
