@@ -383,6 +383,21 @@ def test_undercut_is_made_on_request() -> None:
     assert undercut.pair.pinion.teeth == 16
 
 
+@pytest.mark.parametrize("junk", ["nan", "-1", "1e308", '"1e308 km"', '"-5 mm"', "[[1]]", "{a=1}"])
+def test_any_value_anywhere_is_read_or_refused(junk: str) -> None:
+    data = tomllib.loads(example_text("rig"))
+    del data["ours"]
+    refused = 0
+    for path in leaves(data):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                rig(f"{path}={junk}")
+            except InputError as error:
+                refused += error.field.startswith(path.split(".")[0])
+    assert refused > 0.75 * len(leaves(data))
+
+
 # --- facts and size -------------------------------------------------------------------------
 def test_facts_of_the_rig_are_the_published_ones() -> None:
     found = {(f.group, f.name): f.value for f in facts(rig())}
