@@ -191,7 +191,7 @@ def test_dry_friction_is_hotter_than_mixed_and_flash_grows_with_speed_and_torque
     greatest = dry.max("path_position").values
     assert np.all(np.diff(greatest) > 0.0)
     # w^(3/4) at constant friction, where the shares do not depend on the load
-    equal = MeshModel.consistent().override(sharing="equal")
+    equal = MeshModel.consistent().override(sharing="equal", flash="blok")
     single, double = (
         mesh_cycle(rig, replace(hot_rig, torque=np.full(3, torque)), equal)["flash_temperature_dry"]
         for torque in (100.0, 200.0)

@@ -56,6 +56,11 @@ QUANTITIES: dict[str, Quantity] = {
     "hertz_pressure": Quantity("Pa", "Hertzian pressure at the centre", "p_H", "Hertz"),
     "normal_force": Quantity("N", "normal force T₁/r_b1", "F_n"),
     # friction and heat
+    "film_thickness": Quantity("m", "least film thickness", "h_min", "Dowson and Higginson"),
+    "film_parameter": Quantity("1", "film parameter h_min/Rq", "Λ"),
+    "frictional_power": Quantity("W", "frictional power of the mesh, time mean", "P_f"),
+    "pinion_share_of_heat": Quantity("1", "share of the mesh loss into the pinion", "β₁"),
+    "mesh_efficiency": Quantity("1", "efficiency of the mesh, load-dependent loss alone", "η"),
     "dynamic_viscosity": Quantity("Pa s", "oil viscosity at the inlet", "η₀", "ASTM D341"),
     "friction_coefficient": Quantity("1", "friction coefficient of the chosen law", "|μ|"),
     "friction_coefficient_mixed": Quantity(

@@ -14,27 +14,16 @@ from thermogear.base.vocabulary import STATUS, label
 from thermogear.gears.contact import (
     entrainment_velocity,
     flank_radii,
-    hertz_half_width,
-    hertz_pressure,
     path_of_contact,
-    reduced_radius,
-    rolling_velocities,
     sliding_velocity,
 )
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
-from thermogear.heat.contact_state import ContactState
 from thermogear.heat.expansion import base_circle_growth
-from thermogear.heat.friction import ROUGHNESS_LIMIT, BenedictKelley, ConstantDry
-from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity
-from thermogear.heat.temperature import (
-    blok_flash,
-    conduction_power,
-    contact_temperature,
-    flash_factor,
-    heat_partition,
-)
+from thermogear.heat.losses import efficiency
+from thermogear.heat.temperature import conduction_power, contact_temperature
 from thermogear.mesh.elastic import ElasticPair, elastic_pair, mean_stiffness_of_body
+from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, hot_backlash, thesis_thermal_stiffness
@@ -80,7 +69,7 @@ def mesh_cycle(
     phase = np.arange(mesh_positions) / mesh_positions
 
     variables: Variables = {}
-    variables |= _contact(hot, elastic, s)
+    variables |= _contact(FrictionPath(elastic, s))
     variables |= _deformation(hot, s)
     variables |= {name: (PATH, k) for name, k in elastic.parts(s).items()}
     variables["pair_stiffness"] = (PATH, elastic.pair_stiffness(s))
@@ -107,75 +96,48 @@ def mesh_cycle(
     )
 
 
-def _contact(hot: HotPair, elastic: ElasticPair, s: Floats) -> Variables:
-    """Kinematics, load, Hertz contact, friction and flash along the path."""
-    pair, operating, model = hot.pair, hot.operating, hot.model
-    speed = operating.speed[:, None]
-    v1, v2 = rolling_velocities(pair, speed, s)
-    force = operating.torque / pair.pinion.base_radius
-    share = elastic.share(s)
-    line_load = share * force[:, None] / pair.face_width
-    radius = reduced_radius(pair, s)
-    half_width = hertz_half_width(line_load, radius, elastic.contact_modulus)
-    pressure = hertz_pressure(line_load, radius, elastic.contact_modulus)
-    oil, warm = operating.lubricant, operating.oil_temperature
-    state = ContactState(
-        line_load=line_load,
-        speed_1=v1,
-        speed_2=v2,
-        reduced_radius=radius,
-        pressure=pressure,
-        viscosity=dynamic_viscosity(oil, warm),
-        kinematic_viscosity=kinematic_viscosity(oil, warm),
-        roughness=0.5 * (pair.pinion.roughness + pair.wheel.roughness),
-    )
-    frictions = {"dry": ConstantDry(model.dry_coefficient)(state)}
-    if float(np.max(state.roughness)) < ROUGHNESS_LIMIT or model.friction != "dry":
-        frictions["mixed"] = BenedictKelley()(state)
-    else:
-        # beyond the mixed law's roughness only the dry curve exists
-        frictions["mixed"] = np.full(state.shape, np.nan)
-    chosen = "dry" if model.friction == "dry" else "mixed"
-
-    first = pair.pinion.material.thermal_contact_coefficient
-    second = pair.wheel.material.thermal_contact_coefficient
-    factor = flash_factor(model.flash)
-    flashes = {
-        name: blok_flash(mu, line_load, v1, v2, half_width, first, second, factor)
-        for name, mu in frictions.items()
-    }
-    partition = heat_partition(v1, v2, first, second)
-    pinion_field, wheel_field = hot.field(pair.pinion), hot.field(pair.wheel)
-    r1, r2 = flank_radii(pair, s)
-    hottest = contact_temperature(
-        flashes[chosen], partition, pinion_field.temperature(r1), wheel_field.temperature(r2)
-    )
+def _contact(path: FrictionPath) -> Variables:
+    """Kinematics, load, Hertz contact, film, friction and flash along the path."""
+    hot, s = path.hot, path.s
+    pair, speed = hot.pair, hot.operating.speed[:, None]
+    v1, v2 = path.velocities
+    first, second = path.body_temperatures
+    flash = path.flash(path.friction)
     found: dict[str, ArrayLike] = {
         "pinion_rolling_velocity": v1,
         "wheel_rolling_velocity": v2,
         "sliding_velocity": sliding_velocity(pair, speed, s),
         "entrainment_velocity": entrainment_velocity(pair, speed, s),
-        "load_share": share,
-        "line_load": line_load,
-        "hertz_half_width": half_width,
-        "hertz_pressure": pressure,
-        "friction_coefficient": frictions[chosen],
-        "flash_temperature": flashes[chosen],
-        "pinion_heat_share": partition,
-        "contact_temperature": hottest,
-        "pinion_body_temperature": pinion_field.temperature(r1),
-        "wheel_body_temperature": wheel_field.temperature(r2),
+        "load_share": path.share,
+        "line_load": path.line_load,
+        "hertz_half_width": path.half_width,
+        "hertz_pressure": path.pressure,
+        "film_thickness": path.film,
+        "film_parameter": path.film_parameter,
+        "friction_coefficient": path.friction,
+        "friction_coefficient_mixed": path.mixed,
+        "friction_coefficient_dry": path.dry,
+        "flash_temperature": flash,
+        "flash_temperature_mixed": path.flash(path.mixed),
+        "flash_temperature_dry": path.flash(path.dry),
+        "pinion_heat_share": path.heat_share,
+        "contact_temperature": contact_temperature(flash, path.heat_share, first, second),
+        "pinion_body_temperature": first,
+        "wheel_body_temperature": second,
     }
-    for name in ("mixed", "dry"):
-        found[f"friction_coefficient_{name}"] = frictions[name]
-        found[f"flash_temperature_{name}"] = flashes[name]
     shape = (hot.count, s.size)
     variables: Variables = {
         name: (PATH, np.broadcast_to(np.asarray(values), shape)) for name, values in found.items()
     }
-    variables["reduced_radius"] = (("path_position",), radius)
-    variables["normal_force"] = (POINT, force)
-    variables["dynamic_viscosity"] = (POINT, np.full(hot.count, dynamic_viscosity(oil, warm)))
+    power, share = path.power()
+    variables |= {
+        "reduced_radius": (("path_position",), path.radius),
+        "normal_force": (POINT, path.elastic.force),
+        "dynamic_viscosity": (POINT, path.viscosity[:, 0]),
+        "frictional_power": (POINT, power),
+        "pinion_share_of_heat": (POINT, share),
+        "mesh_efficiency": (POINT, efficiency(hot.operating.speed * hot.operating.torque, power)),
+    }
     return variables
 
 

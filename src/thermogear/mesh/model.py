@@ -14,11 +14,27 @@ CHOICES: dict[str, dict[str, str]] = {
     "friction": {
         "benedict-kelley": "mixed lubrication, Benedict and Kelley 1961",
         "dry": "constant coefficient, `dry_coefficient`",
+        "boundary": "boundary lubrication, one constant",
+        "xu-kahraman": "elastohydrodynamic, local, Xu and Kahraman 2007",
+        "lambda-blend": "boundary and smooth film by the film parameter (Doleschel)",
+        "schlenk": "mean of the mesh, ISO/TR 14179-2",
+        "iso-13989-1": "mean of the mesh, ISO/TR 13989-1",
+        "iso-13989-2": "mean of the mesh, ISO/TR 13989-2 = ISO/TR 15144-1",
+        "fernandes": "mean of the mesh, Fernandes 2016",
+    },
+    "inlet": {
+        "oil": "oil enters the contact at its own temperature",
+        "body": "oil enters at the mean of both addendum temperatures",
     },
     "flash": {
-        "ellipse": "Blok, u = 0.78598, half width: Hertz-elliptic heat",
-        "uniform": "Blok, u = 0.79788, half width: uniform heat",
-        "parabola": "Blok, u = 0.82919, half width: parabolic heat (Blok 1937)",
+        "blok": "Blok's high-speed limit",
+        "peclet": "Blok with the finite Peclet number",
+        "exact": "moving source, temperatures equal point by point (slow reference)",
+    },
+    "heat_distribution": {
+        "ellipse": "u = 0.78598 with the half width: heat as the Hertzian pressure",
+        "uniform": "u = 0.79788 with the half width",
+        "parabola": "u = 0.82919 with the half width (Blok 1937)",
     },
     "flank": {
         "growth": "normal growth (B) of one flank from the annulus solution",
@@ -69,7 +85,9 @@ class MeshModel:
     name: str
     friction: str = "benedict-kelley"
     dry_coefficient: float = 0.2
-    flash: str = "ellipse"
+    inlet: str = "oil"
+    flash: str = "peclet"
+    heat_distribution: str = "ellipse"
     flank: str = "growth"
     bore: str = "free"
     housing: str = "expands"
@@ -103,7 +121,8 @@ class MeshModel:
         """As printed, with the smallest repair where print is impossible."""
         return cls(
             name="thesis",
-            flash="parabola",
+            flash="blok",
+            heat_distribution="parabola",
             flank="thesis",
             housing="rigid",
             modulus="constant",

@@ -58,7 +58,7 @@ class Operating:
     speed: Floats
     torque: Floats
     lubricant: Lubricant
-    oil_temperature: float
+    oil_temperature: ArrayLike
     temperatures: Temperatures
     half_backlash: float
     housing: Material = MATERIALS["steel"]
@@ -74,6 +74,9 @@ class Operating:
             raise InputError("operating.speed", f"shape {speed.shape}", allowed="one axis")
         if not np.all(np.isfinite(speed) & (speed >= 0.0)):
             raise InputError("operating.speed", f"{speed} rad/s", allowed=">= 0, finite")
+        oil = np.asarray(self.oil_temperature, dtype=float)
+        if not np.all(np.isfinite(oil) & (oil > 0.0)):
+            raise InputError("operating.oil_temperature", f"{oil} K", allowed="> 0 K, finite")
         if not np.all(np.isfinite(torque) & (torque >= 0.0)):
             raise InputError("operating.torque", f"{torque} N m", allowed=">= 0, finite")
         if not (np.isfinite(self.half_backlash) and self.half_backlash > 0.0):

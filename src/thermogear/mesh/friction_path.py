@@ -1,0 +1,231 @@
+"""Along the path of contact: load, Hertz contact, film, friction, flash temperature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.gears.contact import (
+    flank_radii,
+    hertz_half_width,
+    hertz_pressure,
+    reduced_radius,
+    rolling_velocities,
+)
+from thermogear.heat.contact_state import ContactState, PitchPoint
+from thermogear.heat.film import (
+    film_parameter,
+    film_thickness,
+    pressure_viscosity,
+    regime,
+    thermal_reduction,
+)
+from thermogear.heat.friction import ROUGHNESS_LIMIT, BenedictKelley, ConstantDry, friction_law
+from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity, walther_slope
+from thermogear.heat.moving_source import flash_temperature
+from thermogear.heat.temperature import frictional_heat, heat_partition
+from thermogear.mesh.elastic import ElasticPair
+from thermogear.mesh.thermal import HotPair
+
+Floats = NDArray[np.float64]
+
+RMS_OF_MEAN_ROUGHNESS = 1.25
+"""Rq over Ra of ground flanks, about."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionPath:
+    """The lubricated contact of one tooth pair at ``s`` [m], results (count, positions), SI."""
+
+    elastic: ElasticPair
+    s: Floats
+
+    @property
+    def hot(self) -> HotPair:
+        """The pair in its fields."""
+        return self.elastic.hot
+
+    @property
+    def inlet_temperature(self) -> Floats:
+        """Temperature [K] of the oil that enters the contact, (count, 1)."""
+        operating = self.hot.operating
+        if self.hot.model.inlet == "body":
+            t = operating.temperatures
+            found = 0.5 * (np.asarray(t.pinion_addendum) + np.asarray(t.wheel_addendum))
+        else:
+            found = np.asarray(operating.oil_temperature, dtype=float)
+        return np.broadcast_to(found, (self.hot.count,))[:, None]
+
+    @cached_property
+    def viscosity(self) -> Floats:
+        """eta [Pa s] at the inlet, (count, 1)."""
+        return dynamic_viscosity(self.hot.operating.lubricant, self.inlet_temperature)
+
+    @cached_property
+    def velocities(self) -> tuple[Floats, Floats]:
+        """Rolling velocities [m/s] of pinion and wheel flank."""
+        return rolling_velocities(self.hot.pair, self.hot.operating.speed[:, None], self.s)
+
+    @cached_property
+    def share(self) -> Floats:
+        """Share of the normal force."""
+        return self.elastic.share(self.s)
+
+    @cached_property
+    def line_load(self) -> Floats:
+        """w [N/m] of this tooth pair."""
+        return np.asarray(self.share * self.elastic.force[:, None] / self.hot.pair.face_width)
+
+    @cached_property
+    def radius(self) -> Floats:
+        """Reduced radius of curvature [m], (positions,)."""
+        return reduced_radius(self.hot.pair, self.s)
+
+    @cached_property
+    def half_width(self) -> Floats:
+        """Hertzian half width B [m]."""
+        return hertz_half_width(self.line_load, self.radius, self.elastic.contact_modulus)
+
+    @cached_property
+    def pressure(self) -> Floats:
+        """Hertzian pressure at the centre [Pa]."""
+        return hertz_pressure(self.line_load, self.radius, self.elastic.contact_modulus)
+
+    @cached_property
+    def film(self) -> Floats:
+        """Least film thickness [m], Dowson and Higginson, inlet shear heating included.
+
+        0 at rest, infinite without load.
+        """
+        oil, warm = self.hot.operating.lubricant, self.inlet_temperature
+        v1, v2 = self.velocities
+        entrainment, slide = 0.5 * (v1 + v2), np.abs(v1 - v2)
+        ratio = np.divide(slide, entrainment, out=np.zeros_like(slide), where=entrainment > 0.0)
+        thin = thermal_reduction(
+            entrainment, ratio, self.viscosity, walther_slope(oil, warm), oil.thermal_conductivity
+        )
+        return film_thickness(
+            self.line_load,
+            entrainment,
+            self.viscosity,
+            pressure_viscosity(oil, warm),
+            self.radius,
+            2.0 * self.elastic.contact_modulus,
+            thermal_factor=thin,
+        )
+
+    @cached_property
+    def film_parameter(self) -> Floats:
+        """Lambda = h_min over the flanks' combined rms roughness."""
+        pair = self.hot.pair
+        rough = (RMS_OF_MEAN_ROUGHNESS * gear.roughness for gear in (pair.pinion, pair.wheel))
+        return film_parameter(self.film, *rough)
+
+    @cached_property
+    def regime(self) -> NDArray[np.int64]:
+        """Index into ``heat.film.REGIMES``: boundary, mixed, elastohydrodynamic."""
+        return regime(self.film_parameter)
+
+    @cached_property
+    def state(self) -> ContactState:
+        """All that a friction law may ask for."""
+        pair, oil = self.hot.pair, self.hot.operating.lubricant
+        v1, v2 = self.velocities
+        pitch = np.array([pair.path.c])
+        at_1, at_2 = rolling_velocities(pair, self.hot.operating.speed[:, None], pitch)
+        return ContactState(
+            line_load=self.line_load,
+            speed_1=v1,
+            speed_2=v2,
+            reduced_radius=self.radius,
+            pressure=self.pressure,
+            viscosity=self.viscosity,
+            roughness=0.5 * (pair.pinion.roughness + pair.wheel.roughness),
+            kinematic_viscosity=kinematic_viscosity(oil, self.inlet_temperature),
+            film_parameter=self.film_parameter,
+            pressure_viscosity=pressure_viscosity(oil, self.inlet_temperature),
+            pitch_point=PitchPoint(
+                line_load=self.elastic.force[:, None] / pair.face_width,
+                sum_speed=at_1 + at_2,
+                reduced_radius=reduced_radius(pair, pitch),
+                face_width=pair.face_width,
+            ),
+            lubricant_kind=oil.kind,
+        )
+
+    @cached_property
+    def dry(self) -> Floats:
+        """Constant dry friction."""
+        return ConstantDry(self.hot.model.dry_coefficient)(self.state)
+
+    @cached_property
+    def mixed(self) -> Floats:
+        """Benedict and Kelley's; nan beyond their roughness, where the law has no value."""
+        if float(np.max(np.asarray(self.state.roughness))) >= ROUGHNESS_LIMIT:
+            return np.full(self.state.shape, np.nan)
+        return BenedictKelley()(self.state)
+
+    @cached_property
+    def friction(self) -> Floats:
+        """|mu| by the model's law."""
+        name = self.hot.model.friction
+        return self.dry if name == "dry" else friction_law(name)(self.state)
+
+    def flash(self, friction: Floats) -> Floats:
+        """Flash temperature rise [K] common to both flanks, by the model's method."""
+        pair, model = self.hot.pair, self.hot.model
+        known = np.isfinite(friction)
+        v1, v2 = self.velocities
+        rise = flash_temperature(
+            np.where(known, friction, 0.0),
+            self.line_load,
+            v1,
+            v2,
+            self.half_width,
+            pair.pinion.material,
+            pair.wheel.material,
+            model.heat_distribution,
+            model.flash,
+        )
+        return np.where(known, rise, np.nan)
+
+    @cached_property
+    def heat_share(self) -> Floats:
+        """Share of the frictional heat into the pinion."""
+        pair = self.hot.pair
+        coefficients = (
+            gear.material.thermal_contact_coefficient for gear in (pair.pinion, pair.wheel)
+        )
+        return heat_partition(*self.velocities, *coefficients)
+
+    @cached_property
+    def body_temperatures(self) -> tuple[Floats, Floats]:
+        """Body temperatures [K] of both gears at the contact's radii."""
+        pair = self.hot.pair
+        r1, r2 = flank_radii(pair, self.s)
+        return (
+            self.hot.field(pair.pinion).temperature(r1),
+            self.hot.field(pair.wheel).temperature(r2),
+        )
+
+    @cached_property
+    def heat(self) -> Floats:
+        """Frictional heat of this pair per width [W/m]."""
+        return frictional_heat(self.friction, self.line_load, *self.velocities)
+
+    def power(self) -> tuple[Floats, Floats]:
+        """(frictional power [W], share of it into the pinion), time means over all pairs.
+
+        The time mean over all pairs in contact is the integral along one pair's path over the
+        base pitch. Half the heat of both is the share where nothing is lost. (count,) each.
+        """
+        pair = self.hot.pair
+        scale = pair.face_width / pair.base_pitch
+        total = np.asarray(np.trapezoid(self.heat, self.s, axis=-1) * scale)
+        into = self.heat * self.heat_share
+        first = np.asarray(np.trapezoid(into, self.s, axis=-1) * scale)
+        share = np.divide(first, total, out=np.full_like(total, 0.5), where=total > 0.0)
+        return total, share
