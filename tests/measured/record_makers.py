@@ -28,11 +28,12 @@ def mesh_train(
     noise: float = 0.1,
     seed: int = 1,
     channels: int = 2,
+    wander: float = 0.03,
 ) -> Floats:
-    """Two meshes on three shafts [g]: pinion/wheel, then a second pair; speed wanders by 0.1 %."""
+    """Two meshes on three shafts [g]: pinion/wheel, then a second pair; the phase wanders."""
     rng = np.random.default_rng(seed)
     n = np.arange(count)
-    cycles = position * n + 0.3 * np.sin(2 * np.pi * 1.7 * n / count)
+    cycles = position * n + wander * np.sin(4 * np.pi * n / count)
     first = cycles / teeth[0]
     second = first * teeth[0] / teeth[1]
     third = second * teeth[2] / teeth[3]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError, nearest
 from thermogear.signals.filters import BandPass, taps_for, without_trend
 from thermogear.signals.integration import integrate_twice, integrate_twice_trapezoid
-from thermogear.signals.lines import Line, line_in
-from thermogear.signals.spectra import Spectrum, amplitude_spectrum
+from thermogear.signals.lines import Line, LineSpectrum, line_in, line_spectrum
+from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
@@ -62,18 +62,46 @@ class Chain:
 
 
 @dataclass(frozen=True)
+class Turning:
+    """The angle of each sample, by which a record is resampled before lines are read.
+
+    ``cycles`` at the samples from ``dropped`` on; ``per_cycle`` samples per cycle wanted. In the
+    resampled record a line stands still whatever the speed does; its mean frequency is its order
+    times ``mean`` [cycles/sample].
+    """
+
+    cycles: Floats
+    dropped: int
+    per_cycle: int
+
+    @property
+    def mean(self) -> float:
+        """Mean cycles per sample."""
+        return float((self.cycles[-1] - self.cycles[0]) / (self.cycles.size - 1))
+
+    def resampled(self, values: Floats, offset: int) -> Floats:
+        """``values``, whose first stands at sample ``offset`` of the record, in equal angles."""
+        first = max(self.dropped, offset)
+        last = min(self.dropped + self.cycles.size, offset + values.shape[-1])
+        angle = self.cycles[first - self.dropped : last - self.dropped]
+        return resample_by_angle(values[first - offset : last - offset], angle, self.per_cycle)
+
+
+@dataclass(frozen=True)
 class Reduced:
     """One channel through the chain: what lines are read from.
 
-    ``displacement`` is None where the record is no acceleration or no rate is known.
+    ``displacement`` is None where the record is no acceleration or no rate is known. ``axis`` is
+    the frequency [Hz or cycles/sample] of one unit of the spectra's own frequency.
     """
 
     rate: float
     acceleration: Floats
     displacement: Floats | None
     chain: Chain
-    spectrum: Spectrum
-    displacement_spectrum: Spectrum | None
+    spectrum: LineSpectrum
+    displacement_spectrum: LineSpectrum | None
+    axis: float = 1.0
 
     def read(self, near: float, half_width: float) -> tuple[Line, float]:
         """The line near a frequency in the unfiltered record, and its displacement (nan: none).
@@ -81,42 +109,60 @@ class Reduced:
         The filter's gain at the line is divided out of the displacement, except in the thesis's
         own way.
         """
-        line = line_in(self.acceleration, self.spectrum, near, half_width, self.chain.window)
+        line = line_in(
+            self.spectrum,
+            near / self.axis,
+            half_width / self.axis,
+            self.chain.window,
+        )
+        frequency = line.frequency * self.axis
+        real = replace(line, frequency=frequency, frequency_error=line.frequency_error * self.axis)
         if self.chain.method == "line":
-            return line, line.amplitude / (2.0 * np.pi * line.frequency) ** 2
-        if self.displacement is None or self.displacement_spectrum is None:
-            return line, float("nan")
+            return real, line.amplitude / (2.0 * np.pi * frequency) ** 2
+        if self.displacement_spectrum is None:
+            return real, float("nan")
         found = line_in(
-            self.displacement,
             self.displacement_spectrum,
             line.frequency,
             1.5 * self.displacement_spectrum.bin_width,
             self.chain.window,
         ).amplitude
         band = self.chain.filter(self.rate)
-        gain = float(band.gain(line.frequency)) if band else 1.0
+        gain = float(band.gain(frequency)) if band else 1.0
         if self.chain.method == "trapezoid" or gain < 0.5:
-            return line, found
-        return line, found / gain
+            return real, found
+        return real, found / gain
 
 
-def reduced(values: Floats, rate: float, chain: Chain, integrate: bool) -> Reduced:
-    """One channel (SI, or the file's unit with ``integrate`` False) through a settled chain."""
+def reduced(
+    values: Floats, rate: float, chain: Chain, integrate: bool, turning: Turning | None = None
+) -> Reduced:
+    """One channel (SI, or the file's unit with ``integrate`` False) through a settled chain.
+
+    With ``turning`` the filtered and the unfiltered record are resampled in angle at the end.
+    """
     centred = without_trend(values)
-    spectrum = amplitude_spectrum(centred, rate, "hann")
     displacement: Floats | None = None
+    offset = 0
     band = chain.filter(rate)
     if integrate and band is not None and chain.low_cut is not None:
-        filtered = band.apply(centred)
+        filtered, offset = band.apply(centred), band.delay
         if chain.method == "trapezoid":
             displacement = without_trend(integrate_twice_trapezoid(filtered, rate))
         else:
             displacement = integrate_twice(filtered, rate, chain.low_cut)
+    own, axis = rate, 1.0
+    if turning is not None:
+        centred = turning.resampled(centred, 0)
+        if displacement is not None:
+            displacement = turning.resampled(displacement, offset)
+        own, axis = float(turning.per_cycle), turning.mean * rate
     return Reduced(
         rate,
         centred,
         displacement,
         chain,
-        spectrum,
-        None if displacement is None else amplitude_spectrum(displacement, rate, "hann"),
+        line_spectrum(centred, own),
+        None if displacement is None else line_spectrum(displacement, own),
+        axis,
     )

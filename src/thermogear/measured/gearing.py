@@ -28,6 +28,8 @@ _TEETH = (6, 250)
 _FEWEST = 17  # teeth of a further mesh: below, a standard gear of 20 degrees is undercut
 _SIGNIFICANT = 6.0  # standard deviations of a mean over noise lines
 _CANDIDATES = 8  # families looked at for sidebands
+_SCREEN = 1 << 16
+_MOST_FROM_SIDEBANDS = 2.5  # scores of sidebands stay below this
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
 
@@ -164,7 +166,32 @@ def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Geari
     if table.size == 0 or table.shape[-1] < 256:
         raise InputError("record", f"{table.shape[-1]} samples", allowed=">= 256, not constant")
     families = _families(_prominence(table, 1.0), near)
-    return max((_of_family(table, family) for family in families), key=lambda found: found[0])[1]
+    if len(families) > 1:
+        # which family is the mesh's is decided on a part: two channels, fewer samples
+        loudest = np.argsort(-np.max(np.abs(table), axis=-1))[:2]
+        part = table[loudest, :_SCREEN]
+        best, chosen = -np.inf, families[0]
+        for family in families:
+            if family.score + _MOST_FROM_SIDEBANDS < best:
+                break
+            score = _of_family(part, family)[0]
+            if score > best:
+                best, chosen = score, family
+        families = [chosen]
+    return _of_family(table, families[0])[1]
+
+
+def mesh_angle(channels: Sequence[Floats], mesh: float) -> tuple[Floats, int, float] | None:
+    """Mesh cycles at each sample from the line's phase, samples dropped at each end, and how far
+    [cycles, standard deviation] the phase wanders from a steady speed. None: it cannot be told.
+    """
+    found = _angle(np.stack([np.asarray(c, dtype=float) for c in channels]), mesh)
+    if found is None:
+        return None
+    cycles, dropped = found[:2]
+    place = np.arange(cycles.size)
+    steady = np.polyval(np.polyfit(place, cycles, 1), place)
+    return cycles, dropped, float(np.std(cycles - steady))
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import warnings
 import zipfile
 import zlib
 from pathlib import Path
+from tokenize import TokenError
 from typing import IO
 
 import numpy as np
@@ -66,13 +68,19 @@ def read_npy(path: Path, options: ReadOptions) -> Record:
 
 
 def _header(stream: IO[bytes], path: Path) -> tuple[tuple[int, ...], bool, np.dtype[np.generic]]:
-    version = npy.read_magic(stream)
-    if version == (1, 0):
-        shape, fortran, dtype = npy.read_array_header_1_0(stream)
-    elif version == (2, 0):
-        shape, fortran, dtype = npy.read_array_header_2_0(stream)
-    else:
-        raise refused(path, "NPY", f"version {version}")
+    try:
+        version = npy.read_magic(stream)
+        with warnings.catch_warnings():
+            # numpy's remark on headers of Python 2 is not for the user
+            warnings.simplefilter("ignore", UserWarning)
+            if version == (1, 0):
+                shape, fortran, dtype = npy.read_array_header_1_0(stream)
+            elif version == (2, 0):
+                shape, fortran, dtype = npy.read_array_header_2_0(stream)
+            else:
+                raise refused(path, "NPY", f"version {version}")
+    except (TokenError, SyntaxError, TypeError, EOFError, OverflowError) as error:
+        raise refused(path, "NPY", error) from error
     if any(n < 0 for n in shape):
         raise refused(path, "NPY", f"shape {shape}")
     return shape, fortran, dtype
@@ -80,10 +88,7 @@ def _header(stream: IO[bytes], path: Path) -> tuple[tuple[int, ...], bool, np.dt
 
 def _array(stream: IO[bytes], size: int, path: Path) -> np.ndarray | None:
     """One member; None for what holds no plain numbers. Text may be a unit, so it is left out."""
-    try:
-        shape, fortran, dtype = _header(stream, path)
-    except (SyntaxError, TypeError, EOFError, OverflowError) as error:
-        raise refused(path, "NPZ", error) from error
+    shape, fortran, dtype = _header(stream, path)
     if dtype.hasobject or dtype.kind not in "iufb":
         return None
     need = math.prod(shape) * dtype.itemsize

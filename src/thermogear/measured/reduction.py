@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.measured.chain import METHODS, Chain, Reduced, reduced
-from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.chain import METHODS, Chain, Turning, reduced
+from thermogear.measured.gearing import Gearing, find_gearing, mesh_angle
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.traps import health
+from thermogear.measured.traps import HUGE, health
 from thermogear.measured.units import STANDARD_GRAVITY, kind_of
+from thermogear.signals.lines import LineSpectrum, line_spectrum
+from thermogear.signals.orders import tacho_angle, tacho_times
 from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.signals.windows import Window
 
@@ -23,6 +25,8 @@ Floats = NDArray[np.float64]
 
 LONGEST = 1 << 22
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
+
+_STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 
 _FACTORS = {
     10.0: "ten times too high",
@@ -115,13 +119,16 @@ def measure(
     sidebands: int = 2,
     chain: Chain | None = None,
     sensor_tolerance: float | None = None,
+    pulses_per_turn: float | None = None,
 ) -> Measurement:
     """Lines of a record: mesh harmonics, sidebands, further meshes, with their uncertainty.
 
     ``record`` a Record or a file (``read_record``); ``channels`` those to reduce (default: all
     that vibrate); ``teeth`` and ``speed`` [rad/s] of the first shaft where they are known: they
     are checked against what the lines say; ``sensor_tolerance`` the sensor's relative standard
-    uncertainty. Without a rate the lines are given in orders and cycles per sample, without a
+    uncertainty; ``pulses_per_turn`` of the tacho channel, where there is one. Where the speed
+    wanders enough to smear the lines they are read in angle: by the tacho, else by the phase of
+    the mesh line. Without a rate the lines are given in orders and cycles per sample, without a
     unit in the file's own numbers.
 
     Raises InputError for a record without a line or a channel without a signal.
@@ -139,13 +146,24 @@ def measure(
     teeth = _teeth(gearing, teeth, notices)
     if gearing is not None:
         _check_rate(record, gearing, teeth, speed, notices)
+    turning = _turning(record, chosen, table, gearing, teeth, harmonics, pulses_per_turn, start)
+    if turning is not None:
+        notices.append(Notice("info", turning[1]))
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate, table.shape[-1], mesh)
     lines: list[MeasuredLine] = []
     for channel, values in zip(chosen, table, strict=True):
         lines += _lines(
-            record, channel, values, gearing, teeth, wanted, harmonics, sidebands, sensor_tolerance
+            record,
+            channel,
+            values,
+            gearing,
+            teeth,
+            wanted,
+            _wanted(gearing, harmonics, sidebands, values),
+            sensor_tolerance,
+            turning[0] if turning else None,
         )
     if record.rate is None:
         notices.append(
@@ -185,13 +203,14 @@ def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]
     if channels:
         picked = [record.channel(name) for name in channels]
         for channel in picked:
-            if health(channel).constant:
-                raise InputError("channel", repr(channel.name), why="it is constant throughout")
+            found = health(channel)
+            if found.constant or found.missing == len(channel) or found.peak >= HUGE:
+                raise InputError("channel", repr(channel.name), why="it holds no signal")
         return picked
     alive = []
     for channel in record.signals():
         found = health(channel)
-        if found.constant or found.missing == len(channel):
+        if found.constant or found.missing == len(channel) or found.peak >= HUGE:
             notices.append(Notice("warning", f"channel {channel.name!r} holds no signal: left out"))
         else:
             alive.append(channel)
@@ -330,6 +349,42 @@ def _check_rate(
     )
 
 
+def _turning(
+    record: Record,
+    chosen: list[Channel],
+    table: Floats,
+    gearing: Gearing | None,
+    teeth: int | None,
+    harmonics: int,
+    pulses_per_turn: float | None,
+    start: int,
+) -> tuple[Turning, str] | None:
+    """The angle to read lines in and how it was found; None where a steady speed will do."""
+    if gearing is None:
+        return None
+    per_cycle = int(2 ** np.ceil(np.log2(1.0 / gearing.mesh_frequency)))
+    if record.tacho is not None and pulses_per_turn and teeth and record.rate is not None:
+        pulses = record.channel(record.tacho).values(start, start + table.shape[-1])
+        times = tacho_times(pulses, record.rate)
+        angle = teeth * tacho_angle(
+            times, pulses_per_turn, np.arange(table.shape[-1]) / record.rate
+        )
+        inside = np.flatnonzero(np.isfinite(angle))
+        turning = Turning(angle[inside], int(inside[0]), per_cycle)
+        return turning, f"lines are read in angle, by the tacho {record.tacho!r}"
+    found = mesh_angle(list(table), gearing.mesh_frequency)
+    if found is None:
+        return None
+    cycles, dropped, wander = found
+    if wander * harmonics <= _STEADY or cycles.size < 0.5 * table.shape[-1]:
+        return None
+    return (
+        Turning(cycles, dropped, per_cycle),
+        f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by that "
+        "phase",
+    )
+
+
 @dataclass(frozen=True)
 class _Wanted:
     kind: str
@@ -339,7 +394,7 @@ class _Wanted:
 
 
 def _wanted(
-    gearing: Gearing | None, teeth: int | None, harmonics: int, sidebands: int, values: Floats
+    gearing: Gearing | None, harmonics: int, sidebands: int, values: Floats
 ) -> list[_Wanted]:
     count = values.size
     bins = 3.0 / count
@@ -381,25 +436,30 @@ def _lines(
     gearing: Gearing | None,
     teeth: int | None,
     chain: Chain,
-    harmonics: int,
-    sidebands: int,
+    wanted: list[_Wanted],
     sensor_tolerance: float | None,
+    turning: Turning | None,
 ) -> list[MeasuredLine]:
     rate = record.rate or 1.0
     known = channel.unit is not None and not channel.needs_scale
     factor = channel.si_factor if known else 1.0
     accelerates = known and channel.unit is not None and kind_of(channel.unit) == "acceleration"
     moves = known and channel.unit is not None and kind_of(channel.unit) == "displacement"
-    through = reduced(values * factor, rate, chain, accelerates and record.rate is not None)
-    quarters = np.array_split(through.acceleration, 4)
+    through = reduced(
+        values * factor, rate, chain, accelerates and record.rate is not None, turning
+    )
+    quarters = [
+        line_spectrum(part, through.spectrum.rate)
+        for part in np.array_split(through.acceleration, 4)
+    ]
     found = []
-    for want in _wanted(gearing, teeth, harmonics, sidebands, values):
+    for want in wanted:
         line, displacement = through.read(want.position * rate, want.half_width * rate)
-        scatter = _scatter(quarters, through, line.frequency, want.half_width * rate)
+        scatter = _scatter(quarters, through.axis, line.frequency, want.half_width * rate)
         parts = [line.amplitude_error / line.amplitude, scatter, sensor_tolerance or 0.0]
         position = line.frequency / rate
         shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
-        turning = 2 * np.pi * rate * shaft if record.rate is not None else float("nan")
+        speed = 2 * np.pi * rate * shaft if record.rate is not None else float("nan")
         in_hertz = record.rate is not None
         found.append(
             MeasuredLine(
@@ -419,23 +479,22 @@ def _lines(
                 uncertainty=float(np.sqrt(sum(p**2 for p in parts))),
                 bin_offset=line.bin_offset,
                 prominence=line.prominence,
-                shaft_speed=turning,
+                shaft_speed=speed,
             )
         )
     return found
 
 
-def _scatter(quarters: list[Floats], whole: Reduced, frequency: float, reach: float) -> float:
+def _scatter(quarters: list[LineSpectrum], axis: float, frequency: float, reach: float) -> float:
     """Relative standard error of the mean amplitude over four quarters of the record."""
     amplitudes = []
     for quarter in quarters:
-        spectrum = amplitude_spectrum(quarter, whole.rate, "hann")
-        width = max(reach, spectrum.bin_width)
-        low = max(1, int((frequency - width) / spectrum.bin_width))
-        high = min(spectrum.amplitudes.size, int((frequency + width) / spectrum.bin_width) + 2)
+        width = max(reach / axis, quarter.bin_width)
+        low = max(1, int((frequency / axis - width) / quarter.bin_width))
+        high = min(quarter.hann.size, int((frequency / axis + width) / quarter.bin_width) + 2)
         if low < high:
-            amplitudes.append(float(np.sqrt(np.sum(spectrum.amplitudes[low:high] ** 2))))
+            amplitudes.append(float(np.sqrt(np.sum(quarter.hann[low:high] ** 2))))
     mean = float(np.mean(amplitudes)) if amplitudes else 0.0
-    return (
-        float(np.std(amplitudes, ddof=1) / mean / 2.0) if mean > 0 and len(amplitudes) > 1 else 0.0
-    )
+    if mean <= 0.0 or len(amplitudes) < 2:
+        return 0.0
+    return float(np.std(amplitudes, ddof=1) / mean / np.sqrt(len(amplitudes)))

@@ -23,6 +23,10 @@ _RATE = re.compile(
 )
 
 
+HUGE = 1e100
+"""No sensor reads this: beyond it a file is damaged or read in the wrong type."""
+
+
 def is_time_name(name: str) -> bool:
     """Whether a column's name (without its unit) says time."""
     return bool(_TIME.match(name.strip()))
@@ -159,17 +163,20 @@ def health(channel: Channel) -> Health:
         values = block[good]
         if values.size:
             count += values.size
-            total += float(values.sum())
-            square += float(np.dot(values, values))
+            with np.errstate(over="ignore", invalid="ignore"):
+                total += float(values.sum())
+                square += float(np.dot(values, values))
             low, high = min(low, float(values.min())), max(high, float(values.max()))
     mean = total / count if count else 0.0
+    peak = float(max(abs(low), abs(high))) if count else 0.0
+    rms = float(np.sqrt(max(square / count - mean**2, 0.0))) if count and peak < HUGE else peak
     return Health(
         missing=missing,
         longest_gap=longest,
         zeros=count > 0 and low == high == 0.0,
         constant=count > 0 and low == high,
-        rms=float(np.sqrt(max(square / count - mean**2, 0.0))) if count else 0.0,
-        peak=float(max(abs(low), abs(high))) if count else 0.0,
+        rms=rms,
+        peak=peak,
     )
 
 
@@ -184,6 +191,12 @@ def examined(record: Record) -> Record:
                 "important",
                 f"channel {channel.name!r}: {_count(found.missing, 'sample')} missing (NaN), the "
                 f"longest gap {found.longest_gap}; nothing is filled in",
+            )
+        if found.peak >= HUGE:
+            record = record.noting(
+                "important",
+                f"channel {channel.name!r} holds values up to {found.peak:.3g}: damaged or of "
+                "another type",
             )
         if found.zeros:
             record = record.noting("important", f"channel {channel.name!r} is zero throughout")

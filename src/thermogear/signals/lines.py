@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.signals import windows
-from thermogear.signals.spectra import Spectrum, amplitude_spectrum, finite_record, positive_rate
+from thermogear.signals.spectra import finite_record, positive_rate
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
@@ -82,6 +83,56 @@ def floor_around(amplitudes: Floats, index: int, lobe: int, reach: int = 60) -> 
     return float(np.median(beside)) if beside.size else 0.0
 
 
+@dataclass(frozen=True)
+class LineSpectrum:
+    """The DFT of one mean-free channel, from which every cosine window's bins follow at once.
+
+    A cosine-sum window multiplies in time, so it mixes few neighbours in frequency:
+    X_w(k) = [a_0 X(k) + sum_q (-1)^q a_q (X(k - q) + X(k + q))/2]/a_0.
+    ``lines``: 2/N times the DFT, 0..N/2.
+    """
+
+    rate: float
+    samples: int
+    lines: NDArray[np.complex128]
+
+    @property
+    def bin_width(self) -> float:
+        """Distance of two bins, in the unit of the rate."""
+        return self.rate / self.samples
+
+    @cached_property
+    def hann(self) -> Floats:
+        """Peak amplitudes with the Hann window."""
+        return np.abs(self.windowed("hann"))
+
+    def windowed(self, window: str | Window) -> NDArray[np.complex128]:
+        """Complex peak amplitudes at the bins, with a window."""
+        coefficients = windows.window(window).coefficients
+        reach, count = len(coefficients) - 1, self.lines.size
+        if reach == 0:
+            return self.lines
+        # below 0 and above N/2 the DFT of a real record continues as its conjugate
+        below = np.conj(self.lines[reach:0:-1])
+        top = count - 1 if self.samples % 2 == 0 else count
+        above = np.conj(self.lines[top - 1 : top - 1 - reach : -1])
+        padded = np.concatenate([below, self.lines, above])
+        total = coefficients[0] * self.lines
+        for q, a in enumerate(coefficients[1:], start=1):
+            pair = padded[reach - q : reach - q + count] + padded[reach + q : reach + q + count]
+            total = total + (-1.0) ** q * 0.5 * a * pair
+        return np.asarray(total / coefficients[0])
+
+
+def line_spectrum(x: ArrayLike, rate: float) -> LineSpectrum:
+    """The spectrum of one channel that ``line_in`` reads lines from; the mean is taken away."""
+    values, per_second = finite_record(x), positive_rate(rate)
+    if values.ndim != 1 or values.size < 32:
+        raise InputError("record", f"shape {values.shape}", allowed="one channel, >= 32 samples")
+    lines = np.fft.rfft(values - values.mean()) * (2.0 / values.size)
+    return LineSpectrum(per_second, int(values.size), lines)
+
+
 def find_line(
     x: ArrayLike,
     rate: float,
@@ -89,24 +140,21 @@ def find_line(
     half_width: float,
     window: str | Window = "flattop",
 ) -> Line:
-    """The strongest line within ``near`` +- ``half_width`` of one channel.
-
-    Position by ``hann_offset`` on the full-length Hann spectrum, amplitude by ``line_at`` with
-    ``window`` there. Raises InputError when the band holds no bin.
-    """
-    spectrum = amplitude_spectrum(_centred(x), rate, "hann")
-    return line_in(x, spectrum, near, half_width, window)
+    """The strongest line within ``near`` +- ``half_width`` of one channel: see ``line_in``."""
+    return line_in(line_spectrum(x, rate), near, half_width, window)
 
 
 def line_in(
-    x: ArrayLike,
-    spectrum: Spectrum,
-    near: float,
-    half_width: float,
-    window: str | Window = "flattop",
+    spectrum: LineSpectrum, near: float, half_width: float, window: str | Window = "flattop"
 ) -> Line:
-    """``find_line`` with the Hann spectrum of the (mean-free) record already made."""
-    width, top = spectrum.bin_width, spectrum.amplitudes.size - 2
+    """The strongest line within ``near`` +- ``half_width``.
+
+    Position by ``hann_offset``; amplitude with ``window`` at the nearest bin, over what that
+    window passes at the offset found (``Window.response``; the flat top hardly needs it).
+    Raises InputError when the band holds no bin.
+    """
+    chosen = windows.window(window)
+    width, top = spectrum.bin_width, spectrum.hann.size - 2
     low = max(1, int(np.ceil((near - half_width) / width)))
     high = min(top, int(np.floor((near + half_width) / width)))
     if low > high:
@@ -118,30 +166,24 @@ def line_in(
             allowed=f"{width:g}..{top * width:g}",
             why="no bin of the spectrum lies there",
         )
-    amplitudes = spectrum.amplitudes
+    amplitudes = spectrum.hann
     peak = low + int(np.argmax(amplitudes[low : high + 1]))
     offset = hann_offset(*(float(a) for a in amplitudes[peak - 1 : peak + 2]))
-    frequency = (peak + offset) * width
-    chosen = windows.window(window)
-    value = line_at(x, spectrum.rate, min(frequency, spectrum.rate / 2 * (1 - 1e-12)), chosen)
+    value = complex(spectrum.windowed(chosen)[peak]) / float(chosen.response(offset))
     hann_floor = floor_around(amplitudes, peak, 4)
     # noise of a line grows with the root of the window's noise bandwidth
     floor = hann_floor * float(np.sqrt(chosen.noise_bandwidth / 1.5))
-    deviation = floor / _RAYLEIGH_MEDIAN
     # left and right bin carry noise of correlation 1/6 (Hann weights -1/4, 1/2, -1/4), so that
     # d = 2 (right - left)/(3 A) near a bin's centre scatters by (2/3) sqrt(2 (1 - 1/6)) noise/A
     scatter = (2.0 / 3.0) * np.sqrt(5.0 / 3.0) * hann_floor / _RAYLEIGH_MEDIAN
+    # seen from the bin, a line d bins off turns by half a turn per bin over the record
+    phase = float(np.angle(value)) - np.pi * offset * (1.0 - 1.0 / spectrum.samples)
     return Line(
-        frequency=float(frequency),
+        frequency=(peak + offset) * width,
         amplitude=abs(value),
-        phase=float(np.angle(value)),
+        phase=float(np.angle(np.exp(1j * phase))),
         bin_offset=float(offset),
         floor=floor,
-        amplitude_error=deviation,
+        amplitude_error=floor / _RAYLEIGH_MEDIAN,
         frequency_error=float(scatter / max(abs(value), 1e-300) * width),
     )
-
-
-def _centred(x: ArrayLike) -> Floats:
-    values = finite_record(x)
-    return np.asarray(values - values.mean(axis=-1, keepdims=True))

@@ -119,7 +119,11 @@ def _finer(values: Floats, factor: int) -> Floats:
     The mirror image closes the record on itself, so no step at its ends rings.
     """
     count = values.shape[-1]
-    closed = np.concatenate([values, values[..., -2:0:-1]], axis=-1)
+    # a few mirrored samples more make a length that the transform likes
+    half = int(fft.next_fast_len(count - 1, real=True))
+    pad = [(0, 0)] * (values.ndim - 1) + [(0, min(half - (count - 1), count - 1))]
+    longer = np.pad(values, pad, mode="reflect")
+    closed = np.concatenate([longer, longer[..., -2:0:-1]], axis=-1)
     lines = fft.rfft(closed, axis=-1)
     fine = fft.irfft(lines, n=factor * closed.shape[-1], axis=-1) * factor
     return np.asarray(fine[..., : factor * (count - 1) + 1])

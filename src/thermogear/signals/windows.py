@@ -68,6 +68,11 @@ class Window:
         return np.asarray(np.abs(total) / coefficients[0])
 
     @property
+    def coefficients(self) -> tuple[float, ...]:
+        """a_0, a_1, ... of the cosine sum."""
+        return _COSINES[self.name]
+
+    @property
     def noise_bandwidth(self) -> float:
         """Equivalent noise bandwidth N sum w^2/(sum w)^2 [bins], for more samples than terms."""
         a = _COSINES[self.name]

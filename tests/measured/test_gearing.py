@@ -1,0 +1,75 @@
+"""Mesh line, shafts and tooth numbers from lines alone: synthetic trains, then the real rig."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from record_makers import SHARED, mesh_train, quantised
+
+from thermogear.base.errors import InputError
+from thermogear.measured.gearing import Gearing, find_gearing
+
+# main mesh [cycles/sample], then main and second mesh in orders of the first shaft
+TRUTH = {"h30hz0": (0.074385, 32.0, 19.2), "h30hz50": (0.074189, 32.0, 19.2)}
+
+
+def real_or_twin(name: str) -> list[np.ndarray]:
+    """The real record where it lies beside the repository, else a synthetic one of the same
+    gearing: the folder is not part of the project."""
+    path = SHARED / f"{name}.csv.gz"
+    if path.is_file():
+        return list(np.loadtxt(path, delimiter=",", skiprows=1).T)
+    return list(quantised(mesh_train(88_000, TRUTH[name][0], noise=0.2)))
+
+
+@pytest.mark.parametrize("name", TRUTH)
+def test_the_rigs_orders_are_found_without_rate_or_teeth(name: str) -> None:
+    position, main, second = TRUTH[name]
+    gearing = find_gearing(real_or_twin(name))
+    assert gearing.mesh_frequency == pytest.approx(position, abs=1.5e-6)
+    assert gearing.shafts[0].ratio == pytest.approx(main, abs=0.005)
+    assert [shaft.teeth for shaft in gearing.shafts] == [32, 80]
+    assert gearing.shafts[1].order == pytest.approx(0.4, abs=1e-9)
+    assert gearing.meshes[0].order == pytest.approx(second, abs=1e-9)
+    assert gearing.meshes[0].teeth == (48, 64)
+
+
+@pytest.mark.parametrize("noise", [0.1, 0.5])
+@pytest.mark.parametrize(
+    "teeth", [(32, 80, 48, 64), (25, 75, 20, 60), (20, 30, 25, 40), (23, 92, 31, 47)]
+)
+def test_teeth_of_synthetic_trains(teeth: tuple[int, int, int, int], noise: float) -> None:
+    gearing = find_gearing(list(mesh_train(60_000, 0.0713, teeth, noise)))
+    assert [shaft.teeth for shaft in gearing.shafts] == [teeth[0], teeth[1]]
+    assert gearing.mesh_frequency == pytest.approx(0.0713, rel=1e-4)
+    assert gearing.teeth == teeth[0]
+    assert gearing.shaft_frequency == pytest.approx(0.0713 / teeth[0], rel=1e-4)
+
+
+def test_a_lone_harmonic_family_names_the_mesh_line_and_no_teeth() -> None:
+    n = np.arange(30_000)
+    x = sum(a * np.cos(2 * np.pi * 0.0613 * k * n) for k, a in ((1, 1.0), (2, 0.5), (3, 0.3)))
+    gearing = find_gearing([x + 0.2 * np.random.default_rng(3).standard_normal(n.size)])
+    assert gearing.mesh_frequency == pytest.approx(0.0613, abs=1e-6)
+    assert (gearing.teeth, gearing.shaft_frequency, gearing.meshes) == (None, None, ())
+
+
+def test_noise_alone_names_nothing_certain() -> None:
+    noise = list(np.random.default_rng(9).standard_normal((2, 20_000)))
+    with pytest.raises(InputError, match=r"^mesh line: got none; no line stands out"):
+        find_gearing(noise)
+
+
+def test_refusals() -> None:
+    with pytest.raises(InputError, match=r"^record: got 100 samples; allowed >= 256"):
+        find_gearing([np.sin(np.arange(100.0))])
+    with pytest.raises(InputError, match=r"^record: got gaps; allowed finite samples"):
+        find_gearing([np.full(1000, np.nan)])
+
+
+def test_evidence_is_in_words_with_numbers() -> None:
+    gearing: Gearing = find_gearing(list(mesh_train(60_000, noise=0.2)))
+    text = "\n".join(gearing.evidence)
+    assert "a gear of 32 teeth, shaft order 1.0000" in text
+    assert "a gear of 80 teeth, shaft order 0.4000" in text
+    assert "second mesh at order 19.200 (48/64 teeth)" in text

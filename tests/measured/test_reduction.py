@@ -1,0 +1,174 @@
+"""measure: amplitude, order and frequency of a rig whose truth is known, checks of the rate."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from record_makers import MESH_HZ, RATE, SHARED, WRITERS, G, mesh_train, quantised
+
+from thermogear.base.errors import InputError
+from thermogear.measured.chain import Chain
+from thermogear.measured.readers import read_record
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import Measurement, measure
+from thermogear.signals.integration import trapezoid_factor
+
+THESIS = ((419.7, 10.4e-6), (832.58, 19.3e-6), (1251.6, 48.5e-6))
+
+
+def tone(frequency: float, amplitude: float, rate: float = 25_600.0, unit: str = "g") -> Record:
+    """A pinion mesh of 25 teeth whose first line has this displacement amplitude."""
+    t = np.arange(1 << 16) / rate
+    rng = np.random.default_rng(4)
+    shaft = frequency / 25
+    turns = 2 * np.pi * shaft * t
+    peak = amplitude * (2 * np.pi * frequency) ** 2
+    x = peak * np.cos(25 * turns + 0.3) * (1 + 0.1 * np.cos(turns) + 0.05 * np.cos(2 * turns))
+    x += 0.3 * peak * np.cos(50 * turns) * (1 + 0.1 * np.cos(turns) + 0.05 * np.cos(2 * turns))
+    x += 0.2 * peak * np.cos(75 * turns) * (1 + 0.1 * np.cos(turns) + 0.05 * np.cos(2 * turns))
+    x = x / G + 0.05 + 0.1 * t + 0.02 * rng.standard_normal(t.size)
+    return Record((Channel("a", quantised(x, 24, 64.0 * 8), unit),), "tone", rate, "made")
+
+
+def important(found: Measurement) -> str:
+    return "\n".join(n.text for n in found.notices if n.level == "important")
+
+
+@pytest.mark.parametrize("method", ["frequency", "line"])
+@pytest.mark.parametrize(("frequency", "amplitude"), THESIS)
+def test_displacement_of_the_mesh_line(frequency: float, amplitude: float, method: str) -> None:
+    found = measure(tone(frequency, amplitude), chain=Chain(method))
+    line = found.lines[0]
+    assert found.teeth == 25
+    assert line.frequency == pytest.approx(frequency, rel=2e-6)
+    assert line.displacement == pytest.approx(amplitude, rel=1e-3)
+    assert line.order == pytest.approx(25.0, abs=1e-3)
+    assert line.shaft_speed == pytest.approx(2 * np.pi * frequency / 25, rel=1e-4)
+    implied = amplitude * (2 * np.pi * frequency) ** 2 / G
+    assert line.acceleration_g == pytest.approx(implied, rel=1e-3)
+
+
+def test_the_thesis_way_loses_what_the_trapezoid_law_says() -> None:
+    frequency, amplitude = THESIS[2]
+    found = measure(tone(frequency, amplitude, 5120.0 * 2), chain=Chain("trapezoid"))
+    law = float(trapezoid_factor(frequency, 5120.0 * 2))
+    assert found.lines[0].displacement == pytest.approx(law * amplitude, rel=3e-3)
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_the_synthetic_rig_is_read_back_blind_through_every_format(
+    tmp_path: Path, name: str
+) -> None:
+    path = tmp_path / name
+    said = WRITERS[name](path, quantised(mesh_train(1 << 15, noise=0.1)))
+    found = measure(read_record(path, **said), sidebands=0)  # type: ignore[arg-type]
+    assert found.gearing is not None
+    assert [shaft.teeth for shaft in found.gearing.shafts] == [32, 80]
+    lines = {line.name: line for line in found.lines if line.channel == found.channels[0]}
+    assert lines["mesh x 1"].frequency == pytest.approx(MESH_HZ, rel=2e-5)
+    assert lines["mesh x 1"].acceleration_g == pytest.approx(1.0, abs=0.02)
+    assert lines["mesh x 2"].acceleration_g == pytest.approx(0.6, abs=0.02)
+    assert lines["mesh 2"].order == pytest.approx(19.2, abs=0.01)
+
+
+def test_without_rate_and_unit_there_are_orders_and_no_hertz() -> None:
+    table = mesh_train(1 << 15)
+    record = Record(tuple(Channel(f"a{i}", c) for i, c in enumerate(table)), "x")
+    found = measure(record)
+    for line in found.lines:
+        assert np.isnan([line.frequency, line.acceleration, line.displacement]).all()
+        assert np.isnan(line.shaft_speed)
+    assert found.lines[0].order == pytest.approx(32.0, abs=0.01)
+    assert found.lines[0].position == pytest.approx(MESH_HZ / RATE, rel=2e-5)
+    assert found.settings["rate"] == "unknown"
+    assert "no rate is known" in important(found)
+    assert "no unit is known" in important(found)
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (0.1, "the rate looks ten times too low"),
+        (10.0, "the rate looks ten times too high"),
+        (2.0, "the rate looks twice too high"),
+        (3.3, r"rate, teeth or speed is wrong by a factor 3\.3"),
+    ],
+)
+def test_a_wrong_rate_is_said_with_the_one_that_fits(factor: float, said: str) -> None:
+    table = mesh_train(1 << 15, channels=1)
+    record = Record((Channel("a", table[0], "g"),), "x", RATE * factor, "given")
+    speed = 2 * np.pi * MESH_HZ / 32
+    found = measure(record, speed=speed)
+    assert said.replace("\\", "") in important(found)
+    fitting = float(important(found).split("a rate of ")[1].split(" ")[0])
+    assert fitting == pytest.approx(RATE, rel=1e-3)
+    right = Record((Channel("a", table[0], "g"),), "x", RATE, "given")
+    assert important(measure(right, speed=speed)) == ""
+
+
+def test_a_wrong_tooth_number_is_said() -> None:
+    record = Record((Channel("a", mesh_train(1 << 15)[0], "g"),), "x", RATE, "given")
+    found = measure(record, teeth=25)
+    assert "the sidebands say 32 and 80 teeth, not the 25 given" in important(found)
+
+
+@pytest.mark.parametrize("name", ["h30hz0", "h30hz50"])
+def test_the_real_records_with_a_wrong_rate(name: str) -> None:
+    path = SHARED / f"{name}.csv.gz"
+    if path.is_file():
+        record = read_record(path, rate=1280.0, channels=["a1", "a3"])
+    else:  # the folder is not part of the project: a synthetic twin of the same gearing
+        table = mesh_train(60_000, 0.074385)
+        record = Record(tuple(Channel(f"a{i}", c) for i, c in enumerate(table)), name, 1280.0, "")
+    found = measure(record, speed=2 * np.pi * 29.7)
+    assert "the rate looks ten times too low" in important(found)
+
+
+def test_only_the_longest_whole_stretch_is_used() -> None:
+    x = mesh_train(1 << 15, channels=1)[0]
+    x[5000] = np.nan
+    found = measure(Record((Channel("a", x, "g"),), "x", RATE, "given"))
+    assert (found.start, found.samples) == (5001, (1 << 15) - 5001)
+    assert any("samples 5001..32767" in n.text for n in found.notices)
+
+
+def test_dead_channels_are_left_out_and_refused_when_asked_for() -> None:
+    x = mesh_train(1 << 14, channels=1)[0]
+    record = Record((Channel("a", x, "g"), Channel("b", np.zeros(x.size), "g")), "x", RATE, "given")
+    found = measure(record)
+    assert found.channels == ("a",)
+    with pytest.raises(InputError, match=r"^channel: got 'b'; it holds no signal$"):
+        measure(record, channels=["b"])
+
+
+def test_uncertainty_grows_with_noise_and_holds_the_sensor() -> None:
+    def u(noise: float, sensor: float | None = None) -> float:
+        record = Record(
+            (Channel("a", mesh_train(1 << 15, noise=noise, channels=1)[0], "g"),), "x", RATE, "made"
+        )
+        return measure(record, sensor_tolerance=sensor, sidebands=0).lines[0].uncertainty
+
+    assert u(1.0) > u(0.1)
+    assert u(0.1, 0.05) == pytest.approx(np.hypot(u(0.1), 0.05), rel=1e-9)
+    with pytest.raises(InputError, match=r"^sensor_tolerance: got 1\.5; allowed 0\.\.1"):
+        u(0.1, 1.5)
+
+
+def test_settings_say_everything_an_amplitude_needs() -> None:
+    found = measure(tone(419.7, 1e-5))
+    assert list(found.settings) == [
+        "rate",
+        "samples",
+        "bin width",
+        "window",
+        "method",
+        "band",
+        "taps",
+        "low cut",
+        "amplitudes",
+    ]
+    assert found.settings["window"].startswith("flattop, noise bandwidth 3.77 bins")
+    with pytest.raises(InputError, match=r"^method: got 'trapez'; did you mean 'trapezoid'\?$"):
+        Chain("trapez")
