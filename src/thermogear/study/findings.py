@@ -50,24 +50,23 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     if "temperature" in groups:
         found += _row_jams(groups["temperature"])
     names = [str(name) for name in mesh["bundle"].values]
-    if any(model.stiffness.startswith("textbook") for model in case.models):
+    textbook = [m.name for m in case.models if m.stiffness.startswith("textbook")]
+    if textbook:
         found.append(
             _notice(
                 "warning",
-                "The mesh stiffness is the textbook sum of uncoupled tooth pairs. Against finite "
-                "elements of a comparable pair (bores 20/60 mm) it is about 14 % too stiff in "
-                "single and 46 to 49 % in double contact; starting the beam at the 30-degree "
-                "section removes 4 to 9 % of the compliance that is counted twice, and so adds to "
-                "this bias.",
+                f"{', '.join(textbook)}: the mesh stiffness is the textbook sum of uncoupled tooth "
+                "pairs. Against finite elements of a comparable pair (bores 20/60 mm) it is about "
+                "14 % too stiff in single and 46 to 49 % in double contact.",
             )
         )
     if any(model.stiffness == "loaded" for model in case.models):
         found.append(
             _notice(
                 "info",
-                "The loaded contact takes plane-stress bodies; between plane stress and plane strain "
-                "the stiffness lies in a band of -2.6 to +4.3 %. Contact on tip corners and relief "
-                "stand without a finite-element check. For the vibration the body's wind-up "
+                "The loaded contact takes plane-stress bodies; between plane stress and plane "
+                "strain the stiffness lies in a band of -2.6 to +4.3 %. Contact on tip corners and "
+                "relief stand without a finite-element check. For the vibration the body's wind-up "
                 "against its bore is left to the inertia (reading `rim`); both readings are among "
                 "the figures.",
             )
