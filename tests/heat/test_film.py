@@ -149,6 +149,24 @@ def test_pressure_viscosity_of_named_oils() -> None:
         pressure_viscosity_gold(1e-5, "water")
 
 
+def test_pressure_viscosity_in_the_units_of_its_sources() -> None:
+    """Gold: s nu^t 1e-9 with mm^2/s. ISO: alpha_38 [1 + 516 (1/T - 1/311)]."""
+    gold = {"mineral": (9.904, 0.1390), "pao": (7.382, 0.1335)}
+    gold |= {"pag": (5.489, 0.1485), "ester": (6.605, 0.1360)}
+    for kind, (s, t) in gold.items():
+        assert pressure_viscosity_gold(39.2e-6, kind) == pytest.approx(s * 39.2**t * 1e-9)
+    for kind, (c, e) in {"pao": (1.466e-8, 0.0507), "pag": (1.392e-8, 0.1572)}.items():
+        expected = c * 0.08**e * (1.0 + 516.0 * (1.0 / 350.0 - 1.0 / 311.0))
+        assert pressure_viscosity_iso(0.08, 350.0, kind) == pytest.approx(expected, rel=1e-12)
+    assert pressure_viscosity_iso(0.08, 800.0) == 0.0
+
+
+def test_roelands_by_hand() -> None:
+    z = 2e-8 / (5.1e-9 * (np.log(0.03) + 9.67))
+    expected = 0.03 * np.exp((np.log(0.03) + 9.67) * ((1.0 + 5.1e-9 * 1e9) ** z - 1.0))
+    assert roelands(0.03, 1e9, 2e-8) == pytest.approx(expected, rel=1e-12)
+
+
 def test_roelands_meets_barus_at_low_pressure_and_stays_below_it() -> None:
     low = 1e5
     assert roelands(0.03, low, 2e-8) == pytest.approx(float(barus(0.03, low, 2e-8)), rel=1e-6)

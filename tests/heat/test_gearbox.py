@@ -49,6 +49,28 @@ def test_face_conductance_is_area_times_the_similarity_coefficient() -> None:
     assert face_conductance(0.0, 0.025, 0.056, OIL, warm) == 0.0
 
 
+def test_paths_of_the_network_by_hand() -> None:
+    """Shaft and bearing in series on both sides; wetted flanks and faces; housing by area."""
+    around = Surroundings(wetted_share=(0.2, 0.4), shaft_length=0.1, bearing_conductance=7.0)
+    warm, omega = ZERO_CELSIUS + 70.0, 90.0
+    network = thermal_network(PINION, WHEEL, omega, Losses(10.0), OIL, warm, around)
+    found = {(x.first, x.second): float(np.asarray(x.conductance)) for x in network.links}
+    along = 46.0 * math.pi * 0.025**2 / 0.1
+    mount = 2.0 * along * 7.0 / (along + 7.0)
+    assert found["pinion_shaft", "housing"] == pytest.approx(mount, rel=1e-12)
+    assert found["oil", "housing"] == pytest.approx(200.0 * 0.6)
+    assert found["housing", "ambient"] == pytest.approx(15.0 * 0.6)
+    nu, pr = float(kinematic_viscosity(OIL, warm)), float(oil_prandtl(OIL, warm))
+    film = float(disc_nusselt(pr)) * OIL.thermal_conductivity * math.sqrt(omega / 3.0 / nu)
+    flanks = 2.0 * 75 * 0.025 * (WHEEL.tip_radius - WHEEL.root_radius)
+    assert found["wheel_tooth", "oil"] == pytest.approx(0.4 * film * flanks, rel=1e-10)
+    faces = 2.0 * float(face_conductance(omega / 3.0, 0.080, WHEEL.root_radius, OIL, warm))
+    assert found["wheel_body", "oil"] == pytest.approx(0.4 * faces, rel=1e-12)
+    rings = (PINION.root_radius**2 - 0.025**2) * math.pi * 0.025
+    assert network.capacities["pinion_body"] == pytest.approx(7850.0 * 470.0 * rings)
+    assert network.capacities["oil"] == pytest.approx(3.0 * OIL.specific_heat)
+
+
 def test_equal_temperature_without_heat() -> None:
     around = Surroundings(ambient=300.0)
     state = thermal_network(PINION, WHEEL, 100.0, Losses(0.0), OIL, 330.0, around).steady()

@@ -119,6 +119,7 @@ def test_uncertainty_carries_into_the_field() -> None:
         (lambda: InfraredReading(380.0, 1.2, 300.0), "emissivity: got 1.2; allowed 0 < value <= 1"),
         (lambda: InfraredReading(300.0, 0.2, 400.0), "infrared reading: got"),
         (lambda: infrared_temperature(380.0, 0.9, 0.0, 300.0, 300.0), "transmission: got 0.0"),
+        (lambda: infrared_temperature(380.0, 1.01, 1.0, 300.0, 300.0), "emissivity: got 1.01"),
         (lambda: band_radiance(-5.0), "temperature: got -5.0 K; allowed > 0 K"),
         (lambda: band_radiance(300.0, (5e-6, 3e-6)), "band: got 5e-06 .. 3e-06 m"),
         (lambda: ThermocoupleReading(380.0, 1.0, -1.0, 46.0), "thermocouple: got 380.0 K at"),

@@ -197,7 +197,13 @@ def test_scuffing_limits_and_margins() -> None:
     """Stage 12: Theta_S = 80 + 2.25 * 144 C; integral limit from its own three lines."""
     limit = scuffing_temperature(12)
     assert limit == pytest.approx(ZERO_CELSIUS + 80.0 + 2.25 * 144.0)
+    factors = scuffing_temperature(12, structure=0.45, lubricant_factor=0.8) - ZERO_CELSIUS
+    assert factors == pytest.approx(80.0 + (0.85 + 1.4 * 0.45) * 0.8 * 144.0)
     torque = 3.726 * 144.0
+    other = scuffing_integral_temperature(12, 220e-6, structure=0.45, lubricant_factor=0.8)
+    flash = 0.2 * torque * (100.0 / 220.0) ** 0.02 * 0.8
+    by_hand = 80.0 + 0.23 * torque * 0.8 + 1.5 * 0.45 * flash
+    assert other - ZERO_CELSIUS == pytest.approx(by_hand)
     expected = 80.0 + 0.23 * torque + 1.5 * 0.2 * torque
     assert scuffing_integral_temperature(12, 100e-6) - ZERO_CELSIUS == pytest.approx(expected)
     assert integral_temperature(350.0, 20.0) == 380.0
