@@ -133,3 +133,49 @@ def test_what_cannot_be_walked_is_refused():
         continuation(orbit, "damping_ration", 0.2)
     with pytest.raises(InputError, match=r"allowed a finite number other than 0\.1535"):
         continuation(orbit, "damping_ratio", 0.1535)
+
+
+def test_the_next_flip_and_the_universal_ratio():
+    orbit = periodic_orbit(BASE.replace(stiffness_amplitude=0.1), 1, (1.08, -0.25))
+    found = cascade(orbit, "stiffness_amplitude", 0.9, flips=5)
+    assert found.flips[-1].period == 16
+    assert found.ratios[-1] == pytest.approx(4.669, abs=0.15)
+
+
+@pytest.mark.parametrize("parameter", ["damping_ratio", "stiffness_amplitude"])
+def test_the_same_cascade_hot_is_the_cold_one_rescaled(parameter):
+    """Heat of section 4.1 at 160 C: eps_T = .02, b' = .8, without back-side impacts."""
+    first, last, _ = ROWS[parameter]
+    hot = BASE.replace(half_backlash=0.8, thermal_stiffness=0.02)
+    s = np.sqrt(1.02)
+    cold = BASE.replace(
+        damping_ratio=0.1535 / s,
+        frequency=1.245 / s,
+        stiffness_amplitude=0.335 / s**2,
+    )
+    scale = {"damping_ratio": s, "stiffness_amplitude": s**2}[parameter]
+    one = cascade(
+        periodic_orbit(hot.replace(**{parameter: first}), 1, (0.88, -0.25)),
+        parameter,
+        last,
+        flips=2,
+    )
+    two = cascade(
+        periodic_orbit(cold.replace(**{parameter: first / scale}), 1, (1.08, -0.25)),
+        parameter,
+        last / scale,
+        flips=2,
+    )
+    assert len(one.flips) == len(two.flips) == 2
+    for hot_flip, cold_flip in zip(one.flips, two.flips, strict=True):
+        assert hot_flip.value == pytest.approx(scale * cold_flip.value, abs=1e-9)
+
+
+def test_folds_beside_a_grazing_are_found():
+    """Back-side impacts set in along the hot frequency row: two folds 4e-5 apart."""
+    model = BASE.replace(frequency=1.35, half_backlash=0.8, thermal_stiffness=0.02)
+    found = cascade(periodic_orbit(model, 1, (0.88, -0.2)), "frequency", 1.1)
+    assert len(found.flips) == 1
+    kinds = [b.kind for b in found.branches[1].bifurcations]
+    assert kinds == [GRAZING, FOLD, GRAZING, FOLD, BIRTH]
+    assert all(flip.note == "" for flip in found.branches[1].of_kind(FOLD))

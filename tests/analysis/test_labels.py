@@ -80,3 +80,38 @@ def test_a_diverging_motion_is_named_so():
 def test_one_label_wants_one_lane():
     with pytest.raises(InputError, match="one lane"):
         label(BASE.replace(frequency=[1.0, 1.1]))
+
+
+def test_no_label_where_rounding_chooses_the_attractor():
+    """A long chaotic transient ends on one of two orbits; the arithmetic decides which."""
+    rng = np.random.default_rng(42)
+    fields = [rng.uniform(*span, 500) for span in ((0.02, 0.2), (0.3, 2.2), (0, 0.9), (0.01, 0.3))]
+    force, heat = rng.uniform(-1.2, 1.2, 500), rng.uniform(-0.03, 0.03, 500)
+    zeta, w, eps, mean = (float(field[394]) for field in fields)
+    model = TorsionalModel(zeta, w, eps, mean, float(force[394]), 1.0, float(heat[394]))
+    found = label(model)
+    assert str(found) in ("undecided", "period-2", "period-6")
+    if str(found) != "undecided":
+        assert found.orbit.stable
+
+
+@pytest.mark.slow
+def test_five_hundred_random_points_keep_their_labels():
+    """Doubling transient or sub-steps changes no label; under 2 % stay undecided."""
+    rng = np.random.default_rng(7)
+    count = 500
+    model = TorsionalModel(
+        rng.uniform(0.02, 0.2, count),
+        rng.uniform(0.3, 2.2, count),
+        rng.uniform(0, 0.9, count),
+        rng.uniform(0.01, 0.3, count),
+        rng.uniform(-1.2, 1.2, count),
+        1.0,
+        rng.uniform(-0.03, 0.03, count),
+    )
+    first = labels(model)
+    longer = labels(model, discard=1000, cap=64_000)
+    for one, other in zip(first, longer, strict=True):
+        assert str(one) == str(other) or "undecided" in (str(one), str(other))
+    assert counts(first).get("undecided", 0) < 10
+    assert not any("quasi" in str(one) for one in first)

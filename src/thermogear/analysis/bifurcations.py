@@ -104,35 +104,45 @@ class Curve:
         visit = self.map_at(float(value[2])).visit(value[:2], self.period)
         return (visit.points[-1] - visit.points[0]) / self.unit[:2], visit
 
-    def derivative(self, scaled: Floats, visit: Visit) -> Floats:
-        """D G (2, 3); the parameter by central differences of the map."""
-        out = np.empty((2, 3))
-        two = self.unit[:2]
-        out[:, :2] = visit.jacobian / two[:, None] * two - np.eye(2)
+    def in_parameter(self, scaled: Floats) -> Floats:
+        """dG/dp (2,) by central differences of the map."""
         small = 1e-6
         ends = []
         for sign in (1.0, -1.0):
             moved = scaled.copy()
             moved[2] += sign * small
             ends.append(self.residual(moved)[0])
-        out[:, 2] = (ends[0] - ends[1]) / (2.0 * small)
-        return out
+        return np.asarray((ends[0] - ends[1]) / (2.0 * small))
 
     def correct(
-        self, guess: Floats, normal: Floats, old: Floats | None = None, reach: float = np.inf
+        self,
+        guess: Floats,
+        normal: Floats,
+        old: Floats | None = None,
+        reach: float = np.inf,
+        *,
+        tangent: bool = True,
     ) -> Point | None:
-        """Newton onto the curve inside the plane through ``guess`` normal to ``normal``."""
+        """Newton onto the curve inside the plane through ``guess`` normal to ``normal``.
+
+        The point's tangent is exact with ``tangent``, else good enough for nothing but its sign.
+        """
         scaled = guess.copy()
         gap, visit = self.residual(scaled)
         matrix = np.empty((3, 3))
         matrix[2] = normal
         best = np.inf
+        last = np.inf
         for count in range(12):
             size = float(np.max(np.abs(gap)))
             if not np.isfinite(size):
                 return None
-            if count == 0 or size > NEWTON_TOLERANCE:
-                matrix[:2] = self.derivative(scaled, visit)
+            two = self.unit[:2]
+            matrix[:2, :2] = visit.jacobian / two[:, None] * two - np.eye(2)
+            if count == 0 or (size > 0.01 * last and size > 1e-11):
+                # dear, and near enough from the last time while Newton falls fast
+                matrix[:2, 2] = self.in_parameter(scaled)
+            last = size
             if size <= NEWTON_TOLERANCE or (size >= best and best < 1e-10):
                 break
             best = min(best, size)
@@ -146,6 +156,8 @@ class Curve:
             gap, visit = self.residual(scaled)
         else:
             return None
+        if tangent:
+            matrix[:2, 2] = self.in_parameter(scaled)
         null = np.linalg.svd(matrix[:2])[2][2]
         direction = normal if old is None else old
         if null @ direction < 0.0:
@@ -176,7 +188,7 @@ class Curve:
         """The point a distance ``step`` along the tangent of ``a``."""
         if step == 0.0:
             return a
-        point = self.correct(a.scaled + step * a.tangent, a.tangent)
+        point = self.correct(a.scaled + step * a.tangent, a.tangent, tangent=False)
         if point is None:
             raise ConvergenceError(
                 f"continuation in {self.parameter}: no orbit between two orbits of the branch "
@@ -248,6 +260,8 @@ def birth_of(curve: Curve, a: Point) -> Bifurcation | None:
     centre = 0.5 * (a.visit.points[0] + a.visit.points[half])
 
     def mother(value: float) -> Orbit | None:
+        if not np.isfinite(value):
+            return None
         model = curve.family(value)
         return shoot(ReturnMap(lanes_of(model)), centre, half, model=model)
 

@@ -259,7 +259,7 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
     direction = np.linalg.svd(matrix + np.eye(2))[2][1]
     normal = np.append(direction, 0.0)
     centre = np.append(orbit.state, value) / curve.unit
-    for amplitude in (1e-3, 3e-4, 3e-3, 1e-4, 1e-2):
+    for amplitude in (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-3, 1e-2):
         point = curve.correct(centre + amplitude * normal, normal, normal, 10.0 * amplitude)
         if point is not None:
             value = float(point.scaled[2] * curve.unit[2])

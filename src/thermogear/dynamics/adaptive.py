@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 
@@ -14,7 +15,7 @@ from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Rate = Callable[[float, Floats, int], Floats]
-Gap = Callable[[float, Floats], float]
+Component = Callable[[float, Floats], float]
 
 MOST_EVENTS = 10_000
 
@@ -23,19 +24,37 @@ def _in_region(rate: Rate, region: int, t: float, y: Floats) -> Floats:
     return rate(t, y, region)
 
 
-def _event(gap: Gap, edge: float, direction: float) -> Callable[[float, Floats], float]:
+def _event(value: Component, edge: float, direction: int) -> Callable[[float, Floats], float]:
     def distance(t: float, y: Floats) -> float:
-        return gap(t, y) - edge
+        return value(t, y) - edge
 
     distance.terminal = True  # type: ignore[attr-defined]
     distance.direction = direction  # type: ignore[attr-defined]
     return distance
 
 
+@dataclass(frozen=True)
+class Gap:
+    """The displacement measured against +-``half_backlash``, and its rate."""
+
+    value: Component
+    speed: Component
+    half_backlash: float
+
+    def edges(self, region: int) -> list[tuple[float, int]]:
+        """Edges of a region and the direction in which they are left."""
+        b = self.half_backlash
+        return {1: [(b, -1)], 0: [(-b, -1), (b, 1)], -1: [(-b, 1)]}[region]
+
+    def outside(self, t: float, y: Floats, region: int) -> bool:
+        """Whether the state lies beyond an edge of its region."""
+        x = self.value(t, y)
+        return any((x - edge) * way > 0.0 for edge, way in self.edges(region))
+
+
 def follow(
     rate: Rate,
     gap: Gap | None,
-    half_backlash: float,
     period: float,
     start: Floats,
     periods: int,
@@ -48,36 +67,42 @@ def follow(
     """Sections (periods + 1, component), samples and the times of the edges.
 
     ``rate(t, y, region)`` with t in [0, period); the region is -1, 0 or 1 and changes only at
-    the events; ``gap(t, y)`` is the displacement measured against +-``half_backlash`` (None:
-    no events). ``samples`` per period (0: none) are taken at uniform phases, the first at 0.
-    The step never exceeds a 64th of the period, so that a graze is not stepped over.
+    the events; ``gap`` None: no events. ``samples`` per period (0: none) are taken at uniform
+    phases, the first at 0. The integration also stops where the displacement turns, so that a
+    graze inside a step cannot be overlooked.
     """
     from scipy.integrate import solve_ivp  # a third of a second that most runs never need
 
     y = np.array(start, dtype=float)
     region = 0
+    rising, behind = True, np.nan
+    ways: list[tuple[float, int]] = []
     if gap is not None:
-        x = gap(0.0, y)
-        region = int(x > half_backlash) - int(x < -half_backlash)
-    edges: dict[int, tuple[tuple[float, float], ...]] = {
-        1: ((half_backlash, -1.0),),
-        0: ((-half_backlash, -1.0), (half_backlash, 1.0)),
-        -1: ((-half_backlash, 1.0),),
-    }
+        x, b, speed = gap.value(0.0, y), gap.half_backlash, gap.speed(0.0, y)
+        up = speed >= 0.0
+        region = int(x > b or (x == b and up)) - int(x < -b or (x == -b and not up))
+        later = y + 1e-6 * period * rate(0.0, y, region)
+        rising = speed > 0.0 or (speed == 0.0 and gap.speed(1e-6 * period, later) > 0.0)
     sections = np.empty((periods + 1, y.size))
     sections[0] = y
     path = np.empty((periods * samples, y.size))
     crossings: list[float] = []
     stops = np.unique([0.0, *jumps, 1.0]) * period
+    wanted = np.arange(samples) / samples * period if samples else np.empty(0)
     for turn in range(periods):
-        wanted = np.arange(samples) / samples * period if samples else np.empty(0)
-        for left, right in pairwise(stops):
-            t = float(left)
+        for left, right in pairwise(stops.tolist()):
+            t, end = left, right
             for _ in range(MOST_EVENTS):
-                events = [] if gap is None else [_event(gap, e, d) for e, d in edges[region]]
+                events: list[Component] = []
+                if gap is not None:
+                    # an edge just crossed cannot be crossed back before the path turns
+                    ways = [(edge, way) for edge, way in gap.edges(region) if edge != behind]
+                    events = [_event(gap.value, edge, way) for edge, way in ways]
+                    if end == right:
+                        events.append(_event(gap.speed, 0.0, -1 if rising else 1))
                 solution = solve_ivp(
                     partial(_in_region, rate, region),
-                    (t, float(right)),
+                    (t, end),
                     y,
                     method="DOP853",
                     rtol=rtol,
@@ -88,20 +113,34 @@ def follow(
                 )
                 if solution.status < 0:
                     raise ConvergenceError(f"adaptive reference: {solution.message}")
-                end = float(solution.t[-1])
-                inside = (wanted >= t) & (wanted < end)
+                hit = -1
+                if solution.status == 1:
+                    hit = next(i for i, times in enumerate(solution.t_events) if len(times))
+                reached = float(solution.t[-1])
+                turned = gap is not None and end == right and hit == len(events) - 1
+                if turned and gap is not None:
+                    if gap.outside(reached, solution.y[:, -1], region):
+                        # an edge was passed on the way to the turn: go there by its event
+                        end = reached
+                        continue
+                    rising, behind = not rising, np.nan
+                inside = (wanted >= t) & (wanted < reached)
                 if np.any(inside):
                     path[turn * samples + np.flatnonzero(inside)] = solution.sol(wanted[inside]).T
                 y = solution.y[:, -1]
-                t = end
-                if solution.status == 0:
+                if hit < 0 and end < right:
+                    # the edge was touched by rounding only: this is the turn
+                    rising, behind = not rising, np.nan
+                t, end = reached, right
+                if hit < 0 and t >= right:
                     break
-                hit = next(i for i, times in enumerate(solution.t_events) if len(times))
-                region += int(edges[region][hit][1])
-                crossings.append(turn * period + t)
+                if hit >= 0 and not turned:
+                    behind = ways[hit][0]
+                    region += ways[hit][1]
+                    crossings.append(turn * period + t)
             else:
                 raise ConvergenceError(
-                    f"adaptive reference: more than {MOST_EVENTS} contact changes in a period"
+                    f"adaptive reference: more than {MOST_EVENTS} events in a period"
                 )
         sections[turn + 1] = y
     return sections, path, np.array(crossings)

@@ -51,20 +51,20 @@ def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
         ]
     )
     scale = lanes.half_backlash + strongest / mean
-    needed = np.zeros(len(lanes), np.int64)
+    counts = np.array(_COUNTS)
+    half = lanes.period[:, None] / (2.0 * counts)
+    turn = np.pi / counts
     allowed = 2e-17 * factorial(order + 1)
-    for count in _COUNTS:
-        half = lanes.period / (2.0 * count)
-        turn = np.pi / count
-        ok = half * np.maximum(np.sqrt(stiffest), lanes.damping) <= 0.3
-        for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
-            coefficients = np.abs(getattr(lanes, name))
-            ranks = np.arange(coefficients.shape[1])
-            tail = half**2 * (coefficients @ (ranks * turn) ** (order - 1))
-            ok &= tail <= allowed * size
-        needed[(needed == 0) & ok] = count
-        if np.all(needed):
-            return needed
+    good = half * np.maximum(np.sqrt(stiffest), lanes.damping)[:, None] <= 0.3
+    for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
+        coefficients = np.abs(getattr(lanes, name))
+        ranks = np.arange(coefficients.shape[1])
+        # one lane is one row times one table: no sum may depend on the other lanes
+        tail = np.stack([row @ (ranks[:, None] * turn) ** (order - 1) for row in coefficients])
+        good &= half**2 * tail <= allowed * size[:, None]
+    needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
+    if np.all(needed):
+        return needed
     lane = int(np.argmin(needed))
     raise InputError(
         "frequency",

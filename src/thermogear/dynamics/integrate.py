@@ -160,8 +160,7 @@ def _adaptive_lane(
             kept = turn - discard
             sections, path, _crossings = adaptive.follow(
                 rate,
-                _displacement,
-                backlash,
+                adaptive.Gap(_displacement, _velocity, backlash),
                 float(one.period[0]),
                 y,
                 1,
@@ -181,6 +180,10 @@ def _adaptive_lane(
 
 def _displacement(_t: float, y: Floats) -> float:
     return float(y[0])
+
+
+def _velocity(_t: float, y: Floats) -> float:
+    return float(y[1])
 
 
 def _count(name: str, value: int, least: int) -> int:
@@ -463,8 +466,11 @@ def _pair(
         scale = model.half_backlash / max(model.base_radii)
         sections, path, _ = adaptive.follow(
             lambda t, y, _region: model.derivative(t, y),
-            lambda t, y: float(model.displacement(t, y)[0]),
-            model.half_backlash,
+            adaptive.Gap(
+                lambda t, y: float(model.displacement(t, y)[0]),
+                lambda t, y: float(model.displacement(t, y)[1]),
+                model.half_backlash,
+            ),
             model.period,
             state,
             total,
@@ -503,8 +509,7 @@ def _free(
     backlash = getattr(model, "half_backlash", None)
     sections, path, _ = adaptive.follow(
         lambda t, y, _region: np.asarray(derivative(t, y), dtype=float),
-        None if backlash is None else _displacement,
-        0.0 if backlash is None else float(backlash),
+        None if backlash is None else adaptive.Gap(_displacement, _velocity, float(backlash)),
         float(period),
         start,
         discard + periods,
