@@ -1,0 +1,263 @@
+"""Attractors as things: found from starts, told apart, recognised from near, matched."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from thermogear.analysis.plan import Alive, keep_going
+from thermogear.analysis.settle import (
+    CHAOTIC,
+    DIVERGED,
+    UNDECIDED,
+    Rule,
+    close_orbits,
+    part_of,
+    settle,
+    units_of,
+)
+from thermogear.dynamics import exact
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+SAME = 1e-6
+CLOUD = 4096
+WIDEST_TRAP = 0.05
+NARROWEST_TRAP = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """A periodic orbit (``points`` its section, (period, 2)) or a chaotic set (a cloud of it).
+
+    ``multiplier`` the largest one (NaN for chaos), ``lyapunov`` the largest exponent, ``trap``
+    the radius, in half backlashes, inside which a trajectory is taken to stay for good (0: no
+    such radius was found, or chaos).
+    """
+
+    period: int
+    points: Floats
+    multiplier: complex
+    lyapunov: float
+    trap: float
+
+    @property
+    def chaotic(self) -> bool:
+        """No period."""
+        return self.period == 0
+
+    def distance(self, other: Attractor, unit: Floats) -> float:
+        """Hausdorff distance of the two section sets in half backlashes."""
+        one, two = self.points / unit, other.points / unit
+        there = cKDTree(two).query(one)[0].max()
+        return float(max(there, cKDTree(one).query(two)[0].max()))
+
+
+class Field:
+    """One parameter point with its maps ready for many lanes at once."""
+
+    def __init__(self, lanes: Lanes, width: int = exact.BLOCK) -> None:
+        ((_, borders, marks),) = exact.layouts(lanes)
+        self.lanes = lanes.take(np.zeros(width, int))
+        one = exact.prepare_maps(lanes, borders, marks)
+        self.maps = part_of(one, np.zeros(width, int))
+        self.one = one
+        self.unit = units_of(lanes)[0]
+        self.width = width
+
+    def of(self, count: int) -> exact.ExactMaps:
+        """The maps for ``count`` lanes side by side."""
+        if count == self.width:
+            return self.maps
+        return part_of(self.one, np.zeros(count, int))
+
+
+def attractors_from(
+    lanes: Lanes, starts: Floats, rule: Rule, alive: Alive = keep_going
+) -> tuple[list[Attractor], Whole]:
+    """The attractors reached from ``starts`` (start, 2) of one lane, and which start goes where.
+
+    The starts are settled one beside the other; -1 where a start stays undecided, -2 where it
+    diverges. Attractors come in the order of the starts that reach them first.
+    """
+    many = lanes.take(np.zeros(len(starts), int))
+    settled = settle(many, starts, rule, alive=alive)
+    field = Field(lanes)
+    found: list[Attractor] = []
+    where = np.full(len(starts), -1, np.int64)
+    for i in range(len(starts)):
+        code, period = int(settled.label[i]), int(settled.period[i])
+        if code == DIVERGED:
+            where[i] = -2
+        elif code == CHAOTIC:
+            where[i] = chaotic_index(found, field, settled.state[i])
+            if where[i] < 0:
+                cloud = close_orbits(field.one, settled.state[i][None], CLOUD).points[0]
+                where[i] = len(found)
+                found.append(
+                    Attractor(0, cloud, complex(np.nan, np.nan), float(settled.lyapunov[i]), 0.0)
+                )
+        elif period > 0:
+            where[i] = periodic_index(found, settled.point[i], period, field.unit)
+            if where[i] < 0:
+                where[i] = len(found)
+                found.append(_orbit(field, settled.point[i], period, settled.multiplier[i, 0]))
+        elif code == UNDECIDED:
+            where[i] = -1
+    return found, where
+
+
+def periodic_index(known: Sequence[Attractor], point: Floats, period: int, unit: Floats) -> int:
+    """Which of the ``known`` the orbit through ``point`` is; -1: none."""
+    for number, one in enumerate(known):
+        if one.period == period:
+            away = np.max(np.abs(one.points - point) / unit, axis=1)
+            if float(away.min()) < SAME:
+                return number
+    return -1
+
+
+def chaotic_index(known: Sequence[Attractor], field: Field, state: Floats) -> int:
+    """Which of the known chaotic sets a trajectory runs on; -1: none.
+
+    The same set, when of 256 sections from ``state`` nine tenths lie as near to the cloud as
+    the cloud's own points lie to each other (their 99th percentile, doubled).
+    """
+    clouds = [(number, one) for number, one in enumerate(known) if one.chaotic]
+    if not clouds:
+        return -1
+    path = close_orbits(field.one, state[None], 256).points[0, 1:] / field.unit
+    for number, one in clouds:
+        tree = cKDTree(one.points / field.unit)
+        own = np.percentile(tree.query(one.points / field.unit, k=2)[0][:, 1], 99.0)
+        if float(np.mean(tree.query(path)[0] <= 2.0 * own)) >= 0.9:
+            return number
+    return -1
+
+
+def _orbit(field: Field, point: Floats, period: int, multiplier: complex) -> Attractor:
+    run = close_orbits(field.one, point[None], period)
+    points = run.points[0, :-1]
+    exponent = float(np.log(abs(multiplier)) / (period * field.lanes.period[0]))
+    trap = _trap(field, points, multiplier, period)
+    return Attractor(period, points, complex(multiplier), exponent, trap)
+
+
+def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> float:
+    """The largest tried radius from which every start on squares about the orbit comes home.
+
+    Starts stand on the edges of squares of that half width and of a half and a quarter of it;
+    home means within a tenth of the radius of its own point of the orbit.
+    """
+    size = abs(multiplier)
+    turns = int(np.clip(np.ceil(np.log(1e-3) / np.log(max(size, 1e-3))), 4, 2000))
+    edge = np.linspace(-1.0, 1.0, 5)
+    ring = np.array([(a, b) for a in edge for b in edge if max(abs(a), abs(b)) == 1.0])
+    shape = np.concatenate([ring, 0.5 * ring, 0.25 * ring])
+    radius = WIDEST_TRAP
+    while radius > NARROWEST_TRAP:
+        starts = (points[:, None, :] + radius * shape[None] * field.unit).reshape(-1, 2)
+        state = exact.State.start(
+            starts[:, 0], starts[:, 1], np.full(len(starts), field.one.backlash[0])
+        )
+        exact.advance(field.of(len(starts)), state, turns * period)
+        ends = np.stack([state.x, state.y], axis=1).reshape(len(points), -1, 2)
+        away = np.max(np.abs(ends - points[:, None]) / field.unit, axis=2)
+        if bool(np.all(away < 0.1 * radius)):
+            return radius
+        radius *= 0.5
+    return 0.0
+
+
+def trapped(
+    field: Field,
+    starts: Floats,
+    attractors: Sequence[Attractor],
+    *,
+    stride: int = 4,
+    cap: int = 2000,
+    alive: Alive = keep_going,
+) -> tuple[Whole, Whole, Floats]:
+    """Which attractor's trap each start falls into (-1: none before ``cap``, -2: diverged).
+
+    Also the periods run and the last state. Starts enter as lanes fall free; each is looked at
+    after every ``stride`` of its own periods, so that company changes nothing.
+    """
+    count = len(starts)
+    where = np.full(count, -1, np.int64)
+    used = np.zeros(count, np.int64)
+    last = starts.copy()
+    safe = [n for n, one in enumerate(attractors) if one.trap > 0.0]
+    if not safe:
+        return where, used, last
+    targets = np.concatenate([attractors[n].points for n in safe]) / field.unit
+    owner = np.concatenate([np.full(len(attractors[n].points), n) for n in safe])
+    reach = np.array([attractors[n].trap for n in owner])
+    lane = np.arange(min(field.width, count))
+    maps = field.of(lane.size)
+    state = exact.State.start(starts[lane, 0], starts[lane, 1], maps.backlash)
+    fresh = lane.size
+    while lane.size:
+        alive()
+        exact.advance(maps, state, stride)
+        used[lane] += stride
+        here = np.stack([state.x, state.y], axis=1)
+        last[lane] = here
+        scaled = here / field.unit
+        away = np.maximum(
+            np.abs(scaled[:, :1] - targets[:, 0]), np.abs(scaled[:, 1:] - targets[:, 1])
+        )
+        inside = away < reach
+        hit = inside.any(axis=1)
+        gone = ~np.isfinite(state.x)
+        where[lane[hit]] = owner[inside[hit].argmax(axis=1)]
+        where[lane[gone]] = -2
+        done = np.flatnonzero(hit | gone | (used[lane] >= cap))
+        if not done.size:
+            continue
+        enter = np.arange(fresh, min(fresh + done.size, count))
+        fresh += enter.size
+        seats = done[: enter.size]
+        begin = exact.State.start(starts[enter, 0], starts[enter, 1], maps.backlash[seats])
+        state.x[seats], state.y[seats] = begin.x, begin.y
+        state.region[seats] = begin.region
+        lane[seats] = enter
+        empty = done[enter.size :]
+        if empty.size:
+            left = np.setdiff1d(np.arange(lane.size), empty)
+            lane = lane[left]
+            maps = part_of(maps, left)
+            state = exact.State(
+                state.x[left],
+                state.y[left],
+                state.region[left],
+                np.ascontiguousarray(state.tangent[:, left]),
+                np.ascontiguousarray(state.counts[:, left]),
+                np.ascontiguousarray(state.spent[:, left]),
+            )
+    return where, used, last
+
+
+def matched(
+    old: Sequence[Attractor], new: Sequence[Attractor], landed: Sequence[int], unit: Floats
+) -> list[int]:
+    """Old number of every new attractor; -1 for one that no old one continues into.
+
+    ``landed``: the new attractor that the trajectory from each old one's first point ends on at
+    the new parameter. Where two old ones end on the same, the nearer keeps its number.
+    """
+    found = [-1] * len(new)
+    best = [np.inf] * len(new)
+    for number, target in enumerate(landed):
+        if target < 0:
+            continue
+        away = old[number].distance(new[target], unit)
+        if away < best[target]:
+            best[target], found[target] = away, number
+    return found

@@ -1,0 +1,195 @@
+"""The branches behind an orbit diagram: every short orbit it shows, continued over its range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.analysis.bifurcations import Bifurcation
+from thermogear.analysis.continuation import Branch, continuation
+from thermogear.analysis.family import Family
+from thermogear.analysis.orbits import Orbit, shoot
+from thermogear.analysis.section import ReturnMap, lanes_of
+from thermogear.analysis.settle import PERIODIC
+from thermogear.base.errors import ConvergenceError
+
+Floats = NDArray[np.float64]
+
+MOST_BRANCHES = 24
+MOST_POINTS = 600
+JUMP = 0.2
+NEAR = 0.5
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Both arms of a branch as one line."""
+
+    period: int
+    values: Floats
+    states: Floats
+    multipliers: NDArray[np.complex128]
+    bifurcations: tuple[Bifurcation, ...]
+
+
+def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period: int) -> xr.Dataset:
+    """Add the branches of all periodic motions of up to ``most_period`` periods to a diagram."""
+    lines: list[_Line] = []
+    lost: list[str] = []
+    for period, value, state in _seeds(data, parameter, most_period):
+        if len(lines) >= MOST_BRANCHES:
+            lost.append(f"more than {MOST_BRANCHES} branches: the rest is not followed")
+            break
+        orbit = shoot(ReturnMap(_lane(family, value)), state, period)
+        if orbit is None or any(_on(line, orbit, value, family) for line in lines):
+            continue
+        try:
+            lines.append(_line(orbit, value, family, parameter, data[parameter].values))
+        except ConvergenceError as error:
+            lost.append(str(error))
+    data.attrs["branch_notes"] = "; ".join(lost)
+    return _stored(data, lines)
+
+
+def _lane(family: Family, value: float) -> object:
+    return lanes_of(family(np.array([[value]])))
+
+
+def _seeds(
+    data: xr.Dataset, parameter: str, most_period: int
+) -> Iterator[tuple[int, float, Floats]]:
+    """One orbit out of every stretch of a sweep on which period and place run on."""
+    values = data[parameter].values
+    unit = 1.0
+    for n in range(1, most_period + 1):
+        for direction in range(data.sizes["direction"]):
+            for start in range(data.sizes["start"]):
+                here = data.isel(direction=direction, start=start)
+                mine = (here["label"].values == PERIODIC) & (here["period"].values == n)
+                x = here["section_x"].values
+                v = here["section_v"].values
+                run: list[int] = []
+                for i in range(values.size + 1):
+                    joined = i < values.size and bool(mine[i])
+                    if joined and run:
+                        # the same orbit may be stored from another of its points on
+                        gaps = [
+                            max(abs(x[i, -1] - x[run[-1], -1 - k]),
+                                abs(v[i, -1] - v[run[-1], -1 - k]))
+                            for k in range(min(n, x.shape[1]))
+                        ]  # fmt: skip
+                        joined = min(gaps) < JUMP * unit
+                    if run and not joined:
+                        middle = run[len(run) // 2]
+                        yield n, float(values[middle]), np.array([x[middle, -1], v[middle, -1]])
+                        run = []
+                    if i < values.size and bool(mine[i]):
+                        run.append(i)
+
+
+def _on(line: _Line, orbit: Orbit, value: float, family: Family) -> bool:
+    """Whether ``orbit`` at ``value`` lies on the line: Newton from it leads there."""
+    if line.period != orbit.period:
+        return False
+    section = ReturnMap(lanes_of(family(np.array([[value]]))))
+    below, above = line.values[:-1], line.values[1:]
+    for i in np.flatnonzero((below - value) * (above - value) <= 0.0):
+        span = above[i] - below[i]
+        weight = 0.0 if span == 0.0 else (value - below[i]) / span
+        guess = line.states[i] + weight * (line.states[i + 1] - line.states[i])
+        if float(section.distance(orbit.points, guess).min()) > NEAR:
+            continue
+        found = shoot(section, guess, orbit.period)
+        if found is not None and float(section.distance(orbit.points, found.state).min()) < 1e-6:
+            return True
+    return False
+
+
+def _line(orbit: Orbit, value: float, family: Family, parameter: str, values: Floats) -> _Line:
+    """Both arms from ``value`` to the ends of the range."""
+
+    def single(at: float) -> object:
+        return family(np.array([[at]]))
+
+    arms: list[Branch] = []
+    for end in (float(values[0]), float(values[-1])):
+        if end != value:
+            arms.append(
+                continuation(
+                    orbit, parameter, end, family=single, start=value, most_points=MOST_POINTS
+                )
+            )
+    if len(arms) == 1:
+        only = arms[0]
+        return _Line(orbit.period, only.values, only.states, only.multipliers, only.bifurcations)
+    low, high = arms
+    return _Line(
+        orbit.period,
+        np.concatenate([low.values[::-1], high.values[1:]]),
+        np.concatenate([low.states[::-1], high.states[1:]]),
+        np.concatenate([low.multipliers[::-1], high.multipliers[1:]]),
+        tuple(reversed(low.bifurcations)) + high.bifurcations,
+    )
+
+
+def _stored(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
+    longest = max([1, *(line.values.size for line in lines)])
+    shape = (len(lines), longest)
+    value, x, v = (np.full(shape, np.nan) for _ in range(3))
+    size = np.full(shape, np.nan)
+    for n, line in enumerate(lines):
+        count = line.values.size
+        value[n, :count] = line.values
+        x[n, :count], v[n, :count] = line.states.T
+        size[n, :count] = np.max(np.abs(line.multipliers), axis=1)
+    dims = ("branch", "branch_point")
+    words = {"units": "1"}
+    data["branch_value"] = (dims, value, words | {"long_name": "parameter along the branch"})
+    data["branch_x"] = (dims, x, words | {"long_name": "displacement at phase 0"})
+    data["branch_v"] = (dims, v, words | {"long_name": "velocity at phase 0"})
+    data["branch_multiplier"] = (
+        dims,
+        size,
+        words | {"long_name": "modulus of the largest Floquet multiplier; stable below 1"},
+    )
+    data["branch_period"] = (
+        ("branch",),
+        np.array([line.period for line in lines], np.int32),
+        words | {"long_name": "mesh periods of the orbit"},
+    )
+    return _with_bifurcations(data, lines)
+
+
+def _with_bifurcations(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
+    """The bifurcations of all branches, each once, in order of the parameter."""
+    rows: list[tuple[float, Bifurcation, int]] = []
+    for n, line in enumerate(lines):
+        for one in line.bifurcations:
+            scale = max(abs(one.value), 1e-3)
+            known = any(
+                other.kind == one.kind
+                and other.period == one.period
+                and abs(value - one.value) < 1e-7 * scale
+                for value, other, _ in rows
+            )
+            if not known:
+                rows.append((one.value, one, n))
+    rows.sort(key=lambda row: (row[0], row[1].kind, row[1].period))
+    dims = ("bifurcation",)
+    found = [row[1] for row in rows]
+    data["bifurcation_value"] = (
+        dims, np.array([row[0] for row in rows], float),
+        {"long_name": "parameter at the bifurcation", "units": "1"},
+    )  # fmt: skip
+    data["bifurcation_kind"] = (dims, np.array([b.kind for b in found], "U16"))
+    data["bifurcation_note"] = (dims, np.array([b.note for b in found], "U80"))
+    data["bifurcation_period"] = (dims, np.array([b.period for b in found], np.int32))
+    data["bifurcation_branch"] = (dims, np.array([row[2] for row in rows], np.int32))
+    state = np.array([b.state for b in found], float).reshape(-1, 2)
+    data["bifurcation_x"] = (dims, state[:, 0], {"units": "1"})
+    data["bifurcation_v"] = (dims, state[:, 1], {"units": "1"})
+    return data

@@ -1,0 +1,243 @@
+"""Orbit diagrams: the settled motion over a parameter, up and down, from several starts.
+
+Every value starts from the state in which the value before it ended, whatever the chunks; the
+branches behind the picture, unstable parts included, come from continuation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.branches import with_branches
+from thermogear.analysis.family import Family, axis_values, family_for, lanes_and_status
+from thermogear.analysis.outcome import (
+    outcome_arrays,
+    outcome_variables,
+    rule_inputs,
+    settle_with_status,
+)
+from thermogear.analysis.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Progress,
+    Variable,
+    gather,
+    keep_going,
+    ranges_of,
+)
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
+
+Floats = NDArray[np.float64]
+
+DIRECTIONS = ("up", "down")
+DIAGRAM_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
+BLOCK = 32
+KEEP = 64
+BRANCH_PERIOD = 4
+"""Branches are followed for orbits of up to so many periods."""
+
+
+@dataclass(frozen=True)
+class DiagramPlan:
+    """An orbit diagram; see :func:`orbit_diagram`."""
+
+    family: Family
+    values: tuple[float, ...]
+    starts: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
+    rule: Rule = DIAGRAM_RULE
+    keep: int = KEEP
+    block: int = BLOCK
+    branch_period: int = BRANCH_PERIOD
+    kind: str = "diagram"
+
+    def __post_init__(self) -> None:
+        if len(self.family.names) != 1:
+            raise InputError("parameter", list(self.family.names), allowed="one parameter")
+        for name, least in (("keep", 1), ("block", 1), ("branch_period", 0)):
+            if getattr(self, name) < least:
+                raise InputError(name, getattr(self, name), allowed=f">= {least}")
+
+    @property
+    def parameter(self) -> str:
+        return self.family.names[0]
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        return {
+            "direction": len(DIRECTIONS),
+            "start": len(self.starts),
+            self.parameter: len(self.values),
+            "section": self.keep,
+        }
+
+    @property
+    def cuts(self) -> dict[str, int]:
+        return {"direction": 1, self.parameter: min(self.block, len(self.values))}
+
+    def inputs(self) -> dict[str, Any]:
+        return {
+            "model": self.family.inputs(),
+            "parameter": self.parameter,
+            "values": list(self.values),
+            "starts": [list(s) for s in self.starts],
+            "rule": rule_inputs(self.rule),
+            "keep": self.keep,
+            "block": self.block,
+            "branch_period": self.branch_period,
+        }
+
+    def variables(self) -> dict[str, Variable]:
+        dims = ("direction", "start", self.parameter)
+        nan = float("nan")
+        found = outcome_variables(dims)
+        for name, words in (("x", "displacement"), ("v", "velocity")):
+            found[f"section_{name}"] = Variable(
+                (*dims, "section"),
+                "float64",
+                nan,
+                {"long_name": f"Poincare section: {words}", "units": "1"},
+            )
+            found[f"end_{name}"] = Variable(
+                dims, "float64", nan, {"long_name": f"{words} carried on", "units": "1"}
+            )
+        return found
+
+    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+        name, unit = self.parameter, self.family.units[0]
+        return {
+            "direction": (("direction",), np.array(DIRECTIONS), {}),
+            "start_x": (("start",), np.array([s[0] for s in self.starts]), {"units": "1"}),
+            "start_v": (("start",), np.array([s[1] for s in self.starts]), {"units": "1"}),
+            name: ((name,), np.array(self.values), {"units": unit}),
+        }
+
+    def needs(self, key: Key) -> Key | None:
+        direction, block = key
+        blocks = -(-len(self.values) // self.cuts[self.parameter])
+        before = block - 1 if direction == 0 else block + 1
+        return (direction, before) if 0 <= before < blocks else None
+
+    def pilot(self, points: int) -> int:
+        """Settle about ``points`` values spread over the range, up and down; how many."""
+        count = min(points, len(self.values))
+        some = np.linspace(0, len(self.values) - 1, count).round().astype(int)
+        chosen = tuple(self.values[i] for i in np.unique(some))
+        small = DiagramPlan(
+            self.family, chosen, self.starts, self.rule, self.keep, max(len(chosen), 1), 0
+        )
+        small.compute((0, 0), None, keep_going)
+        return len(chosen) * len(self.starts)
+
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
+        up = key[0] == 0
+        values = np.array(self.values)[ranges_of(self, key)[self.parameter]]
+        order = np.arange(values.size) if up else np.arange(values.size)[::-1]
+        state = np.array(self.starts)
+        if before is not None:
+            last = -1 if up else 0
+            state = np.stack([before[f"end_{n}"][0, :, last] for n in "xv"], axis=1)
+        count = len(self.starts)
+        found: Arrays = {}
+        for name, variable in self.variables().items():
+            shape = (1, count, values.size, *([self.keep] if "section" in variable.dims else []))
+            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        lanes, status = lanes_and_status(self.family, values[:, None])
+        for place in order:
+            same = np.full(count, place)
+            settled = settle_with_status(
+                lanes.take(same), status[same], state, self.rule, self.keep, alive
+            )
+            for name, row in outcome_arrays(settled, status[same]).items():
+                found[name][0, :, place] = row
+            for axis, name in enumerate("xv"):
+                found[f"section_{name}"][0, :, place] = settled.sections[:, :, axis]
+            # a motion that left for infinity hands on the state it began with
+            here = np.where(np.isfinite(settled.state), settled.state, state)
+            state = np.where(np.isfinite(here).all(axis=1)[:, None], here, np.array(self.starts))
+            found["end_x"][0, :, place], found["end_v"][0, :, place] = state.T
+        return found
+
+    def finish(self, data: xr.Dataset) -> xr.Dataset:
+        data.attrs |= {
+            "parameter": self.parameter,
+            "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
+        }
+        data["back_side_matters"] = (
+            (self.parameter,),
+            np.asarray((data["back_impacts"].values > 0).any(axis=(0, 1)), np.int8),
+            {"long_name": "1: an orbit hits the back side, so the half backlash has an effect"},
+        )
+        if self.branch_period > 0 and len(self.values) > 1:
+            return with_branches(data, self.family, self.parameter, self.branch_period)
+        return data
+
+
+def orbit_diagram(
+    model: object,
+    parameter: str,
+    values: ArrayLike,
+    *,
+    starts: ArrayLike | Sequence[tuple[float, float]] = ((0.0, 0.0),),
+    rule: Rule = DIAGRAM_RULE,
+    keep: int = KEEP,
+    block: int = BLOCK,
+    branch_period: int = BRANCH_PERIOD,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """The settled motion over ``values`` of a ``parameter``, up and down, from every start.
+
+    ``model`` has one lane and a number field ``parameter``, or is a family of it. At the first
+    value of a direction the ``starts`` (x, x') are taken, from then on the state in which the
+    last value ended; chunks of ``block`` values hand it on, so they change nothing. ``keep``
+    sections are stored of each point (on the orbit itself where it is periodic), with label,
+    period, largest multiplier and Lyapunov exponent. Orbits of up to ``branch_period`` periods
+    (0: none) are continued through the whole range, stable and unstable: ``branch_...`` over
+    (branch, branch_point), and the bifurcations located on them, ``bifurcation_...``.
+    """
+    plan = diagram_plan(
+        model,
+        parameter,
+        values,
+        starts=starts,
+        rule=rule,
+        keep=keep,
+        block=block,
+        branch_period=branch_period,
+    )
+    return gather(plan, threads=threads, progress=progress)
+
+
+def diagram_plan(
+    model: object,
+    parameter: str,
+    values: ArrayLike,
+    *,
+    starts: ArrayLike | Sequence[tuple[float, float]] = ((0.0, 0.0),),
+    rule: Rule = DIAGRAM_RULE,
+    keep: int = KEEP,
+    block: int = BLOCK,
+    branch_period: int = BRANCH_PERIOD,
+) -> DiagramPlan:
+    """The plan of :func:`orbit_diagram`."""
+    axis = np.sort(axis_values(parameter, values))
+    begin = np.atleast_2d(np.asarray(starts, dtype=float))
+    if begin.shape[1] != 2 or not np.all(np.isfinite(begin)):
+        raise InputError("starts", f"shape {begin.shape}", allowed="finite pairs (x, x')")
+    return DiagramPlan(
+        family_for(model, (parameter,)),
+        tuple(axis.tolist()),
+        tuple((float(a), float(b)) for a, b in begin),
+        rule,
+        keep,
+        block,
+        branch_period,
+    )

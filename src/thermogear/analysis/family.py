@@ -1,0 +1,126 @@
+"""A family of models: from rows of parameter values to lanes, whatever stands behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.section import lanes_of
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.excitation import Periodic
+from thermogear.base.vocabulary import STATUS
+from thermogear.dynamics.tables import Lanes, Pieces
+
+Floats = NDArray[np.float64]
+JAMMED_STATUS = STATUS.index("jammed")
+
+
+@runtime_checkable
+class Family(Protocol):
+    """``family(points)`` makes one lane of every row of ``points`` (point, parameter).
+
+    ``names`` of the parameters, ``units`` beside them ("1": a pure number), ``inputs`` what
+    defines the family, as plain numbers and texts. What it returns has ``lanes()``; a
+    ``status`` array beside it marks points that have no motion (jammed).
+    """
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+
+    @property
+    def units(self) -> tuple[str, ...]: ...
+
+    def inputs(self) -> dict[str, Any]: ...
+
+    def __call__(self, points: Floats) -> Any: ...
+
+
+@dataclass(frozen=True)
+class ModelFamily:
+    """A model of one lane with some of its number fields put to other values."""
+
+    model: Any
+    names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        if not is_dataclass(self.model) or isinstance(self.model, type):
+            raise InputError(
+                "model", type(self.model).__name__, allowed="a model with named fields"
+            )
+        if len(lanes_of(self.model)) != 1:
+            raise InputError("model", f"{len(lanes_of(self.model))} lanes", allowed="one lane")
+        known = [
+            f.name for f in fields(self.model) if isinstance(getattr(self.model, f.name), float)
+        ]
+        for name in self.names:
+            if name not in known:
+                raise InputError("parameter", repr(name), fix=nearest(str(name), known))
+        if len(set(self.names)) < len(self.names):
+            raise InputError("parameter", list(self.names), allowed="different parameters")
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Every number of a model is dimensionless."""
+        return ("1",) * len(self.names)
+
+    def inputs(self) -> dict[str, Any]:
+        """The model's fields that do not vary."""
+        found: dict[str, Any] = {"type": type(self.model).__name__}
+        for field in fields(self.model):
+            if field.name not in self.names:
+                found[field.name] = _plain(getattr(self.model, field.name))
+        return found
+
+    def __call__(self, points: Floats) -> Any:
+        columns = np.asarray(points, dtype=float)
+        changes = {name: columns[:, i].copy() for i, name in enumerate(self.names)}
+        return replace(self.model, **changes)
+
+
+def _plain(value: object) -> object:
+    """A field as plain numbers and texts."""
+    if isinstance(value, Periodic):
+        pairs = [[c.real, c.imag] for c in value.harmonics]
+        return {"mean": value.mean, "harmonics": pairs}
+    if isinstance(value, Pieces):
+        return {"starts": list(value.starts), "pieces": [list(c) for c in value.coefficients]}
+    return float(np.asarray(value)) if np.ndim(value) == 0 else np.asarray(value).tolist()  # type: ignore[arg-type]
+
+
+def family_for(model: object, names: Sequence[str]) -> Family:
+    """``model`` itself where it is a family of these parameters, else its fields vary."""
+    wanted = tuple(names)
+    if isinstance(model, Family) and not is_model(model):
+        if model.names != wanted:
+            raise InputError("parameter", list(wanted), allowed=str(list(model.names)))
+        return model
+    return ModelFamily(model, wanted)
+
+
+def is_model(thing: object) -> bool:
+    """Whether it makes lanes by itself."""
+    return hasattr(thing, "lanes")
+
+
+def lanes_and_status(family: Family, points: Floats) -> tuple[Lanes, NDArray[np.int8]]:
+    """The lanes of ``points``, and which of them have no motion (status other than 0)."""
+    made = family(points)
+    lanes = lanes_of(made)
+    if len(lanes) == 1 and len(points) > 1:
+        lanes = lanes.take(np.zeros(len(points), int))
+    status = np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
+    return lanes, status
+
+
+def axis_values(name: str, values: ArrayLike) -> Floats:
+    """Finite, different, one axis."""
+    found = np.atleast_1d(np.asarray(values, dtype=float))
+    if found.ndim != 1 or found.size == 0 or not np.all(np.isfinite(found)):
+        raise InputError(name, f"shape {found.shape}", allowed="finite numbers on one axis")
+    if np.unique(found).size < found.size:
+        raise InputError(name, "values that repeat", allowed="different values")
+    return found

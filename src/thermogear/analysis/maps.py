@@ -1,0 +1,252 @@
+"""Maps of the settled motion over two parameters: early exit, and work only near borders."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.family import Family, axis_values, family_for, lanes_and_status
+from thermogear.analysis.outcome import (
+    outcome_arrays,
+    outcome_variables,
+    rule_inputs,
+    settle_with_status,
+    start_of,
+)
+from thermogear.analysis.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Progress,
+    Variable,
+    gather,
+    keep_going,
+    ranges_of,
+)
+from thermogear.analysis.settle import CHAOTIC, PERIODIC, Rule
+from thermogear.base.errors import InputError
+
+Floats = NDArray[np.float64]
+
+MAP_RULE = Rule(chaos_periods=1000)
+TILE = 64
+STRIDE = 4
+
+
+@dataclass(frozen=True)
+class MapPlan:
+    """A map over ``axes``, two of them; see :func:`parameter_map`."""
+
+    family: Family
+    axes: tuple[tuple[float, ...], tuple[float, ...]]
+    start: tuple[float, float] = (0.0, 0.0)
+    rule: Rule = MAP_RULE
+    refine: bool = True
+    tile: int = TILE
+    stride: int = STRIDE
+    kind: str = "map"
+
+    def __post_init__(self) -> None:
+        if len(self.family.names) != 2:
+            raise InputError("axes", list(self.family.names), allowed="two parameters")
+        if self.stride < 1 or self.stride & (self.stride - 1):
+            raise InputError("stride", self.stride, allowed="1, 2, 4, 8, ...")
+        if self.tile < 2:
+            raise InputError("tile", self.tile, allowed=">= 2")
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        return dict(zip(self.family.names, map(len, self.axes), strict=True))
+
+    @property
+    def cuts(self) -> dict[str, int]:
+        return {name: min(self.tile, size) for name, size in self.sizes.items()}
+
+    def inputs(self) -> dict[str, Any]:
+        return {
+            "model": self.family.inputs(),
+            "axes": {n: list(v) for n, v in zip(self.family.names, self.axes, strict=True)},
+            "initial_state": list(self.start),
+            "rule": rule_inputs(self.rule),
+            "refine": self.refine,
+            "tile": self.tile,
+            "stride": self.stride,
+        }
+
+    def variables(self) -> dict[str, Variable]:
+        found = outcome_variables(self.family.names)
+        words = {"long_name": "0: taken over from equal neighbours, 1: computed"}
+        found["computed"] = Variable(self.family.names, "int8", 0, words)
+        return found
+
+    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+        return {
+            name: ((name,), np.array(values), {"units": unit})
+            for name, unit, values in zip(
+                self.family.names, self.family.units, self.axes, strict=True
+            )
+        }
+
+    def needs(self, key: Key) -> Key | None:
+        return None
+
+    def pilot(self, points: int) -> int:
+        """Compute about ``points`` points spread over the map; how many."""
+        side = max(2, round(points**0.5))
+        some = [
+            np.array(v)[np.linspace(0, len(v) - 1, min(side, len(v))).astype(int)]
+            for v in self.axes
+        ]
+        small = replace(
+            self,
+            axes=(tuple(some[0]), tuple(some[1])),
+            refine=False,
+            tile=max(2, *(s.size for s in some)),
+        )
+        small.compute((0, 0), None, keep_going)
+        return int(some[0].size * some[1].size)
+
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
+        one, two = (
+            np.array(values)[part]
+            for values, part in zip(self.axes, ranges_of(self, key).values(), strict=True)
+        )
+        shape = (one.size, two.size)
+        variables = self.variables()
+        found = {n: np.full(shape, v.fill, np.dtype(v.dtype)) for n, v in variables.items()}
+        stride = self.stride if self.refine else 1
+        wanted = np.zeros(shape, bool)
+        wanted[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
+        while True:
+            places = np.flatnonzero(wanted & (found["computed"] == 0))
+            if places.size:
+                self._settle(one, two, places, found, alive)
+            if stride == 1:
+                return found
+            wanted = _refined(found, stride)
+            stride //= 2
+            inside = np.zeros(shape, bool)
+            inside[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
+            wanted &= inside
+
+    def _settle(
+        self, one: Floats, two: Floats, places: NDArray[np.int64], found: Arrays, alive: Alive
+    ) -> None:
+        i, j = np.unravel_index(places, (one.size, two.size))
+        lanes, status = lanes_and_status(self.family, np.stack([one[i], two[j]], axis=1))
+        start = np.broadcast_to(np.array(self.start), (len(lanes), 2)).copy()
+        settled = settle_with_status(lanes, status, start, self.rule, alive=alive)
+        for name, values in outcome_arrays(settled, status).items():
+            found[name][i, j] = values
+        found["computed"][i, j] = 1
+
+    def finish(self, data: xr.Dataset) -> xr.Dataset:
+        used = int(data["used_periods"].values.astype(np.int64).sum())
+        points = int(np.prod([len(a) for a in self.axes]))
+        data.attrs |= {
+            "total_periods": used,
+            "full_periods": points * self.rule.cap,
+            "computed_points": int(data["computed"].values.astype(np.int64).sum()),
+            "initial_state": list(self.start),
+        }
+        return data
+
+
+def _lattice(size: int, stride: int) -> NDArray[np.int64]:
+    """Every stride-th place and the last one."""
+    return np.unique(np.append(np.arange(0, size, stride), size - 1))
+
+
+def _refined(found: Arrays, stride: int) -> NDArray[np.bool_]:
+    """Places inside or beside cells whose corners differ; equal cells take their corners' label.
+
+    A cell counts as equal only when its neighbours are equal too, and never when undecided.
+    """
+    shape = found["label"].shape
+    rows, columns = _lattice(shape[0], stride), _lattice(shape[1], stride)
+    # one number for label and period
+    code = found["label"].astype(np.int64) * 2**31 + found["period"]
+    corner = code[np.ix_(rows, columns)]
+    first = corner[:-1, :-1]
+    same = (first == corner[1:, :-1]) & (first == corner[:-1, 1:]) & (first == corner[1:, 1:])
+    label = found["label"][np.ix_(rows, columns)][:-1, :-1]
+    same &= (label == PERIODIC) | (label == CHAOTIC) | (label > CHAOTIC)
+    active = ~same
+    wide = np.pad(active, 1)
+    near = np.zeros_like(active)
+    for di in (0, 1, 2):
+        for dj in (0, 1, 2):
+            near |= wide[di : di + active.shape[0], dj : dj + active.shape[1]]
+    wanted = np.zeros(shape, bool)
+    for i, j in np.argwhere(near):
+        wanted[rows[i] : rows[i + 1] + 1, columns[j] : columns[j + 1] + 1] = True
+    for i, j in np.argwhere(~near):
+        place = (
+            slice(int(rows[i]), int(rows[i + 1]) + 1),
+            slice(int(columns[j]), int(columns[j + 1]) + 1),
+        )
+        fresh = (found["computed"][place] == 0) & ~wanted[place]
+        for name in ("label", "period", "status"):
+            found[name][place][fresh] = found[name][rows[i], columns[j]]
+    return wanted
+
+
+def parameter_map(
+    model: object,
+    axes: Mapping[str, ArrayLike],
+    *,
+    initial_state: ArrayLike = (0.0, 0.0),
+    rule: Rule = MAP_RULE,
+    refine: bool = True,
+    tile: int = TILE,
+    stride: int = STRIDE,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """What the motion from one start settles on over two parameters.
+
+    ``model`` has one lane and number fields named as the two ``axes``, or is a family of these
+    parameters. A point leaves as soon as its label is proven (:class:`Rule`); with ``refine``
+    the map starts on every ``stride``-th point and goes on only where neighbours differ, inside
+    tiles of ``tile`` x ``tile`` points. ``rule.full()`` with ``refine=False`` is the full run.
+
+    Returns label, period, largest multiplier, Lyapunov exponent and counts over the two
+    parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The
+    attributes tell the periods run and those of the full run. The result does not depend on
+    ``threads``.
+    """
+    plan = map_plan(
+        model,
+        axes,
+        initial_state=initial_state,
+        rule=rule,
+        refine=refine,
+        tile=tile,
+        stride=stride,
+    )
+    return gather(plan, threads=threads, progress=progress)
+
+
+def map_plan(
+    model: object,
+    axes: Mapping[str, ArrayLike],
+    *,
+    initial_state: ArrayLike = (0.0, 0.0),
+    rule: Rule = MAP_RULE,
+    refine: bool = True,
+    tile: int = TILE,
+    stride: int = STRIDE,
+) -> MapPlan:
+    """The plan of :func:`parameter_map`."""
+    if len(axes) != 2:
+        raise InputError("axes", list(axes), allowed="two parameters")
+    values = [tuple(map(float, axis_values(name, v))) for name, v in axes.items()]
+    family = family_for(model, tuple(axes))
+    return MapPlan(
+        family, (values[0], values[1]), start_of(initial_state), rule, refine, tile, stride
+    )

@@ -1,0 +1,127 @@
+"""What is stored of settled motions: names, types and meanings shared by maps and diagrams."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.plan import Alive, Arrays, Variable, keep_going
+from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
+from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import STATUS, status_attributes
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+
+LABEL_ATTRIBUTES = {
+    "long_name": "settled motion",
+    "flag_values": np.arange(len(LABELS), dtype=np.int8),
+    "flag_meanings": " ".join(LABELS),
+}
+_NAN = float("nan")
+
+VALUES: dict[str, tuple[str, float | int, dict[str, Any]]] = {
+    "label": ("int8", 0, LABEL_ATTRIBUTES),
+    "period": ("int32", 0, {"long_name": "mesh periods of the orbit, 0: none", "units": "1"}),
+    "multiplier_real": (
+        "float64", _NAN, {"long_name": "largest Floquet multiplier, real part", "units": "1"}
+    ),
+    "multiplier_imag": (
+        "float64", _NAN, {"long_name": "largest Floquet multiplier, imaginary part", "units": "1"}
+    ),
+    "lyapunov": (
+        "float64", _NAN, {"long_name": "largest Lyapunov exponent", "units": "1", "symbol": "λ₁"}
+    ),
+    "lyapunov_error": (
+        "float64", _NAN, {"long_name": "standard error of the Lyapunov exponent", "units": "1"}
+    ),
+    "contact_losses": (
+        "int32", -1, {"long_name": "losses of drive contact per orbit, -1: not known", "units": "1"}
+    ),
+    "back_impacts": (
+        "int32", -1, {"long_name": "back-side impacts per orbit, -1: not known", "units": "1"}
+    ),
+    "drive_share": (
+        "float64", _NAN, {"long_name": "share of time in drive contact", "units": "1"}
+    ),
+    "point_x": (
+        "float64", _NAN, {"long_name": "displacement of the orbit at phase 0", "units": "1"}
+    ),
+    "point_v": ("float64", _NAN, {"long_name": "velocity of the orbit at phase 0", "units": "1"}),
+    "used_periods": ("int32", 0, {"long_name": "mesh periods run for this point", "units": "1"}),
+    "status": ("int8", 0, {}),
+}  # fmt: skip
+
+
+def outcome_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
+    """The stored variables of settled motions over ``dims``."""
+    found = {n: Variable(dims, t, f, a) for n, (t, f, a) in VALUES.items()}
+    found["status"] = Variable(dims, "int8", 0, status_attributes())
+    return found
+
+
+def outcome_arrays(settled: Settled, status: NDArray[np.int8]) -> Arrays:
+    """The stored arrays, flat over lanes."""
+    done = status.copy()
+    done[settled.label == LABELS.index("diverged")] = STATUS.index("diverged")
+    lost = (settled.label == LABELS.index("undecided")) & (status == 0)
+    done[lost] = STATUS.index("not_converged")
+    return {
+        "label": settled.label,
+        "period": settled.period,
+        "multiplier_real": settled.multiplier[:, 0].real.copy(),
+        "multiplier_imag": settled.multiplier[:, 0].imag.copy(),
+        "lyapunov": settled.lyapunov,
+        "lyapunov_error": settled.lyapunov_error,
+        "contact_losses": settled.losses,
+        "back_impacts": settled.impacts,
+        "drive_share": settled.shares[:, 2].copy(),
+        "point_x": settled.point[:, 0].copy(),
+        "point_v": settled.point[:, 1].copy(),
+        "used_periods": settled.used,
+        "status": done,
+    }
+
+
+def settle_with_status(
+    lanes: Lanes,
+    status: NDArray[np.int8],
+    start: Floats,
+    rule: Rule,
+    keep: int = 0,
+    alive: Alive = keep_going,
+) -> Settled:
+    """:func:`settle` for the lanes that move; the others carry their status as a label."""
+    result = Settled.empty(len(lanes), keep)
+    result.state[:] = start
+    result.label[status != 0] = JAMMED
+    moving = np.flatnonzero(status == 0)
+    if moving.size:
+        result.put(moving, settle(lanes.take(moving), start[moving], rule, keep, alive))
+    return result
+
+
+def label_names(data: xr.Dataset) -> NDArray[np.str_]:
+    """ "period-n", "chaotic", ... of every point of a stored result."""
+    names = np.array(LABELS)[data["label"].values].astype("U16")
+    period = data["period"].values
+    periodic = data["label"].values == LABELS.index("periodic")
+    names[periodic] = np.char.add("period-", period[periodic].astype(str))
+    return np.asarray(names)
+
+
+def start_of(initial_state: ArrayLike) -> tuple[float, float]:
+    """One start (x, x')."""
+    state = np.asarray(initial_state, dtype=float)
+    if state.shape != (2,) or not np.all(np.isfinite(state)):
+        raise InputError("initial_state", state.tolist(), allowed="two finite numbers (x, x')")
+    return float(state[0]), float(state[1])
+
+
+def rule_inputs(rule: Rule) -> dict[str, Any]:
+    """The rule as plain numbers."""
+    return {f.name: getattr(rule, f.name) for f in fields(rule)}

@@ -1,0 +1,215 @@
+"""Long work as chunks that are computed apart from each other and put together.
+
+A plan says what is stored, how it is cut, and computes one chunk. In memory :func:`gather` runs
+it on threads; a store can keep the same chunks on disk. A chunk depends on the plan's inputs
+(and on the one chunk it needs) alone, so the result does not depend on who computes it, when.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+Arrays = dict[str, NDArray[Any]]
+Key = tuple[int, ...]
+Alive = Callable[[], None]
+Progress = Callable[[int, int], None]
+"""Called as ``progress(chunks done, chunks)``."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A stored array: its ``dims``, numpy ``dtype``, ``fill`` and attributes."""
+
+    dims: tuple[str, ...]
+    dtype: str
+    fill: float | int
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Stopped(Exception):
+    """The work was asked to end; what is finished stays."""
+
+
+def keep_going() -> None:
+    """Nobody asks to stop."""
+
+
+class Plan(Protocol):
+    """Work cut into chunks; ``kind`` names it.
+
+    ``sizes`` of the dimensions and ``cuts``, the chunk length along those that are cut; every
+    variable has all cut dimensions. ``needs`` names the chunk that must be there first.
+    """
+
+    @property
+    def kind(self) -> str: ...
+
+    @property
+    def sizes(self) -> dict[str, int]: ...
+
+    @property
+    def cuts(self) -> dict[str, int]: ...
+
+    def inputs(self) -> dict[str, Any]: ...
+
+    def variables(self) -> dict[str, Variable]: ...
+
+    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]: ...
+
+    def needs(self, key: Key) -> Key | None: ...
+
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays: ...
+
+    def finish(self, data: xr.Dataset) -> xr.Dataset: ...
+
+    def pilot(self, points: int) -> int: ...
+
+
+def keys_of(plan: Plan) -> list[Key]:
+    """All chunks, the last cut running fastest."""
+    counts = [-(-plan.sizes[name] // length) for name, length in plan.cuts.items()]
+    return list(product(*(range(count) for count in counts)))
+
+
+def ranges_of(plan: Plan, key: Key) -> dict[str, slice]:
+    """The stretch of every cut dimension that a chunk covers."""
+    found = {}
+    for place, (name, length) in zip(key, plan.cuts.items(), strict=True):
+        found[name] = slice(place * length, min((place + 1) * length, plan.sizes[name]))
+    return found
+
+
+def region_of(plan: Plan, key: Key, variable: Variable) -> tuple[slice, ...]:
+    """Where a chunk's array lies inside the whole variable."""
+    ranges = ranges_of(plan, key)
+    return tuple(ranges.get(name, slice(0, plan.sizes[name])) for name in variable.dims)
+
+
+def checked(plan: Plan, key: Key, arrays: Arrays) -> Arrays:
+    """The chunk's arrays in their stored types and shapes."""
+    found: Arrays = {}
+    for name, variable in plan.variables().items():
+        shape = tuple(s.stop - s.start for s in region_of(plan, key, variable))
+        values = np.ascontiguousarray(arrays[name], dtype=np.dtype(variable.dtype))
+        if values.shape != shape:
+            raise ValueError(f"{name} of chunk {key}: shape {values.shape}, expected {shape}")
+        found[name] = values
+    return found
+
+
+def empty_arrays(plan: Plan) -> Arrays:
+    """Arrays of the whole, filled with the fill values."""
+    return {
+        name: np.full([plan.sizes[d] for d in v.dims], v.fill, np.dtype(v.dtype))
+        for name, v in plan.variables().items()
+    }
+
+
+def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
+    """The finished, labelled result."""
+    variables = plan.variables()
+    data = xr.Dataset(
+        {n: xr.Variable(v.dims, arrays[n], dict(v.attributes)) for n, v in variables.items()},
+        {n: xr.Variable(d, np.asarray(x), dict(a)) for n, (d, x, a) in plan.coordinates().items()},
+    )
+    data.attrs["kind"] = plan.kind
+    return plan.finish(data)
+
+
+def bytes_of(plan: Plan) -> int:
+    """Bytes of the whole result, as whole Python integers."""
+    total = 0
+    for variable in plan.variables().values():
+        count = np.dtype(variable.dtype).itemsize
+        for name in variable.dims:
+            count *= int(plan.sizes[name])
+        total += count
+    return total
+
+
+def computed(
+    plan: Plan,
+    wanted: list[Key],
+    load: Callable[[Key], Arrays],
+    *,
+    threads: int | None = None,
+) -> Iterator[tuple[Key, Arrays]]:
+    """Compute the ``wanted`` chunks on threads; yields each as it is ready.
+
+    ``load`` gives a chunk that is already there, for chunks that need it. Closing the iterator
+    ends the work at the next pause of every thread.
+    """
+    stop = threading.Event()
+
+    def alive() -> None:
+        if stop.is_set():
+            raise Stopped
+
+    count = max(1, threads or os.cpu_count() or 1)
+    missing = set(wanted)
+    waiting = list(wanted)
+    kept: dict[Key, Arrays] = {}
+    heirs: dict[Key, int] = {}
+    for key in wanted:
+        need = plan.needs(key)
+        if need is not None:
+            heirs[need] = heirs.get(need, 0) + 1
+    with ThreadPoolExecutor(count) as pool:
+        running: dict[Future[Arrays], Key] = {}
+        try:
+            while waiting or running:
+                for key in list(waiting):
+                    if len(running) >= count:
+                        break
+                    need = plan.needs(key)
+                    if need is not None and need in missing:
+                        continue
+                    before = None
+                    if need is not None:
+                        before = kept[need] if need in kept else load(need)
+                        heirs[need] -= 1
+                        if not heirs[need]:
+                            kept.pop(need, None)
+                    waiting.remove(key)
+                    running[pool.submit(plan.compute, key, before, alive)] = key
+                ended, _ = wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
+                for future in ended:
+                    key = running.pop(future)
+                    arrays = checked(plan, key, future.result())
+                    missing.discard(key)
+                    if heirs.get(key):
+                        kept[key] = arrays
+                    yield key, arrays
+        finally:
+            stop.set()
+            for future in running:
+                future.cancel()
+
+
+def gather(
+    plan: Plan, *, threads: int | None = None, progress: Progress | None = None
+) -> xr.Dataset:
+    """Compute the whole plan in memory."""
+    whole = empty_arrays(plan)
+    keys = keys_of(plan)
+    variables = plan.variables()
+
+    def load(key: Key) -> Arrays:
+        return {n: whole[n][region_of(plan, key, v)] for n, v in variables.items()}
+
+    for done, (key, arrays) in enumerate(computed(plan, keys, load, threads=threads), start=1):
+        for name, variable in variables.items():
+            whole[name][region_of(plan, key, variable)] = arrays[name]
+        if progress is not None:
+            progress(done, len(keys))
+    return dataset_of(plan, whole)

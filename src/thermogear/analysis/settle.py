@@ -1,0 +1,461 @@
+"""What very many lanes settle on: the proofs of :mod:`labels`, batched, and given up early.
+
+Lanes of one layout run side by side. After every round those whose section closes are polished
+by Newton together; a lane leaves as soon as its proof stands, so that most of a map costs a
+hundredth of the longest transient in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.dynamics import exact
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+LABELS = ("undecided", "periodic", "chaotic", "diverged", "jammed")
+"""Meaning of the label codes 0, 1, 2, ..."""
+UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
+TRIES = 4
+
+
+@dataclass(frozen=True)
+class Rule:
+    """How long a motion is followed, and what counts as proof.
+
+    Rounds of ``first`` periods, then doubling, ``cap`` in all; one single round of ``cap`` where
+    ``early`` is False. Periodic: the section returns within ``close`` half backlashes after at
+    most ``max_period`` periods, the polished orbit is stable with its largest multiplier below
+    ``near_border``, and the trajectory is within ``settled`` of it and comes nearer. Chaotic: no
+    lag closes and the largest Lyapunov exponent over at least ``chaos_periods`` periods is
+    positive by four standard errors of its ``batches``, in both halves of its record.
+    """
+
+    max_period: int = 32
+    first: int = 64
+    cap: int = 4096
+    early: bool = True
+    near_border: float = 0.998
+    close: float = 1e-2
+    settled: float = 1e-4
+    chaos_periods: int = 500
+    batches: int = 20
+
+    def __post_init__(self) -> None:
+        for name, least in (
+            ("max_period", 1), ("first", 8), ("cap", 8), ("chaos_periods", 40), ("batches", 4)
+        ):  # fmt: skip
+            value = getattr(self, name)
+            if int(value) != value or value < least:
+                raise InputError(f"rule.{name}", value, allowed=f"a whole number >= {least}")
+        for name in ("near_border", "close", "settled"):
+            value = getattr(self, name)
+            if not 0.0 < value <= 1.0:
+                raise InputError(f"rule.{name}", value, allowed="0 < value <= 1")
+        if self.cap < self.first:
+            raise InputError("rule.cap", self.cap, allowed=f">= first = {self.first}")
+
+    def full(self) -> Rule:
+        """The same proofs after one long run, nothing given up early."""
+        return replace(self, early=False)
+
+    def rounds(self) -> list[int]:
+        """Lengths of the rounds; they add up to ``cap``."""
+        if not self.early:
+            return [self.cap]
+        lengths = [self.first]
+        while sum(lengths) < self.cap:
+            lengths.append(min(sum(lengths), self.cap - sum(lengths)))
+        return lengths
+
+
+@dataclass(frozen=True)
+class Settled:
+    """One entry per lane.
+
+    ``label`` codes into :data:`LABELS`, ``period`` n (0: none), ``point`` (lane, 2) of the
+    orbit where the trajectory stands, ``multiplier`` (lane, 2) complex, ``lyapunov`` per unit
+    time with its ``lyapunov_error`` (exact, error 0, for periodic lanes), ``losses`` and
+    ``impacts`` per orbit, ``shares`` of time in back, free and drive, ``used`` periods run,
+    ``state`` (lane, 2) at the end, ``sections`` (lane, keep, 2) the last ones, on the orbit
+    itself for periodic lanes.
+    """
+
+    label: NDArray[np.int8]
+    period: NDArray[np.int32]
+    point: Floats
+    multiplier: NDArray[np.complex128]
+    lyapunov: Floats
+    lyapunov_error: Floats
+    losses: NDArray[np.int32]
+    impacts: NDArray[np.int32]
+    shares: Floats
+    used: NDArray[np.int32]
+    state: Floats
+    sections: Floats
+
+    @classmethod
+    def empty(cls, lanes: int, keep: int = 0) -> Settled:
+        """Nothing known yet."""
+        nan = np.nan
+        return cls(
+            np.zeros(lanes, np.int8),
+            np.zeros(lanes, np.int32),
+            np.full((lanes, 2), nan),
+            np.full((lanes, 2), complex(nan, nan)),
+            np.full(lanes, nan),
+            np.full(lanes, nan),
+            np.full(lanes, -1, np.int32),
+            np.full(lanes, -1, np.int32),
+            np.full((lanes, 3), nan),
+            np.zeros(lanes, np.int32),
+            np.full((lanes, 2), nan),
+            np.full((lanes, keep, 2), nan),
+        )
+
+    def put(self, index: Whole | Flags, other: Settled) -> None:
+        """Write the lanes of ``other`` to the places ``index``."""
+        for field in fields(self):
+            getattr(self, field.name)[index] = getattr(other, field.name)
+
+
+def part_of(maps: exact.ExactMaps, keep: Whole) -> exact.ExactMaps:
+    """The maps of some lanes of a block."""
+    return replace(
+        maps,
+        maps=np.ascontiguousarray(maps.maps[:, :, keep]),
+        polys=np.ascontiguousarray(maps.polys[:, keep]),
+        half=np.ascontiguousarray(maps.half[:, keep]),
+        reach=maps.reach[keep],
+        backlash=maps.backlash[keep],
+    )
+
+
+def units_of(lanes: Lanes) -> Floats:
+    """Scales of (x, x') for distances, lane by lane: b and 2 pi b/T, (lane, 2)."""
+    return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
+
+
+@dataclass(frozen=True)
+class Closed:
+    """Orbits of one common period ``n``: points (lane, n + 1, 2), Jacobians (lane, 2, 2)."""
+
+    points: Floats
+    jacobian: Floats
+    residual: Floats
+    losses: Whole
+    impacts: Whole
+    spent: Floats
+
+
+def close_orbits(maps: exact.ExactMaps, start: Floats, n: int) -> Closed:
+    """Run ``n`` periods from ``start`` (lane, 2) with the variational equations."""
+    state = exact.State.start(start[:, 0], start[:, 1], maps.backlash)
+    sections, _, _ = exact.advance(maps, state, n, columns=2)
+    points = np.concatenate([start[:, None, :], sections.transpose(2, 0, 1)], axis=1)
+    jacobian = state.tangent.T.reshape(-1, 2, 2)
+    return Closed(
+        points,
+        jacobian.copy(),
+        points[:, -1] - points[:, 0],
+        state.counts[0].copy(),
+        state.counts[1].copy(),
+        state.spent.T.copy(),
+    )
+
+
+def polish(
+    maps: exact.ExactMaps, guess: Floats, n: int, unit: Floats, most: int = 10
+) -> tuple[Floats, Floats]:
+    """Newton to fixed points of P^n, lane by lane: states (lane, 2) and residuals (lane).
+
+    Residuals in half backlashes; a lane that does not settle has one above 1e-9.
+    """
+    z = guess.copy()
+    best = guess.copy()
+    least = np.full(len(z), np.inf)
+    stalled = np.zeros(len(z), np.int64)
+    working = np.arange(len(z))
+    here = maps
+    for _ in range(most):
+        run = close_orbits(here, z[working], n)
+        gap = run.residual
+        size = np.max(np.abs(gap) / unit[working], axis=1)
+        better = size < least[working]
+        chosen = working[better]
+        best[chosen], least[chosen] = z[chosen], size[better]
+        stalled[working] = np.where(better, 0, stalled[working] + 1)
+        a, b = run.jacobian[:, 0, 0] - 1.0, run.jacobian[:, 0, 1]
+        c, d = run.jacobian[:, 1, 0], run.jacobian[:, 1, 1] - 1.0
+        det = a * d - b * c
+        with np.errstate(all="ignore"):
+            step = np.stack(
+                [(b * gap[:, 1] - d * gap[:, 0]) / det, (c * gap[:, 0] - a * gap[:, 1]) / det],
+                axis=1,
+            )
+            length = np.max(np.abs(step) / unit[working], axis=1)
+        go = np.isfinite(length) & np.isfinite(size) & (size >= 1e-13)
+        go &= ~((stalled[working] >= 2) & (least[working] < 1e-9))
+        step[length > 1.0] /= length[length > 1.0, None]
+        z[working[go]] += step[go]
+        if not np.any(go):
+            break
+        if not np.all(go):
+            working = working[go]
+            here = part_of(maps, working)
+    return best, least
+
+
+def multipliers_of(jacobian: Floats, determinant: Floats) -> NDArray[np.complex128]:
+    """Floquet multipliers (lane, 2) of Jacobians with known determinants, the larger first."""
+    half = 0.5 * (jacobian[:, 0, 0] + jacobian[:, 1, 1])
+    square = half * half - determinant
+    root = np.sqrt(np.abs(square))
+    large = half + np.copysign(root, half)
+    out = np.empty((half.size, 2), complex)
+    turning = square < 0.0
+    with np.errstate(all="ignore"):
+        out[:, 0] = np.where(turning, half + 1j * root, large)
+        out[:, 1] = np.where(turning, half - 1j * root, determinant / large)
+    return out
+
+
+def _alive() -> None:
+    """Nobody asks to stop."""
+
+
+def settle(
+    lanes: Lanes,
+    start: Floats,
+    rule: Rule,
+    keep: int = 0,
+    alive: Callable[[], None] = _alive,
+) -> Settled:
+    """What every lane settles on from ``start`` (lane, 2); ``keep`` last sections are returned.
+
+    Each lane's result depends on that lane alone, to the last bit. ``alive`` is called between
+    rounds; it raises to end the work.
+    """
+    result = Settled.empty(len(lanes), keep)
+    for index, borders, marks in exact.layouts(lanes):
+        mine = lanes.take(index)
+        maps = exact.prepare_maps(mine, borders, marks)
+        result.put(index, settle_block(mine, maps, start[index], rule, keep, alive))
+    return result
+
+
+class _Block:
+    """Lanes of one layout on their way to a label."""
+
+    def __init__(
+        self, lanes: Lanes, maps: exact.ExactMaps, start: Floats, rule: Rule, keep: int
+    ) -> None:
+        self.lanes = lanes
+        self.maps = maps
+        self.rule = rule
+        self.keep = keep
+        self.unit = units_of(lanes)
+        self.state = exact.State.start(start[:, 0], start[:, 1], maps.backlash)
+        self.active = np.arange(len(lanes))
+        self.result = Settled.empty(len(lanes), keep)
+
+    def drop(self, out: Flags) -> None:
+        """Go on without the lanes that are done."""
+        left = np.flatnonzero(~out)
+        self.maps = part_of(self.maps, left)
+        self.active = self.active[left]
+        old = self.state
+        self.state = exact.State(
+            old.x[left],
+            old.y[left],
+            old.region[left],
+            np.ascontiguousarray(old.tangent[:, left]),
+            np.ascontiguousarray(old.counts[:, left]),
+            np.ascontiguousarray(old.spent[:, left]),
+        )
+
+    def window(self, length: int, measured: int) -> tuple[Floats, Floats]:
+        """Run ``length`` periods: the last sections (lane, window, 2), stretches (period, lane).
+
+        The stretches cover the last ``measured`` periods.
+        """
+        want = min(length, max(2 * self.rule.max_period, self.keep))
+        silent = length - max(measured, want)
+        if silent > 0:
+            exact.advance(self.maps, self.state, silent)
+        if measured:
+            self.state.fresh_tangent()
+            self.state.tangent[2] = self.unit[self.active, 1] / self.unit[self.active, 0]
+        sections, stretch, _ = exact.advance(
+            self.maps,
+            self.state,
+            length - max(silent, 0),
+            columns=1 if measured else 0,
+            normalise=measured > 0,
+        )
+        return sections[-want:].transpose(2, 0, 1), stretch
+
+
+def settle_block(
+    lanes: Lanes,
+    maps: exact.ExactMaps,
+    start: Floats,
+    rule: Rule,
+    keep: int = 0,
+    alive: Callable[[], None] = _alive,
+) -> Settled:
+    """:func:`settle` for lanes that share a layout, with their maps."""
+    block = _Block(lanes, maps, start, rule, keep)
+    elapsed = 0
+    rounds = rule.rounds()
+    for number, length in enumerate(rounds):
+        alive()
+        align = 50
+        measured = 0
+        if length >= rule.chaos_periods + align:
+            measured = length if rule.early else max(rule.chaos_periods, length // 3) + align
+        window, stretch = block.window(length, measured)
+        elapsed += length
+        active = block.active
+        block.result.used[active] = elapsed
+        block.result.state[active] = np.stack([block.state.x, block.state.y], axis=1)
+        last = number == len(rounds) - 1
+        done = _verdicts(block, window, stretch[align:] if measured else stretch, last)
+        if last or np.all(done):
+            break
+        if np.any(done):
+            block.drop(done)
+    return block.result
+
+
+def _verdicts(block: _Block, window: Floats, stretch: Floats, last: bool) -> Flags:
+    """Write what the last round proves; which of the active lanes are done."""
+    active, rule, result = block.active, block.rule, block.result
+    done = ~np.all(np.isfinite(window), axis=(1, 2))
+    result.label[active[done]] = DIVERGED
+    scaled = window / block.unit[active, None, :]
+    most = min(rule.max_period, window.shape[1] // 2)
+    gaps = np.stack(
+        [np.max(np.abs(scaled[:, -1] - scaled[:, -1 - n]), axis=1) for n in range(1, most + 1)],
+        axis=1,
+    )
+    level = np.full(active.size, rule.close)
+    level[done] = 0.0
+    # an orbit just past a flip nearly closes after half its period, on an unstable one: when
+    # the first lag that closes proves nothing, the next that closes ten times better is tried
+    for _ in range(TRIES):
+        near = gaps < level[:, None]
+        lag = np.where(near.any(axis=1), near.argmax(axis=1) + 1, 0)
+        if not np.any(lag):
+            break
+        for n in np.unique(lag[lag > 0]):
+            rows = np.flatnonzero(lag == n)
+            done[rows] = _periodic(block, rows, int(n), window, scaled)
+        level = np.where(done | (lag == 0), 0.0, 0.1 * gaps[np.arange(active.size), lag - 1])
+    open_ = ~done
+    if stretch.shape[0]:
+        _lyapunov(block, stretch, open_)
+        quiet = np.all(gaps > 1e-5, axis=1)
+        proof = result.lyapunov_error[active]
+        half = stretch.shape[0] // 2
+        chaotic = (
+            open_
+            & quiet
+            & (result.lyapunov[active] > 4.0 * proof)
+            & (np.cumsum(stretch[:half], axis=0)[-1] > 0.0)
+            & (np.cumsum(stretch[half:], axis=0)[-1] > 0.0)
+        )
+        result.label[active[chaotic]] = CHAOTIC
+        done |= chaotic
+    if block.keep:
+        rows = np.flatnonzero((done | last) & (result.label[active] != PERIODIC))
+        count = min(block.keep, window.shape[1])
+        result.sections[active[rows], -count:] = window[rows, -count:]
+    return np.asarray(done)
+
+
+def _lyapunov(block: _Block, stretch: Floats, rows: Flags) -> None:
+    """Largest exponent and batch-means error from the stretches of a round."""
+    count = block.rule.batches
+    length = stretch.shape[0] // count
+    used = stretch[stretch.shape[0] - count * length :]
+    # running sums, one period after the other: company changes no bit
+    sums = np.cumsum(used, axis=0)[length - 1 :: length]
+    means = np.diff(sums, axis=0, prepend=0.0) / (length * block.lanes.period[block.active])
+    mean = np.cumsum(means, axis=0)[-1] / count
+    spread = np.sqrt(np.cumsum((means - mean) ** 2, axis=0)[-1] / (count - 1))
+    lanes = block.active[rows]
+    block.result.lyapunov[lanes] = mean[rows]
+    block.result.lyapunov_error[lanes] = (spread / np.sqrt(count))[rows]
+
+
+def _periodic(block: _Block, rows: Whole, n: int, window: Floats, scaled: Floats) -> Flags:
+    """Polish the ``rows`` of the active lanes that return after ``n`` periods; which are done."""
+    active, rule, result = block.active, block.rule, block.result
+    done = np.zeros(rows.size, bool)
+    maps = part_of(block.maps, rows)
+    unit = block.unit[active[rows]]
+    point, residual = polish(maps, window[rows, -1], n, unit)
+    good = np.flatnonzero(residual < 1e-9)
+    if good.size == 0:
+        return done
+    run = close_orbits(part_of(maps, good), point[good], n)
+    minimal = np.full(good.size, n)
+    for shorter in range(n - 1, 0, -1):
+        if n % shorter == 0:
+            away = np.max(np.abs(run.points[:, shorter] - run.points[:, 0]) / unit[good], axis=1)
+            minimal[away <= np.maximum(1e-8, 1e3 * residual[good])] = shorter
+    for period in np.unique(minimal):
+        some = good[minimal == period]
+        done[some] = _accept(block, rows[some], point[some], int(period), scaled, rule, result)
+    return done
+
+
+def _accept(
+    block: _Block,
+    rows: Whole,
+    point: Floats,
+    n: int,
+    scaled: Floats,
+    rule: Rule,
+    result: Settled,
+) -> Flags:
+    """Whether the lanes ``rows`` converge to their stable orbits of ``n`` periods; stores them."""
+    run = close_orbits(part_of(block.maps, rows), point, n)
+    lanes = block.active[rows]
+    rate = block.lanes.damping[lanes] * block.lanes.period[lanes]
+    mu = multipliers_of(run.jacobian, np.exp(-rate * n))
+    size = np.abs(mu[:, 0])
+    orbit = run.points[:, :-1] / block.unit[lanes, None, :]
+    width = scaled.shape[1]
+    turned = orbit[:, (np.arange(width) - (width - 1)) % n]
+    away = np.max(np.abs(scaled[rows] - turned), axis=2)
+    early = np.max(away[:, : width // 2], axis=1)
+    late = np.max(away[:, width // 2 :], axis=1)
+    ok = np.isfinite(size) & (size < 1.0) & (late <= rule.settled)
+    ok &= (late < early) | (late <= 1e-10)
+    chosen = lanes[ok]
+    near = size > rule.near_border
+    result.label[chosen] = np.where(near[ok], UNDECIDED, PERIODIC)
+    result.period[chosen] = n
+    result.point[chosen] = run.points[ok, 0]
+    result.multiplier[chosen] = mu[ok]
+    with np.errstate(divide="ignore"):
+        result.lyapunov[chosen] = (np.log(size) / (n * block.lanes.period[lanes]))[ok]
+    result.lyapunov_error[chosen] = 0.0
+    result.losses[chosen] = run.losses[ok]
+    result.impacts[chosen] = run.impacts[ok]
+    total = n * block.lanes.period[chosen]
+    result.shares[chosen] = run.spent[ok] / total[:, None]
+    if block.keep:
+        places = (np.arange(block.keep) - (block.keep - 1)) % n
+        result.sections[chosen] = run.points[ok][:, places]
+    return np.asarray(ok)
