@@ -1,0 +1,155 @@
+"""Every stored curve as CSV: SI units in the header, one file for each group of variables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.views.results import put, read_results
+
+CURVES = {
+    "path_position": "path",
+    "mesh_phase": "mesh",
+    "profile_point": "profile",
+    "sample": "time",
+    "section": "section",
+    "order": "spectrum",
+}
+"""The dimension a curve runs along, and the word its file carries."""
+
+ROWS = ("operating", "point")
+"""Dimensions whose places stand below each other in one file."""
+
+_OURS = re.compile(
+    r"(path|mesh|profile|motion|temperature|points)(_|$)|.+_(figures|time|section|spectrum)$"
+)
+"""Names that earlier runs may have left behind."""
+
+Column = tuple[str, list[str]]
+
+
+def write_csv(directory: Path) -> list[Path]:
+    """Write every curve of ``directory/results.nc`` below ``directory/csv``; the files.
+
+    A file holds one bundle and one state (or gear, or gear temperature), such as
+    ``path_consistent_hot.csv``; operating points stand below each other, named by columns of
+    their own. Figures without a curve stand in ``..._figures.csv``. Files of the folder that
+    an earlier run wrote and this one does not are removed. Raises InputError where the results
+    are missing, damaged or not ours.
+    """
+    directory = Path(directory)
+    folder = directory / "csv"
+    written: dict[str, list[Column]] = {}
+    for name, data in read_results(directory).groups.items():
+        for stem, columns in _files(name, data):
+            written[f"{_slug(stem)}.csv"] = columns
+    folder.mkdir(exist_ok=True)
+    for old in folder.glob("*.csv"):
+        if old.name not in written and _OURS.match(old.stem):
+            old.unlink()
+    return [put(folder / name, _text(columns)) for name, columns in written.items()]
+
+
+def _files(group: str, data: xr.Dataset) -> Iterator[tuple[str, list[Column]]]:
+    """(name without ending, columns) of every file that a group becomes."""
+    short = group.removeprefix("base_sets/")
+    figures = _along(data, "")
+    if figures:
+        used = {d for n in figures for d in data[n].dims}
+        outer = [str(d) for d in data.dims if d in used]
+        yield f"{short}_figures", _columns(data[figures], outer)
+    for curve, word in CURVES.items():
+        names = _along(data, curve)
+        if not names:
+            continue
+        apart = [d for d in data[names].dims if d not in {*ROWS, curve}]
+        stem = short if word in {"path", "mesh", "profile"} and word == short else f"{short}_{word}"
+        for place in np.ndindex(*(data.sizes[d] for d in apart)):
+            here = data[names].isel(dict(zip(apart, place, strict=True)))
+            labels = [_place_name(data, str(d), i) for d, i in zip(apart, place, strict=True)]
+            inner = [str(d) for d in here.dims if d != curve]
+            yield "_".join([stem, *labels]), _columns(here, [*inner, curve])
+
+
+def _along(data: xr.Dataset, curve: str) -> list[str]:
+    """The variables that run along ``curve``; with "" those that run along none."""
+    return [
+        str(name)
+        for name, v in data.data_vars.items()
+        if (curve in v.dims if curve else not set(CURVES) & {str(d) for d in v.dims})
+    ]
+
+
+def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
+    if dimension not in data.coords:
+        return f"{dimension}{place}"
+    value = data[dimension].values[place]
+    if dimension == "gear_temperature":
+        return f"{float(value) - 273.15:.4g}degC"
+    return str(value)
+
+
+def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
+    """Every coordinate and variable of ``data``, stretched over ``dims`` and laid flat."""
+    shape = tuple(data.sizes[d] for d in dims)
+    found: list[Column] = []
+    for dimension in dims:
+        if dimension not in data.coords:
+            axis = xr.Variable((dimension,), np.arange(data.sizes[dimension]))
+            found.append((dimension, _flat(axis, dims, shape)))
+    names = [*data.coords, *data.data_vars]
+    for name in sorted(names, key=lambda n: n not in data.coords):
+        variable = data[name].variable
+        if variable.dims or name in data.data_vars:
+            unit = str(variable.attrs.get("units", ""))
+            found.append((f"{name} [{unit}]" if unit else str(name), _flat(variable, dims, shape)))
+    return found
+
+
+def _flat(variable: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> list[str]:
+    """The values of one column as text, in the row order of ``dims``."""
+    values = variable.values
+    if "flag_meanings" in variable.attrs:
+        words = np.array(str(variable.attrs["flag_meanings"]).split())
+        values = words[np.clip(values.astype(int), 0, words.size - 1)]
+    texts = _texts(values)
+    own = [str(d) for d in variable.dims]
+    wide = texts.transpose([own.index(d) for d in dims if d in own])
+    spread = wide.reshape([variable.sizes[d] if d in own else 1 for d in dims])
+    return [str(text) for text in np.broadcast_to(spread, shape).ravel()]
+
+
+def _texts(values: NDArray[np.generic]) -> NDArray[np.object_]:
+    """Numbers to nine figures, words in quotes where a reader of CSV wants them."""
+    if values.dtype.kind == "f":
+        texts = [f"{v:.9g}" if v == v else "" for v in values.ravel().tolist()]
+    else:
+        texts = [_quoted(str(v)) for v in values.ravel().tolist()]
+    found = np.empty(values.size, dtype=object)
+    found[:] = texts
+    return found.reshape(values.shape)
+
+
+def _quoted(text: str) -> str:
+    """A field as a spreadsheet reads it safely: quoted where needed, never a formula."""
+    flat = " ".join(text.split())
+    if flat[:1] in {"=", "+", "@"} or re.match(r"-\D", flat):
+        flat = f"'{flat}"
+    return '"' + flat.replace('"', '""') + '"' if re.search(r'[",;\n]', flat) else flat
+
+
+def _text(columns: list[Column]) -> str:
+    """One header line, then a line for each row."""
+    head = ",".join(_quoted(name) for name, _ in columns)
+    lines = map(",".join, zip(*(cells for _, cells in columns), strict=True))
+    return "\n".join([head, *lines]) + "\n"
+
+
+def _slug(text: str) -> str:
+    """A file name of plain letters."""
+    return re.sub(r"[^A-Za-z0-9.+-]+", "_", text).strip("_.")[:120] or "unnamed"

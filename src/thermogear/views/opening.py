@@ -1,0 +1,163 @@
+"""The first lines of the page: one paragraph and the figures that matter."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from thermogear.views.results import Results
+from thermogear.views.style import names_of
+from thermogear.views.tables import JAMMED
+from thermogear.views.words import celsius, display, jam_at, number, percent, span
+
+STUDIED = "1.1 to 1.3"
+"""Frequency ratios of the thesis's bifurcation study."""
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One figure that matters: what it is, its value, what stands beside it."""
+
+    title: str
+    value: str
+    beside: str
+
+
+def summary(results: Results) -> str:
+    """One paragraph with the key numbers."""
+    mesh = results.group("mesh")
+    if mesh is None:
+        return _rows_summary(results.group("points"))
+    speeds = span(np.unique(display("pinion_speed")(mesh["pinion_speed"].values)), 4)
+    torques = span(np.unique(mesh["pinion_torque"].values), 4)
+    count = mesh.sizes["operating"]
+    points = f"{count} operating point" + ("s" if count > 1 else "")
+    parts = [f"{points}: pinion at {speeds} rpm under {torques} N m{_heat(mesh)}."]
+    parts += [_bundle(mesh, place) for place in range(mesh.sizes["bundle"])]
+    parts.append(_regime(mesh))
+    motion = results.group("motion")
+    if motion is not None:
+        for state in names_of(motion, "state"):
+            here = motion["label"].isel(state=names_of(motion, "state").index(state))
+            parts.append(f"Motion {state}: {_count(here.values)}.")
+    return " ".join(part for part in parts if part)
+
+
+def _heat(mesh: xr.Dataset) -> str:
+    if "hot_temperature" not in mesh:
+        return ""
+    cold, hot = (mesh["hot_temperature"].isel(state=i).values for i in (0, -1))
+    return f"; gears at {celsius(float(hot.max()))} against {celsius(float(cold.min()))} cold"
+
+
+def _bundle(mesh: xr.Dataset, place: int) -> str:
+    name = names_of(mesh, "bundle")[place]
+    here = mesh.isel(bundle=place)
+    cold, hot = here.isel(state=0), here.isel(state=-1)
+    change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
+    stiffness = f"the mean mesh stiffness changes by {_percents(change)}"
+    jammed = int((hot["status"] == JAMMED).sum())
+    jam = hot["jam_temperature"].values
+    at = celsius(float(jam.min())) if np.isfinite(jam).any() else ""
+    if jammed:
+        where = f"{jammed} of {hot.sizes['operating']} points"
+        return (
+            f"In the {name} bundle the hot pair is jammed at {where} (gap used up at {at}); "
+            f"{stiffness}."
+        )
+    before = span(1e6 * cold["half_backlash"].values)
+    after = span(1e6 * hot["half_backlash"].values)
+    return (
+        f"In the {name} bundle heat takes the half backlash from {before} to {after} µm and "
+        f"{stiffness}."
+    )
+
+
+def _percents(ratios: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+    low, high = percent(float(ratios.min())), percent(float(ratios.max()))
+    return low if low == high else f"{low} to {high}"
+
+
+def _regime(mesh: xr.Dataset) -> str:
+    ratio = mesh["frequency_ratio"].isel(bundle=0, state=0).values
+    frequency = span(mesh["natural_frequency"].isel(bundle=0, state=0).values, 4)
+    place = "below" if ratio.max() < 0.9 else "above" if ratio.min() > 1.1 else "around"
+    return (
+        f"The mesh frequency lies at {span(ratio)} of the natural frequency ({frequency} Hz), "
+        f"{place} the resonance; the thesis's bifurcation study speaks of {STUDIED}."
+    )
+
+
+def _count(labels: np.ndarray[tuple[int, ...], np.dtype[np.str_]]) -> str:
+    found = Counter(str(name) for name in labels.ravel())
+    if len(found) == 1:
+        name = next(iter(found))
+        return f"{name} throughout"
+    return ", ".join(f"{count} × {name}" for name, count in found.most_common())
+
+
+def _rows_summary(points: xr.Dataset | None) -> str:
+    if points is None:
+        return "These results hold no group that could be drawn."
+    return (
+        f"{points.sizes['point']} points of the dimensionless equation of motion; found: "
+        f"{_count(points['label'].values)}. These numbers are not derived from any gear pair."
+    )
+
+
+def tiles(results: Results) -> list[Tile]:
+    """The figures that matter, of the first bundle, the others beside them."""
+    mesh = results.group("mesh")
+    if mesh is None:
+        return []
+    names = names_of(mesh, "bundle")
+    cold, hot = mesh.isel(state=0, operating=0), mesh.isel(state=-1, operating=0)
+    jammed = hot["status"].values == JAMMED
+    gaps = [
+        "jammed" if stuck else f"{number(1e6 * float(b))} µm"
+        for b, stuck in zip(hot["half_backlash"].values, jammed, strict=True)
+    ]
+    change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
+    jam = [jam_at(float(t)) for t in hot["jam_temperature"].values]
+    found = [
+        Tile(
+            "hot half backlash",
+            gaps[0],
+            f"cold {number(1e6 * float(cold['half_backlash'][0]))} µm" + _beside(names, gaps),
+        ),
+        Tile(
+            "mean mesh stiffness, hot against cold",
+            percent(float(change[0])),
+            names[0] + _beside(names, [percent(float(c)) for c in change]),
+        ),
+        Tile("backlash used up at", jam[0], "housing as it is" + _beside(names, jam)),
+    ]
+    path = results.group("path")
+    if path is not None and "flash_temperature" in path:
+        top = path["flash_temperature"].isel(state=-1).max(["operating", "path_position"]).values
+        text = [f"{number(float(t))} K" for t in top]
+        if math.isfinite(float(top[0])):
+            found.append(
+                Tile("highest flash temperature", text[0], names[0] + _beside(names, text))
+            )
+    ratio = mesh["frequency_ratio"].isel(bundle=0, state=0).values
+    found.append(Tile("mesh over natural frequency", span(ratio, 2), f"thesis's study {STUDIED}"))
+    motion = results.group("motion")
+    if motion is not None:
+        labels = motion["label"].isel(bundle=0, state=-1).values
+        found.append(
+            Tile(
+                "motion, hot",
+                _count(labels).removesuffix(" throughout"),
+                f"{names[0]}, every operating point",
+            )
+        )
+    return found
+
+
+def _beside(names: list[str], values: list[str]) -> str:
+    return "".join(f"; {n} {v}" for n, v in zip(names[1:], values[1:], strict=True))

@@ -1,0 +1,122 @@
+"""What a page is made of: sections of texts, tables and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import xarray as xr
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from thermogear.views.svg import draw
+
+Cell = str | Markup
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph; ``tone`` is "plain", "note" or "jam"."""
+
+    words: Cell
+    tone: str = "plain"
+    kind: str = "text"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table; the first ``names`` columns hold words, the others numbers.
+
+    ``marked`` are the rows that want attention.
+    """
+
+    caption: str
+    head: Sequence[Cell]
+    rows: Sequence[Sequence[Cell]]
+    names: int = 1
+    marked: frozenset[int] = frozenset()
+    wordy: bool = False
+    kind: str = "table"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn picture with its heading and a caption that says what one should see."""
+
+    name: str
+    heading: str
+    caption: Cell
+    svg: Markup
+    wide: bool = False
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """Pictures side by side where there is room."""
+
+    pictures: Sequence[Picture]
+    kind: str = "gallery"
+
+
+@dataclass(frozen=True)
+class Code:
+    """A text shown letter by letter."""
+
+    words: str
+    kind: str = "code"
+
+
+Block = Text | Table | Gallery | Code
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page with its place in the navigation."""
+
+    name: str
+    title: str
+    blocks: Sequence[Block]
+
+
+@dataclass
+class Pictures:
+    """Draws pictures while their data are there, each under a name of its own."""
+
+    drawn: list[Picture] = field(default_factory=list)
+    _names: set[str] = field(default_factory=set)
+
+    def add(
+        self,
+        name: str,
+        heading: str,
+        caption: Cell,
+        data: xr.Dataset,
+        needs: Iterable[str],
+        make: Callable[[], Figure],
+        wide: bool = False,
+    ) -> None:
+        """Draw ``make()`` unless ``data`` lacks one of the variables it ``needs``."""
+        if not all(need in data.variables for need in needs):
+            return
+        own = f"fig-{name}"
+        if own in self._names:
+            raise ValueError(f"two pictures named {name}")
+        self._names.add(own)
+        self.drawn.append(Picture(own, heading, caption, draw(make, own, heading), wide))
+
+    def take(self) -> list[Block]:
+        """The pictures drawn since the last call, as galleries: wide ones by themselves."""
+        blocks: list[Block] = []
+        row: list[Picture] = []
+        for one in self.drawn:
+            if one.wide:
+                if row:
+                    blocks.append(Gallery(row))
+                    row = []
+                blocks.append(Gallery([one]))
+            else:
+                row.append(one)
+        if row:
+            blocks.append(Gallery(row))
+        self.drawn = []
+        return blocks

@@ -1,0 +1,59 @@
+"""Stored samples of a motion made into smooth curves, and no longer than they need to be."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+SMOOTH = 320
+"""Points wanted in a mesh period of a drawn curve."""
+
+
+def refined(t: Floats, x: Floats, v: Floats, times: int) -> tuple[Floats, Floats, Floats]:
+    """The cubic through every sample with its slope: (t, x, dx/dt), ``times`` as many points.
+
+    ``t``, ``x`` and ``v`` = dx/dt in units that belong together.
+    """
+    if times <= 1 or t.size < 2:
+        return t, x, v
+    h = np.diff(t)[:, None]
+    u = np.arange(times) / times
+    x0, x1, v0, v1 = x[:-1, None], x[1:, None], v[:-1, None] * h, v[1:, None] * h
+    a, b = 2.0 * (x0 - x1) + v0 + v1, 3.0 * (x1 - x0) - 2.0 * v0 - v1
+    place = x0 + u * (v0 + u * (b + u * a))
+    slope = (v0 + u * (2.0 * b + u * 3.0 * a)) / h
+    return (
+        np.append((t[:-1, None] + u * h).ravel(), t[-1]),
+        np.append(place.ravel(), x[-1]),
+        np.append(slope.ravel(), v[-1]),
+    )
+
+
+def periods_to_draw(label: str, samples_per_period: int, stored: int, least: int = 1) -> int:
+    """How many stored samples show the whole orbit: n periods where the label says so."""
+    found = re.match(r"period-(\d+)$", label)
+    if not found:
+        return stored
+    wanted = max(int(found[1]), least)
+    return int(min(stored, wanted * samples_per_period + 1))
+
+
+def thinned(
+    x: Floats, y: Floats, scale: tuple[float, float], cells: float = 400.0
+) -> tuple[Floats, Floats]:
+    """Points that a reader can tell apart: one for each cell of a grid over the picture.
+
+    ``scale`` is the picture's extent in x and y, ``cells`` the grid's fineness: a settled
+    motion keeps a point per period. Points that are not finite are left out.
+    """
+    kept = np.isfinite(x) & np.isfinite(y)
+    x, y = x[kept], y[kept]
+    steps = [size / cells if size > 0.0 else 1.0 for size in scale]
+    places = np.stack([np.round(v / step) for v, step in zip((x, y), steps, strict=True)])
+    _, first = np.unique(places, axis=1, return_index=True)
+    first.sort()
+    return x[first], y[first]

@@ -1,0 +1,161 @@
+"""Along the path of contact: kinematics, load, Hertzian contact, friction, flash temperature."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from thermogear.views.plots.curves import draw_by_bundle, draw_by_operating, hot_state
+from thermogear.views.style import (
+    DRY,
+    HOT,
+    INK,
+    OKABE_ITO,
+    bundle_line,
+    chosen,
+    legend_below,
+    mark_path,
+    name_axes,
+    names_of,
+    picture,
+    ramp,
+)
+from thermogear.views.words import (
+    axis_label,
+    display,
+    math_symbol,
+    operating_names,
+    plain,
+    shown,
+)
+
+S = "path_position"
+
+
+def speeds(data: xr.Dataset) -> Figure:
+    """Rolling speeds of both flanks, sliding and entrainment at the fastest operating point."""
+    figure, axes = picture()
+    axis, x = axes[0, 0], shown(data, S)
+    fastest = int(np.argmax(np.abs(data["pinion_speed"].values)))
+    here = data.isel(operating=fastest)
+    lines = {
+        "pinion_rolling_velocity": ("pinion flank", OKABE_ITO[2], "-"),
+        "wheel_rolling_velocity": ("wheel flank", OKABE_ITO[3], "-"),
+        "entrainment_velocity": ("entrainment", OKABE_ITO[5], (0, (5, 2))),
+        "sliding_velocity": ("sliding", INK, "-"),
+    }
+    for name, (words, colour, style) in lines.items():
+        axis.plot(
+            x,
+            shown(here, name),
+            color=colour,
+            linestyle=style,
+            label=f"{words} {math_symbol(_symbol(name))}",
+        )
+    axis.axhline(0.0, color=INK, linewidth=0.7, zorder=0.6)
+    axis.set_ylabel(f"speed along the flank at {operating_names(data)[fastest]} [m/s]")
+    mark_path(axis, data)
+    legend_below(figure, axis, 2)
+    return figure
+
+
+def _symbol(name: str) -> str:
+    return {
+        "pinion_rolling_velocity": "v_1",
+        "wheel_rolling_velocity": "v_2",
+        "entrainment_velocity": "v_e",
+        "sliding_velocity": "v_s",
+    }[name]
+
+
+def load_share(data: xr.Dataset) -> Figure:
+    """Share of the normal force that one tooth pair carries, for every bundle."""
+    figure, axes = picture()
+    axis = axes[0, 0]
+    draw_by_bundle(axis, hot_state(data), "load_share", shown(data, S), HOT)
+    name_axes(axis, S, "load_share", y_words="load share of one pair")
+    axis.set_ylim(0.0, 1.08)
+    mark_path(axis, data)
+    legend_below(figure, axis)
+    return figure
+
+
+def hertz(data: xr.Dataset, bundle: int) -> Figure:
+    """Hertzian pressure and half width of one bundle along the path, one curve per load."""
+    figure, axes = picture(2, 1, (4.9, 4.4), sharex=True, above=0.45)
+    here = hot_state(data).isel(bundle=bundle)
+    for axis, name in zip(axes[:, 0], ("hertz_pressure", "hertz_half_width"), strict=True):
+        draw_by_operating(axis, here, name, shown(data, S), HOT, label="hot, all operating points")
+        axis.set_ylim(bottom=0.0)
+        mark_path(axis, data)
+    axes[0, 0].set_ylabel(axis_label("hertz_pressure", "Hertzian pressure"))
+    axes[1, 0].set_ylabel(axis_label("hertz_half_width", "half width"))
+    for text in axes[1, 0].texts:
+        text.set_visible(False)
+    axes[0, 0].set_xlabel(axis_label(S, ""), labelpad=1.0)
+    legend_below(figure, axes[0, 0])
+    return figure
+
+
+def friction(data: xr.Dataset, bundle: int) -> Figure:
+    """Friction coefficient, mixed lubrication against dry, for every operating point."""
+    figure, axes = picture()
+    axis, x = axes[0, 0], shown(data, S)
+    here = hot_state(data).isel(bundle=bundle)
+    draw_by_operating(axis, here, "friction_coefficient_mixed", x, label="mixed")
+    draw_by_operating(
+        axis, here, "friction_coefficient_dry", x, DRY, label="dry", linestyle=(0, (6, 2, 1, 2))
+    )
+    name_axes(axis, S, "friction_coefficient", y_words="friction coefficient")
+    axis.set_ylim(bottom=0.0)
+    mark_path(axis, data)
+    legend_below(figure, axis, 2)
+    return figure
+
+
+def flash(data: xr.Dataset, kind: str) -> Figure:
+    """Flash temperature rise for ``kind`` "mixed" or "dry": speeds by colour, bundles by line."""
+    figure, axes = picture()
+    axis, x = axes[0, 0], shown(data, S)
+    name = f"flash_temperature_{kind}"
+    here = hot_state(data)
+    bundles, names = names_of(here, "bundle"), operating_names(here)
+    places = chosen(here.sizes["operating"])
+    for place, bundle in enumerate(bundles):
+        values = shown(here.isel(bundle=place), name)
+        for i, colour in zip(places, ramp(len(places)), strict=True):
+            if np.isfinite(values[i]).any():
+                axis.plot(
+                    x,
+                    values[i],
+                    color=colour,
+                    linestyle=bundle_line(bundles, place),
+                    linewidth=1.7 if place == 0 else 1.2,
+                    label=plain(f"{names[i]}, {bundle}"),
+                )
+    name_axes(axis, S, "flash_temperature", y_words=f"flash temperature rise, {kind}")
+    axis.set_ylim(bottom=0.0)
+    mark_path(axis, data)
+    legend_below(figure, axis, 2)
+    return figure
+
+
+def temperatures(data: xr.Dataset, bundle: int) -> Figure:
+    """Body temperature of both flanks and the contact temperature above it."""
+    figure, axes = picture()
+    axis, x = axes[0, 0], shown(data, S)
+    here = hot_state(data).isel(bundle=bundle)
+    draw_by_operating(axis, here, "contact_temperature", x, label="contact")
+    bodies = {
+        "pinion_body_temperature": ("pinion body", OKABE_ITO[2]),
+        "wheel_body_temperature": ("wheel body", OKABE_ITO[3]),
+    }
+    first = here.isel(operating=0)
+    for name, (words, colour) in bodies.items():
+        axis.plot(x, shown(first, name), color=colour, linestyle=(0, (4, 1.5)), label=words)
+    unit = display("contact_temperature").unit
+    axis.set_ylabel(f"temperature {math_symbol('T')} [{unit}]")
+    mark_path(axis, data)
+    legend_below(figure, axis, 2)
+    return figure

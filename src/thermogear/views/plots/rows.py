@@ -1,0 +1,162 @@
+"""Rows of the dimensionless equation: phase plane and section, spectrum, half-order line."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from thermogear.base.vocabulary import QUANTITIES
+from thermogear.views.plots.motion import label_of
+from thermogear.views.plots.orbits import periods_to_draw, thinned
+from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
+from thermogear.views.style import (
+    COLD,
+    FAINT,
+    HOT,
+    INK,
+    OKABE_ITO,
+    QUIET,
+    legend_below,
+    log_axis,
+    note,
+    picture,
+)
+from thermogear.views.words import CELSIUS, math_symbol, plain
+
+HIGHEST_ORDER = 4.0
+DENSE = 6000
+"""Curves of more points than this are stored as pixels inside the picture."""
+MOST_COLUMNS = 6
+"""A row longer than this is thinned: ends stay."""
+
+NAMES = {"frequency": "frequency_ratio", "thermal_stiffness": "thermal_stiffness_ratio",
+         "half_backlash": "half_backlash_ratio"}  # fmt: skip
+"""Parameters of a case file whose stored name differs."""
+
+
+def row_names(points: xr.Dataset) -> list[str]:
+    """The rows in the order in which they are stored."""
+    return list(dict.fromkeys(str(name) for name in points["row"].values))
+
+
+def of_row(points: xr.Dataset, row: str) -> xr.Dataset:
+    """The points of one row."""
+    return points.isel(point=np.flatnonzero(points["row"].values.astype(str) == row))
+
+
+def value_text(one: xr.Dataset) -> str:
+    """The swept parameter of one point with its value, for a title or a table."""
+    symbol, value, unit = value_parts(one)
+    return f"{math_symbol(symbol)} = {value}{unit}"
+
+
+def value_parts(one: xr.Dataset) -> tuple[str, str, str]:
+    """(symbol, value, unit with a space) of the swept parameter."""
+    parameter, value = str(one["parameter"].item()), float(one["value"])
+    if _is_temperature(one):
+        return "T", f"{float(CELSIUS(value)):.4g}", " °C"
+    name = NAMES.get(parameter, parameter)
+    symbol = QUANTITIES[name].symbol if name in QUANTITIES else plain(parameter)
+    return symbol, f"{value:.4g}".replace("-", "−"), ""
+
+
+def _is_temperature(data: xr.Dataset) -> bool:
+    return str(np.ravel(data["parameter"].values)[0]) == "temperature"
+
+
+def panels(points: xr.Dataset, row: str) -> Figure:
+    """One row: above each orbit with its Poincare section, below each spectrum."""
+    data = of_row(points, row)
+    count = data.sizes["point"]
+    kept = sorted({round(i) for i in np.linspace(0, count - 1, min(count, MOST_COLUMNS))})
+    columns = len(kept)
+    width = max(4.9, (2.5 if columns < 5 else 2.2) * columns)
+    figure, axes = picture(2, columns, (width, 5.1), top=0.44, between=0.74, above=0.62)
+    order = data["order"].values
+    floor, top = floor_of(data["line_amplitude"].values, order, HIGHEST_ORDER)
+    for column, place in enumerate(kept):
+        one = data.isel(point=place)
+        upper, lower = axes[:, column]
+        if np.isfinite(one["scaled_displacement"].values).all():
+            _orbit(upper, one)
+            draw_lines(lower, order, one["line_amplitude"].values, INK, floor,
+                       HIGHEST_ORDER, "spectrum")  # fmt: skip
+        else:
+            note(upper, label_of(one))
+        upper.set_title(f"{value_text(one)}\n{label_of(one)}", fontsize=9.5)
+        upper.set_xlabel("displacement X [–]", fontsize=8.5, labelpad=1.5)
+        upper.set_ylabel(("velocity " if column == 0 else "") + "Ẋ [–]", fontsize=8.5, labelpad=1.0)
+        upper.locator_params(nbins=4)
+        log_axis(lower)
+        lower.set_ylim(floor, top)
+        mark_half_orders(lower, HIGHEST_ORDER)
+        lower.set_xlabel("order of the mesh frequency [–]", fontsize=8.5, labelpad=1.5)
+        lower.set_ylabel(
+            ("amplitude " if column == 0 else "") + "|X| [–]", fontsize=8.5, labelpad=1.0
+        )
+    heights = [axis.get_ylim() for axis in axes[0]]
+    for axis in axes[0]:
+        axis.set_ylim(1.1 * min(low for low, _ in heights), 1.1 * max(high for _, high in heights))
+    legend_below(figure, list(axes[0]))
+    return figure
+
+
+def _orbit(axes: Axes, one: xr.Dataset) -> None:
+    """The orbit with its section, over the gap in which no teeth touch."""
+    x, v = one["scaled_displacement"].values, one["scaled_velocity"].values
+    samples = _samples_per_period(one)
+    x, v = (part[: periods_to_draw(str(one["label"].item()), samples, x.size)] for part in (x, v))
+    axes.plot(x, v, color=COLD, linewidth=0.8, alpha=0.8, label="orbit", rasterized=x.size > DENSE)
+    section = thinned(
+        one["section_displacement"].values,
+        one["section_velocity"].values,
+        scale=(float(np.ptp(x)), float(np.ptp(v))),
+    )
+    axes.plot(
+        *section, linestyle="none", marker="o", markersize=3.8, color=HOT,
+        markeredgecolor="white", markeredgewidth=0.3,
+        label="Poincaré section",
+    )  # fmt: skip
+    edge = float(one["half_backlash_ratio"])
+    low, high = float(x.min()), float(x.max())
+    pad = 0.06 * (high - low) or 1.0
+    axes.set_xlim(low - pad, high + pad)
+    axes.axvspan(-edge, edge, color=FAINT, alpha=0.45, linewidth=0, zorder=0,
+                 label="gap, no contact")  # fmt: skip
+
+
+def _samples_per_period(one: xr.Dataset) -> int:
+    if "phase" not in one or one["phase"].size < 2:
+        return int(one.sizes["sample"])
+    step = float(one["phase"].values[1] - one["phase"].values[0])
+    return max(1, round(1.0 / step)) if step > 0.0 else int(one.sizes["sample"])
+
+
+def half_order(points: xr.Dataset) -> Figure:
+    """Amplitude of the line at half the mesh frequency along every row of temperatures."""
+    figure, axes = picture()
+    axis = axes[0, 0]
+    rows = [row for row in row_names(points) if _is_temperature(of_row(points, row))]
+    for place, row in enumerate(rows):
+        data = of_row(points, row)
+        axis.plot(
+            CELSIUS(data["value"].values),
+            data["half_order_amplitude"].values,
+            marker="o",
+            markersize=5,
+            color=OKABE_ITO[place % len(OKABE_ITO)] if len(rows) > 2 else (HOT, COLD)[place],
+            linestyle=(0, (5, 2)) if row == "thesis" else "-",
+            label=plain(row),
+        )
+    axis.axhline(0.0, color=QUIET, linewidth=0.8, zorder=0.5)
+    axis.set_xlabel("gear temperature T [°C]")
+    axis.set_ylabel("amplitude at half the mesh frequency |X| [–]")
+    legend_below(figure, axis)
+    return figure
+
+
+def has_temperatures(points: xr.Dataset) -> bool:
+    """Whether any row of ``points`` runs through temperatures."""
+    return any(str(name) == "temperature" for name in points["parameter"].values)

@@ -1,0 +1,101 @@
+"""Stored results as the views see them: one file, read whole, refused in one line."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from thermogear.base.errors import InputError
+
+RESULTS = "results.nc"
+KINDS = ("gear", "dimensionless")
+
+_FIX = "write results with `thermogear run CASE -o DIR`"
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Everything one ``results.nc`` holds: root attributes as text, groups as Datasets."""
+
+    texts: Mapping[str, str]
+    groups: Mapping[str, xr.Dataset]
+
+    @property
+    def kind(self) -> str:
+        """``gear`` or ``dimensionless``."""
+        return self.texts["kind"]
+
+    def text(self, name: str) -> str:
+        """A root attribute, empty where it is absent."""
+        return self.texts.get(name, "")
+
+    def group(self, name: str) -> xr.Dataset | None:
+        """A group by its path, None where it is absent."""
+        return self.groups.get(name)
+
+    def rows(self, name: str) -> list[dict[str, Any]]:
+        """A root attribute that holds a JSON list of objects; empty where it is absent."""
+        found = self._json(name, "[]")
+        if not isinstance(found, list) or not all(isinstance(row, dict) for row in found):
+            raise InputError(f"{RESULTS} attribute {name}", "no list of rows", fix=_FIX)
+        return found
+
+    def table(self, name: str) -> dict[str, Any]:
+        """A root attribute that holds a JSON object; empty where it is absent."""
+        found = self._json(name, "{}")
+        if not isinstance(found, dict):
+            raise InputError(f"{RESULTS} attribute {name}", "no table", fix=_FIX)
+        return found
+
+    def _json(self, name: str, absent: str) -> Any:
+        try:
+            return json.loads(self.texts.get(name, absent))
+        except ValueError as error:
+            raise InputError(
+                f"{RESULTS} attribute {name}", "text that is not JSON", fix=_FIX
+            ) from error
+
+
+def read_results(directory: Path) -> Results:
+    """All of ``directory/results.nc`` in memory.
+
+    Raises InputError, in one line, where the file is missing, unreadable or not ours.
+    """
+    path = Path(directory) / RESULTS
+    if not path.is_file():
+        raise InputError("results", str(path), why="there is no such file", fix=_FIX)
+    try:
+        with xr.open_datatree(path, engine="h5netcdf") as tree:
+            texts = {str(name): str(value) for name, value in tree.attrs.items()}
+            groups = {
+                node.path.strip("/"): node.to_dataset(inherit=True).load()
+                for node in tree.subtree
+                if node.has_data
+            }
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
+        raise InputError(
+            "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=_FIX
+        ) from error
+    if "thermogear" not in texts or texts.get("kind") not in KINDS:
+        raise InputError("results", str(path), why="it was not written by thermogear", fix=_FIX)
+    return Results(texts, groups)
+
+
+def put(path: Path, text: str) -> Path:
+    """Write ``text`` beside ``path``, then put it in place: a page is whole or not there."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with temporary.open("w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+    return path

@@ -1,0 +1,226 @@
+"""Numbers, units and symbols as a reader sees them, in pictures and on pages."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from markupsafe import Markup, escape
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.vocabulary import QUANTITIES, STATUS
+
+Floats = NDArray[np.float64]
+
+FAR = 400.0
+"""Jam temperatures [degC] above this are not told apart: no gear lives there."""
+
+
+@dataclass(frozen=True)
+class Display:
+    """How an SI number is shown: ``scale * (value - zero)`` in ``unit``."""
+
+    unit: str
+    scale: float = 1.0
+    zero: float = 0.0
+
+    def __call__(self, values: ArrayLike) -> Floats:
+        return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero))
+
+
+MICROMETRE = Display("µm", 1e6)
+MILLIMETRE = Display("mm", 1e3)
+KELVIN = Display("K")
+CELSIUS = Display("°C", 1.0, ZERO_CELSIUS)
+
+_BY_UNIT = {
+    "1": Display("–"),
+    "m": MICROMETRE,
+    "N/m": Display("10⁸ N/m", 1e-8),
+    "Pa": Display("MPa", 1e-6),
+    "K": CELSIUS,
+    "rad/s": Display("rpm", 30.0 / math.pi),
+    "m/s": Display("m/s"),
+    "s": Display("ms", 1e3),
+}
+_BY_NAME = {
+    "path_position": MILLIMETRE,
+    "pinion_radius": MILLIMETRE,
+    "wheel_radius": MILLIMETRE,
+    "reduced_radius": MILLIMETRE,
+    "line_load": Display("N/mm", 1e-3),
+    "flash_temperature": KELVIN,
+    "flash_temperature_mixed": KELVIN,
+    "flash_temperature_dry": KELVIN,
+    "velocity": Display("mm/s", 1e3),
+    "section_velocity": Display("mm/s", 1e3),
+}
+
+
+def display(name: str, unit: str | None = None) -> Display:
+    """How the stored quantity ``name`` is shown; ``unit`` as stored, if it differs from usual."""
+    if unit is None:
+        unit = QUANTITIES[name].unit
+    elif name in QUANTITIES and unit != QUANTITIES[name].unit:
+        return _BY_UNIT.get(unit, Display(unit))
+    return _BY_NAME.get(name) or _BY_UNIT.get(unit) or Display(unit)
+
+
+def shown(data: xr.Dataset, name: str) -> Floats:
+    """The values of ``data[name]`` in display units."""
+    variable = data[name]
+    return display(name, str(variable.attrs.get("units", QUANTITIES[name].unit)))(variable.values)
+
+
+def plain(text: object) -> str:
+    """Stored text made safe for a picture: no mathematics, no line ends, not endless."""
+    flat = " ".join(str(text).split()).replace("\\", "").replace("$", r"\$")
+    return flat if len(flat) <= 60 else flat[:57] + "..."
+
+
+_BELOW = dict(zip("0123456789", "₀₁₂₃₄₅₆₇₈₉", strict=True))
+_PIECE = re.compile(r"([^\W\d_]+|[^\s_]+?)_(\w+)")
+
+
+def math_symbol(symbol: str) -> str:
+    """A vocabulary symbol for a picture: ``T_f`` with its index set below."""
+    return _PIECE.sub(lambda m: m[1] + _index(m[2]), symbol)
+
+
+def _index(text: str) -> str:
+    """Digits as characters of their own, which are quicker to set; letters as mathematics."""
+    if all(letter in _BELOW for letter in text):
+        return "".join(_BELOW[letter] for letter in text)
+    return f"$_{{{text}}}$"
+
+
+def html_symbol(symbol: str) -> Markup:
+    """A vocabulary symbol for a page: ``T_f`` with its index set below."""
+    return Markup(_PIECE.sub(lambda m: f"{m[1]}<sub>{m[2]}</sub>", str(escape(symbol))))
+
+
+def axis_label(name: str, words: str | None = None, unit: str | None = None) -> str:
+    """Words, symbol and [unit] of a quantity, for an axis."""
+    quantity = QUANTITIES[name]
+    shown_unit = display(name, unit).unit
+    parts = [
+        quantity.long_name if words is None else words,
+        math_symbol(quantity.symbol),
+        f"[{shown_unit}]",
+    ]
+    return " ".join(part for part in parts if part)
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number to ``digits`` significant figures, with a true minus and powers of ten.
+
+    A whole number that is longer keeps all its places; what is not finite is a dash.
+    """
+    if not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(value)))
+    if -4 <= size < 6:
+        text = f"{value:.{max(digits - 1 - size, 0)}f}"
+    else:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        text = f"{mantissa}·10{raised(int(exponent))}"
+    return text.replace("-", "−")
+
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def raised(exponent: int) -> str:
+    """A whole number as superscript."""
+    return str(exponent).translate(_SUPERSCRIPTS)
+
+
+def percent(ratio: float) -> str:
+    """A relative change as a signed percentage."""
+    if not math.isfinite(ratio):
+        return "–"
+    return f"{100.0 * ratio:+.1f} %".replace("-", "−")
+
+
+def celsius(kelvin: float) -> str:
+    """A temperature in whole degrees Celsius; "none" where there is no such temperature."""
+    if not math.isfinite(kelvin):
+        return "none"
+    return f"{kelvin - ZERO_CELSIUS:.0f} °C".replace("-", "−")
+
+
+def jam_at(kelvin: float) -> str:
+    """A jam temperature; far beyond what gears bear it is only said to lie there."""
+    if not math.isfinite(kelvin):
+        return "never"
+    return celsius(kelvin) if kelvin < ZERO_CELSIUS + FAR else f"> {FAR:.0f} °C"
+
+
+def exactly(value: float, digits: int = 6) -> str:
+    """A given value without zeros it was not given with."""
+    text = number(value, digits)
+    return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+
+
+_PRETTY = (
+    (re.compile(r"\bum\b"), "µm"),
+    (re.compile(r"\bN/m\^2"), "N/m²"),
+    (re.compile(r"(?<=\d) ?deg ?C\b"), " °C"),
+    (re.compile(r"(?<![\w.)])-(?=\d)"), "−"),
+    (re.compile(r"\b([bB])'"), "\\1′"),
+)
+_NAMED = re.compile(r"(?<![\w.])([A-Za-zωεζδ])_([A-Za-z0-9]{1,3})\b")
+
+
+def prose(text: object) -> Markup:
+    """Stored words for a page: escaped, with proper units, minus signs and indices."""
+    plain_text = str(escape(str(text)))
+    plain_text = plain_text.replace("&#39;", "'")
+    for pattern, better in _PRETTY:
+        plain_text = pattern.sub(better, plain_text)
+    return Markup(_NAMED.sub(r"\1<sub>\2</sub>", plain_text))
+
+
+def field_name(text: object) -> Markup:
+    """A dotted name of a case file that may break after its dots and underscores."""
+    return Markup(re.sub(r"([._])", r"\1<wbr/>", str(escape(str(text)))))
+
+
+def span(values: ArrayLike, digits: int = 3) -> str:
+    """The range of ``values`` as one number, or "low to high"."""
+    found = np.asarray(values, dtype=float)
+    found = found[np.isfinite(found)]
+    if not found.size:
+        return "–"
+    low, high = exactly(float(found.min()), digits), exactly(float(found.max()), digits)
+    return low if low == high else f"{low} to {high}"
+
+
+def operating_names(data: xr.Dataset) -> list[str]:
+    """One name per operating point: its speed, and its torque where torques differ."""
+    speeds = display("pinion_speed")(data["pinion_speed"].values)
+    torques = np.asarray(data["pinion_torque"].values, dtype=float)
+    alike = np.ptp(torques) <= 1e-9 * np.max(np.abs(torques)) if torques.size else True
+    names = [f"{exactly(float(speed))} rpm" for speed in speeds]
+    if alike:
+        return names
+    return [f"{a}, {exactly(float(t))} N m" for a, t in zip(names, torques, strict=True)]
+
+
+def status_of(value: float) -> str:
+    """The word for a stored status."""
+    place = int(value)
+    return STATUS[place].replace("_", " ") if 0 <= place < len(STATUS) else "unknown"
+
+
+def jam_words(kelvin: float) -> str:
+    """What to write where a point is jammed: with its temperature, if there is one."""
+    if not math.isfinite(kelvin):
+        return "jammed: the backlash is used up"
+    return f"jammed: backlash used up at {celsius(kelvin)}"

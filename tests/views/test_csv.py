@@ -1,0 +1,93 @@
+"""CSV: every number of the store comes back, with its unit in the header."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+import synthetic_results as synthetic
+import xarray as xr
+
+from thermogear.base.errors import InputError
+from thermogear.views.csv import write_csv
+
+
+def read(path: Path) -> dict[str, list[str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def test_curves_come_back_with_units_and_operating_points(tmp_path: Path) -> None:
+    synthetic.build(tmp_path)
+    files = {path.name: path for path in write_csv(tmp_path)}
+    table = read(files["path_consistent_hot.csv"])
+    data = synthetic.path_group(("consistent", "thesis"), (100.0, 100.0))
+    here = data.isel(bundle=0, state=1)
+    positions = here.sizes["path_position"]
+    for name, unit in (("hertz_pressure", "Pa"), ("sliding_velocity", "m/s"), ("load_share", "1")):
+        found = np.array(table[f"{name} [{unit}]"], float)
+        np.testing.assert_allclose(found, here[name].values.ravel(), rtol=1e-8)
+    np.testing.assert_allclose(
+        np.array(table["path_position [m]"], float), np.tile(here["path_position"], 2), rtol=1e-8
+    )
+    np.testing.assert_allclose(
+        np.array(table["pinion_speed [rad/s]"], float),
+        np.repeat(here["pinion_speed"].values, positions),
+        rtol=1e-8,
+    )
+
+
+def test_every_variable_of_the_store_stands_in_some_file(tmp_path: Path) -> None:
+    synthetic.build(tmp_path)
+    columns = {
+        name.split(" [")[0]
+        for path in write_csv(tmp_path)
+        for name in path.read_text(encoding="utf-8").partition("\n")[0].split(",")
+    }
+    with xr.open_datatree(tmp_path / "results.nc", engine="h5netcdf") as tree:
+        stored = {str(n) for node in tree.subtree for n in node.data_vars}
+    assert stored <= columns
+
+
+def test_jammed_points_are_words_and_empty_cells(tmp_path: Path) -> None:
+    synthetic.build(tmp_path, jammed=True, without=("temperature",))
+    files = {path.name: path for path in write_csv(tmp_path)}
+    figures = read(files["motion_figures.csv"])
+    assert set(figures["status"]) == {"ok", "jammed"}
+    swing = dict(zip(figures["status"], figures["peak_to_peak_displacement [m]"], strict=True))
+    assert swing == {"ok": "2e-06", "jammed": ""}
+    assert set(read(files["motion_time_consistent_hot.csv"])["displacement [m]"]) == {""}
+
+
+def test_names_make_safe_files_and_safe_cells(tmp_path: Path) -> None:
+    synthetic.build(tmp_path, bundles=('../=1+1, "x"',), without=("temperature",))
+    files = write_csv(tmp_path)
+    assert {path.parent for path in files} == {tmp_path / "csv"}
+    assert any(path.name == "path_=1+1_x_hot.csv".replace("=", "_").replace("__", "_") or
+               path.name.startswith("path_") for path in files)  # fmt: skip
+    figures = read(next(path for path in files if path.name == "mesh_figures.csv"))
+    assert set(figures["bundle"]) == {'../=1+1, "x"'}
+    synthetic.build(tmp_path, bundles=("=1+1",), without=("temperature",))
+    figures = read(next(p for p in write_csv(tmp_path) if p.name == "mesh_figures.csv"))
+    assert set(figures["bundle"]) == {"'=1+1"}
+
+
+def test_files_of_an_earlier_run_go_and_others_stay(tmp_path: Path) -> None:
+    synthetic.build(tmp_path, without=("temperature",))
+    write_csv(tmp_path)
+    (tmp_path / "csv" / "mine.csv").write_text("a,b\n", encoding="utf-8")
+    synthetic.build(tmp_path, bundles=("consistent",), without=("temperature",))
+    write_csv(tmp_path)
+    names = {path.name for path in (tmp_path / "csv").iterdir()}
+    assert "mine.csv" in names
+    assert "path_consistent_hot.csv" in names
+    assert "path_thesis_hot.csv" not in names
+
+
+def test_missing_results_are_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there is no such file"):
+        write_csv(tmp_path)
+    assert not (tmp_path / "csv").exists()

@@ -1,0 +1,279 @@
+"""The page: whole, self-contained, the same for the same results, safe against its contents."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import h5netcdf
+import numpy as np
+import pytest
+import synthetic_results as synthetic
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from thermogear.base.errors import InputError
+from thermogear.views import page as pages
+from thermogear.views import style
+from thermogear.views.report import write_report
+
+GROUPS = ("path", "mesh", "profile", "motion", "temperature",
+          "base_sets/table-4.2", "base_sets/section-4.1")  # fmt: skip
+
+
+def rendered(directory: Path) -> str:
+    return write_report(directory).read_text(encoding="utf-8")
+
+
+def tree_of(text: str) -> ElementTree.Element:
+    """The page as a tree: it is written so that an XML reader takes it too."""
+    return ElementTree.fromstring(text.removeprefix("<!DOCTYPE html>").strip())
+
+
+def words_of(text: str) -> str:
+    return " ".join("".join(tree_of(text).itertext()).split())
+
+
+@pytest.fixture(scope="module")
+def text(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return rendered(synthetic.build(tmp_path_factory.mktemp("whole"), title="A pair"))
+
+
+@pytest.fixture
+def figures(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
+    """Figures that a page draws, by name; the page itself gets none."""
+    found: dict[str, Figure] = {}
+
+    def keep(make: Callable[[], Figure], name: str, title: str) -> Markup:
+        with style.styled():
+            found[name] = make()
+            found[name].draw_without_rendering()
+        return Markup("<svg></svg>")
+
+    monkeypatch.setattr(pages, "draw", keep)
+    return found
+
+
+def axes_of(figure: Figure) -> Iterator[object]:
+    for axes in figure.axes:
+        yield axes
+        yield from axes.child_axes
+
+
+def test_the_page_asks_nothing_of_any_other_place(text: str) -> None:
+    assert "http" not in text
+    assert "@import" not in text
+    assert "<script" not in text
+    assert not re.search(r"<(link|iframe|object|embed|img)\b", text)
+    assert set(re.findall(r'\bsrc="([^"]*)"', text)) == set()
+    assert all(target[0] == "#" for target in re.findall(r'\bhref="([^"]*)"', text))
+    assert all(target[0] == "#" for target in re.findall(r"url\(([^)]*)\)", text))
+
+
+def test_the_page_is_well_formed_and_its_ids_are_unique_and_found(text: str) -> None:
+    ids = [e.attrib["id"] for e in tree_of(text).iter() if "id" in e.attrib]
+    assert len(ids) == len(set(ids))
+    used = re.findall(r'(?:href="#|url\(#|aria-labelledby=")([^")]+)', text)
+    assert set(used) <= set(ids)
+
+
+def test_every_picture_has_a_heading_a_caption_and_a_title(text: str) -> None:
+    drawn = list(tree_of(text).iter("figure"))
+    assert len(drawn) > 20
+    for one in drawn:
+        assert "".join(one.find("h4").itertext()).strip()  # type: ignore[union-attr]
+        assert len("".join(one.find("figcaption").itertext())) > 20  # type: ignore[union-attr]
+        assert (one.find("div/svg/title").text or "").strip()  # type: ignore[union-attr]
+
+
+def test_the_sections_stand_in_the_order_of_the_physics(text: str) -> None:
+    names = [s.attrib["id"] for s in tree_of(text).iter("section")]
+    assert names == [
+        "results", "friction", "heat", "backlash", "stiffness", "motion", "temperature",
+        "base-sets", "choices", "assumptions", "errata", "facts", "case", "sources", "version",
+    ]  # fmt: skip
+
+
+def test_key_results_say_what_heat_does(text: str) -> None:
+    words = words_of(text)
+    assert "125 → 90" in words
+    assert "half backlash from 125 to 90 µm" in words
+    assert "two regimes, −3 µm" in words
+    assert words.index("two regimes") < words.index("quiet")
+
+
+def test_base_sets_are_said_to_be_none_of_the_rig(text: str) -> None:
+    words = words_of(text)
+    assert "not derived from the rig" in words
+    assert "this rig, consistent, hot" in words
+
+
+@pytest.mark.parametrize("jammed", [False, True])
+def test_every_axis_of_every_picture_is_labelled_and_nothing_is_cut_or_covered(
+    jammed: bool, tmp_path: Path, figures: dict[str, Figure]
+) -> None:
+    write_report(synthetic.build(tmp_path, jammed=jammed, torques=(50.0, 100.0)))
+    assert len(figures) > 20
+    for name, figure in figures.items():
+        assert figure.axes, name
+        for axes in axes_of(figure):
+            assert axes.get_xlabel().strip(), name  # type: ignore[attr-defined]
+            if axes in figure.axes:
+                assert axes.get_ylabel().strip(), name  # type: ignore[attr-defined]
+        frame = figure.bbox
+        for axes in figure.axes:
+            for label in (axes.xaxis.label, axes.yaxis.label, axes.title):
+                box = label.get_window_extent()
+                inside = frame.x0 - 1 <= box.x0 and box.x1 <= frame.x1 + 1
+                assert inside, (name, label.get_text())
+                inside = frame.y0 - 1 <= box.y0 and box.y1 <= frame.y1 + 1
+                assert inside, (name, label.get_text())
+            for legend in figure.legends:
+                assert not legend.get_window_extent().overlaps(axes.bbox), name
+                assert not legend.get_window_extent().overlaps(
+                    axes.xaxis.label.get_window_extent()
+                ), name
+
+
+def test_the_same_results_give_the_same_page(tmp_path: Path) -> None:
+    synthetic.build(tmp_path, without=GROUPS[2:])
+    assert rendered(tmp_path) == rendered(tmp_path)
+
+
+@pytest.mark.parametrize("kept", GROUPS)
+def test_a_group_that_is_absent_is_left_out_quietly(
+    kept: str, tmp_path: Path, figures: dict[str, Figure]
+) -> None:
+    synthetic.build(tmp_path, without=tuple(g for g in GROUPS if g != kept))
+    page = rendered(tmp_path)
+    assert figures
+    assert ("Key results" in page) == (kept == "mesh")
+    assert "Case file" in page
+
+
+def test_a_variable_that_is_absent_costs_its_pictures_alone(
+    tmp_path: Path, figures: dict[str, Figure]
+) -> None:
+    path = synthetic.path_group(("consistent",), (100.0,)).drop_vars("friction_coefficient_dry")
+    synthetic.write(tmp_path, {"path": path}, title="t", kind="gear")
+    write_report(tmp_path)
+    assert "fig-friction" not in figures
+    assert "fig-flash-mixed" in figures
+
+
+def test_one_bundle_alone_makes_a_page(tmp_path: Path, figures: dict[str, Figure]) -> None:
+    synthetic.build(tmp_path, bundles=("consistent",), torques=(100.0,))
+    page = rendered(tmp_path)
+    assert "The model's choices" in page.replace("&#39;", "'")
+    assert "fig-stiffness-1" not in figures
+
+
+def test_a_dimensionless_case_makes_a_page_of_its_rows(tmp_path: Path) -> None:
+    page = rendered(synthetic.build_dimensionless(tmp_path, "Rows of zeta"))
+    words = words_of(page)
+    assert "not derived from any gear pair" in words
+    assert "ζ = 0.18" in words
+    assert "Mesh stiffness" not in words
+    agrees = [[*row.itertext()] for row in tree_of(page).iter("tr")]
+    assert any("period-1 or undecided" in row and "yes" in row for row in agrees)
+    assert any("period-4" in row and "no" in row for row in agrees)
+
+
+def test_a_jam_is_said_in_words_with_its_temperature(
+    tmp_path: Path, figures: dict[str, Figure]
+) -> None:
+    words = words_of(rendered(synthetic.build(tmp_path, jammed=True)))
+    assert "jammed: backlash used up at 68 °C" in words
+    assert "there is no motion" in words
+    assert "−10" not in words.partition("Friction and flash")[0]
+    assert "fig-motion-0-0" in figures
+
+
+HOSTILE = '<script>alert("x")</script> $\\frac{a}$ & \'"><img src=x>'
+
+
+def test_hostile_texts_are_shown_and_never_obeyed(tmp_path: Path) -> None:
+    synthetic.build(
+        tmp_path,
+        title=HOSTILE,
+        bundles=(HOSTILE, "thesis"),
+        without=("temperature", "profile"),
+        notices='[{"level": "<b>", "text": "<img src=x onerror=y>"}]',
+        facts='[{"group": "<i>", "name": "<u>", "value": "<s>", "unit": "<q>"}]',
+    )
+    page = rendered(tmp_path)
+    assert not re.search(r"<(script|img|u|q|s)\b", page)
+    assert 'alert("x")' in words_of(page)
+    assert "<img src=x onerror=y>" in words_of(page)
+
+
+def test_points_in_plenty_are_thinned_and_said_to_be(
+    tmp_path: Path, figures: dict[str, Figure]
+) -> None:
+    groups = {
+        "motion": synthetic.motion_group(("c",), torques[:3], ("cold", "hot"), "state", False)
+    }
+    wide = groups["motion"].isel(operating=[0, 1, 2, 0, 1, 2, 0, 1])
+    synthetic.write(tmp_path, {"motion": wide}, title="t", kind="gear")
+    assert "6 of 8 operating points are drawn" in rendered(tmp_path)
+
+
+def test_pictures_touch_no_global_state(tmp_path: Path) -> None:
+    synthetic.build(tmp_path, without=GROUPS[2:])
+    code = (
+        "import sys, matplotlib\n"
+        "before = dict(matplotlib.rcParams)\n"
+        "from pathlib import Path\n"
+        "from thermogear.views.report import write_report\n"
+        f"write_report(Path({str(tmp_path)!r}))\n"
+        "print('matplotlib.pyplot' in sys.modules, dict(matplotlib.rcParams) == before)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "True"]
+
+
+def test_missing_results_are_an_error_in_one_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    assert str(caught.value) == (
+        f"results: got {tmp_path / 'results.nc'}; there is no such file; "
+        "write results with `thermogear run CASE -o DIR`"
+    )
+
+
+@pytest.mark.parametrize("damage", ["text", "cut", "zeros"])
+def test_damaged_results_are_an_error_in_one_line(damage: str, tmp_path: Path) -> None:
+    synthetic.build(tmp_path, without=GROUPS[1:])
+    path = tmp_path / "results.nc"
+    whole = path.read_bytes()
+    middle = len(whole) // 2
+    path.write_bytes({
+        "text": b"not a data file",
+        "cut": whole[:middle],
+        "zeros": whole[:100] + bytes(middle) + whole[100 + middle :],
+    }[damage])  # fmt: skip
+    with pytest.raises(InputError, match=r"^results: got .*results\.nc; it ") as caught:
+        write_report(tmp_path)
+    assert "\n" not in str(caught.value)
+    assert not (tmp_path / "report.html").exists()
+
+
+def test_foreign_results_are_an_error_in_one_line(tmp_path: Path) -> None:
+    with h5netcdf.File(tmp_path / "results.nc", "w") as file:
+        file.dimensions["x"] = 3
+        file.create_variable("y", ("x",), data=np.arange(3.0))
+    with pytest.raises(InputError, match="it was not written by thermogear"):
+        write_report(tmp_path)
+
+
+def test_broken_tables_are_an_error_in_one_line(tmp_path: Path) -> None:
+    synthetic.build(tmp_path, without=GROUPS, notices="[1, 2")
+    with pytest.raises(InputError, match=r"results\.nc attribute notices: got text that is not"):
+        write_report(tmp_path)
+    synthetic.build(tmp_path, without=GROUPS, facts="[1, 2]")
+    with pytest.raises(InputError, match=r"results\.nc attribute facts: got no list of rows"):
+        write_report(tmp_path)
