@@ -179,3 +179,25 @@ def test_folds_beside_a_grazing_are_found():
     kinds = [b.kind for b in found.branches[1].bifurcations]
     assert kinds == [GRAZING, FOLD, GRAZING, FOLD, BIRTH]
     assert all(flip.note == "" for flip in found.branches[1].of_kind(FOLD))
+
+
+def test_ctrl_c_keeps_what_is_done_when_asked():
+    orbit = periodic_orbit(TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05), 1, (1.1776, 0.0074))
+
+    def stop(points, _value):
+        if points == 4:
+            raise KeyboardInterrupt
+
+    branch = continuation(orbit, "frequency", 0.9, progress=stop, keep_on_interrupt=True)
+    assert branch.ended == "interrupted"
+    assert branch.values.size == 4
+    with pytest.raises(KeyboardInterrupt):
+        continuation(orbit, "frequency", 0.9, progress=stop)
+
+
+def test_the_branch_as_a_dataset():
+    orbit = periodic_orbit(TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05), 1, (1.1776, 0.0074))
+    data = continuation(orbit, "frequency", 0.9).dataset()
+    assert data.event_kind.values.tolist() == [GRAZING, FOLD]
+    assert data.attrs["parameter"] == "frequency"
+    assert data.sizes["point"] == data.value.size

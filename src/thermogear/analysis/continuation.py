@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import (
@@ -71,6 +72,35 @@ class Branch:
         """Which points are stable."""
         return np.asarray(np.max(np.abs(self.multipliers), axis=1) < 1.0)
 
+    def dataset(self) -> xr.Dataset:
+        """The branch over ``point``, its bifurcations over ``event``."""
+        events = self.bifurcations
+        text = {"long_name": "kind of bifurcation"}
+        return xr.Dataset(
+            {
+                "value": ("point", self.values, {"long_name": self.parameter}),
+                "section_x": ("point", self.states[:, 0], {"long_name": "displacement at phase 0"}),
+                "section_v": ("point", self.states[:, 1], {"long_name": "velocity at phase 0"}),
+                "multiplier_real": (
+                    ("point", "multiplier"),
+                    self.multipliers.real,
+                    {"long_name": "Floquet multiplier, real part", "units": "1"},
+                ),
+                "multiplier_imag": (
+                    ("point", "multiplier"),
+                    self.multipliers.imag,
+                    {"long_name": "Floquet multiplier, imaginary part", "units": "1"},
+                ),
+                "stable": ("point", self.stable, {"long_name": "all multipliers below 1"}),
+                "contact_losses": ("point", self.contact_losses, {"units": "1"}),
+                "back_impacts": ("point", self.back_impacts, {"units": "1"}),
+                "event_kind": ("event", [e.kind for e in events], text),
+                "event_value": ("event", [e.value for e in events], {"long_name": self.parameter}),
+                "event_note": ("event", [e.note for e in events]),
+            },
+            attrs={"parameter": self.parameter, "period": self.period, "ended": self.ended},
+        )
+
     def of_kind(self, kind: str) -> tuple[Bifurcation, ...]:
         """The bifurcations of one kind."""
         return tuple(b for b in self.bifurcations if b.kind == kind)
@@ -111,6 +141,7 @@ def continuation(
     stop_at: str | None = None,
     direction: Floats | None = None,
     progress: Callable[[int, float], None] | None = None,
+    keep_on_interrupt: bool = False,
 ) -> Branch:
     """Walk the branch of ``orbit`` in ``parameter`` until it reaches ``to``.
 
@@ -122,7 +153,7 @@ def continuation(
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
     give ``family``, a function value -> model, and its present value ``start``. ``stop_at`` a
     kind of bifurcation to stop at. ``progress`` is called with the points so far and the
-    parameter.
+    parameter. With ``keep_on_interrupt`` Ctrl+C returns what is done, ``ended`` "interrupted".
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
@@ -147,23 +178,30 @@ def continuation(
     points = [first]
     found: list[Bifurcation] = []
     ended = f"{most_points} points"
-    for point in _walk(curve, first, start, to, most_points, 0.01 if direction is None else 5e-4):
-        if isinstance(point, str):
-            ended = point
-            break
-        if passed_mother(curve, points[-1], point):
-            birth = birth_of(curve, points[-1])
-            found += [] if birth is None else [birth]
-            ended = SHRUNK
-            break
-        fresh = locate(curve, points[-1], point)
-        found += fresh
-        points.append(point)
-        if progress is not None:
-            progress(len(points), float(point.scaled[2] * span))
-        if stop_at is not None and any(b.kind == stop_at for b in fresh):
-            ended = f"stopped at a {stop_at}"
-            break
+    try:
+        for point in _walk(
+            curve, first, start, to, most_points, 0.01 if direction is None else 5e-4
+        ):
+            if isinstance(point, str):
+                ended = point
+                break
+            if passed_mother(curve, points[-1], point):
+                birth = birth_of(curve, points[-1])
+                found += [] if birth is None else [birth]
+                ended = SHRUNK
+                break
+            fresh = locate(curve, points[-1], point)
+            found += fresh
+            points.append(point)
+            if progress is not None:
+                progress(len(points), float(point.scaled[2] * span))
+            if stop_at is not None and any(b.kind == stop_at for b in fresh):
+                ended = f"stopped at a {stop_at}"
+                break
+    except KeyboardInterrupt:
+        if not keep_on_interrupt:
+            raise
+        ended = "interrupted"
     scaled = np.array([p.scaled for p in points])
     return Branch(
         parameter,

@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear import __version__
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
-from thermogear.dynamics.kernels.rk4 import advance_pair, advance_rk4
+from thermogear.dynamics.kernels.rk4 import advance_rk4
 from thermogear.dynamics.models import ClearanceModel, PairModel
+from thermogear.dynamics.outcome import Result, dataset
+from thermogear.dynamics.pair import simulate_pair, two_of, with_angles
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -25,21 +26,7 @@ METHODS = {
     "rk4": "classical Runge-Kutta, fixed steps",
     "adaptive": "scipy DOP853 with events at the backlash edges",
 }
-DIVERGED = STATUS.index("diverged")
-SIDES = ("back", "free", "drive")
 RK4_BLOCK = 64
-
-
-class _Result:
-    """What the kernels fill, one row per lane."""
-
-    def __init__(self, lanes: int, periods: int, samples: int) -> None:
-        self.sections = np.full((lanes, 2, periods + 1), np.nan)
-        self.samples = np.full((lanes, 2, periods * samples), np.nan)
-        self.losses = np.full(lanes, -1, np.int64)
-        self.impacts = np.full(lanes, -1, np.int64)
-        self.shares = np.full((lanes, 3), np.nan)
-        self.substeps = np.zeros(lanes, np.int64)
 
 
 def _choose(model: object, method: str) -> tuple[str, str]:
@@ -74,7 +61,7 @@ def _exact_block(
     marks: NDArray[np.uint8],
     start: Floats,
     discard: int,
-    result: _Result,
+    result: Result,
     pace: Pace,
 ) -> None:
     mine = lanes.take(index)
@@ -106,7 +93,7 @@ def _rk4_block(
     samples: int,
     start: Floats,
     discard: int,
-    result: _Result,
+    result: Result,
     precision: type[np.floating],
     pace: Pace,
 ) -> None:
@@ -144,7 +131,7 @@ def _adaptive_lane(
     samples: int,
     start: Floats,
     discard: int,
-    result: _Result,
+    result: Result,
     tolerances: tuple[float, float],
     pace: Pace,
 ) -> None:
@@ -248,10 +235,10 @@ def simulate(
     if not isinstance(model, ClearanceModel):
         data = _free(model, start, periods, discard, samples, (rtol, atol))
     elif isinstance(model, PairModel) and chosen != "exact":
-        data = _pair(model, chosen, start, periods, discard, steps, samples, (rtol, atol))
+        data = simulate_pair(model, chosen, start, periods, discard, steps, samples, (rtol, atol))
     else:
         if isinstance(model, PairModel):
-            state = start if start.size == 4 else model.start(*_two(start))
+            state = start if start.size == 4 else model.start(*two_of(start))
             x0, v0 = model.displacement(0.0, state)
             pair_start, start = state, np.array([float(x0), float(v0)])
         lanes = model.lanes()
@@ -261,7 +248,7 @@ def simulate(
             raise InputError(
                 "initial_state", f"shape {start.shape}", allowed=f"(2,) or ({len(lanes)}, 2)"
             ) from None
-        result = _Result(len(lanes), periods, samples)
+        result = Result(len(lanes), periods, samples)
         work: list[Callable[[Pace], None]] = []
         if chosen == "exact":
             for index, borders, marks in exact.layouts(lanes, samples):
@@ -283,9 +270,9 @@ def simulate(
                     )
                 )
         run_blocks(work, len(lanes) * (periods + discard), threads=threads, progress=progress)
-        data = _dataset(result, lanes.period, periods, discard, samples)
+        data = dataset(result, lanes.period, periods, discard, samples)
         if isinstance(model, PairModel):
-            data = _with_angles(data, model, pair_start)
+            data = with_angles(data, model, pair_start)
     unit, rate_unit = ("m", "m/s") if isinstance(model, PairModel) else ("1", "1")
     for name in ("x", "section_x"):
         data[name].attrs["units"] = unit
@@ -303,193 +290,6 @@ def simulate(
             "thermogear_version": __version__,
         }
     )
-    return data
-
-
-def _two(start: Floats) -> tuple[float, float]:
-    if start.shape != (2,):
-        raise InputError("initial_state", f"shape {start.shape}", allowed="(x, x') or 4 numbers")
-    return float(start[0]), float(start[1])
-
-
-def _dataset(
-    result: _Result, period: Floats, periods: int, discard: int, samples: int
-) -> xr.Dataset:
-    lanes = period.size
-    good = np.all(np.isfinite(result.sections), axis=(1, 2))
-    phase = np.arange(periods * samples) / samples if samples else np.empty(0)
-    turns = np.arange(periods + 1)
-    data = xr.Dataset(
-        {
-            "x": (
-                ("point", "sample"),
-                result.samples[:, 0],
-                {"long_name": "relative displacement along the line of action"},
-            ),
-            "v": (
-                ("point", "sample"),
-                result.samples[:, 1],
-                {"long_name": "relative velocity along the line of action"},
-            ),
-            "section_x": (
-                ("point", "section"),
-                result.sections[:, 0],
-                {"long_name": "Poincare section, displacement"},
-            ),
-            "section_v": (
-                ("point", "section"),
-                result.sections[:, 1],
-                {"long_name": "Poincare section, velocity"},
-            ),
-            "status": (
-                "point",
-                np.where(good, 0, DIVERGED).astype(np.int8),
-                {
-                    "long_name": "outcome",
-                    "flag_values": np.arange(len(STATUS), dtype=np.int8),
-                    "flag_meanings": " ".join(STATUS),
-                },
-            ),
-        },
-        coords={
-            "point": ("point", np.arange(lanes), {"long_name": "parameter point"}),
-            "section": (
-                "section",
-                discard + turns,
-                {"long_name": "mesh periods since the start", "units": "1"},
-            ),
-            "phase": (
-                "sample",
-                discard + phase,
-                {"long_name": "mesh phase since the start", "units": "1"},
-            ),
-            "time": (
-                ("point", "sample"),
-                period[:, None] * (discard + phase),
-                {"long_name": "time"},
-            ),
-            "section_time": (
-                ("point", "section"),
-                period[:, None] * (discard + turns),
-                {"long_name": "time of the section"},
-            ),
-            "period": ("point", period, {"long_name": "mesh period"}),
-        },
-    )
-    if np.all(result.losses >= 0):
-        data["contact_losses"] = (
-            "point",
-            result.losses,
-            {"long_name": "losses of drive contact in the kept periods", "units": "1"},
-        )
-        data["back_impacts"] = (
-            "point",
-            result.impacts,
-            {"long_name": "back-side impacts in the kept periods", "units": "1"},
-        )
-        data["time_share"] = (
-            ("point", "side"),
-            result.shares,
-            {
-                "long_name": "share of time in back contact, free flight, drive contact",
-                "units": "1",
-            },
-        )
-        data = data.assign_coords(side=list(SIDES))
-    data["substeps"] = (
-        "point",
-        result.substeps,
-        {"long_name": "sub-steps a period (0: adaptive)", "units": "1"},
-    )
-    return data
-
-
-def _with_angles(data: xr.Dataset, model: PairModel, start: Floats) -> xr.Dataset:
-    """The two rotations from x and the rigid mode, whose momentum changes with T1/r1 - T2/r2."""
-    (i1, i2), (r1, r2), (t1, t2) = model.inertias, model.base_radii, model.torques
-    mass = model.equivalent_mass
-    push = t1 / r1 - t2 / r2
-    first = float(model.momentum(start))
-    level = i1 * start[0] / r1 + i2 * start[1] / r2
-    for kind, prefix in (("sample", ""), ("section", "section_")):
-        time = data["time" if kind == "sample" else "section_time"].values[0]
-        phase = time / model.period
-        rigid = level + (first + 0.5 * push * time) * time
-        moving = first + push * time
-        rate = model.error.derivative() * (1.0 / model.period)
-        x = data[f"{prefix}x"].values[0] + model.error(phase)
-        v = data[f"{prefix}v"].values[0] + rate(phase)
-        values = {
-            "theta1": mass * (r1 * x / i1 + rigid * r1 * r2**2 / (i1 * i2)),
-            "theta2": mass * (-r2 * x / i2 + rigid * r2 * r1**2 / (i1 * i2)),
-            "omega1": mass * (r1 * v / i1 + moving * r1 * r2**2 / (i1 * i2)),
-            "omega2": mass * (-r2 * v / i2 + moving * r2 * r1**2 / (i1 * i2)),
-        }
-        for name, row in values.items():
-            data[prefix + name] = (("point", kind), row[None, :], _angle_attributes(name))
-    return data
-
-
-def _angle_attributes(name: str) -> dict[str, str]:
-    body = "pinion" if name.endswith("1") else "wheel"
-    if name.startswith("theta"):
-        return {"units": "rad", "long_name": f"vibration angle of the {body}"}
-    return {"units": "rad/s", "long_name": f"vibration rate of the {body}"}
-
-
-def _pair(
-    model: PairModel,
-    method: str,
-    start: Floats,
-    periods: int,
-    discard: int,
-    steps: int,
-    samples: int,
-    tolerances: tuple[float, float],
-) -> xr.Dataset:
-    """Both rotations integrated as they stand: four states."""
-    state = np.array(start if start.size == 4 else model.start(*_two(start)), dtype=float)
-    total = discard + periods
-    if method == "rk4":
-        phase = np.arange(2 * steps) / (2 * steps)
-        rate = model.error.derivative() * (1.0 / model.period)
-        tables = np.stack([model.stiffness(phase), model.error(phase), rate(phase)])
-        (i1, i2), (r1, r2), (t1, t2) = model.inertias, model.base_radii, model.torques
-        constants = np.array([i1, i2, r1, r2, t1, t2, model.damping, model.half_backlash])
-        sections = np.empty((total, 4))
-        path = np.empty((total * samples, 4))
-        stride = steps // samples if samples else 1
-        first = state.copy()
-        advance_pair(tables, constants, model.period / steps, state, sections, path, stride)
-        sections = np.vstack([first, sections])
-    else:
-        scale = model.half_backlash / max(model.base_radii)
-        sections, path, _ = adaptive.follow(
-            lambda t, y, _region: model.derivative(t, y),
-            adaptive.Gap(
-                lambda t, y: float(model.displacement(t, y)[0]),
-                lambda t, y: float(model.displacement(t, y)[1]),
-                model.half_backlash,
-            ),
-            model.period,
-            state,
-            total,
-            samples,
-            rtol=tolerances[0],
-            atol=tolerances[1] * scale,
-        )
-    kept, path = sections[discard:], path[discard * samples :]
-    result = _Result(1, periods, samples)
-    result.substeps[:] = steps if method == "rk4" else 0
-    # e is periodic, so the phase within the period is enough
-    within = np.tile(np.arange(samples) / samples, periods) if samples else np.empty(0)
-    result.samples[0] = np.stack(model.displacement(within * model.period, path.T))
-    result.sections[0] = np.stack(model.displacement(np.zeros(periods + 1), kept.T))
-    data = _dataset(result, np.array([model.period]), periods, discard, samples)
-    for position, name in enumerate(("theta1", "theta2", "omega1", "omega2")):
-        attributes = _angle_attributes(name)
-        data[name] = (("point", "sample"), path[None, :, position], attributes)
-        data["section_" + name] = (("point", "section"), kept[None, :, position], attributes)
     return data
 
 
@@ -517,7 +317,7 @@ def _free(
         rtol=tolerances[0],
         atol=tolerances[1],
     )
-    result = _Result(1, periods, samples)
+    result = Result(1, periods, samples)
     result.sections[0] = sections[discard:, :2].T
     result.samples[0] = path[discard * samples :, :2].T
-    return _dataset(result, np.array([float(period)]), periods, discard, samples)
+    return dataset(result, np.array([float(period)]), periods, discard, samples)
