@@ -63,6 +63,18 @@ def test_flank_choice() -> None:
     assert only.gap(contacts("back")).max() > 5e-6
 
 
+def test_a_deviation_of_the_other_flank_is_none() -> None:
+    at, none = contacts("drive"), np.zeros((34, 4))
+    radius = [PAIR.wheel.form_radius, PAIR.wheel.tip_radius]
+    for device in (
+        PressureAngleError("wheel", 1e-4, flank="back"),
+        FlankTable("wheel", radius, [1e-6, 2e-6], flank="back"),
+        PathTable([0.0, 0.1], [1e-6, 2e-6], flank="back"),
+    ):
+        assert np.array_equal(device.gap(at), none)
+        assert np.abs(device.gap(contacts("back"))).max() > 0.0
+
+
 def test_pitch_error_follows_its_tooth() -> None:
     """Tooth 3 of the pinion joins the mesh in period 3 and carries more while it is in."""
     errors = [0.0] * 25
@@ -146,6 +158,14 @@ def test_what_does_not_fit() -> None:
         (
             lambda: PitchError("wheel", (1e-6,)).gap(contacts()),
             "wheel.pitch_error.errors: got 1 values; allowed one for each of the 75 teeth",
+        ),
+        (
+            lambda: PitchError("wheel", (math.nan,)),
+            "pitch_error.errors: got (nan,); allowed finite numbers [m]",
+        ),
+        (
+            lambda: mesh_points(PAIR, np.zeros((2, 2))),
+            "phase: got shape (2, 2); allowed one axis of finite numbers",
         ),
         (
             lambda: PressureAngleError("wheel", 1.0),

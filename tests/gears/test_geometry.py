@@ -317,6 +317,27 @@ class TestRefusals:
         longest = float(text.split("allowed <= ")[1].split(" mm")[0]) * 1e-3
         GearPair(Gear(18, 5e-3), Gear(75, 5e-3, tip_radius=longest * (1 - 1e-6)))
 
+    def test_profile_shifts_without_a_meshing_position_or_clearance(self) -> None:
+        few = Gear(26, 5e-3, profile_shift=-0.45, allow_undercut=True)
+        text = message(
+            lambda: GearPair(
+                Gear(26, 5e-3, profile_shift=-1.3, allow_undercut=True, tip_radius=64.9e-3), few
+            )
+        )
+        assert text == (
+            "wheel.profile_shift: got -0.45; the sum of the shifts -1.75 leaves no meshing "
+            "position; raise a profile shift"
+        )
+        flat = Gear(60, 5e-3, rack=Rack(1.0, 1.0, 0.0))
+        assert message(lambda: GearPair(flat, flat)) == (
+            "wheel.tip_radius: got 155 mm; allowed < 155 mm; "
+            "the tip hits the pinion's root (clearance 0 mm)"
+        )
+
+    def test_root_circle_that_vanishes(self) -> None:
+        text = message(lambda: Gear(5, 5e-3, profile_shift=-1.3, allow_undercut=True))
+        assert text == "profile_shift: got -1.3; the root circle vanishes"
+
     def test_contact_ratio(self) -> None:
         def short(tip: float) -> GearPair:
             return GearPair(

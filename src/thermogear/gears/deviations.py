@@ -195,22 +195,9 @@ class FlankTable:
     def __post_init__(self) -> None:
         _choice("flank_table.gear", self.gear, GEARS)
         _choice("flank_table.flank", self.flank, FLANKS)
-        radius = np.asarray(self.radius, dtype=float)
-        added = np.asarray(self.added, dtype=float)
+        radius, added = _table("flank_table", "radius", self.radius, self.added)
         object.__setattr__(self, "radius", radius)
         object.__setattr__(self, "added", added)
-        if radius.ndim != 1 or radius.size < 2 or not np.all(np.diff(radius) > 0.0):
-            raise InputError(
-                "flank_table.radius",
-                f"{radius.size} values",
-                allowed="two or more, strictly rising",
-            )
-        if added.shape[-1:] != radius.shape or not np.all(np.isfinite(added)):
-            raise InputError(
-                "flank_table.added",
-                f"shape {added.shape}",
-                allowed=f"(..., {radius.size}), finite",
-            )
 
     def gap(self, at: Contacts) -> Floats:
         """e = -S(r), r = sqrt(r_b^2 + rho^2)."""
@@ -236,14 +223,17 @@ class PathTable:
     added: ArrayLike
     flank: str = "both"
 
+    def __post_init__(self) -> None:
+        _choice("path_table.flank", self.flank, FLANKS)
+        s, added = _table("path_table", "s", self.s, self.added)
+        object.__setattr__(self, "s", s)
+        object.__setattr__(self, "added", added)
+
     def gap(self, at: Contacts) -> Floats:
         """e = -S(s)."""
-        _choice("path_table.flank", self.flank, FLANKS)
         if not _applies(self.flank, at):
             return np.zeros_like(at.s)
-        return -_interpolate(
-            at.s, np.asarray(self.s, dtype=float), np.asarray(self.added, dtype=float)
-        )
+        return -_interpolate(at.s, np.asarray(self.s), np.asarray(self.added))
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +250,20 @@ class BasePitchDifference:
         """e = -strain (s - s_C)."""
         strain = np.asarray(self.strain, dtype=float)[..., None, None]
         return np.asarray(-strain * (at.s - at.pair.path.c))
+
+
+def _table(kind: str, axis: str, knots: ArrayLike, added: ArrayLike) -> tuple[Floats, Floats]:
+    """Checked float arrays of a table: knots (n,) that rise, values (..., n) that are finite."""
+    at, values = np.asarray(knots, dtype=float), np.asarray(added, dtype=float)
+    if at.ndim != 1 or at.size < 2 or not np.all(np.diff(at) > 0.0):
+        raise InputError(
+            f"{kind}.{axis}", f"{at.size} values", allowed="two or more, strictly rising"
+        )
+    if values.shape[-1:] != at.shape or not np.all(np.isfinite(values)):
+        raise InputError(
+            f"{kind}.added", f"shape {values.shape}", allowed=f"(..., {at.size}), finite"
+        )
+    return at, values
 
 
 def _interpolate(x: Floats, knots: Floats, values: Floats) -> Floats:

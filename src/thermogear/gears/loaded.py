@@ -411,9 +411,13 @@ def loaded_contact(
     leaves forces and pressures 0 and delta unloaded, with stiffness and shares those at
     1 N/mm. A position that does not settle has status 2 and nan values.
 
-    Plane stress body (plane strain would move the stiffness by about +4 %, its absence -2.6 %);
-    contact on tip corners and relief stand without a finite element check. Raises InputError
-    for loads < 0 and deviations that do not fit the gears.
+    Plane stress body and plane strain contact; the band between all plane stress and all plane
+    strain is -2.6 .. +4.3 % in stiffness.
+    Finite elements of whole gears agree within 1.3 % for m 5, 25:75, and within 2.3 % for pairs
+    of 17:43 to 40:120 with 20 degrees, a thin rim among them; steep flanks with a sharp fillet
+    (25 degrees, rho_fP 0.3) come out up to 5 % too compliant. Contact on tip corners and relief
+    stand without such a check. Raises InputError for loads < 0 and deviations that do not fit
+    the gears.
     Source: Weber & Banaschek 1953; ring body by Fourier series; extended contact exact.
     """
     import xarray as xr
