@@ -116,20 +116,17 @@ class Ensemble:
         self.lanes = lanes
         self.threads = threads
         self.elapsed = 0
-        self._blocks = [
-            (index, exact.prepare_maps(lanes.take(index), borders, marks))
-            for index, borders, marks in exact.layouts(lanes, refine=refine)
-        ]
+        self._blocks = list(exact.layouts(lanes, refine=refine))
         self._states = [
             exact.State.start(start[index, 0], start[index, 1], lanes.half_backlash[index])
-            for index, _ in self._blocks
+            for index, _, _ in self._blocks
         ]
 
     @property
     def state(self) -> Floats:
         """Present (x, x') of every lane: (lane, 2)."""
         out = np.empty((len(self.lanes), 2))
-        for (index, _), state in zip(self._blocks, self._states, strict=True):
+        for (index, _, _), state in zip(self._blocks, self._states, strict=True):
             out[index, 0], out[index, 1] = state.x, state.y
         return out
 
@@ -138,7 +135,9 @@ class Ensemble:
         kept = np.full((len(self.lanes), keep, 2), np.nan)
 
         def block(number: int, pace: Pace) -> None:
-            index, maps = self._blocks[number]
+            # prepared anew: it costs some thirty periods and spares the memory of all blocks
+            index, borders, marks = self._blocks[number]
+            maps = exact.prepare_maps(self.lanes.take(index), borders, marks)
             state = self._states[number]
             for _, count in pace.chunks(periods - keep, index.size):
                 exact.advance(maps, state, count)
