@@ -78,8 +78,8 @@ class BasinPlan:
         dims = ("x", "v")
         nan = float("nan")
         return {
-            "attractor": Variable(
-                dims, "int16", -1, {"long_name": "attractor reached, -1: none, -2: diverged"}
+            "reached": Variable(
+                dims, "int16", -1, {"long_name": "attractor of the survey, -1: none of them"}
             ),
             "label": Variable(dims, "int8", 0, LABEL_ATTRIBUTES),
             "period": Variable(dims, "int32", 0, {"long_name": "period", "units": "1"}),
@@ -140,7 +140,7 @@ class BasinPlan:
         status[label == DIVERGED] = STATUS.index("diverged")
         status[(label == UNDECIDED) & (where == -1)] = STATUS.index("not_converged")
         return {
-            "attractor": where,
+            "reached": where,
             "label": label,
             "period": period,
             "point_x": point[:, 0],
@@ -157,7 +157,7 @@ class BasinPlan:
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
         """Add attractors that the survey missed, fractions and robustness."""
-        where = data["attractor"].values.astype(np.int64)
+        where = data["reached"].values.astype(np.int64)
         known = list(self.attractors)
         known, where = _late(self, data, known, where)
         order = sorted(range(len(known)), key=lambda n: (-int(np.count_nonzero(where == n)), n))
@@ -166,7 +166,11 @@ class BasinPlan:
         place[-1], place[-2] = -1, -2
         where = place[where]
         known = [known[n] for n in order]
-        data["attractor"].values[...] = where.astype(np.int16)
+        data["attractor"] = (
+            ("x", "v"),
+            where.astype(np.int16),
+            {"long_name": "attractor reached, -1: undecided, -2: diverged"},
+        )
         return _described(data, known, where, Field(lanes_of(self.model)).unit)
 
 

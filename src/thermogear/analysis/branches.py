@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -9,16 +10,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import Bifurcation
+from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, Bifurcation
 from thermogear.analysis.continuation import Branch, continuation
 from thermogear.analysis.family import Family
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import ConvergenceError
+from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 
+KINDS = (FOLD, FLIP, GRAZING, BIRTH)
+"""Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""
 MOST_BRANCHES = 24
 MOST_POINTS = 600
 JUMP = 0.2
@@ -55,7 +59,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
     return _stored(data, lines)
 
 
-def _lane(family: Family, value: float) -> object:
+def _lane(family: Family, value: float) -> Lanes:
     return lanes_of(family(np.array([[value]])))
 
 
@@ -185,8 +189,16 @@ def _with_bifurcations(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
         dims, np.array([row[0] for row in rows], float),
         {"long_name": "parameter at the bifurcation", "units": "1"},
     )  # fmt: skip
-    data["bifurcation_kind"] = (dims, np.array([b.kind for b in found], "U16"))
-    data["bifurcation_note"] = (dims, np.array([b.note for b in found], "U80"))
+    data["bifurcation_kind"] = (
+        dims,
+        np.array([KINDS.index(b.kind) for b in found], np.int8),
+        {
+            "long_name": "kind of bifurcation",
+            "flag_values": np.arange(len(KINDS), dtype=np.int8),
+            "flag_meanings": " ".join(kind.replace(" ", "_") for kind in KINDS),
+        },
+    )
+    data.attrs["bifurcation_notes"] = json.dumps([b.note for b in found])
     data["bifurcation_period"] = (dims, np.array([b.period for b in found], np.int32))
     data["bifurcation_branch"] = (dims, np.array([row[2] for row in rows], np.int32))
     state = np.array([b.state for b in found], float).reshape(-1, 2)

@@ -37,7 +37,8 @@ from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
 
-DIRECTIONS = ("up", "down")
+DIRECTIONS = (1, -1)
+"""Up and down."""
 DIAGRAM_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 BLOCK = 32
 KEEP = 64
@@ -113,7 +114,11 @@ class DiagramPlan:
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         name, unit = self.parameter, self.family.units[0]
         return {
-            "direction": (("direction",), np.array(DIRECTIONS), {}),
+            "direction": (
+                ("direction",),
+                np.array(DIRECTIONS, np.int8),
+                {"long_name": "direction of the sweep: 1 up, -1 down"},
+            ),
             "start_x": (("start",), np.array([s[0] for s in self.starts]), {"units": "1"}),
             "start_v": (("start",), np.array([s[1] for s in self.starts]), {"units": "1"}),
             name: ((name,), np.array(self.values), {"units": unit}),
@@ -160,8 +165,8 @@ class DiagramPlan:
             for axis, name in enumerate("xv"):
                 found[f"section_{name}"][0, :, place] = settled.sections[:, :, axis]
             # a motion that left for infinity hands on the state it began with
-            here = np.where(np.isfinite(settled.state), settled.state, state)
-            state = np.where(np.isfinite(here).all(axis=1)[:, None], here, np.array(self.starts))
+            whole = np.asarray(np.isfinite(settled.state).all(axis=1))
+            state = np.where(whole[:, None], settled.state, state)
             found["end_x"][0, :, place], found["end_v"][0, :, place] = state.T
         return found
 

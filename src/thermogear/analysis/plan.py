@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
@@ -143,7 +143,7 @@ def computed(
     load: Callable[[Key], Arrays],
     *,
     threads: int | None = None,
-) -> Iterator[tuple[Key, Arrays]]:
+) -> Generator[tuple[Key, Arrays], None, None]:
     """Compute the ``wanted`` chunks on threads; yields each as it is ready.
 
     ``load`` gives a chunk that is already there, for chunks that need it. Closing the iterator

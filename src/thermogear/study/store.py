@@ -1,0 +1,508 @@
+"""Long work on disk: checked chunks that no kill, full disk or flipped bit can falsify.
+
+A store is a directory: ``result.zarr`` (zarr v3, opened by xarray), ``manifest.json`` (what the
+work is, twice), ``journal.jsonl`` (what is finished, with a hash of every chunk's numbers),
+``quarantine`` (chunks that failed their check) and ``lock``. A chunk counts as finished when the
+journal says so and its decoded numbers have the hash written there; everything else is computed
+again. One writer at a time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+import zarr
+from filelock import FileLock, Timeout
+from numpy.typing import NDArray
+from zarr.codecs import Crc32cCodec, ZstdCodec
+from zarr.storage import LocalStore, MemoryStore
+
+from thermogear.analysis.plan import Arrays, Key, Plan, dataset_of, keys_of, region_of
+from thermogear.base.errors import InputError
+from thermogear.study.fingerprint import code_version, environment
+
+RESULT = "result.zarr"
+MANIFEST = "manifest.json"
+COPY = "manifest.copy.json"
+JOURNAL = "journal.jsonl"
+QUARANTINE = "quarantine"
+LOCK = "lock"
+FORMAT = 1
+
+_OTHER = "name another directory, or repeat the command the store was begun with"
+
+
+def put_bytes(path: Path, data: bytes) -> None:
+    """Write ``data`` beside ``path``, flush it to the disk, put it in place."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.part")
+    try:
+        with temporary.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    _sync(path.parent)
+
+
+def _sync(directory: Path) -> None:
+    handle = os.open(directory, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def numbers_hash(values: NDArray[Any]) -> str:
+    """sha256 of an array's numbers, independent of how they are compressed."""
+    plain = np.ascontiguousarray(values)
+    little = plain.astype(plain.dtype.newbyteorder("<"), copy=False)
+    return hashlib.sha256(little.tobytes()).hexdigest()
+
+
+class Staging:
+    """Encodes arrays into the bytes of zarr files, in memory."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, Any] = {}
+        self._arrays: dict[str, zarr.Array[Any]] = {}
+        self._group = zarr.group(store=MemoryStore(store_dict=self._files), zarr_format=3)
+
+    def make(
+        self,
+        name: str,
+        dims: tuple[str, ...],
+        shape: tuple[int, ...],
+        chunks: tuple[int, ...],
+        dtype: np.dtype[Any],
+        fill: float | int | None,
+        attributes: Mapping[str, Any],
+    ) -> None:
+        """An empty array of the group."""
+        # kept as made: an array opened again forgets to write chunks of nothing but fill
+        self._arrays[name] = self._group.create_array(
+            name,
+            shape=shape,
+            chunks=chunks,
+            dtype=dtype,
+            fill_value=fill,
+            compressors=[ZstdCodec(level=3), Crc32cCodec()],
+            dimension_names=dims,
+            attributes=_plain(attributes),
+            config={"write_empty_chunks": True},
+        )
+
+    def attributes(self, values: Mapping[str, Any]) -> None:
+        """Attributes of the whole."""
+        self._group.attrs.put(_plain(values))
+
+    def take(self, name: str, region: tuple[slice, ...], values: NDArray[Any]) -> dict[str, bytes]:
+        """The files that hold ``values`` at ``region``, by path; nothing of them is kept."""
+        self._arrays[name][region] = values
+        inside = f"{name}/c"
+        found = [path for path in self._files if path == inside or path.startswith(inside + "/")]
+        return {path: self._files.pop(path).to_bytes() for path in found}
+
+    def metadata(self) -> dict[str, bytes]:
+        """The zarr.json files."""
+        return {
+            path: data.to_bytes()
+            for path, data in sorted(self._files.items())
+            if path.endswith("zarr.json")
+        }
+
+
+def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes as JSON knows them."""
+
+    def one(value: Any) -> Any:
+        if isinstance(value, np.ndarray):
+            return [one(v) for v in value.tolist()]
+        if isinstance(value, np.generic):
+            value = value.item()
+        if isinstance(value, float) and not np.isfinite(value):
+            return str(value)
+        return value
+
+    return {str(k): one(v) for k, v in values.items()}
+
+
+class Store:
+    """One plan's results on disk, held by this process alone; use it in a ``with`` block."""
+
+    def __init__(self, directory: Path, plan: Plan) -> None:
+        self.directory = Path(directory)
+        self.plan = plan
+        self.repaired: list[str] = []
+        self._lock = FileLock(self.directory / LOCK)
+        self._hashes: dict[Key, dict[str, str]] = {}
+        self._staging = Staging()
+        for name, v in plan.variables().items():
+            shape = tuple(int(plan.sizes[d]) for d in v.dims)
+            chunks = tuple(int(plan.cuts.get(d, plan.sizes[d])) for d in v.dims)
+            self._staging.make(name, v.dims, shape, chunks, np.dtype(v.dtype), v.fill, v.attributes)
+
+    # --- opening and closing ---------------------------------------------------------------
+
+    def __enter__(self) -> Self:
+        if self.directory.exists() and not self.directory.is_dir():
+            raise InputError("store", str(self.directory), why="it is a file")
+        known = (self.directory / MANIFEST).exists() or (self.directory / COPY).exists()
+        inside = [p.name for p in self.directory.iterdir()] if self.directory.is_dir() else []
+        if not known and set(inside) - {LOCK, f".{MANIFEST}.part", f".{COPY}.part"}:
+            raise InputError(
+                "store",
+                str(self.directory),
+                why="the directory holds files that are not a store",
+                fix="name a new or an empty directory",
+            )
+        self.directory.mkdir(parents=True, exist_ok=True)
+        try:
+            self._lock.acquire(timeout=0)
+        except Timeout:
+            raise InputError(
+                "store",
+                str(self.directory),
+                why="another process is writing into it",
+                fix="wait for it, or name another directory",
+            ) from None
+        try:
+            self._agree()
+            self._repair_metadata()
+            self._read_journal()
+        except BaseException:
+            self._lock.release()
+            raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._lock.release()
+
+    @property
+    def result(self) -> Path:
+        """The zarr group."""
+        return self.directory / RESULT
+
+    def _manifest(self) -> dict[str, Any]:
+        content = {
+            "format": FORMAT,
+            "kind": self.plan.kind,
+            "inputs": self.plan.inputs(),
+            "chunks": {name: int(n) for name, n in self.plan.cuts.items()},
+            "code": code_version(),
+            "environment": environment(),
+        }
+        return json.loads(json.dumps(content))  # type: ignore[no-any-return]
+
+    def _agree(self) -> None:
+        """Begin a manifest, or refuse a store that was begun with something else."""
+        mine = self._manifest()
+        stored = _read_manifest(self.directory)
+        if stored is not None:
+            difference = first_difference(stored, mine)
+            if difference is not None:
+                field, old, new = difference
+                raise InputError(
+                    field.removeprefix("inputs."),
+                    new,
+                    allowed=old,
+                    why=f"the store {self.directory} was begun with the latter",
+                    fix=_OTHER,
+                )
+        elif (self.directory / MANIFEST).exists() or (self.directory / COPY).exists():
+            # both copies are damaged: nothing of what lies here can be trusted or thrown away
+            raise InputError(
+                "store",
+                str(self.directory),
+                why="both copies of its manifest are damaged",
+                fix="name another directory",
+            )
+        text = json.dumps(mine, indent=1)
+        seal = hashlib.sha256(text.encode()).hexdigest()
+        whole = f"{seal}\n{text}\n".encode()
+        for name in (MANIFEST, COPY):
+            path = self.directory / name
+            if not path.exists() or path.read_bytes() != whole:
+                if stored is not None:
+                    self.repaired.append(name)
+                put_bytes(path, whole)
+
+    def _repair_metadata(self) -> None:
+        extra = self._extras()
+        for path, data in self._staging.metadata().items():
+            if path == "zarr.json" and extra:
+                continue  # a finished store's own attributes; checked when it is read
+            place = self.result / path
+            if not place.exists() or place.read_bytes() != data:
+                if place.exists():
+                    self.repaired.append(path)
+                put_bytes(place, data)
+
+    # --- the journal -----------------------------------------------------------------------
+
+    def _read_journal(self) -> None:
+        for entry in read_journal(self.directory):
+            if "chunk" in entry:
+                self._hashes[tuple(entry["chunk"])] = entry["sha256"]
+
+    def _extras(self) -> dict[str, str]:
+        found: dict[str, str] = {}
+        for entry in read_journal(self.directory):
+            if "extras" in entry:
+                found = entry["extras"]
+        return found
+
+    def _note(self, entry: Mapping[str, Any]) -> None:
+        text = json.dumps(entry, separators=(",", ":"))
+        line = f"{zlib.crc32(text.encode()):08x} {text}\n"
+        path = self.directory / JOURNAL
+        with path.open("ab") as file:
+            # a line that a kill tore off must not swallow this one
+            if file.tell() and not _ends_line(path):
+                file.write(b"\n")
+            file.write(line.encode())
+            file.flush()
+            os.fsync(file.fileno())
+
+    # --- chunks ----------------------------------------------------------------------------
+
+    def write(self, key: Key, arrays: Arrays) -> None:
+        """Store a chunk: its files first, then the line that vouches for them."""
+        hashes: dict[str, str] = {}
+        for name, variable in self.plan.variables().items():
+            region = region_of(self.plan, key, variable)
+            for path, data in self._staging.take(name, region, arrays[name]).items():
+                put_bytes(self.result / path, data)
+            hashes[name] = numbers_hash(arrays[name])
+        self._note({"chunk": list(key), "sha256": hashes})
+        self._hashes[key] = hashes
+
+    def load(self, key: Key) -> Arrays:
+        """A finished chunk's arrays; InputError where its check fails."""
+        found: Arrays = {}
+        group = zarr.open_group(LocalStore(self.result, read_only=True), mode="r")
+        for name, variable in self.plan.variables().items():
+            region = region_of(self.plan, key, variable)
+            for path in self._paths(name, key):
+                if not path.exists():
+                    raise InputError(str(path), "no such chunk", fix="repeat the command")
+            array = group[name]
+            assert isinstance(array, zarr.Array)
+            try:
+                values = np.asarray(array[region])
+            except Exception as error:  # whatever a decoder makes of broken bytes
+                raise InputError(
+                    f"{name} chunk {key}", type(error).__name__, why="it cannot be decoded"
+                ) from error
+            if numbers_hash(values) != self._hashes.get(key, {}).get(name):
+                raise InputError(f"{name} chunk {key}", "other numbers than the journal's")
+            found[name] = values
+        return found
+
+    def _paths(self, name: str, key: Key) -> list[Path]:
+        variable = self.plan.variables()[name]
+        place = dict(zip(self.plan.cuts, key, strict=True))
+        parts = [str(place.get(d, 0)) for d in variable.dims]
+        return [self.result.joinpath(name, "c", *parts)]
+
+    def finished(self) -> set[Key]:
+        """The chunks whose numbers pass their check; what fails goes to quarantine."""
+        good: set[Key] = set()
+        for key in keys_of(self.plan):
+            if key not in self._hashes:
+                continue
+            try:
+                self.load(key)
+            except InputError:
+                self._set_aside(key)
+            else:
+                good.add(key)
+        return good
+
+    def _set_aside(self, key: Key) -> None:
+        self.repaired.append(f"chunk {key}")
+        del self._hashes[key]
+        bin_ = self.directory / QUARANTINE
+        bin_.mkdir(exist_ok=True)
+        number = sum(1 for _ in bin_.iterdir())
+        for name in self.plan.variables():
+            for path in self._paths(name, key):
+                if path.exists():
+                    words = "-".join(path.relative_to(self.result).parts)
+                    path.replace(bin_ / f"{number}-{words}")
+
+    # --- the finished whole ----------------------------------------------------------------
+
+    def complete(self) -> xr.Dataset:
+        """Put the chunks together, add what follows from all of them, and store that too."""
+        variables = self.plan.variables()
+        whole = {
+            n: np.empty([self.plan.sizes[d] for d in v.dims], np.dtype(v.dtype))
+            for n, v in variables.items()
+        }
+        for key in keys_of(self.plan):
+            for name, values in self.load(key).items():
+                whole[name][region_of(self.plan, key, variables[name])] = values
+        data = dataset_of(self.plan, whole)
+        extras = {str(n): v for n, v in data.variables.items() if str(n) not in variables}
+        staging = Staging()
+        hashes: dict[str, str] = {}
+        for name, variable in extras.items():
+            values = np.asarray(variable.values)
+            dims = tuple(str(d) for d in variable.dims)
+            shape = values.shape
+            chunks = tuple(max(1, n) for n in shape)
+            staging.make(name, dims, shape, chunks, values.dtype, None, variable.attrs)
+            region = tuple(slice(0, n) for n in shape)
+            files = staging.take(name, region, values) if values.size else {}
+            for path, content in files.items():
+                put_bytes(self.result / path, content)
+            hashes[name] = numbers_hash(values)
+        staging.attributes(data.attrs | {"coordinates": " ".join(sorted(map(str, data.coords)))})
+        for path, content in staging.metadata().items():
+            put_bytes(self.result / path, content)
+            if path == "zarr.json":
+                hashes["zarr.json"] = hashlib.sha256(content).hexdigest()
+        if self._extras() != hashes:
+            self._note({"extras": hashes})
+        return data
+
+
+def _ends_line(path: Path) -> bool:
+    with path.open("rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) == b"\n"
+
+
+def read_journal(directory: Path) -> list[dict[str, Any]]:
+    """The journal's lines that are whole; torn or damaged ones prove nothing."""
+    try:
+        raw = (Path(directory) / JOURNAL).read_bytes()
+    except FileNotFoundError:
+        return []
+    found: list[dict[str, Any]] = []
+    for line in raw.split(b"\n"):
+        seal, _, text = line.partition(b" ")
+        if seal != b"%08x" % zlib.crc32(text) or not text:
+            continue
+        entry = json.loads(text)
+        if isinstance(entry, dict):
+            found.append(entry)
+    return found
+
+
+def _read_manifest(directory: Path) -> dict[str, Any] | None:
+    """The first copy of the manifest whose seal is right."""
+    for name in (MANIFEST, COPY):
+        try:
+            raw = (directory / name).read_bytes()
+        except FileNotFoundError:
+            continue
+        seal, _, text = raw.partition(b"\n")
+        if hashlib.sha256(text.rstrip(b"\n")).hexdigest().encode() == seal:
+            content = json.loads(text)
+            if isinstance(content, dict):
+                return content
+    return None
+
+
+def first_difference(old: Any, new: Any, field: str = "") -> tuple[str, str, str] | None:
+    """Name, old and new value of the first field in which two plain structures differ."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        for key in [*old, *(k for k in new if k not in old)]:
+            name = f"{field}.{key}" if field else str(key)
+            if key not in old or key not in new:
+                return name, _short(old.get(key, "nothing")), _short(new.get(key, "nothing"))
+            found = first_difference(old[key], new[key], name)
+            if found is not None:
+                return found
+        return None
+    if isinstance(old, list) and isinstance(new, list):
+        if len(old) != len(new):
+            return field, f"{len(old)} values", f"{len(new)} values"
+        for place, (one, two) in enumerate(zip(old, new, strict=True)):
+            found = first_difference(one, two, f"{field}[{place}]")
+            if found is not None:
+                return found
+        return None
+    return None if type(old) is type(new) and old == new else (field, _short(old), _short(new))
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value) if not isinstance(value, str) else value
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def read_store(directory: str | Path) -> xr.Dataset:
+    """A finished store as a Dataset in memory, every number checked against the journal.
+
+    Raises InputError where the directory is no store, is not finished, or is damaged; the same
+    command as before repairs it.
+    """
+    place = Path(directory)
+    manifest = _read_manifest(place)
+    if manifest is None:
+        raise InputError("store", str(place), why="there is no store, or its manifest is damaged")
+    chunks: dict[tuple[int, ...], dict[str, str]] = {}
+    extras: dict[str, str] = {}
+    for entry in read_journal(place):
+        if "chunk" in entry:
+            chunks[tuple(entry["chunk"])] = entry["sha256"]
+        extras = entry.get("extras", extras)
+    again = "repeat the command that began it"
+    if not extras:
+        raise InputError("store", str(place), why="it is not finished", fix=again)
+    try:
+        if hashlib.sha256((place / RESULT / "zarr.json").read_bytes()).hexdigest() != extras.get(
+            "zarr.json"
+        ):
+            raise ValueError("attributes")
+        with xr.open_zarr(place / RESULT, consolidated=False, mask_and_scale=False) as opened:
+            data: xr.Dataset = opened.load()
+        _check(data, manifest, chunks, extras)
+    except Exception as error:  # whatever a reader makes of broken bytes
+        raise InputError(
+            "store", str(place), why=f"it is damaged ({type(error).__name__}: {error})", fix=again
+        ) from error
+    return data
+
+
+def _check(
+    data: xr.Dataset,
+    manifest: Mapping[str, Any],
+    chunks: Mapping[tuple[int, ...], Mapping[str, str]],
+    extras: Mapping[str, str],
+) -> None:
+    cuts: dict[str, int] = manifest["chunks"]
+    counts = [-(-data.sizes[name] // n) for name, n in cuts.items()]
+    if len(chunks) != int(np.prod(counts)):
+        raise ValueError(f"{len(chunks)} of {int(np.prod(counts))} chunks are vouched for")
+    for key, hashes in chunks.items():
+        ranges = {
+            name: slice(k * n, (k + 1) * n) for k, (name, n) in zip(key, cuts.items(), strict=True)
+        }
+        for name, seal in hashes.items():
+            variable = data[name].variable
+            part = variable[tuple(ranges.get(str(d), slice(None)) for d in variable.dims)]
+            if numbers_hash(part.values) != seal:
+                raise ValueError(f"{name} chunk {key}")
+    for name, seal in extras.items():
+        if name != "zarr.json" and numbers_hash(data[name].values) != seal:
+            raise ValueError(name)
