@@ -36,6 +36,12 @@ _HOME = {
     "TorsionalModel": "thermogear.dynamics.models",
     "PairModel": "thermogear.dynamics.models",
     "simulate": "thermogear.dynamics.integrate",
+    "periodic_orbit": "thermogear.analysis.orbits",
+    "continuation": "thermogear.analysis.continuation",
+    "lyapunov_exponent": "thermogear.analysis.lyapunov",
+    "label": "thermogear.analysis.labels",
+    "loaded_contact": "thermogear.gears.loaded",
+    "heat_balance": "thermogear.mesh.balance",
     "load_case": "thermogear.study.case",
     "run": "thermogear.study.run",
 }
