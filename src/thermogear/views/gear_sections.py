@@ -33,7 +33,8 @@ def friction(results: Results, pictures: Pictures) -> Section | None:
     speeds = ("pinion_rolling_velocity", "wheel_rolling_velocity", "sliding_velocity")
     pictures.add(
         "speeds", "Rolling and sliding",
-        "Both flanks roll with the same speed at the pitch point C alone; sliding changes its "
+        f"At {operating_names(data)[path.fastest(data)]}. Both flanks roll with the same speed at "
+        "the pitch point C alone; sliding changes its "
         "sign there and is greatest at the ends of contact A and E.",
         data, (*speeds, "entrainment_velocity"), lambda: path.speeds(data),
     )  # fmt: skip

@@ -70,7 +70,12 @@ def read_results(directory: Path) -> Results:
     path = Path(directory) / RESULTS
     if not path.is_file():
         raise InputError("results", str(path), why="there is no such file", fix=_FIX)
+    import h5py
+
     try:
+        # h5py first: it refuses a damaged file without a second complaint on stderr
+        with h5py.File(path, "r") as file:
+            file.visititems(lambda name, item: None)
         with xr.open_datatree(path, engine="h5netcdf") as tree:
             texts = {str(name): str(value) for name, value in tree.attrs.items()}
             groups = {

@@ -37,8 +37,7 @@ def speeds(data: xr.Dataset) -> Figure:
     """Rolling speeds of both flanks, sliding and entrainment at the fastest operating point."""
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, S)
-    fastest = int(np.argmax(np.abs(data["pinion_speed"].values)))
-    here = data.isel(operating=fastest)
+    here = data.isel(operating=fastest(data))
     lines = {
         "pinion_rolling_velocity": ("pinion flank", OKABE_ITO[2], "-"),
         "wheel_rolling_velocity": ("wheel flank", OKABE_ITO[3], "-"),
@@ -54,10 +53,15 @@ def speeds(data: xr.Dataset) -> Figure:
             label=f"{words} {math_symbol(_symbol(name))}",
         )
     axis.axhline(0.0, color=INK, linewidth=0.7, zorder=0.6)
-    axis.set_ylabel(f"speed along the flank at {operating_names(data)[fastest]} [m/s]")
+    axis.set_ylabel("speed along the flank v [m/s]")
     mark_path(axis, data)
     legend_below(figure, axis, 2)
     return figure
+
+
+def fastest(data: xr.Dataset) -> int:
+    """The operating point of the greatest pinion speed."""
+    return int(np.argmax(np.abs(data["pinion_speed"].values)))
 
 
 def _symbol(name: str) -> str:

@@ -136,7 +136,7 @@ def _samples_per_period(one: xr.Dataset) -> int:
 
 def half_order(points: xr.Dataset) -> Figure:
     """Amplitude of the line at half the mesh frequency along every row of temperatures."""
-    figure, axes = picture()
+    figure, axes = picture(left=0.88)
     axis = axes[0, 0]
     rows = [row for row in row_names(points) if _is_temperature(of_row(points, row))]
     for place, row in enumerate(rows):
@@ -152,7 +152,7 @@ def half_order(points: xr.Dataset) -> Figure:
         )
     axis.axhline(0.0, color=QUIET, linewidth=0.8, zorder=0.5)
     axis.set_xlabel("gear temperature T [°C]")
-    axis.set_ylabel("amplitude at half the mesh frequency |X| [–]")
+    axis.set_ylabel("half-order amplitude |X| [–]")
     legend_below(figure, axis)
     return figure
 

@@ -25,7 +25,7 @@ MOST_COLUMNS = 6
 
 FIGURES = {
     "peak_to_peak_displacement": "displacement, peak to peak [µm]",
-    "half_order_amplitude": "amplitude at half the mesh frequency [µm]",
+    "half_order_amplitude": "half-order amplitude |x| [µm]",
 }
 
 
