@@ -40,8 +40,8 @@ def friction(results: Results, pictures: Pictures) -> Section | None:
     )  # fmt: skip
     pictures.add(
         "share", "Load share of one tooth pair",
-        "One pair carries everything between B and D; outside two pairs share the force, by "
-        "their stiffnesses or in equal parts, as the bundle says.",
+        "One pair carries everything about the pitch point; towards A and E two pairs share the "
+        "force, by their stiffnesses or in equal parts, as the bundle says.",
         data, ("load_share",), lambda: path.load_share(data),
     )  # fmt: skip
     pictures.add(
@@ -140,11 +140,11 @@ def gap(results: Results, pictures: Pictures) -> Section | None:
     if mesh is not None:
         pictures.add(
             "gap-phase", "Half backlash over a mesh period",
-            "Heat shifts the gap and hardly makes it breathe. Below zero the pair would be "
-            "jammed; no motion is computed there.",
+            f"{_where(mesh, 'half_backlash')}Heat shifts the gap and hardly makes it breathe. "
+            "Below zero the pair would be jammed; no motion is computed there.",
             mesh, ("half_backlash_curve",), lambda: backlash.over_phase(mesh),
         )  # fmt: skip
-        blocks += _jam_texts(mesh)
+        blocks += _jam_texts(mesh) if "status" in mesh else []
     if row is not None:
         pictures.add(
             "gap-temperature", "Half backlash over the gears' temperature",
@@ -156,21 +156,27 @@ def gap(results: Results, pictures: Pictures) -> Section | None:
     return _section("backlash", "Backlash", blocks, pictures)
 
 
-def _jam_texts(mesh: xr.Dataset) -> list[Block]:
+def _where(data: xr.Dataset, name: str) -> str:
+    """ "At <first operating point>. " where the picture could not stand for all of them."""
+    values = data[name].transpose("operating", ...).values
+    alike = np.allclose(values, values[:1], rtol=1e-4, atol=0.0, equal_nan=True)
+    return "" if alike else f"At {operating_names(data)[0]}. "
+
+
+def _jam_texts(data: xr.Dataset, end: str = "") -> list[Block]:
     """A sentence for every bundle and state that is jammed, with its temperature."""
     found: list[Block] = []
-    names = operating_names(mesh)
-    for b, bundle in enumerate(names_of(mesh, "bundle")):
-        for s, state in enumerate(names_of(mesh, "state")):
-            here = mesh.isel(bundle=b, state=s)
-            where = [
-                names[o] for o in range(len(names)) if tables.is_jammed(here.isel(operating=o))
-            ]
-            if where:
-                jam = float(here["jam_temperature"].min())
-                found.append(
-                    Text(f"{bundle}, {state}, {', '.join(where)} — {jam_words(jam)}.", "jam")
-                )
+    names = operating_names(data)
+    for b, bundle in enumerate(names_of(data, "bundle")):
+        for s, state in enumerate(names_of(data, "state")):
+            here = data.isel(bundle=b, state=s)
+            stuck = [o for o in range(len(names)) if tables.is_jammed(here.isel(operating=o))]
+            if stuck:
+                where = ", ".join(names[o] for o in stuck)
+                jam = np.nan
+                if "jam_temperature" in here:
+                    jam = float(here["jam_temperature"].isel(operating=stuck).min())
+                found.append(Text(f"{bundle}, {state}, {where} — {jam_words(jam)}{end}.", "jam"))
     return found
 
 
@@ -184,16 +190,16 @@ def springs(results: Results, pictures: Pictures) -> Section | None:
         change = 100.0 * (float(one[-1]) / float(one[0]) - 1.0)
         pictures.add(
             f"stiffness-{place}", f"Mesh stiffness, {name}",
-            f"Two pairs carry on the left, one on the right. Hot against cold the mean changes "
-            f"by {change:+.1f} %.".replace("-", "−"),
+            f"{_where(mesh, 'mean_stiffness')}High where two pairs carry, low where one does. Hot "
+            f"against cold the mean changes by {change:+.1f} %.".replace("-", "−"),
             mesh, ("mesh_stiffness", "elastic_stiffness", "thermal_stiffness", "mean_stiffness"),
             lambda p=place: stiffness.over_phase(mesh, p),  # type: ignore[misc]
         )  # fmt: skip
     first = mesh.isel(operating=0) if "operating" in mesh.dims else mesh
     pictures.add(
         "stiffness-bars", "Mean and swing",
-        "Cold beside hot. In the thesis heat adds a spring; consistently Young's modulus falls "
-        "and with it the stiffness.",
+        f"{_where(mesh, 'mean_stiffness')}Cold beside hot. In the thesis heat adds a spring; "
+        "consistently Young's modulus falls and with it the stiffness.",
         mesh, ("mean_stiffness", "peak_to_peak_stiffness"), lambda: stiffness.bars(mesh),
     )  # fmt: skip
     pictures.add(
@@ -236,7 +242,8 @@ def vibration(results: Results, pictures: Pictures) -> Section | None:
                     f"motion-{b}-{o}", f"{bundle}, {names[o]}", _motion_caption(here), data, needs,
                     lambda b=b, o=o: motion.four_panels(data, b, o), wide=True,  # type: ignore[misc]
                 )  # fmt: skip
-            blocks += _still_texts(here, f"{bundle}, {names[o]}")
+    if "status" in data:
+        blocks += _jam_texts(data, "; there is no motion")
     if len(kept) < len(names):
         blocks.append(Text(f"{len(kept)} of {len(names)} operating points are drawn.", "note"))
     drawn = pictures.take()
@@ -254,17 +261,6 @@ def _motion_caption(here: xr.Dataset) -> str:
             lost = "always in contact" if share < 1e-6 else lost
             parts.append(f"{state}: {motion.label_of(one)}, {lost}")
     return "; ".join(parts) + "." if parts else "Cold against hot."
-
-
-def _still_texts(here: xr.Dataset, where: str) -> list[Block]:
-    """What is to be said of states that have no motion."""
-    found: list[Block] = []
-    for s, state in enumerate(names_of(here, "state")):
-        one = here.isel(state=s)
-        if tables.is_jammed(one):
-            jam = float(one["jam_temperature"]) if "jam_temperature" in one else np.nan
-            found.append(Text(f"{where}, {state} — {jam_words(jam)}; there is no motion.", "jam"))
-    return found
 
 
 def row(results: Results, pictures: Pictures) -> Section | None:

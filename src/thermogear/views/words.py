@@ -170,6 +170,7 @@ def exactly(value: float, digits: int = 6) -> str:
 
 _PRETTY = (
     (re.compile(r"\bum\b"), "µm"),
+    (re.compile(r"\+-"), "±"),
     (re.compile(r"\bN/m\^2"), "N/m²"),
     (re.compile(r"(?<=\d) ?deg ?C\b"), " °C"),
     (re.compile(r"(?<![\w.)])-(?=\d)"), "−"),

@@ -72,9 +72,11 @@ def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Figure:
             axis.plot(*way, color=INK, linewidth=1.1, linestyle=(0, (1, 2)),
                       label=plain(f"{bundle}, housing stays"))  # fmt: skip
             axis.plot(way[0][1:], [0.0], marker="X", color=INK, markersize=7, linestyle="none")
+            right = way[0][1] > float(x.mean())
             axis.annotate(
-                f"jams at {way[0][1]:.0f} °C", (way[0][1], 0.0), xytext=(-9, -5),
-                textcoords="offset points", ha="right", va="top", fontsize=8.5,
+                f"jams at {way[0][1]:.0f} °C", (way[0][1], 0.0),
+                xytext=(-9 if right else 9, -5), textcoords="offset points",
+                ha="right" if right else "left", va="top", fontsize=8.5,
             )  # fmt: skip
     axis.axhline(0.0, color=INK, linewidth=0.9)
     low = min(axis.get_ylim()[0], -0.16 * cold)

@@ -39,7 +39,7 @@ HIGHEST_ORDER = 8.0
 HISTORY = 4
 """Mesh periods of a drawn time history, or twice those of the motion."""
 
-BEYOND = "displacement beyond the gap's edge x − b′ [µm]"
+BEYOND = "beyond the gap's edge x − b′ [µm]"
 SPEED = axis_label("velocity")
 
 

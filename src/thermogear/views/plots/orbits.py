@@ -9,28 +9,28 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-SMOOTH = 320
+SMOOTH = 640
 """Points wanted in a mesh period of a drawn curve."""
 
 
 def refined(t: Floats, x: Floats, v: Floats, times: int) -> tuple[Floats, Floats, Floats]:
-    """The cubic through every sample with its slope: (t, x, dx/dt), ``times`` as many points.
+    """Smooth (t, x, v) through every sample, ``times`` as many points.
 
-    ``t``, ``x`` and ``v`` = dx/dt in units that belong together.
+    ``t``, ``x`` and ``v`` = dx/dt in units that belong together: x by cubics with the slope v,
+    v by cubics with the slope of its neighbours.
     """
-    if times <= 1 or t.size < 2:
+    if times <= 1 or t.size < 3:
         return t, x, v
-    h = np.diff(t)[:, None]
     u = np.arange(times) / times
-    x0, x1, v0, v1 = x[:-1, None], x[1:, None], v[:-1, None] * h, v[1:, None] * h
-    a, b = 2.0 * (x0 - x1) + v0 + v1, 3.0 * (x1 - x0) - 2.0 * v0 - v1
-    place = x0 + u * (v0 + u * (b + u * a))
-    slope = (v0 + u * (2.0 * b + u * 3.0 * a)) / h
-    return (
-        np.append((t[:-1, None] + u * h).ravel(), t[-1]),
-        np.append(place.ravel(), x[-1]),
-        np.append(slope.ravel(), v[-1]),
-    )
+    h = np.diff(t)[:, None]
+
+    def through(y: Floats, slope: Floats) -> Floats:
+        y0, y1, s0, s1 = y[:-1, None], y[1:, None], slope[:-1, None] * h, slope[1:, None] * h
+        a, b = 2.0 * (y0 - y1) + s0 + s1, 3.0 * (y1 - y0) - 2.0 * s0 - s1
+        return np.append((y0 + u * (s0 + u * (b + u * a))).ravel(), y[-1])
+
+    fine = np.append((t[:-1, None] + u * h).ravel(), t[-1])
+    return fine, through(x, v), through(v, np.gradient(v, t, edge_order=2))
 
 
 def periods_to_draw(label: str, samples_per_period: int, stored: int, least: int = 1) -> int:

@@ -73,7 +73,7 @@ def panels(points: xr.Dataset, row: str) -> Figure:
     kept = sorted({round(i) for i in np.linspace(0, count - 1, min(count, MOST_COLUMNS))})
     columns = len(kept)
     width = max(4.9, (2.5 if columns < 5 else 2.2) * columns)
-    figure, axes = picture(2, columns, (width, 5.1), top=0.44, between=0.74, above=0.62)
+    figure, axes = picture(2, columns, (width, 5.1), top=0.44, left=0.8, between=0.76, above=0.62)
     order = data["order"].values
     floor, top = floor_of(data["line_amplitude"].values, order, HIGHEST_ORDER)
     for column, place in enumerate(kept):
