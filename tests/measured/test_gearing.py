@@ -34,6 +34,16 @@ def test_the_rigs_orders_are_found_without_rate_or_teeth(name: str) -> None:
     assert gearing.meshes[0].teeth == (48, 64)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("channels", [(0,), (1,), (2,), (3,), (0, 2), (1, 3)])
+@pytest.mark.parametrize("name", TRUTH)
+def test_any_one_channel_finds_the_main_mesh(name: str, channels: tuple[int, ...]) -> None:
+    table = real_or_twin(name)
+    gearing = find_gearing([table[i % len(table)] for i in channels])
+    assert gearing.mesh_frequency == pytest.approx(TRUTH[name][0], abs=1.5e-6)
+    assert [shaft.teeth for shaft in gearing.shafts] == [32, 80]
+
+
 @pytest.mark.parametrize("noise", [0.1, 0.5])
 @pytest.mark.parametrize(
     "teeth", [(32, 80, 48, 64), (25, 75, 20, 60), (20, 30, 25, 40), (23, 92, 31, 47)]

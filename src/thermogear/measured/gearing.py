@@ -24,12 +24,15 @@ LONGEST = 1 << 19
 """Samples that the search looks at, from the start of the record."""
 
 _HARMONICS = 5
-_TEETH = (6, 250)
+_TEETH = (12, 250)  # fewer are not made as power gears
 _FEWEST = 17  # teeth of a further mesh: below, a standard gear of 20 degrees is undercut
 _SIGNIFICANT = 6.0  # standard deviations of a mean over noise lines
-_CANDIDATES = 8  # families looked at for sidebands
+_TRIES = 8
+_CANDIDATES = 20  # families looked at for sidebands
+_WHOLE = 0.02  # how far a measured tooth number may be from a whole one, up to 50 teeth
 _SCREEN = 1 << 16
-_MOST_FROM_SIDEBANDS = 2.5  # scores of sidebands stay below this
+_LAW_KEPT = 0.7  # what sidebands at a whole number of teeth count for, beside their height
+_MOST_FROM_SIDEBANDS = 3.2  # scores of sidebands stay below this
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
 
@@ -62,8 +65,14 @@ class Mesh:
     margin: float
     next_order: float
 
+    @property
+    def weak(self) -> bool:
+        """Whether the next candidate is nearly as good."""
+        return self.margin < WEAK
+
 
 WEAK = 0.2
+"""Margin (of mean log prominence) below which a further mesh is called weak."""
 
 
 @dataclass(frozen=True)
@@ -228,9 +237,15 @@ def _of_family(table: Floats, family: _Family) -> tuple[float, Gearing]:
     sharp = _prominence(resample_by_angle(kept, cycles, per_cycle), float(per_cycle))
     shafts = _shafts(sharp, top, evidence)
     meshes: tuple[Mesh, ...] = ()
+    if not shafts:
+        evidence.append(
+            "no sidebands at whole parts of it: it may be a shaft's own line and no mesh line"
+        )
     if len(shafts) > 1:
         meshes = _second_mesh(sharp, shafts, top, evidence)
-    score = family.score + (shafts[0].score if shafts else 0.0)
+    score = family.score
+    if shafts:  # sidebands of one harmonic alone prove less
+        score += (shafts[0].score + _LAW_KEPT) * min(1.0, top / 3.0)
     return score, Gearing(mesh, error, heights, shafts, meshes, tuple(evidence))
 
 
@@ -275,12 +290,17 @@ def _family(raw: _Prominence, near: float) -> _Family:
     strong = [(f, (rank + 1) * h) for rank, (f, h) in enumerate(found) if h > 1.0]
     mesh = float(np.average([f for f, _ in strong], weights=[w for _, w in strong]))
     heights = tuple(h for _, h in found)
+    # a shaft's harmonics stand high where the floor is low, but the mesh moves the metal: the
+    # family's share of the record's energy counts beside its height over the floor
+    bins = np.rint(np.array([f * (rank + 1) for rank, (f, _) in enumerate(found)]) * raw.per_unit)
+    inside = raw.amplitude[np.minimum(bins.astype(int), raw.amplitude.size - 1)]
+    share = float(np.sum(inside**2) / np.sum(raw.amplitude**2))
     # few harmonics below half the rate: measured against at least three
     return _Family(
         start,
         mesh if abs(mesh / start - 1.0) < 1e-3 else start,
         heights,
-        sum(heights) / max(3, len(heights)),
+        sum(heights) / max(3, len(heights)) + 0.5 * float(np.log(max(share, 1e-12))),
     )
 
 
@@ -325,14 +345,15 @@ def _shafts(sharp: _Prominence, top: int, evidence: list[str]) -> tuple[Shaft, .
     # would favour it; the first ones alone would favour a shaft's own strong fourth or fifth
     score = np.where(possible, first + three, -np.inf)
     found: list[Shaft] = []
-    for _ in range(2):
+    for _ in range(_TRIES):
+        if len(found) == 2:
+            break
         place = int(np.argmax(score))
         if not np.isfinite(score[place]):
             break
-        shaft = _refined(sharp, harmonics, int(teeth[place]), float(three[place]))
-        if shaft is None:
-            break
-        if any(shaft.teeth == other.teeth for other in found):
+        z = _outer(sharp, harmonics, int(teeth[place]), float(three[place]), highest)
+        shaft = _refined(sharp, harmonics, z, float(three[place]))
+        if shaft is None or any(shaft.teeth == other.teeth for other in found):
             score[place] = -np.inf
             continue
         found.append(shaft)
@@ -352,6 +373,27 @@ def _shafts(sharp: _Prominence, top: int, evidence: list[str]) -> tuple[Shaft, .
             f"{shaft.order:.4f}"
         )
     return tuple(found)
+
+
+def _outer(
+    sharp: _Prominence, harmonics: NDArray[np.int64], teeth: int, score: float, highest: int
+) -> int:
+    """The multiple of ``teeth`` whose sidebands between stand nearly as high, else ``teeth``.
+
+    Where the even sidebands of a shaft happen to be the strongest, half its tooth number would
+    win: the odd ones between them tell.
+    """
+    for k in (2, 3):
+        if k * teeth > highest:
+            continue
+        between = tuple(n for n in range(1, 2 * k + 2) if n % k)
+        nearest = np.mean(sharp.at(_sides(harmonics, k * teeth, (1,))))
+        own = np.mean(sharp.at(_sides(harmonics, teeth, (1,))))
+        level = np.mean(sharp.at(_sides(harmonics, k * teeth, between)))
+        # a lattice that two shafts fill together has weak first sidebands
+        if level > 0.75 * score and nearest > 0.7 * own:
+            return _outer(sharp, harmonics, k * teeth, score, highest)
+    return teeth
 
 
 def _inner(sharp: _Prominence, harmonics: NDArray[np.int64], teeth: int) -> Shaft | None:
@@ -406,7 +448,8 @@ def _refined(
     ratio = 1.0 / spacing
     error = max(spread, 1e-6 / teeth) * ratio**2
     whole = int(np.rint(ratio))
-    if abs(ratio - whole) > 0.5 or whole < _TEETH[0]:
+    # a gear's ratio is whole; what only comes near a whole number is another lattice of lines
+    if abs(ratio - whole) > _WHOLE * max(1.0, whole / 50.0) or whole < _TEETH[0]:
         return None
     return Shaft(whole, ratio, error, 1.0, score, int(np.count_nonzero(good)))
 
@@ -457,7 +500,7 @@ def _second_mesh(
         margin=score - other,
         next_order=step.numerator * n * first / second,
     )
-    sure = "weak: " if mesh.margin < WEAK else ""
+    sure = "weak: " if mesh.weak else ""
     evidence.append(
         f"{sure}second mesh at order {order:.3f} ({mesh.teeth[0]}/{mesh.teeth[1]} teeth): its "
         f"harmonics stand {np.exp(score):.2f} times over the floor, those of the next candidate "

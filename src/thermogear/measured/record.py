@@ -108,6 +108,8 @@ class Record:
             raise InputError("record", f"channels of {sorted(lengths)} samples", allowed="one")
         if self.rate is not None and not (np.isfinite(self.rate) and self.rate > 0):
             raise InputError("rate", self.rate, allowed="> 0 samples per second")
+        if self.rate is not None:
+            object.__setattr__(self, "rate", float(self.rate))
         if self.tacho is not None:
             self.channel(self.tacho)
 

@@ -423,7 +423,8 @@ def _wanted(
                     found.append(_Wanted("sideband", label, place, reach))
     for number, other in enumerate(gearing.meshes, start=2):
         place = other.order * mesh / gearing.shafts[0].teeth
-        found.append(_Wanted("second mesh", f"mesh {number}", place, max(bins, 2e-4 * place)))
+        label = f"mesh {number} (weak)" if other.weak else f"mesh {number}"
+        found.append(_Wanted("second mesh", label, place, max(bins, 2e-4 * place)))
     if not found:
         found.append(_Wanted("mesh", "mesh x 1", mesh, max(bins, 2e-4 * mesh)))
     return [w for w in found if bins < w.position < 0.5 - bins]

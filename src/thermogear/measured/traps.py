@@ -125,7 +125,7 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
         return TimeBase(None, float(seconds[0]), "", drop, tuple(notes))
     if unit_name != "s":
         notes.append(Notice("info", f"{label} is in {unit_name}"))
-    return TimeBase(1.0 / mean, float(seconds[0]), label, drop, tuple(notes))
+    return TimeBase(float(1.0 / mean), float(seconds[0]), label, drop, tuple(notes))
 
 
 @dataclass(frozen=True)

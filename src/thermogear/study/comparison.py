@@ -6,16 +6,18 @@ u_D^2, and one model is better than another only where their errors differ by mo
 
 from __future__ import annotations
 
+import datetime
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.vocabulary import label
 from thermogear.measured.published import (
     PUBLISHED,
     RPM,
@@ -28,6 +30,7 @@ from thermogear.measured.published import (
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
+from thermogear.measured.units import STANDARD_GRAVITY
 from thermogear.study.simulated import CaseLines, case_lines, tree_lines
 
 if TYPE_CHECKING:
@@ -166,7 +169,7 @@ def _measured(
         path = Path(measured)
         if not path.is_file():
             raise InputError("measured", str(measured), fix=nearest(str(measured), PUBLISHED))
-        if _is_table(path):
+        if is_table(path):
             return Printed(read_lines(path, teeth), {})
         measured = read_record(path)
     if isinstance(measured, Record):
@@ -174,7 +177,11 @@ def _measured(
     return Printed(table_of(measured, speed), {})
 
 
-def _is_table(path: Path) -> bool:
+def is_table(path: str | Path) -> bool:
+    """Whether a file is a table of lines (its first row says so) and not a record."""
+    path = Path(path)
+    if not path.is_file():
+        return False
     with path.open("rb") as file:
         head = file.read(400).decode("utf-8", "replace").lower()
     first = head.splitlines()[0] if head else ""
@@ -414,6 +421,63 @@ def _doubts(implied: Sequence[Implied]) -> list[tuple[str, str]]:
         )
     )
     return notices
+
+
+def tree_of(found: Comparison, version: str) -> xr.DataTree:
+    """The comparison as labelled datasets, ready to store and to draw."""
+    import xarray as xr
+
+    rows = found.rows
+    values: dict[str, tuple[tuple[str, ...], Any]] = {
+        "measured_value": (("row",), [row.measured for row in rows]),
+        "simulated_value": (("row", "model"), [row.simulated for row in rows]),
+        "comparison_error": (("row", "model"), [row.errors for row in rows]),
+        "u_num": (("row",), [row.u_num for row in rows]),
+        "u_input": (("row",), [row.u_input for row in rows]),
+        "u_data": (("row",), [row.u_data for row in rows]),
+        "u_val": (("row",), [row.u_val for row in rows]),
+        "pinion_speed": (("row",), [row.speed for row in rows]),
+    }
+    table = label(values).assign_coords(
+        model=list(found.models),
+        quantity=("row", [row.quantity for row in rows]),
+        verdict=("row", [row.verdict for row in rows]),
+    )
+    empty = float("nan")
+    implied = label(
+        {
+            "pinion_speed": (("speed",), [item.speed for item in found.implied]),
+            "implied_acceleration": (
+                ("speed",),
+                [item.acceleration_g * STANDARD_GRAVITY for item in found.implied],
+            ),
+            "implied_shaft_speed": (
+                ("speed",),
+                [empty if item.shaft_speed is None else item.shaft_speed for item in found.implied],
+            ),
+            "mesh_line_offset": (
+                ("speed",),
+                [
+                    empty if item.offset_hertz is None else item.offset_hertz
+                    for item in found.implied
+                ],
+            ),
+            "line_bin_offset": (
+                ("speed",),
+                [empty if item.offset_bins is None else item.offset_bins for item in found.implied],
+            ),
+        }
+    )
+    tree = xr.DataTree.from_dict({"comparison": table, "implied": implied})
+    tree.attrs = {
+        "thermogear": version,
+        "kind": "comparison",
+        "title": f"{' and '.join(found.models)} against {found.measured}",
+        "summary": found.conclusion[:1].upper() + found.conclusion[1:] + ".",
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "notices": json.dumps([{"level": level, "text": text} for level, text in found.notices]),
+    }
+    return tree
 
 
 def as_json(found: Comparison) -> str:

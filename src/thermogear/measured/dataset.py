@@ -1,0 +1,99 @@
+"""A measurement as labelled datasets: what a page is drawn from and what is stored."""
+
+from __future__ import annotations
+
+import datetime
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.vocabulary import label
+from thermogear.measured.reduction import MeasuredLine, Measurement
+from thermogear.signals.spectra import amplitude_spectrum
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+_DRAWN = 4096  # points of a curve kept for pictures
+_LONGEST = 1 << 20
+
+
+def tree_of(found: Measurement, version: str) -> xr.DataTree:
+    """Groups ``record`` (an excerpt), ``spectrum`` (its peaks), ``lines``; settings, gearing and
+    notices as texts. Rates and units that are unknown stay empty."""
+    import xarray as xr
+
+    stop = found.start + min(found.samples, _LONGEST)
+    channels = [found.record.channel(name) for name in found.channels]
+    table = np.stack([c.values(found.start, stop) for c in channels])
+    spectrum = amplitude_spectrum(table - table.mean(axis=-1, keepdims=True), 1.0, "hann")
+    place, peaks = _peaks(spectrum.frequencies, spectrum.amplitudes)
+    excerpt = min(_DRAWN, table.shape[-1])
+    names = ("channel",), np.asarray(found.channels)
+    groups = {
+        "record": label(
+            {"record_reading": (("channel", "sample"), table[:, :excerpt])},
+            {"record_sample": (("sample",), found.start + np.arange(excerpt))},
+        ).assign_coords(channel=names),
+        "spectrum": label(
+            {"spectrum_reading": (("channel", "bin"), peaks)},
+            {"spectrum_position": (("bin",), place)},
+        ).assign_coords(channel=names),
+    }
+    if found.lines:
+        groups["lines"] = _lines(found.lines)
+    tree = xr.DataTree.from_dict(groups)
+    gearing = found.gearing
+    tree.attrs = {
+        "thermogear": version,
+        "kind": "measured",
+        "title": f"Record {found.record.source}",
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "settings": json.dumps(found.settings),
+        "evidence": json.dumps(list(gearing.evidence) if gearing else []),
+        "rate": "" if found.record.rate is None else repr(found.record.rate),
+        "unit": channels[0].unit or "",
+        "teeth": "" if found.teeth is None else str(found.teeth),
+        "mesh_position": "" if gearing is None else repr(gearing.mesh_frequency),
+        "notices": json.dumps([{"level": n.level, "text": n.text} for n in found.notices]),
+    }
+    return tree
+
+
+def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:
+    names = {
+        "line_order": "order",
+        "line_position": "position",
+        "line_frequency": "frequency",
+        "line_reading": "reading",
+        "line_acceleration": "acceleration",
+        "line_displacement": "displacement",
+        "line_uncertainty": "uncertainty",
+        "line_bin_offset": "bin_offset",
+        "line_prominence": "prominence",
+        "implied_shaft_speed": "shaft_speed",
+    }
+    values = {
+        stored: (("line",), np.array([getattr(line, own) for line in lines], dtype=float))
+        for stored, own in names.items()
+    }
+    return label(values).assign_coords(
+        channel=("line", [line.channel for line in lines]),
+        kind=("line", [line.kind for line in lines]),
+        name=("line", [line.name for line in lines]),
+    )
+
+
+def _peaks(place: Floats, amplitudes: Floats) -> tuple[Floats, Floats]:
+    """The highest of each run of bins, so that a picture of few points keeps every line."""
+    run = max(1, -(-place.size // _DRAWN))
+    if run == 1:
+        return place, amplitudes
+    count = place.size // run
+    shaped = amplitudes[:, : count * run].reshape(amplitudes.shape[0], count, run)
+    highest = np.argmax(shaped.max(axis=0), axis=-1) + run * np.arange(count)
+    return place[highest], shaped.max(axis=-1)

@@ -1,0 +1,242 @@
+"""The page of a measured record, and of a comparison, from its stored tree alone."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jinja2
+import numpy as np
+import xarray as xr
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from thermogear.base.errors import InputError
+from thermogear.views import tables
+from thermogear.views.page import Block, Pictures, Section, Table, Text
+from thermogear.views.results import Results, put
+from thermogear.views.style import COLD, HOT, INK, WIDE, log_axis, picture
+from thermogear.views.words import number, prose
+
+RPM = 30.0 / np.pi
+_SHOWN = 60  # lines of the table: the most prominent
+
+
+def write_measured_report(file: Path, page: Path) -> Path:
+    """Draw ``page`` from the stored ``file`` (netCDF) of a measurement or a comparison."""
+    try:
+        with xr.open_datatree(file, engine="h5netcdf") as tree:
+            texts = {str(name): str(value) for name, value in tree.attrs.items()}
+            groups = {
+                node.path.strip("/"): node.to_dataset(inherit=True).load()
+                for node in tree.subtree
+                if node.has_data
+            }
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
+        raise InputError("results", str(file), why="it cannot be read as netCDF") from error
+    if texts.get("kind") not in ("measured", "comparison"):
+        raise InputError("results", str(file), why="it holds no measurement and no comparison")
+    return put(page, page_of(Results(texts, groups)))
+
+
+def page_of(results: Results) -> str:
+    """The whole page as text."""
+    sections: list[Section] = []
+    for make in (_comparison, _record, _spectrum, _lines, _evidence, _settings):
+        section = make(results)
+        if section is not None:
+            sections.append(section)
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    levels = {"important": "Important", "warning": "Mind", "info": "Note"}
+    rows = sorted(results.rows("notices"), key=lambda row: list(levels).index(row["level"]))
+    return environment.get_template("report.html").render(
+        title=results.text("title"),
+        style=Markup(sheet),
+        summary=results.text("summary") or _summary(results),
+        tiles=[],
+        notices=[(row["level"], levels[row["level"]], prose(row["text"])) for row in rows],
+        sections=sections,
+        version=results.text("thermogear"),
+    )
+
+
+def _summary(results: Results) -> str:
+    rate, unit, teeth = (results.text(name) for name in ("rate", "unit", "teeth"))
+    said = [
+        f"{number(float(rate), 6)} samples/s" if rate else "no rate is known: orders only",
+        f"amplitudes in {unit}" if unit else "no unit is known: the file's own numbers",
+        f"{teeth} teeth on the first shaft" if teeth else "no tooth number is known",
+    ]
+    return "; ".join(said) + "."
+
+
+def _record(results: Results) -> Section | None:
+    data = results.group("record")
+    if data is None:
+        return None
+    rate = results.text("rate")
+    unit = results.text("unit") or "the file's numbers"
+
+    def make() -> Figure:
+        figure, axes = picture(size=(WIDE, 2.8))
+        count = min(data.sizes["sample"], 2048)
+        place = data["record_sample"].values[:count]
+        x = place / float(rate) if rate else place
+        for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
+            values = data["record_reading"].sel(channel=channel).values[:count]
+            axes[0, 0].plot(x, values, color=colour, linewidth=0.6, label=str(channel))
+        axes[0, 0].set_xlabel("time [s]" if rate else "sample")
+        axes[0, 0].set_ylabel(f"reading [{unit}]")
+        axes[0, 0].legend(loc="upper right", ncols=4, fontsize=8)
+        return figure
+
+    pictures = Pictures()
+    caption = "The first samples, unfiltered."
+    needs = ["record_reading"]
+    pictures.add("record", "Start of the record", caption, data, needs, make, wide=True)
+    return Section("record", "Time record", pictures.take())
+
+
+def _spectrum(results: Results) -> Section | None:
+    data, lines = results.group("spectrum"), results.group("lines")
+    if data is None:
+        return None
+    mesh, teeth = results.text("mesh_position"), results.text("teeth")
+    unit = results.text("unit") or "the file's numbers"
+    scale = int(teeth) / float(mesh) if mesh and teeth else 1.0
+
+    def make() -> Figure:
+        figure, axes = picture(size=(WIDE, 3.6))
+        x = data["spectrum_position"].values * scale
+        for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
+            values = data["spectrum_reading"].sel(channel=channel).values
+            axes[0, 0].plot(x[1:], values[1:], color=colour, linewidth=0.5, label=str(channel))
+        if lines is not None:
+            marked = lines.where(lines["kind"] != "sideband", drop=True)
+            axes[0, 0].plot(
+                marked["line_position"].values * scale,
+                marked["line_reading"].values,
+                linestyle="none",
+                marker="o",
+                markersize=4,
+                markerfacecolor="none",
+                color=INK,
+                label="lines of the table",
+            )
+        log_axis(axes[0, 0])
+        axes[0, 0].set_xlabel("order of the first shaft" if scale != 1.0 else "cycles per sample")
+        axes[0, 0].set_ylabel(f"amplitude (peak) [{unit}]")
+        axes[0, 0].legend(loc="upper right", ncols=5, fontsize=8)
+        return figure
+
+    pictures = Pictures()
+    caption = "Hann window over the whole record; of each run of bins the highest is drawn."
+    needs = ["spectrum_reading"]
+    pictures.add("spectrum", "Spectrum with the lines found", caption, data, needs, make, wide=True)
+    return Section("spectrum", "Spectrum", pictures.take())
+
+
+_COLOURS = (COLD, HOT, "#009E73", "#CC79A7")
+
+
+def _lines(results: Results) -> Section | None:
+    data = results.group("lines")
+    if data is None:
+        return None
+    strongest = np.argsort(-data["line_prominence"].values)[:_SHOWN]
+    unit = results.text("unit") or "file's"
+    head = ["channel", "line", "order", "cycles/sample", "f [Hz]", f"reading [{unit}]"]
+    head += ["a [g]", "x [µm]", "u_D [%]", "over floor", "off bin"]
+    rows: list[list[str | Markup]] = []
+    for place in np.sort(strongest):
+        one = data.isel(line=int(place))
+
+        def value(name: str, factor: float = 1.0, one: xr.Dataset = one) -> str:
+            found = float(one[name]) * factor
+            return number(found, 4) if np.isfinite(found) else "–"
+
+        rows.append(
+            [
+                str(one["channel"].values),
+                str(one["name"].values),
+                f"{float(one['line_order']):.3f}" if np.isfinite(float(one["line_order"])) else "–",
+                f"{float(one['line_position']):.6f}",
+                value("line_frequency"),
+                value("line_reading"),
+                value("line_acceleration", 1 / 9.80665),
+                value("line_displacement", 1e6),
+                value("line_uncertainty", 100.0),
+                value("line_prominence"),
+                value("line_bin_offset"),
+            ]
+        )
+    caption = "Peak amplitudes; u_D: relative standard uncertainty. – : the record does not tell."
+    return Section("lines", "Lines", [Table(caption, head, rows, names=2)])
+
+
+def _evidence(results: Results) -> Section | None:
+    found = json.loads(results.text("evidence") or "[]")
+    if not found:
+        return None
+    return Section("evidence", "How the gearing was found", [Text(str(text)) for text in found])
+
+
+def _settings(results: Results) -> Section | None:
+    found = json.loads(results.text("settings") or "{}")
+    if not found:
+        return None
+    table = tables.words("", ["setting", "value"], [[k, v] for k, v in found.items()])
+    return Section("settings", "Settings", [table])
+
+
+def _comparison(results: Results) -> Section | None:
+    data = results.group("comparison")
+    if data is None:
+        return None
+    models = [str(name) for name in data["model"].values]
+    head = ["speed [rpm]", "quantity", "measured", *models]
+    head += [f"error {name} [%]" for name in models]
+    head += ["u_num [%]", "u_input [%]", "u_D [%]", "u_val [%]", "verdict"]
+    rows: list[list[str | Markup]] = []
+    for place in range(data.sizes["row"]):
+        one = data.isel(row=place)
+        is_x = str(one["quantity"].values) == "displacement"
+        factor = 1e6 if is_x else 1.0
+        rows.append(
+            [
+                number(float(one["pinion_speed"]) * RPM, 4),
+                "displacement [µm]" if is_x else "frequency [Hz]",
+                number(float(one["measured_value"]) * factor, 5),
+                *(number(float(v) * factor, 5) for v in one["simulated_value"].values),
+                *(f"{100 * float(v):+.2f}" for v in one["comparison_error"].values),
+                *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
+                str(one["verdict"].values),
+            ]
+        )
+    blocks: list[Block] = [Table("Error: (simulated − measured)/measured.", head, rows, names=2)]
+    implied = results.group("implied")
+    if implied is not None:
+        lines: list[list[str | Markup]] = [
+            [
+                number(float(implied["pinion_speed"].values[i]) * RPM, 4),
+                f"{float(implied['implied_acceleration'].values[i]) / 9.80665:.1f}",
+                _maybe(float(implied["implied_shaft_speed"].values[i]) * RPM, 1),
+                _maybe(float(implied["mesh_line_offset"].values[i]), 2),
+                _maybe(float(implied["line_bin_offset"].values[i]), 2),
+            ]
+            for i in range(implied.sizes["speed"])
+        ]
+        names = ["speed [rpm]", "implied a [g]", "implied speed [rpm]", "off mesh [Hz]", "in bins"]
+        blocks.append(Table("What the measured lines imply.", names, lines, names=0))
+    return Section("comparison", "Comparison", blocks)
+
+
+def _maybe(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if np.isfinite(value) else "–"

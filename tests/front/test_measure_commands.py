@@ -1,0 +1,110 @@
+"""The measuring commands: text, JSON, pages, one-line refusals."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from thermogear.base.errors import InputError
+from thermogear.front.measure_commands import compare, measure
+
+RATE, TEETH = 5120.0, 25
+
+
+@pytest.fixture
+def record(tmp_path: Path) -> Path:
+    """A pinion of 25 teeth at 1000 rpm, first line 10 um, unit stated, rate in a time column."""
+    t = np.arange(12_000) / RATE
+    turns = 2 * np.pi * 1000 / 60 * t
+    swing = 1 + 0.2 * np.cos(turns) + 0.1 * np.cos(2 * turns)
+    peak = 10e-6 * (TEETH * 2 * np.pi * 1000 / 60) ** 2
+    x = peak * swing * (np.cos(TEETH * turns) + 0.4 * np.cos(2 * TEETH * turns))
+    x += 0.2 * peak * swing * np.cos(3 * TEETH * turns)
+    x += 0.5 * np.random.default_rng(2).standard_normal(t.size)
+    path = tmp_path / "rig.csv"
+    table = np.column_stack([t, x])
+    np.savetxt(path, table, "%.9g", ",", header="time [s],acc [m/s^2]", comments="")
+    return path
+
+
+def call(command: click.Command, *words: object) -> Result:
+    return CliRunner().invoke(command, [str(word) for word in words], catch_exceptions=True)
+
+
+def test_measure_prints_lines_settings_and_evidence(record: Path) -> None:
+    done = call(measure, record, "--teeth", TEETH, "--speed", 1000)
+    assert done.exit_code == 0, done.output
+    assert "a gear of 25 teeth" in done.output
+    assert "window: flattop, noise bandwidth 3.77 bins" in done.output
+    assert "mesh x 1" in done.output
+
+
+def test_measure_as_json_and_as_a_page(record: Path, tmp_path: Path) -> None:
+    done = call(measure, record, "--json", "-o", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["teeth"] == TEETH
+    assert found["lines"][0]["displacement"] == pytest.approx(10e-6, rel=0.01)
+    page = (tmp_path / "out" / "measured.html").read_text(encoding="utf-8")
+    for words in ("Time record", "Spectrum", "How the gearing was found", "Settings", "<svg"):
+        assert words in page
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert "<script" not in page
+
+
+def test_the_page_is_the_same_when_drawn_again(record: Path, tmp_path: Path) -> None:
+    from thermogear.views.measured_report import write_measured_report
+
+    call(measure, record, "-o", tmp_path / "out")
+    stored, page = tmp_path / "out" / "measured.nc", tmp_path / "out" / "measured.html"
+    first = page.read_bytes()
+    assert write_measured_report(stored, page).read_bytes() == first
+    with pytest.raises(InputError, match="it cannot be read as netCDF"):
+        write_measured_report(record, page)
+
+
+def test_compare_prints_the_thesis_recomputed_and_draws_it(tmp_path: Path) -> None:
+    done = call(compare, "thesis-5.2", "-o", tmp_path)
+    assert done.exit_code == 0, done.output
+    assert "printed 18.5 %, recomputed 21.50 %" in done.output
+    assert "305.9 g and 3003.8 rpm" in done.output
+    assert "of 3 displacements: not resolvable 3 times" in done.output
+    page = (tmp_path / "comparison.html").read_text(encoding="utf-8")
+    for words in ("not resolvable", "-21.50", "305.9", "3003.8"):
+        assert words in page.replace("−", "-")
+
+
+def test_compare_as_json() -> None:
+    done = call(compare, "thesis-5.2", "--u-data", 1, "--json")
+    found = json.loads(done.output)
+    assert {row["verdict"] for row in found["rows"] if row["quantity"] == "displacement"} == {
+        "with heat better"
+    }
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "message"),
+    [
+        (measure, ["nowhere.csv"], r"^file: got nowhere\.csv; there is no such file$"),
+        (measure, ["FILE", "--unit", "furlong"], r"^unit: got 'furlong'; "),
+        (measure, ["FILE", "--rate", "-5"], r"^rate: got -5\.0; allowed > 0"),
+        (measure, ["FILE", "--channel", "z"], r"^channel: got 'z'; known: "),
+        (measure, ["FILE", "--method", "magic"], r"^method: got 'magic'; "),
+        (measure, ["FILE", "--teeth", "0"], r"^teeth: got 0; allowed >= 1$"),
+        (compare, ["thesis-5.2", "--tolerance", "x"], r"^--tolerance: got 'x'; allowed FIELD="),
+        (compare, ["nowhere", "thesis-5.2"], r"^"),
+    ],
+)
+def test_refusals_are_one_line(
+    record: Path, command: click.Command, words: list[str], message: str
+) -> None:
+    done = call(command, *[str(record) if word == "FILE" else word for word in words])
+    assert isinstance(done.exception, InputError)
+    assert "\n" not in str(done.exception)
+    with pytest.raises(InputError, match=message):
+        raise done.exception
