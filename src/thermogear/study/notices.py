@@ -1,0 +1,53 @@
+"""What a reader of a sweep should know beside the numbers."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from thermogear.study.case import GearCase
+
+NO_BACK_IMPACT = (
+    "no orbit hits the back side anywhere in this range: the half backlash b' has no effect here "
+    "but as a shift of x by b'"
+)
+
+
+def back_side_notice(data: xr.Dataset) -> list[str]:
+    """Whether the half backlash has any effect."""
+    if "back_impacts" not in data:
+        return []
+    impacts = data["back_impacts"].values
+    known = impacts[impacts >= 0]
+    chaotic = bool(np.any(data["label"].values == 2))
+    if known.size and not np.any(known > 0) and not chaotic:
+        return [NO_BACK_IMPACT]
+    return []
+
+
+def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
+    """Notices as an attribute: the back side, and where the case's speeds lie."""
+    found = back_side_notice(data)
+    ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)
+    ratio = ratio[np.isfinite(ratio)]
+    frequency = data["mesh_frequency"].values if "mesh_frequency" in data else np.empty(0)
+    frequency = frequency[np.isfinite(frequency)]
+    if ratio.size:
+        natural = float(np.median(frequency / ratio))
+        turns = 60.0 / case.pair.pinion.teeth
+        speeds = np.array(case.speeds)
+        tests = case.pair.pinion.teeth * speeds / (2.0 * math.pi) / natural
+        shown = ", ".join(f"{s * 30.0 / math.pi:.4g}" for s in speeds)
+        found.append(
+            f"the range covers omega_h {ratio.min():.3f} .. {ratio.max():.3f}; the mesh meets the "
+            f"natural frequency {natural:.0f} Hz at {natural * turns:.0f} rpm; the case's own "
+            f"speeds ({shown} rpm) lie at omega_h {tests.min():.3f} .. {tests.max():.3f}"
+        )
+    jammed = int(np.count_nonzero(data["status"].values == 1))
+    if jammed:
+        found.append(f"{jammed} of {data['status'].size} points are jammed and have no motion")
+    return {"notices": json.dumps(found)}

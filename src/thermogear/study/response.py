@@ -1,0 +1,132 @@
+"""What a settled motion means for the gears: transmission error, mesh force, dynamic factor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.plan import Alive, Arrays, Variable, keep_going
+from thermogear.dynamics import exact
+from thermogear.signals.spectra import order_amplitudes
+from thermogear.study.gearwords import GearPoints
+
+Floats = NDArray[np.float64]
+
+VALUES: dict[str, tuple[str, str]] = {
+    "dte_mean": ("m", "dynamic transmission error, mean"),
+    "dte_rms": ("m", "dynamic transmission error, rms about its mean"),
+    "dte_peak_to_peak": ("m", "dynamic transmission error, peak to peak"),
+    "mesh_force_max": ("N", "dynamic mesh force, greatest"),
+    "mesh_force_min": ("N", "dynamic mesh force, least; below 0 on the back flank"),
+    "mesh_force_rms": ("N", "dynamic mesh force, rms about its mean"),
+    "dynamic_factor": ("1", "dynamic factor: greatest mesh force over its mean"),
+    "mesh_frequency": ("Hz", "mesh frequency"),
+    "frequency_ratio": ("1", "mesh frequency over natural frequency"),
+    "half_backlash": ("m", "hot half backlash"),
+    "contact_loss_share": ("1", "share of time out of drive-side contact"),
+}
+
+
+@dataclass(frozen=True)
+class Record:
+    """How a settled motion is recorded: ``periods`` of ``samples`` points each.
+
+    ``order_step`` and ``highest_order`` of the spectral lines kept.
+    """
+
+    periods: int = 32
+    samples: int = 128
+    order_step: float = 0.5
+    highest_order: float = 10.0
+
+    @property
+    def orders(self) -> Floats:
+        """Orders of the mesh frequency, from the first step on."""
+        count = round(self.highest_order / self.order_step)
+        return np.asarray(self.order_step * np.arange(1, count + 1, dtype=float))
+
+
+RECORD = Record()
+
+
+def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Variable]:
+    """The stored variables over ``dims``, with spectral lines over ``order`` where wanted."""
+    found = {
+        name: Variable(dims, "float64", float("nan"), {"units": unit, "long_name": words})
+        for name, (unit, words) in VALUES.items()
+    }
+    if lines:
+        found["dte_line"] = Variable(
+            (*dims, "order"),
+            "float64",
+            float("nan"),
+            {"units": "m", "long_name": "amplitude of a line of the transmission error (peak)"},
+        )
+    return found
+
+
+def respond(
+    points: GearPoints,
+    state: Floats,
+    record: Record,
+    *,
+    lines: bool,
+    alive: Alive = keep_going,
+) -> Arrays:
+    """Figures of the motion that goes on from ``state`` (point, 2) at phase 0; NaN where jammed.
+
+    DTE = x + e with x the relative displacement of the flanks from the middle of the gap; the
+    mesh force is the elastic one, k f(x), over its mean for the dynamic factor.
+    """
+    count = len(points.status)
+    found: dict[str, NDArray[Any]] = {name: np.full(count, np.nan) for name in VALUES}
+    if lines:
+        found["dte_line"] = np.full((count, record.orders.size), np.nan)
+    moving = np.flatnonzero((points.status == 0) & np.isfinite(state).all(axis=1))
+    phase = np.arange(record.samples) / record.samples
+    for part, borders, marks in exact.layouts(points.flat.take(moving), record.samples):
+        alive()
+        index = moving[part]
+        lanes = points.flat.take(index)
+        maps = exact.prepare_maps(lanes, borders, marks)
+        run = exact.State.start(state[index, 0], state[index, 1], lanes.half_backlash)
+        _, _, samples = exact.advance(maps, run, record.periods, sampled=True)
+        for row, lane in enumerate(index):
+            one = _figures(points, int(lane), samples[:, 0, row], phase, record, lines)
+            for name, value in one.items():
+                found[name][lane] = value
+        free = 1.0 - run.spent[2] / (record.periods * lanes.period)
+        found["contact_loss_share"][index] = np.clip(free, 0.0, 1.0)
+    here = points.status == 0
+    found["mesh_frequency"][here] = points.mesh_frequency[here] / (2.0 * np.pi)
+    found["frequency_ratio"][here] = (points.mesh_frequency / points.rate)[here]
+    found["half_backlash"][here] = points.half_backlash[here]
+    return found
+
+
+def _figures(
+    points: GearPoints, lane: int, x: Floats, phase: Floats, record: Record, lines: bool
+) -> dict[str, Any]:
+    length, scale = points.length[lane], points.stiffness[lane] * points.length[lane]
+    ranks = np.arange(points.error.shape[1])
+    error = (points.error[lane] * np.exp(2j * np.pi * phase[:, None] * ranks)).real.sum(axis=1)
+    dte = length * x + np.tile(error, record.periods)
+    b = float(points.flat.half_backlash[lane])
+    stiffness = points.flat.take(np.array([lane])).values("stiffness", phase)[:, 0]
+    force = scale * np.tile(stiffness, record.periods) * (x - np.clip(x, -b, b))
+    mean = points.force[lane]
+    row: dict[str, Any] = {
+        "dte_mean": dte.mean(),
+        "dte_rms": dte.std(),
+        "dte_peak_to_peak": dte.max() - dte.min(),
+        "mesh_force_max": force.max(),
+        "mesh_force_min": force.min(),
+        "mesh_force_rms": force.std(),
+        "dynamic_factor": np.max(np.abs(force)) / mean if mean > 0.0 else np.inf,
+    }
+    if lines:
+        row["dte_line"] = order_amplitudes(dte, record.samples, record.periods, record.orders)
+    return row

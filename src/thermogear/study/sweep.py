@@ -1,0 +1,172 @@
+"""A sweep over gear parameters: every point from the case's own start, any number of axes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.family import axis_values
+from thermogear.analysis.outcome import (
+    outcome_arrays,
+    outcome_variables,
+    rule_inputs,
+    settle_with_status,
+)
+from thermogear.analysis.plan import (
+    Alive,
+    Arrays,
+    Key,
+    Variable,
+    keep_going,
+    ranges_of,
+)
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
+from thermogear.study.case import GearCase
+from thermogear.study.gearwords import GearFamily, gear_axes
+from thermogear.study.notices import range_notices
+from thermogear.study.response import RECORD, Record, respond, response_variables
+from thermogear.study.work import Report, carry_out
+
+Floats = NDArray[np.float64]
+
+SWEEP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
+CHUNK_POINTS = 128
+
+
+@dataclass(frozen=True)
+class SweepPlan:
+    """A sweep over ``axes``; see :func:`sweep`."""
+
+    family: GearFamily
+    axes: tuple[tuple[float, ...], ...]
+    start: tuple[float, float]
+    rule: Rule = SWEEP_RULE
+    record: Record = RECORD
+    kind: str = "sweep"
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        found = dict(zip(self.family.names, map(len, self.axes), strict=True))
+        return found | {"order": self.record.orders.size}
+
+    @property
+    def cuts(self) -> dict[str, int]:
+        """Whole inner axes as long as a chunk stays short."""
+        room = CHUNK_POINTS
+        found: dict[str, int] = {}
+        for name, values in reversed(list(zip(self.family.names, self.axes, strict=True))):
+            found[name] = max(1, min(len(values), room))
+            room //= found[name]
+        return {name: found[name] for name in self.family.names}
+
+    def inputs(self) -> dict[str, Any]:
+        return {
+            "model": self.family.inputs(),
+            "axes": {n: list(v) for n, v in zip(self.family.names, self.axes, strict=True)},
+            "initial_state": list(self.start),
+            "rule": rule_inputs(self.rule),
+            "record": {f.name: getattr(self.record, f.name) for f in fields(self.record)},
+        }
+
+    def variables(self) -> dict[str, Variable]:
+        dims = self.family.names
+        return outcome_variables(dims) | response_variables(dims, lines=True)
+
+    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+        found: dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]] = {
+            name: ((name,), np.array(values), {"units": unit})
+            for name, unit, values in zip(
+                self.family.names, self.family.units, self.axes, strict=True
+            )
+        }
+        orders = {"units": "1", "long_name": "order of the mesh frequency"}
+        return found | {"order": (("order",), self.record.orders, orders)}
+
+    def needs(self, key: Key) -> Key | None:
+        return None
+
+    def pilot(self, points: int) -> int:
+        """Compute about ``points`` points spread over the grid; how many."""
+        side = max(1, round(points ** (1.0 / len(self.axes))))
+        some = tuple(
+            tuple(np.array(v)[np.linspace(0, len(v) - 1, min(side, len(v))).astype(int)].tolist())
+            for v in self.axes
+        )
+        small = replace(self, axes=some)
+        rows = np.stack(np.meshgrid(*map(np.array, some), indexing="ij"), -1)
+        small._rows(rows.reshape(-1, len(some)), keep_going)
+        return int(rows[..., 0].size)
+
+    def _rows(self, rows: Floats, alive: Alive) -> Arrays:
+        points = self.family(rows)
+        start = np.broadcast_to(np.array(self.start), (len(rows), 2)).copy()
+        settled = settle_with_status(points.flat, points.status, start, self.rule, alive=alive)
+        found = outcome_arrays(settled, points.status)
+        return found | respond(points, settled.state, self.record, lines=True, alive=alive)
+
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
+        ranges = ranges_of(self, key)
+        values = [np.array(v)[ranges[n]] for n, v in zip(self.family.names, self.axes, strict=True)]
+        grid = np.stack(np.meshgrid(*values, indexing="ij"), -1)
+        shape = grid.shape[:-1]
+        flat = self._rows(grid.reshape(-1, len(values)), alive)
+        return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
+
+    def finish(self, data: xr.Dataset) -> xr.Dataset:
+        data.attrs |= {"bundle": self.family.bundle, "state": self.family.state}
+        data.attrs |= range_notices(self.family.case, data)
+        return data
+
+
+def sweep_plan(
+    case: GearCase,
+    axes: Mapping[str, ArrayLike],
+    *,
+    bundle: str = "",
+    state: str | float = "hot",
+    rule: Rule = SWEEP_RULE,
+    record: Record = RECORD,
+) -> SweepPlan:
+    """The plan of :func:`sweep`."""
+    if not isinstance(case, GearCase):
+        raise InputError(
+            "case", getattr(case, "kind", type(case).__name__), allowed="kind = 'gear'"
+        )
+    if not axes:
+        raise InputError("axes", "none", allowed="at least one parameter")
+    named = gear_axes(axes)
+    values = tuple(tuple(axis_values(n, v).tolist()) for n, v in named.items())
+    family = GearFamily(case, tuple(named), bundle, state)
+    return SweepPlan(family, values, case.simulation.initial_state, rule, record)
+
+
+def sweep(
+    case: GearCase,
+    axes: Mapping[str, ArrayLike],
+    *,
+    bundle: str = "",
+    state: str | float = "hot",
+    rule: Rule = SWEEP_RULE,
+    store: str | Path | None = None,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    report: Report | None = None,
+) -> xr.Dataset:
+    """Settled motion and its gear figures over any grid of gear parameters.
+
+    ``axes`` map names to SI values: pinion_speed [rad/s], pinion_torque [N m], gear_temperature
+    [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file in its own
+    unit. Every point starts from the case's initial state. ``bundle`` one of the case's (the
+    first by default), ``state`` "hot" or "cold" where the temperature is no axis. With a
+    ``store`` directory the same call resumes; ``scheduler`` is a dask address. Jammed and
+    diverged points are a status.
+    """
+    plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
+    return carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
