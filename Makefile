@@ -10,7 +10,7 @@ demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear run .venv/rig.toml -o .demo
 
 test: $(STAMP) lint  ## every check, slow layer included
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -q -n auto --dist loadfile
 
 check: $(STAMP) lint unit  ## the fast checks
 
@@ -21,7 +21,7 @@ lint: $(STAMP)
 	$(BIN)/lint-imports
 
 unit: $(STAMP)
-	$(BIN)/python -m pytest -q -m "not slow"
+	$(BIN)/python -m pytest -q -n auto --dist loadfile -m "not slow"
 
 $(STAMP): pyproject.toml requirements/boot.txt requirements/dev.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
