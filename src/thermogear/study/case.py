@@ -7,7 +7,7 @@ nothing of TOML, texts or units any more.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,19 +17,23 @@ from pydantic import ValidationError
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
+from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
+from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating
+from thermogear.mesh.operating import Operating, Temperatures
 from thermogear.study import parts
 from thermogear.study.assumptions import Assumption, assumptions
 from thermogear.study.backlash import Backlash
 from thermogear.study.complaints import first_complaint
+from thermogear.study.flanks import deviations
 from thermogear.study.parts import TemperatureRule
 from thermogear.study.ranges import warn_of_temperatures
 from thermogear.study.ready import example_text
 from thermogear.study.rows import Point, points_of
 from thermogear.study.schema import PICTURES, DimensionlessFile, GearFile
 from thermogear.study.source import case_text, overridden, pairs, tables
+from thermogear.study.surroundings import Reading, gearbox
 
 __all__ = [
     "PICTURES",
@@ -86,15 +90,19 @@ class Case:
 class GearCase(Case):
     """A gear pair with its operating points, from friction to vibration (SI, K, rad).
 
-    ``operating`` holds every speed with every torque, the speed the slow axis, in the hot state;
-    ``gear_temperatures`` [K] is the row of addendum temperatures of both gears. ``inertias``
-    [kg m^2]; ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the
-    bundles to compute with.
+    ``stated`` holds every speed with every torque, the speed the slow axis, in the hot state;
+    where the temperatures are left out (``computed``) it is all at the reference temperature, and
+    :meth:`operating_of` computes the hot state from the heat balance of ``gearbox``.
+    ``gear_temperatures`` [K] is the row of addendum temperatures of both gears.
+    ``deviations`` of the flanks; ``readings`` of thermometers; ``scuffing_load_stage`` of the oil
+    in the FZG test, None where unknown. ``inertias`` [kg m^2];
+    ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
+    compute with.
     """
 
     pair: GearPair
-    operating: Operating
-    temperature_rule: TemperatureRule
+    stated: Operating
+    temperature_rule: TemperatureRule | None
     gear_temperatures: tuple[float, ...]
     inertias: tuple[float, float]
     inertia_kind: str
@@ -109,11 +117,57 @@ class GearCase(Case):
     path_positions: int
     pictures: tuple[str, ...] = PICTURES
     base_sets: tuple[str, ...] = ()
+    deviations: tuple[Deviation, ...] = ()
+    gearbox: Gearbox = field(default_factory=Gearbox)
+    readings: tuple[Reading, ...] = ()
+    scuffing_load_stage: float | None = None
+    computed: bool = False
+    _balances: dict[tuple[MeshModel, float | None], HeatBalance] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
 
     @property
     def housing(self) -> Material:
         """The material of the housing."""
-        return self.operating.housing
+        return self.stated.housing
+
+    @property
+    def operating(self) -> Operating:
+        """The hot state of every operating point, by the first model where it is computed."""
+        return self.operating_of(self.models[0])
+
+    def operating_of(self, model: MeshModel) -> Operating:
+        """The hot state of every operating point under ``model``."""
+        return self.balance(model).operating if self.computed else self.stated
+
+    def with_operating(self, operating: Operating) -> GearCase:
+        """The same case in the hot state ``operating``, whose temperatures are then given."""
+        return replace(self, stated=operating, computed=False)
+
+    def balance(self, model: MeshModel, gear_temperature: float | None = None) -> HeatBalance:
+        """The heat balance of every operating point, computed once.
+
+        ``gear_temperature`` [K] holds the teeth of both gears there.
+        """
+        key = (model, gear_temperature)
+        if key not in self._balances:
+            at, box = self.stated, self.gearbox
+            if gear_temperature is not None:
+                teeth = dict.fromkeys(("pinion_tooth", "wheel_tooth"), gear_temperature)
+                box = replace(box, measured={**box.measured, **teeth})
+            self._balances[key] = heat_balance(
+                self.pair,
+                at.speed,
+                at.torque,
+                at.lubricant,
+                at.half_backlash,
+                model,
+                gearbox=box,
+                reference=at.temperatures.reference,
+                housing=at.housing,
+                deviations=self.deviations,
+            )
+        return self._balances[key]
 
     @property
     def equivalent_mass(self) -> float:
@@ -121,10 +175,15 @@ class GearCase(Case):
         (i1, i2), r1, r2 = self.inertias, self.pair.pinion.base_radius, self.pair.wheel.base_radius
         return i1 * i2 / (i1 * r2**2 + i2 * r1**2)
 
-    def operating_at(self, gear_temperature: float) -> Operating:
-        """The operating points with both addenda at ``gear_temperature`` [K]."""
+    def operating_at(self, gear_temperature: float, model: MeshModel | None = None) -> Operating:
+        """The operating points with both addenda at ``gear_temperature`` [K].
+
+        What else is left out follows from the heat balance under ``model`` (default: the first).
+        """
+        if self.temperature_rule is None:
+            return self.balance(model or self.models[0], gear_temperature).operating
         return replace(
-            self.operating,
+            self.stated,
             oil_temperature=self.temperature_rule.oil_at(gear_temperature),
             temperatures=self.temperature_rule.at(gear_temperature, gear_temperature),
         )
@@ -179,7 +238,14 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     housing = parts.named_material(file.housing.material, "housing.material", materials)
     pair = parts.pair_of(file, materials)
     rule = parts.temperature_rule(file)
-    temperatures = rule.at(file.temperatures.pinion_addendum, file.temperatures.wheel_addendum)
+    given = file.temperatures
+    if rule is None or given.pinion_addendum is None or given.wheel_addendum is None:
+        cold = given.reference
+        temperatures, oil = Temperatures.uniform(cold, cold), file.oil.temperature or cold
+    else:
+        temperatures = rule.at(given.pinion_addendum, given.wheel_addendum)
+        oil = rule.oil_at(given.pinion_addendum)
+    box, readings = gearbox(file, pair)
     backlash = parts.cold_backlash(file, pair, housing)
     speeds, torques = file.operating.speed, file.operating.torque
     count = len(speeds) * len(torques)
@@ -193,11 +259,11 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     inertias, inertia_kind = parts.inertias(file, pair)
     case = GearCase(
         pair=pair,
-        operating=Operating(
+        stated=Operating(
             speed=np.repeat(speeds, len(torques)),
             torque=np.tile(torques, len(speeds)),
             lubricant=parts.lubricant(file),
-            oil_temperature=rule.oil_at(file.temperatures.pinion_addendum),
+            oil_temperature=oil,
             temperatures=temperatures,
             half_backlash=backlash.half,
             housing=housing,
@@ -217,11 +283,18 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         path_positions=file.grid.path_positions,
         pictures=file.draw.pictures,
         base_sets=file.draw.base_sets,
+        deviations=deviations(file, pair),
+        gearbox=box,
+        readings=readings,
+        scuffing_load_stage=file.oil.scuffing_load_stage,
+        computed=rule is None,
         **common,
     )
+    if case.computed:
+        return case
     row = {
         f"temperatures.row[{place}]": case.operating_at(temperature)
         for place, temperature in enumerate(case.gear_temperatures)
     }
-    warn_of_temperatures(pair, {"temperatures": case.operating} | row)
+    warn_of_temperatures(pair, {"temperatures": case.stated} | row)
     return case

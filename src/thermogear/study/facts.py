@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.gears.geometry import Gear
 from thermogear.study.case import Case, DimensionlessCase, GearCase
 from thermogear.study.schema import PARAMETERS
@@ -29,6 +32,7 @@ def facts(case: Case) -> tuple[Fact, ...]:
             *_gear("wheel", case.pair.wheel),
             *_dynamics(case),
             *_operating(case),
+            *_held(case),
         )
     return _rows(case) if isinstance(case, DimensionlessCase) else ()
 
@@ -94,6 +98,25 @@ def _operating(case: GearCase) -> list[Fact]:
         force = torque / case.pair.pinion.base_radius
         found.append(Fact("normal force", f"at {torque:.6g} N m", force, "N"))
     return found
+
+
+def _held(case: GearCase) -> list[Fact]:
+    """What is known beforehand of temperatures that are computed, and of the flanks."""
+    found = [
+        Fact("deviations of the flanks", str(place), type(one).__name__)
+        for place, one in enumerate(case.deviations, 1)
+    ]
+    if not case.computed:
+        return found
+    group = "temperatures computed from the heat balance"
+    held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
+    for name, kelvin in held.items():
+        found.append(Fact(group, f"{name} is held at", kelvin - ZERO_CELSIUS, "degC"))
+    for one in case.readings:
+        found.append(Fact(group, f"{one.node}, {one.kind} reading", one.indicated, "K"))
+        found.append(Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"))
+        found.append(Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"))
+    return found or [Fact(group, "held nodes", "none")]
 
 
 def _rows(case: DimensionlessCase) -> tuple[Fact, ...]:

@@ -18,6 +18,7 @@ from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
+from thermogear.study.balances import celsius
 from thermogear.study.case import Case, GearCase
 from thermogear.study.facts import Fact
 from thermogear.study.facts import facts as case_facts
@@ -26,6 +27,9 @@ Notice = dict[str, str]
 
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
+
+MOST_POINTS = 12
+"""The heat balance is told point by point up to so many; the stored group has them all."""
 
 LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
@@ -44,7 +48,7 @@ def _rpm(speed: float) -> float:
 def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     """What a reader should know before the pictures, most important first."""
     mesh = groups["mesh"]
-    found = _jammed(mesh) + _regime(case, mesh)
+    found = _computed(case, groups) + _jammed(mesh) + _regime(case, mesh) + _deviations(case)
     if "motion" in groups:
         found += _motion(groups["motion"])
     if "temperature" in groups:
@@ -97,6 +101,58 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     if len(names) > 1:
         found.append(_difference(mesh))
     return found
+
+
+def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+    """What the heat balance found, where it decides the temperatures."""
+    if "balance" not in groups:
+        return []
+    balance, found = groups["balance"], []
+    limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
+    for place, bundle in enumerate(balance["bundle"].values):
+        here = balance.isel(bundle=place)
+        settled = here["status"].values == STATUS.index("ok")
+        lost = int(np.sum(~settled))
+        if lost:
+            found.append(
+                _notice(
+                    "important",
+                    f"{bundle}: {lost} of {settled.size} operating points have no steady "
+                    "temperature; their status is not_converged and they have no motion.",
+                )
+            )
+        if not settled.any():
+            continue
+        steady = here.isel(operating=np.flatnonzero(settled))
+        teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])
+        oil = steady["node_temperature"].sel(node="oil")
+        text = (
+            f"{bundle}: temperatures computed from the heat balance; teeth "
+            f"{celsius(float(teeth.min()))} to {celsius(float(teeth.max()))}, oil "
+            f"{celsius(float(oil.min()))} to {celsius(float(oil.max()))}, settled within "
+            f"{int(steady['iterations'].max())} iterations to {float(steady['residual'].max()):.1g}"
+            " K. They rest on the gearbox's values, most of them ours unless the case gives them."
+        )
+        hot = float(teeth.max()) > limit
+        if hot:
+            text += f" The teeth pass {celsius(limit)}, where the steel is tempered."
+        found.append(_notice("important" if hot else "info", text))
+    return found
+
+
+def _deviations(case: GearCase) -> list[Notice]:
+    """What a reader must know where flanks deviate from the involute."""
+    if not case.deviations:
+        return []
+    deaf = [m.name for m in case.models if m.stiffness != "loaded"]
+    text = (
+        f"{len(case.deviations)} deviations of the flanks act in the loaded contact, in stiffness, "
+        "load shares and error; the kinematic error of [transmission_error] comes on top, so that "
+        "what the deviations cause should not stand there again."
+    )
+    if deaf:
+        text += f" The textbook sum of {', '.join(deaf)} does not feel them."
+    return [_notice("warning" if deaf else "info", text)]
 
 
 def _jammed(mesh: xr.Dataset) -> list[Notice]:
@@ -257,7 +313,33 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
         at = f"at {rpm:.0f} rpm, {torque:.0f} N m"
         loss = _friction_power(here, case.pair.face_width, case.pair.base_pitch)
         table.append(Fact("frictional power of the mesh", at, loss, "W"))
+    table += _balance_facts(groups)
     return [asdict(fact) for fact in table]
+
+
+def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
+    """Node temperatures and losses of every operating point, and the corrected readings."""
+    if "balance" not in groups:
+        return []
+    balance, found = groups["balance"], []
+    for one in json.loads(str(balance.attrs["readings"])):
+        words = f"{one['node']}, {one['kind']} reading {celsius(one['indicated_K'])} corrected"
+        value = f"{celsius(one['temperature_K'])} +- {one['uncertainty_K']:.2g} K"
+        found.append(Fact("measured temperatures", words, value))
+    for place, bundle in enumerate(balance["bundle"].values):
+        for o in range(min(balance.sizes["operating"], MOST_POINTS)):
+            here = balance.isel(bundle=place, operating=o)
+            rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
+            group = f"heat balance, {bundle}, {rpm:.0f} rpm, {torque:.0f} N m"
+            for node, kelvin in zip(
+                here["node"].values, here["node_temperature"].values, strict=True
+            ):
+                found.append(Fact(group, f"{node} temperature", celsius(float(kelvin))))
+            for kind, watts in zip(here["loss_kind"].values, here["loss"].values, strict=True):
+                found.append(Fact(group, f"{kind} loss", float(watts), "W"))
+            found.append(Fact(group, "iterations", int(here["iterations"])))
+            found.append(Fact(group, "residual", float(here["residual"]), "K"))
+    return found
 
 
 def _friction_power(path: xr.Dataset, width: float, base_pitch: float) -> float:

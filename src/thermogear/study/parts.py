@@ -158,9 +158,11 @@ def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
     )
 
 
-def temperature_rule(file: GearFile) -> TemperatureRule:
-    """How bores, housing and oil go along with the addenda."""
+def temperature_rule(file: GearFile) -> TemperatureRule | None:
+    """How bores, housing and oil go along with the addenda; None where those are computed."""
     table = file.temperatures
+    if table.pinion_addendum is None or table.wheel_addendum is None:
+        return None
 
     def follows(given: float | None, below: float | None) -> Follows:
         return Follows(below or 0.0, True) if given is None else Follows(given, False)

@@ -14,6 +14,8 @@ from thermogear.base.errors import InputError
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"
+MARK = ".thermogear"
+"""Stands in every directory of ours from before the first result is written."""
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -50,7 +52,10 @@ def write_summary(summary: Mapping[str, Any], directory: Path) -> Path:
 
 
 def claim_directory(directory: Path) -> None:
-    """Make ``directory`` ours: new, empty, or written by an earlier run; else refuse it."""
+    """Make ``directory`` ours: new, empty, or claimed earlier; else refuse it.
+
+    The mark is written at once, so that what an interrupted run leaves is still ours.
+    """
     if directory.exists() and not directory.is_dir():
         raise InputError("output", str(directory), why="it is a file", fix="name a directory")
     if directory.is_dir() and any(directory.iterdir()) and not is_ours(directory):
@@ -61,10 +66,17 @@ def claim_directory(directory: Path) -> None:
             fix="name a new or an empty directory",
         )
     directory.mkdir(parents=True, exist_ok=True)
+    if not (directory / MARK).exists():
+        write_atomically(directory / MARK, b"results of thermogear\n")
 
 
 def is_ours(directory: Path) -> bool:
-    """Whether an earlier run wrote here: its summary or an unfinished one's mark is there."""
+    """Whether a run wrote here: its mark or its summary is there."""
+    try:
+        if (directory / MARK).read_bytes().startswith(b"results of thermogear"):
+            return True
+    except OSError:
+        pass  # results of older versions carry no mark
     try:
         summary = json.loads((directory / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):

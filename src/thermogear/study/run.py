@@ -1,8 +1,9 @@
 """A run: from a case to the tree of labelled results that pages are drawn from.
 
 The groups of the tree: ``path`` (along the path of contact), ``mesh`` (over the mesh phase, and
-figures per operating point), ``profile``, ``motion``, ``temperature`` (the same over gear
-temperatures) and ``base_sets/...``; a dimensionless case has ``points`` alone.
+figures per operating point), ``balance`` (where the temperatures are computed), ``profile``,
+``motion``, ``temperature`` (the same over gear temperatures) and ``base_sets/...``; a
+dimensionless case has ``points`` alone.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.study import errata, findings
+from thermogear.study.balances import balances
 from thermogear.study.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
@@ -112,6 +114,8 @@ def _gear_groups(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     groups |= _split(
         xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
     )
+    if case.computed:
+        groups["balance"] = balances(case)
     wanted = set(case.pictures)
     if "profile" in wanted:
         groups["profile"] = profiles(case)
@@ -137,6 +141,7 @@ def _cycle(case: GearCase, operating: Operating, model: MeshModel) -> xr.Dataset
         case.pair,
         replace(operating, housing=case.housing),
         model,
+        deviations=case.deviations,
         path_positions=case.path_positions,
         mesh_positions=case.mesh_positions,
     )
@@ -145,16 +150,31 @@ def _cycle(case: GearCase, operating: Operating, model: MeshModel) -> xr.Dataset
 def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     """Bundle -> the cycle cold and hot, with everything but the gears' temperatures alike."""
     found: dict[str, xr.Dataset] = {}
-    hot = case.operating
-    cold = replace(hot, temperatures=hot.temperatures.cold())
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
-        states = [_cycle(case, operating, model) for operating in (cold, hot)]
+        hot = case.operating_of(model)
+        cold = replace(hot, temperatures=hot.temperatures.cold())
+        states = [
+            _cycle(case, cold, model),
+            _with_status(case, model, _cycle(case, hot, model)),
+        ]
         found[model.name] = _with_numbers(
             case, xr.concat(states, xr.DataArray(list(STATES), dims="state", name="state"))
         )
     progress("mesh cycle", len(case.models), len(case.models))
     return found
+
+
+def _with_status(
+    case: GearCase, model: MeshModel, cycle: xr.Dataset, gear_temperature: float | None = None
+) -> xr.Dataset:
+    """``cycle``, its points not_converged where its temperatures did not settle."""
+    if not case.computed:
+        return cycle
+    settled = case.balance(model, gear_temperature).settled
+    status = cycle["status"]
+    values = np.where(settled, status.values, STATUS.index("not_converged")).astype(np.int8)
+    return cycle.assign(status=(status.dims, values, status.attrs))
 
 
 def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
@@ -249,6 +269,8 @@ def _motion(
         jammed = np.full(shape, STATUS.index("jammed"), np.int8)
         data = label({"status": (dims, jammed)}, coordinates)
         data["label"] = (dims, np.full(shape, "jammed"))
+        data["label_reason"] = (dims, np.full(shape, "no clearance is left to move in"))
+        data = _unsettled(data, cycles)
         return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
     mesh_frequency = case.pair.pinion.teeth * first["pinion_speed"].values / (2.0 * np.pi)
     motion = found.motion
@@ -265,7 +287,28 @@ def _motion(
         else:
             variables[name] = (dims + _last_axis(name), shaped)
     data = label(variables, coordinates, _motion_attributes(motion, case))
-    return data.assign(texts).assign_coords({"bundle": list(cycles), axis: first[axis].values})
+    data = _unsettled(data.assign(texts), cycles)
+    return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
+
+
+def _unsettled(motion: xr.Dataset, cycles: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """``motion`` with the points named whose temperatures did not settle: they do not move."""
+    status = np.stack([cycle["status"].values for cycle in cycles.values()])
+    lost = status == STATUS.index("not_converged")
+    if not lost.any():
+        return motion
+    words = {
+        "label": "not converged",
+        "label_reason": "the heat balance did not settle: there is no temperature to move at",
+    }
+    texts = {
+        name: (motion[name].dims, np.where(lost, text, motion[name].values))
+        for name, text in words.items()
+    }
+    flags = np.where(lost, status, motion["status"].values).astype(np.int8)
+    return motion.assign(texts).assign(
+        status=(motion["status"].dims, flags, motion["status"].attrs)
+    )
 
 
 def _last_axis(name: str) -> tuple[str, ...]:
@@ -291,8 +334,12 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
     cycles: dict[str, xr.Dataset] = {}
     temperatures = np.asarray(case.gear_temperatures)
     for model in case.models:
-        row = [_cycle(case, case.operating_at(float(t)), model) for t in temperatures]
-        cold = replace(case.operating, temperatures=case.operating.temperatures.cold())
+        row = [
+            _with_status(case, model, _cycle(case, case.operating_at(t, model), model), t)
+            for t in map(float, temperatures)
+        ]
+        hot = case.operating_of(model)
+        cold = replace(hot, temperatures=hot.temperatures.cold())
         reference = _cycle(case, cold, model)["mean_stiffness"].values
         axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")
         axis.attrs = attributes("gear_temperature")

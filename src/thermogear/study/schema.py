@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, create_model, model_validator
+from pydantic import Field, StrictBool, create_model, model_validator
 from pydantic.json_schema import models_json_schema
 
 from thermogear.base.errors import InputError
@@ -22,6 +22,9 @@ from thermogear.study.fields import (
     Several,
     Words,
 )
+from thermogear.study.flank_schema import ProfileTable, ReliefTable
+from thermogear.study.gearbox_schema import GearboxTable
+from thermogear.study.table import Below, Body, Length, Table, not_both, one_of
 
 PICTURES = ("path", "profile", "stiffness", "motion", "temperature", "base-sets")
 BASE_SETS = ("table-4.2", "section-4.1")
@@ -36,31 +39,12 @@ PARAMETERS = (
 )
 """The numbers of the dimensionless equation, in the order of its keywords."""
 
-Length = Annotated[float, Measure("length", "0.1 mm", "10000 mm")]
 Shape = Annotated[float, Number(0.0, 5.0, "1.25")]
-Body = Annotated[float, Measure("temperature", "-150 degC", "600 degC")]
-Below = Annotated[float, Measure("temperature difference", "-400 K", "400 K")]
 Allowance = Annotated[
     tuple[float, ...],
     Several(Measure("length", "-10 mm", "10 mm", example="-0.08 mm"), 1, 2),
 ]
 Inertia = Annotated[float, Measure("moment of inertia", "1e-9 kg m^2", "1e6 kg m^2")]
-
-
-class Table(BaseModel):
-    """A table of the file: unknown keys are refused, the values do not change any more."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-def _one_of(table: Table, first: str, second: str) -> None:
-    """Refuse a table that holds both of two rivals, or neither."""
-    given = [name for name in (first, second) if getattr(table, name) is not None]
-    if len(given) != 1:
-        got, fix = ("both", "leave one out") if given else ("neither", f"write {first} = ...")
-        raise InputError(
-            "", f"{got} {first} and {second}", allowed="exactly one of the two", fix=fix
-        )
 
 
 class RackTable(Table):
@@ -87,6 +71,16 @@ class GearTable(Table):
     ] = Field(default=None, description="pitch diameter + 2 (addendum + profile shift) modules")
     material: Annotated[str, Words('"steel"')]
     roughness: Annotated[float, Measure("length", "0.001 um", "100 um", example="0.4 um")]
+    tip_relief: ReliefTable | None = Field(default=None, title="no tip relief")
+    root_relief: ReliefTable | None = Field(default=None, title="no root relief")
+    pitch_errors: Annotated[
+        tuple[float, ...] | None,
+        Several(Measure("length", "-1000 um", "1000 um", example="3 um"), 1, 2000),
+    ] = Field(default=None, title="one for each tooth; none")
+    pressure_angle_error: Annotated[
+        float | None, Measure("angle", "-1.1 deg", "1.1 deg", example="0.02 deg")
+    ] = Field(default=None, title="none")
+    profile: ProfileTable | None = Field(default=None, title="no table of added material")
     allow_undercut: StrictBool = Field(
         default=False, title="an undercut tooth is refused unless true"
     )
@@ -146,10 +140,13 @@ class OilTable(Table):
     ] = Field(default=None, title="from the named set")
     temperature: Body | None = None
     temperature_below_addendum: Below | None = None
+    scuffing_load_stage: Annotated[
+        float | None, Number(1.0, 14.0, "12", "load stages of the FZG test A/8.3/90")
+    ] = Field(default=None, title="unknown: no scuffing margin")
 
     @model_validator(mode="after")
     def _complete(self) -> OilTable:
-        _one_of(self, "temperature", "temperature_below_addendum")
+        not_both(self, "temperature", "temperature_below_addendum")
         own = (self.viscosity_40, self.viscosity_100, self.density_15)
         if any(v is not None for v in own) and any(v is None for v in own):
             raise InputError(
@@ -215,11 +212,15 @@ class OperatingTable(Table):
 
 
 class TemperaturesTable(Table):
-    """Body temperatures: given outright, or so many kelvins below the addendum."""
+    """Body temperatures: given outright, so many kelvins below the addendum, or left out.
+
+    With both addenda left out the heat balance computes what is not given; what is given outright
+    then holds its node.
+    """
 
     reference: Body
-    pinion_addendum: Body
-    wheel_addendum: Body
+    pinion_addendum: Body | None = Field(default=None, title="computed from the heat balance")
+    wheel_addendum: Body | None = Field(default=None, title="computed from the heat balance")
     pinion_bore: Body | None = None
     pinion_bore_below_addendum: Below | None = None
     wheel_bore: Body | None = None
@@ -231,11 +232,41 @@ class TemperaturesTable(Table):
         Several(Measure("temperature", "-150 degC", "600 degC"), 0, 1000, distinct=True),
     ] = Field(default=(), description="no row of gear temperatures")
 
+    @property
+    def computed(self) -> bool:
+        """Whether the heat balance decides the temperatures."""
+        return self.pinion_addendum is None and self.wheel_addendum is None
+
     @model_validator(mode="after")
     def _complete(self) -> TemperaturesTable:
+        for name, other in (
+            ("pinion_addendum", "wheel_addendum"),
+            ("wheel_addendum", "pinion_addendum"),
+        ):
+            if getattr(self, name) is None and not self.computed:
+                raise InputError(
+                    name,
+                    "nothing",
+                    why=f"needed beside {other}",
+                    fix=f'write {name} = "100 degC", or leave both out to have the heat balance '
+                    "compute them",
+                )
         for name in ("pinion_bore", "wheel_bore", "housing"):
-            _one_of(self, name, f"{name}_below_addendum")
+            below = f"{name}_below_addendum"
+            if not self.computed:
+                one_of(self, name, below)
+            elif getattr(self, below) is not None:
+                raise _no_addendum(below)
         return self
+
+
+def _no_addendum(field: str) -> InputError:
+    return InputError(
+        field,
+        "a distance from an addendum temperature that is not given",
+        why="with both addenda left out the heat balance computes the temperatures",
+        fix="leave it out, or give both addenda",
+    )
 
 
 class TolerancesTable(Table):
@@ -266,7 +297,7 @@ class BacklashTable(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> BacklashTable:
-        _one_of(self, "value", "tolerances")
+        one_of(self, "value", "tolerances")
         kinds = {"direction": '"normal" or "circumferential"', "extent": '"total" or "half"'}
         for name, allowed in kinds.items():
             given = getattr(self, name) is not None
@@ -435,6 +466,7 @@ class GearFile(Table):
     inertia: InertiaTable
     operating: OperatingTable
     temperatures: TemperaturesTable
+    gearbox: GearboxTable | None = Field(default=None, title="every value ours")
     backlash: BacklashTable
     dynamics: DynamicsTable
     transmission_error: TransmissionErrorTable
@@ -443,6 +475,24 @@ class GearFile(Table):
     simulation: SimulationTable = SimulationTable()
     draw: DrawTable = DrawTable()
     ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _surrounded(cls, data: Any) -> Any:
+        """Computed temperatures rest on the gearbox: its defaults are assumptions then."""
+        if isinstance(data, dict) and "gearbox" not in data:
+            given = data.get("temperatures")
+            if isinstance(given, dict) and not {"pinion_addendum", "wheel_addendum"} & set(given):
+                return {**data, "gearbox": {}}
+        return data
+
+    @model_validator(mode="after")
+    def _oil_follows(self) -> GearFile:
+        if not self.temperatures.computed:
+            one_of(self.oil, "temperature", "temperature_below_addendum", "oil")
+        elif self.oil.temperature_below_addendum is not None:
+            raise _no_addendum("oil.temperature_below_addendum")
+        return self
 
 
 _Plain = Annotated[tuple[float, ...], Several(Number(-1e6, 1e6))]

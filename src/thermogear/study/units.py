@@ -58,6 +58,12 @@ KINDS: dict[str, Kind] = {
         Kind("thermal conductivity", "W/(m K)", "W/(m K)", "46 W/(m K)"),
         Kind("specific heat", "J/(kg K)", "J/(kg K)", "470 J/(kg K)"),
         Kind("thermal expansion", "1/K", "1/K", "11.5e-6 1/K"),
+        Kind("area", "m^2", "m^2", "0.6 m^2"),
+        Kind("heat transfer coefficient", "W/(m^2 K)", "W/(m^2 K)", "15 W/(m^2 K)"),
+        Kind("thermal conductance", "W/K", "W/K", "10 W/K"),
+        Kind("heat flux", "W/m^2", "kW/m^2", "20 kW/m^2"),
+        Kind("mass", "kg", "kg", "3 kg"),
+        Kind("volume flow", "m^3/s", "l/min", "2 l/min"),
     )
 }
 

@@ -1,0 +1,88 @@
+"""The computed temperatures of a case as a labelled Dataset, and in words."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS, attributes, status_attributes
+from thermogear.mesh.balance import HeatBalance
+from thermogear.study.case import GearCase
+
+LOSSES = ("mesh", "churning", "bearing_1", "bearing_2")
+
+_MEANING = {
+    "node_temperature": ("K", "temperature of a node of the heat balance"),
+    "loss": ("W", "heat that a loss sets free"),
+    "heat_to_ambient": ("W", "heat that leaves the housing"),
+    "iterations": ("1", "iterations of the closed loop"),
+    "residual": ("K", "greatest change of a node in the last iteration"),
+}
+
+
+def dressed(dims: tuple[str, ...], values: ArrayLike, unit: str, words: str) -> xr.Variable:
+    """A variable with its unit and long name."""
+    return xr.Variable(dims, np.asarray(values), {"units": unit, "long_name": words})
+
+
+def status_of(balance: HeatBalance) -> xr.Variable:
+    """ok, or not_converged where the loop did not settle, (operating,)."""
+    values = np.where(balance.settled, STATUS.index("ok"), STATUS.index("not_converged"))
+    return xr.Variable(("operating",), values.astype(np.int8), status_attributes())
+
+
+def balance_dataset(balance: HeatBalance) -> xr.Dataset:
+    """Node temperatures, losses, iterations, residual and status, axis ``operating`` first."""
+    count = balance.operating.speed.size
+    nodes = {
+        name: np.broadcast_to(values, (count,))
+        for name, values in balance.steady.temperatures.items()
+    }
+    losses = [np.broadcast_to(getattr(balance.losses, name), (count,)) for name in LOSSES]
+    heat = np.broadcast_to(balance.steady.heat_out["ambient"], (count,))
+    values: Mapping[str, tuple[tuple[str, ...], ArrayLike]] = {
+        "node_temperature": (("operating", "node"), np.stack(list(nodes.values()), axis=-1)),
+        "loss": (("operating", "loss_kind"), np.stack(losses, axis=-1)),
+        "heat_to_ambient": (("operating",), heat),
+        "iterations": (("operating",), balance.iterations),
+        "residual": (("operating",), balance.residual),
+    }
+    data = xr.Dataset({name: dressed(*entry, *_MEANING[name]) for name, entry in values.items()})
+    data["status"] = status_of(balance)
+    return data.assign_coords(
+        {
+            "node": list(nodes),
+            "loss_kind": list(LOSSES),
+            "pinion_speed": ("operating", balance.operating.speed, attributes("pinion_speed")),
+            "pinion_torque": ("operating", balance.operating.torque, attributes("pinion_torque")),
+        }
+    )
+
+
+def balances(case: GearCase) -> xr.Dataset:
+    """The heat balance of every bundle of a case whose temperatures are computed."""
+    each = [balance_dataset(case.balance(model)) for model in case.models]
+    axis = xr.DataArray([model.name for model in case.models], dims="bundle", name="bundle")
+    whole = xr.concat(each, axis)
+    readings = [
+        {
+            "node": one.node,
+            "kind": one.kind,
+            "indicated_K": one.indicated,
+            "temperature_K": one.temperature,
+            "uncertainty_K": one.uncertainty,
+        }
+        for one in case.readings
+    ]
+    held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
+    return whole.assign_attrs(readings=json.dumps(readings), held=json.dumps(held))
+
+
+def celsius(kelvin: float) -> str:
+    """A temperature to a tenth of a degree, as text."""
+    return f"{kelvin - ZERO_CELSIUS:.1f} °C"
