@@ -1,0 +1,256 @@
+"""``thermogear verify``: models beside finite elements; a group for the main one to register."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from thermogear.base.errors import InputError
+
+if TYPE_CHECKING:
+    from thermogear.study.case import GearCase
+    from thermogear.verify.checks import GrowthCheck, StiffnessCheck
+    from thermogear.verify.pairs import CheckedPair
+
+_case = click.argument("case", metavar="CASE")
+_overrides = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Put a value in place of the file's. May be repeated.",
+)
+_json = click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
+_near = click.option(
+    "--near",
+    default="strain",
+    show_default=True,
+    help="Plane state around the contact: strain as far as the tooth's axis, or stress.",
+)
+_refine = click.option(
+    "--refine",
+    type=click.IntRange(1, 8),
+    default=1,
+    show_default=True,
+    help="Split every element of the meshes into so many each way.",
+)
+
+STIFFNESS_NOTES = (
+    "both gears whole, plane stress, bores clamped, cold, perfect flanks",
+    "corner contact off in both: it is not checked here",
+)
+
+
+@click.group()
+def verify() -> None:
+    """Hold the models against finite elements (extra [fe])."""
+
+
+@verify.command()
+@_case
+@_overrides
+@click.option(
+    "--torque",
+    type=float,
+    metavar="NM",
+    help="Pinion torque; the case's greatest one if left out.",
+)
+@click.option(
+    "--positions",
+    type=click.IntRange(1, 50),
+    default=3,
+    show_default=True,
+    help="Mesh positions in each kind of contact.",
+)
+@_refine
+@_near
+@_json
+def stiffness(
+    case: str,
+    overrides: tuple[str, ...],
+    torque: float | None,
+    positions: int,
+    refine: int,
+    near: str,
+    as_json: bool,
+) -> None:
+    """Mesh stiffness and load shares of CASE's pair: model, finite elements, difference."""
+    from thermogear.verify.checks import check_stiffness, inner_phases
+    from thermogear.verify.tooth_mesh import Density
+
+    read = _gear_case(case, overrides)
+    moment = max(read.torques) if torque is None else torque
+    if not 0.0 < moment < float("inf"):
+        raise InputError("torque", f"{moment:g} N m", allowed="> 0", fix="state --torque")
+    pair = read.pair
+    found = check_stiffness(
+        pair,
+        moment / pair.pinion.base_radius,
+        inner_phases(pair, positions),
+        Density(refine),
+        near,
+    )
+    if as_json:
+        content = {"title": read.title, "torque": moment, "near": near, "notes": STIFFNESS_NOTES}
+        _print_json(content | _stiffness_numbers(found))
+        return
+    click.echo(read.title)
+    click.echo(f"{moment:g} N m on the pinion, F_n/b = {1e-3 * found.line_load:.4g} N/mm")
+    _print_notes(near)
+    click.echo("")
+    _print_stiffness(found)
+
+
+@verify.command()
+@_case
+@_overrides
+@click.option(
+    "--bore", default="free", show_default=True, help="Support of the bores: free, rigid, shaft."
+)
+@_json
+def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> None:
+    """Thermal growth of both gears' flanks in CASE: model, finite elements, difference."""
+    import numpy as np
+
+    from thermogear.heat.expansion import RadialField
+    from thermogear.verify.checks import check_growth
+
+    read = _gear_case(case, overrides)
+    heat = read.operating.temperatures
+    gears = (
+        ("pinion", read.pair.pinion, heat.pinion_bore, heat.pinion_addendum),
+        ("wheel", read.pair.wheel, heat.wheel_bore, heat.wheel_addendum),
+    )
+    content: dict[str, Any] = {"title": read.title, "bore": bore}
+    if not as_json:
+        click.echo(f"{read.title}\nnormal growth of one flank, plane stress, bores {bore}")
+    for name, gear, inner, outer in gears:
+        at_bore, at_tip = (float(np.ravel(np.asarray(t))[0]) for t in (inner, outer))
+        field = RadialField(gear.bore_radius, gear.tip_radius, at_bore, at_tip, heat.reference)
+        found = check_growth(gear, field, bore=bore)
+        content[name] = _growth_numbers(found)
+        if as_json:
+            continue
+        click.echo(
+            f"\n{name}: bore {at_bore - 273.15:.4g} degC, addendum {at_tip - 273.15:.4g} degC, "
+            f"drawn at {heat.reference - 273.15:.4g} degC"
+        )
+        click.echo(f"{'radius mm':>11}{'model um':>11}{'FE um':>11}{'model - FE um':>15}")
+        for r, model, finite in zip(found.radius, found.model, found.finite, strict=True):
+            click.echo(
+                f"{1e3 * r:>11.4f}{1e6 * model:>11.3f}{1e6 * finite:>11.3f}"
+                f"{1e6 * (model - finite):>+15.3f}"
+            )
+        worst = found.worst
+        click.echo(
+            f"worst {1e6 * found.difference[worst]:+.3f} um at {1e3 * found.radius[worst]:.4f} mm"
+        )
+    if as_json:
+        _print_json(content)
+
+
+@verify.command()
+@_refine
+@_near
+@_json
+def pairs(refine: int, near: str, as_json: bool) -> None:
+    """The fixed pairs: a published one, four of our own, and three at the model's edges."""
+    from thermogear.verify.checks import check_stiffness, inner_phases
+    from thermogear.verify.pairs import far_pairs, own_pairs, published_pair
+    from thermogear.verify.tooth_mesh import Density
+
+    groups: tuple[tuple[str, tuple[CheckedPair, ...]], ...] = (
+        ("published", (published_pair(),)),
+        ("own", own_pairs()),
+        ("edges", far_pairs()),
+    )
+    content: dict[str, Any] = {"near": near, "notes": STIFFNESS_NOTES}
+    if not as_json:
+        _print_notes(near)
+    for group, members in groups:
+        worst: tuple[float, str] = (0.0, "")
+        for checked in members:
+            found = check_stiffness(
+                checked.pair,
+                checked.line_load * checked.pair.face_width,
+                inner_phases(checked.pair, 4),
+                Density(refine),
+                near,
+            )
+            content.setdefault(group, {})[checked.name] = _stiffness_numbers(found)
+            worst = max(worst, (abs(float(found.difference[found.worst])), checked.name))
+            if not as_json:
+                click.echo(f"\n{checked.name}, {1e-3 * checked.line_load:g} N/mm ({group})")
+                _print_stiffness(found)
+        if not as_json:
+            click.echo(f"\nworst of the {group} pairs: {worst[1]}, {100.0 * worst[0]:.2f} %")
+    if as_json:
+        _print_json(content)
+
+
+def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
+    from thermogear.study.case import GearCase, load_case
+
+    read = load_case(Path(case), overrides)
+    if not isinstance(read, GearCase):
+        raise InputError(
+            "kind", repr(read.kind), allowed='"gear"', why="without gears there is no mesh to check"
+        )
+    return read
+
+
+def _print_notes(near: str) -> None:
+    for note in (*STIFFNESS_NOTES, f"around the contacts plane {near}"):
+        click.echo(f"- {note}")
+
+
+def _print_json(content: dict[str, Any]) -> None:
+    click.echo(json.dumps(content, indent=2, ensure_ascii=False))
+
+
+def _stiffness_numbers(found: StiffnessCheck) -> dict[str, Any]:
+    return {
+        "unit": "N/m",
+        "line_load_n_per_m": found.line_load,
+        "phase": found.phase.tolist(),
+        "model": found.model.tolist(),
+        "finite_elements": found.finite.tolist(),
+        "relative_difference": found.difference.tolist(),
+        "model_share": found.model_share.tolist(),
+        "finite_share": found.finite_share.tolist(),
+        "worst_difference": float(found.difference[found.worst]),
+        "worst_share_difference": found.worst_share,
+    }
+
+
+def _growth_numbers(found: GrowthCheck) -> dict[str, Any]:
+    return {
+        "unit": "m",
+        "radius": found.radius.tolist(),
+        "model": found.model.tolist(),
+        "finite_elements": found.finite.tolist(),
+        "difference": found.difference.tolist(),
+    }
+
+
+def _print_stiffness(found: StiffnessCheck) -> None:
+    click.echo(
+        f"{'phase':>8}{'pairs':>7}{'model':>10}{'FE':>10}{'diff %':>9}"
+        f"{'share':>9}{'FE':>8}{'diff':>9}    secant, N/(mm um)"
+    )
+    unit = found.face_width * 1e9
+    for i, phase in enumerate(found.phase):
+        click.echo(
+            f"{phase:>8.4f}{found.pairs[i]:>7d}{found.model[i] / unit:>10.3f}"
+            f"{found.finite[i] / unit:>10.3f}{100.0 * found.difference[i]:>+9.2f}"
+            f"{found.model_share[i, 0]:>9.4f}{found.finite_share[i, 0]:>8.4f}"
+            f"{found.share_difference[i, 0]:>+9.4f}"
+        )
+    worst = found.worst
+    click.echo(
+        f"worst: stiffness {100.0 * found.difference[worst]:+.2f} % at {found.phase[worst]:.4f}, "
+        f"share {found.worst_share:.4f}"
+    )

@@ -1,0 +1,29 @@
+"""Independent checks of the models by finite elements (extra ``[fe]``).
+
+Meshes, condensation and contact are of this floor alone; of the models it takes the drawing of
+a gear, and the figures it checks. scikit-fem is imported when the first mesh is made.
+"""
+
+from thermogear.verify.checks import (
+    GrowthCheck,
+    StiffnessCheck,
+    check_growth,
+    check_stiffness,
+    inner_phases,
+)
+from thermogear.verify.growth import finite_flank_growth
+from thermogear.verify.stiffness import FinitePair, gear_compliance, pair_stiffness
+from thermogear.verify.tooth_mesh import Density
+
+__all__ = [
+    "Density",
+    "FinitePair",
+    "GrowthCheck",
+    "StiffnessCheck",
+    "check_growth",
+    "check_stiffness",
+    "finite_flank_growth",
+    "gear_compliance",
+    "inner_phases",
+    "pair_stiffness",
+]

@@ -1,0 +1,140 @@
+"""Model beside finite elements: stiffness and shares of a pair, growth of a flank."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thermogear.base.errors import InputError
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.loaded import LoadedModel, loaded_contact
+from thermogear.heat.expansion import RadialField, flank_growth
+from thermogear.verify.elements import Floats
+from thermogear.verify.growth import finite_flank_growth, flank_radii
+from thermogear.verify.stiffness import pair_stiffness
+from thermogear.verify.tooth_mesh import Density
+
+
+def inner_phases(pair: GearPair, each: int = 3) -> Floats:
+    """Mesh phases in the middles of ``each`` equal parts of both kinds of contact.
+
+    First where one pair more than floor(contact ratio) touches, then where not; never on the
+    path's ends, where a contact would overhang the flank.
+    """
+    if each < 1:
+        raise InputError("positions", each, allowed=">= 1 in each kind of contact")
+    more = pair.contact_ratio - np.floor(pair.contact_ratio)
+    part = (np.arange(each) + 0.5) / each
+    return np.concatenate([more * part, more + (1.0 - more) * part])
+
+
+@dataclass(frozen=True, eq=False)
+class StiffnessCheck:
+    """Secant stiffness [N/m] and shares of the model and of the finite elements.
+
+    Arrays (position,) and (position, pair), pair 0 the last to enter; ``phase`` in periods
+    from A.
+    """
+
+    phase: Floats
+    model: Floats
+    finite: Floats
+    model_share: Floats
+    finite_share: Floats
+    face_width: float
+    line_load: float
+
+    @property
+    def pairs(self) -> Floats:
+        """Number of pairs that carry, (position,)."""
+        return np.asarray((self.finite_share > 0.0).sum(axis=-1))
+
+    @property
+    def difference(self) -> Floats:
+        """Model over finite elements minus 1, (position,)."""
+        return self.model / self.finite - 1.0
+
+    @property
+    def share_difference(self) -> Floats:
+        """Model's share minus the finite elements', (position, pair)."""
+        return self.model_share - self.finite_share
+
+    @property
+    def worst(self) -> int:
+        """The position with the greatest difference in stiffness."""
+        return int(np.argmax(np.abs(self.difference)))
+
+    @property
+    def worst_share(self) -> float:
+        """The greatest difference in a share."""
+        return float(np.max(np.abs(self.share_difference)))
+
+
+def check_stiffness(
+    pair: GearPair,
+    normal_force: float,
+    phase: ArrayLike | None = None,
+    density: Density | None = None,
+    near: str = "strain",
+) -> StiffnessCheck:
+    """The loaded contact (bores clamped) beside finite elements of the same pair, both cold.
+
+    normal_force: F_n [N] > 0; phase: positions in periods from A, by default
+    :func:`inner_phases`; density, near: of the finite elements. Perfect flanks; corner contact,
+    which the finite elements leave out, is switched off in the model too. Raises as
+    :func:`~thermogear.verify.stiffness.pair_stiffness`.
+    """
+    phi = inner_phases(pair) if phase is None else np.atleast_1d(np.asarray(phase, dtype=float))
+    finite = pair_stiffness(pair, normal_force, phi, density, near)
+    clamped = LoadedModel(body="bore_clamped", extended=False)
+    model = loaded_contact(pair, normal_force, phi, model=clamped)
+    most = finite.share.shape[1]
+    return StiffnessCheck(
+        phi,
+        model.secant_stiffness.to_numpy(),
+        finite.secant,
+        # the model's first candidate is the pair that has not yet entered
+        model.load_share.to_numpy()[:, 1 : 1 + most],
+        finite.share,
+        pair.face_width,
+        normal_force / pair.face_width,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class GrowthCheck:
+    """Normal growth [m] of one flank by the model (B) and by finite elements, at ``radius`` [m]."""
+
+    radius: Floats
+    model: Floats
+    finite: Floats
+
+    @property
+    def difference(self) -> Floats:
+        """Model minus finite elements [m]."""
+        return self.model - self.finite
+
+    @property
+    def worst(self) -> int:
+        """The radius with the greatest difference."""
+        return int(np.argmax(np.abs(self.difference)))
+
+
+def check_growth(
+    gear: Gear,
+    field: RadialField,
+    radius: ArrayLike | None = None,
+    bore: str = "free",
+    density: Density | None = None,
+) -> GrowthCheck:
+    """Flank growth (B) beside a thermoelastic sector with its tooth, plane stress.
+
+    field: T(r) of one state; radius [m]: default seven from the form circle to the tip; bore:
+    a key of :data:`~thermogear.heat.expansion.BORES`. Raises as
+    :func:`~thermogear.verify.growth.finite_flank_growth`.
+    """
+    r = np.atleast_1d(flank_radii(gear) if radius is None else np.asarray(radius, dtype=float))
+    finite = finite_flank_growth(gear, field, r, bore, density)
+    return GrowthCheck(r, flank_growth(gear, field, r, bore), finite)

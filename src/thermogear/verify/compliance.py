@@ -1,0 +1,174 @@
+"""Compliance of a whole gear under Hertzian pressure on its flanks, by finite elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.gears.geometry import Gear
+from thermogear.gears.tooth import flank_point
+from thermogear.verify.elements import Floats
+from thermogear.verify.substructure import (
+    Condensed,
+    chain,
+    closed_sector,
+    joint_stiffness,
+    open_sector,
+    unknowns_of,
+)
+from thermogear.verify.tooth_mesh import (
+    Density,
+    Profile,
+    contact_across,
+    contact_arcs,
+    foot_mesh,
+    plain_across,
+    plain_arcs,
+    tooth_mesh,
+)
+
+NEAR = {
+    "strain": "plane strain as far from the contact as the tooth's axis, along the force",
+    "stress": "plane stress up to the contact",
+}
+"""Plane state around a contact: its material is held in by the rest of the tooth's width."""
+
+
+class LoadedTooth:
+    """One tooth meshed for a contact at t = tan(alpha_k), reduced to its joint."""
+
+    def __init__(
+        self,
+        gear: Gear,
+        t: float,
+        half_width: float,
+        across: Floats,
+        density: Density,
+        near: str,
+    ) -> None:
+        profile = Profile(gear)
+        self._arc = profile.arc(t)
+        self._room = min(self._arc - profile.ends[0], profile.ends[1] - self._arc)
+        self._base = gear.base_radius
+        self._mesh = tooth_mesh(gear, across, contact_arcs(gear, t, half_width, density), density)
+        at = flank_point(gear, t)
+        # as far as the tooth's axis along the force
+        depth = float(at.x / np.cos(at.beta)) if near == "strain" else -1.0
+        self._reduced = Condensed(
+            self._mesh.patch,
+            unknowns_of(self._mesh.joint),
+            strained=(float(at.x), float(at.y), depth),
+        )
+        self.stiffness = self._reduced.stiffness
+
+    def pressed(self, half_width: float) -> tuple[Floats, float]:
+        """Load at the joint and own compliance under a unit force of ``half_width`` a [m].
+
+        p = 2/(pi a) sqrt(1 - (s/a)^2) along the flank, normal to it.
+        """
+        if half_width > self._room:
+            raise InputError(
+                "position",
+                f"{1e3 * self._room:.4g} mm from the end of the flank",
+                allowed=f"> {1e3 * half_width:.4g} mm, the Hertzian half width",
+                fix="take a position farther inside the path of contact",
+            )
+
+        def pressure(x: Floats, y: Floats) -> Floats:
+            arc = 0.5 * ((x * x + y * y) / self._base - self._base)
+            inside = np.maximum(1.0 - ((arc - self._arc) / half_width) ** 2, 0.0)
+            return np.asarray(2.0 / (np.pi * half_width) * np.sqrt(inside))
+
+        load, total = self._mesh.patch.pressure_load(self._mesh.flank, pressure)
+        return self._reduced.load(load / total)
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticGear:
+    """Plane-stress finite elements of a gear with all its teeth, its bore held.
+
+    ``loaded`` neighbouring teeth may carry load on the same flank; ``half_width`` [m] is the
+    size of the contacts the mesh is graded for; ``near`` the plane state around a contact, see
+    :data:`NEAR`. Unit modulus and width.
+    """
+
+    gear: Gear
+    loaded: int
+    half_width: float
+    density: Density = field(default_factory=Density)
+    near: str = "strain"
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.loaded < self.gear.teeth:
+            raise InputError("loaded", self.loaded, allowed=f"1..{self.gear.teeth - 1} teeth")
+        if not self.half_width > 0.0:
+            raise InputError("half_width", f"{self.half_width} m", allowed="> 0")
+        if self.near not in NEAR:
+            raise InputError(
+                "near", repr(self.near), allowed=" | ".join(NEAR), fix=nearest(self.near, NEAR)
+            )
+
+    @cached_property
+    def across(self) -> Floats:
+        """Corners of the joints of the teeth that may carry load."""
+        return contact_across(self.gear, self.half_width, self.density)
+
+    @cached_property
+    def joints(self) -> Floats:
+        """Stiffness of the body and of all other teeth at the joints of the loaded ones."""
+        plain = plain_across(self.density)
+        idle_foot = foot_mesh(self.gear, plain, self.density)
+        idle = closed_sector(
+            idle_foot,
+            tooth_mesh(self.gear, plain, plain_arcs(self.gear, self.density), self.density),
+        )
+        foot = foot_mesh(self.gear, self.across, self.density)
+        others = chain(idle, self.gear.teeth - self.loaded)
+        return joint_stiffness(open_sector(foot), others, 2 * foot.left.size, self.loaded)
+
+    def tooth(self, t: float) -> LoadedTooth:
+        """A tooth touched at t = tan(alpha_k)."""
+        return LoadedTooth(self.gear, t, self.half_width, self.across, self.density, self.near)
+
+    @cached_property
+    def _idle(self) -> Floats:
+        mesh = tooth_mesh(self.gear, self.across, plain_arcs(self.gear, self.density), self.density)
+        return Condensed(mesh.patch, unknowns_of(mesh.joint)).stiffness
+
+    def assembled(self, teeth: Sequence[LoadedTooth | None]) -> Floats:
+        """Compliance at the joints with these teeth put on; None is a tooth without load."""
+        if len(teeth) != self.loaded:
+            raise InputError("teeth", len(teeth), allowed=f"{self.loaded}")
+        whole = self.joints.copy()
+        size = whole.shape[0] // self.loaded
+        for (low, high), tooth in zip(
+            pairwise(range(0, whole.shape[0] + 1, size)), teeth, strict=True
+        ):
+            whole[low:high, low:high] += self._idle if tooth is None else tooth.stiffness
+        return np.asarray(np.linalg.inv(whole))
+
+    def compliance(
+        self,
+        teeth: Sequence[LoadedTooth | None],
+        half_widths: Sequence[float],
+        assembled: Floats | None = None,
+    ) -> Floats:
+        """Matrix of the deflections along the flanks' normals under unit forces, times E b.
+
+        Deflection is the mean over a contact, weighted by its pressure. teeth: in the order of
+        ascending polar angle (the loaded flank faces that way); half_widths: of each contact
+        [m]; rows and columns of teeth without load are 0.
+        """
+        joint = self.assembled(teeth) if assembled is None else assembled
+        size = joint.shape[0] // self.loaded
+        loads = np.zeros((self.loaded, joint.shape[0]))
+        own = np.zeros(self.loaded)
+        for i, (tooth, a) in enumerate(zip(teeth, half_widths, strict=True)):
+            if tooth is not None:
+                loads[i, i * size : (i + 1) * size], own[i] = tooth.pressed(a)
+        return np.asarray(loads @ joint @ loads.T + np.diag(own))

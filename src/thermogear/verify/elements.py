@@ -1,0 +1,148 @@
+"""Plane-stress finite elements on curved nine-node quadrilaterals, by scikit-fem.
+
+Everything is for unit modulus and unit width; compliances are divided by E b afterwards.
+scikit-fem belongs to the extra ``[fe]`` and is imported when the first mesh is made.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from thermogear.base.errors import InputError
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+_EDGE_RULE = np.polynomial.legendre.leggauss(24)
+"""Rule on a side of an element; many points, for the Hertzian pressure ends in a root."""
+
+
+def library(name: str = "skfem") -> Any:
+    """scikit-fem, or one line that says what to install."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise InputError(
+            "scikit-fem",
+            "no such package",
+            why="the finite-element checks need it",
+            fix="install the extra: pip install 'thermogear[fe]'",
+        ) from None
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """Nodes and nine-node elements of a plane region.
+
+    ``nodes`` (node, 2) [m]; ``cells`` (element, 3, 3): node numbers, rows along the second
+    parameter, columns along the first; corners, mid-sides and centre.
+    """
+
+    nodes: Floats
+    cells: Integers
+    poisson: float
+
+    @cached_property
+    def _mesh(self) -> Any:
+        fe = library()
+        corners = self.cells[:, [0, 0, 2, 2], [0, 2, 2, 0]]
+        used, flat = np.unique(corners, return_inverse=True)
+        linear = fe.MeshQuad(self.nodes[used].T.copy(), flat.reshape(corners.shape).T.copy())
+        mesh = fe.MeshQuad2.from_mesh(linear)
+        places = np.array(mesh.doflocs)
+        for local, column in enumerate(self._local_order().T):
+            places[:, mesh.dofs.element_dofs[local]] = self.nodes[column].T
+        return replace(mesh, doflocs=places)
+
+    def _local_order(self) -> Integers:
+        """Node numbers (element, 9) in the library's order: corners, sides, centre."""
+        corner = {0: (0, 0), 1: (0, 2), 2: (2, 2), 3: (2, 0)}
+        spots = [corner[i] for i in range(4)]
+        for a, b in library().MeshQuad.elem.refdom.facets:
+            spots.append(((corner[a][0] + corner[b][0]) // 2, (corner[a][1] + corner[b][1]) // 2))
+        spots.append((1, 1))
+        rows, columns = zip(*spots, strict=True)
+        return np.asarray(self.cells[:, rows, columns])
+
+    @cached_property
+    def _basis(self) -> Any:
+        fe = library()
+        return fe.Basis(self._mesh, fe.ElementVector(fe.ElementQuad2()), intorder=4)
+
+    @cached_property
+    def _places(self) -> Integers:
+        """Library's numbers of the two displacements of each node, (node, 2)."""
+        out = np.full((self.nodes.shape[0], 2), -1, dtype=np.int64)
+        ours = self._local_order()
+        theirs = self._basis.element_dofs.reshape(9, 2, -1)
+        for local in range(9):
+            out[ours[:, local]] = theirs[local].T
+        return out
+
+    @property
+    def unknowns(self) -> int:
+        """Two displacements at each node, numbered 2 node, 2 node + 1."""
+        return 2 * int(self.nodes.shape[0])
+
+    def _ours(self, vector: Floats) -> Floats:
+        return np.asarray(vector[self._places.ravel()])
+
+    def stiffness(self, strained: tuple[float, float, float] | None = None) -> csc_matrix:
+        """Stiffness matrix of unit modulus and width, plane stress.
+
+        ``strained`` (x, y, radius) [m]: a disc that stands in plane strain instead.
+        """
+        fe, helpers = library(), library("skfem.helpers")
+        nu = self.poisson
+        stress, shear = nu / (1.0 - nu**2), 0.5 / (1.0 + nu)
+        strain = nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        x, y, radius = (0.0, 0.0, -1.0) if strained is None else strained
+
+        def energy(u: Any, v: Any, w: Any) -> Any:
+            e, f = helpers.sym_grad(u), helpers.sym_grad(v)
+            inside = np.hypot(w.x[0] - x, w.x[1] - y) < radius
+            first = np.where(inside, strain, stress)
+            return first * helpers.trace(e) * helpers.trace(f) + 2.0 * shear * helpers.ddot(e, f)
+
+        theirs = fe.BilinearForm(energy).assemble(self._basis).tocsr()
+        order = self._places.ravel()
+        return csc_matrix(theirs[order][:, order])
+
+    def pressure_load(
+        self, edge: Integers, pressure: Callable[[Floats, Floats], Floats]
+    ) -> tuple[Floats, float]:
+        """Nodal forces of ``pressure``(x, y) on the boundary ``edge``, its nodes in order.
+
+        Corners and mid-sides alternate; the material lies to the left of the way along them.
+        Returns the load per unit width and the integral of the pressure along the edge.
+        """
+        sides = np.stack([edge[:-2:2], edge[1:-1:2], edge[2::2]], axis=1)
+        x, weight = _EDGE_RULE
+        shape = np.stack([0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)])
+        slope = np.stack([x - 0.5, -2.0 * x, x + 0.5])
+        at = np.einsum("kq,skc->csq", shape, self.nodes[sides])
+        along = np.einsum("kq,skc->csq", slope, self.nodes[sides])
+        force = pressure(at[0], at[1]) * weight
+        into = np.stack([-along[1], along[0]])
+        parts = np.einsum("kq,sq,csq->skc", shape, force, into)
+        out = np.zeros((self.nodes.shape[0], 2))
+        np.add.at(out, sides, parts)
+        return out.ravel(), float(np.sum(force * np.hypot(*along)))
+
+    def thermal_load(self, strain: Callable[[Floats, Floats], Floats]) -> Floats:
+        """Nodal forces of a free thermal ``strain``(x, y), unit modulus, plane stress."""
+        fe, helpers = library(), library("skfem.helpers")
+        stress = 1.0 / (1.0 - self.poisson)
+
+        def work(v: Any, w: Any) -> Any:
+            return stress * strain(w.x[0], w.x[1]) * helpers.div(v)
+
+        return self._ours(fe.LinearForm(work).assemble(self._basis))

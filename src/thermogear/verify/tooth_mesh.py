@@ -1,0 +1,276 @@
+"""Mapped, graded meshes of one tooth and of the body's sector below it.
+
+Tooth frame: origin at the gear centre, y along the tooth axis, x towards the loaded flank;
+polar angle phi from the y axis towards x. Two structured grids meet on the arc through the
+30-degree points of the fillets: the tooth above it, the foot (fillets, gaps and the body down
+to the bore) below.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from thermogear.gears.geometry import Gear
+from thermogear.gears.tooth import start_angle
+from thermogear.verify.elements import Floats, Integers, Patch
+
+_FINE_SAMPLES = 2001
+
+
+@dataclass(frozen=True)
+class Density:
+    """How fine the mesh is: counts are multiplied by ``refinement``.
+
+    ``per_half_width`` elements along the Hertzian half width, from where they grow by
+    ``growth`` from one to the next up to a ``coarsest`` part of a module.
+    """
+
+    refinement: int = 1
+    per_half_width: float = 3.0
+    growth: float = 1.6
+    coarsest: float = 0.4
+
+    @property
+    def rate(self) -> float:
+        """Growth that keeps the picture when every element is split."""
+        return float(self.growth ** (1.0 / self.refinement))
+
+    def count(self, number: int) -> int:
+        """``number`` of elements at this refinement."""
+        return number * self.refinement
+
+
+def graded(
+    low: float, high: float, centre: float, core: float, fine: float, rate: float, coarse: float
+) -> Floats:
+    """Ascending nodes from ``low`` to ``high``: steps ``fine`` within ``core`` of ``centre``.
+
+    Away from the core the steps grow by ``rate`` up to ``coarse``; each stretch is scaled to
+    end where it must.
+    """
+
+    def outward(start: float, end: float, first: float) -> Floats:
+        length = abs(end - start)
+        if length <= 0.0:
+            return np.array([start])
+        steps = [min(first, length)]
+        while sum(steps) < length:
+            steps.append(min(steps[-1] * rate, coarse))
+        # a last step that hardly fits is shared out among the others
+        if len(steps) > 1 and sum(steps) - length > 0.5 * steps[-1]:
+            steps.pop()
+        way = np.concatenate([[0.0], np.cumsum(steps)]) * (length / sum(steps))
+        return np.asarray(start + np.sign(end - start) * way)
+
+    left, right = max(centre - core, low), min(centre + core, high)
+    inner = np.linspace(left, right, max(int(np.ceil((right - left) / fine)), 1) + 1)
+    nodes = np.concatenate(
+        [outward(left, low, fine * rate)[::-1], inner[1:-1], outward(right, high, fine * rate)]
+    )
+    nodes[[0, -1]] = low, high
+    # a core without width is one node, not two
+    return np.asarray(nodes[np.concatenate([[True], np.diff(nodes) > 0.0])])
+
+
+def halved(nodes: Floats) -> Floats:
+    """The nodes with the middles of all steps between them."""
+    out = np.empty(2 * nodes.size - 1)
+    out[::2] = nodes
+    out[1::2] = 0.5 * (nodes[1:] + nodes[:-1])
+    return out
+
+
+def cells_of(rows: int, columns: int) -> Integers:
+    """Nine-node elements of a structured grid of (2 rows + 1, 2 columns + 1) nodes."""
+    number = np.arange((2 * rows + 1) * (2 * columns + 1)).reshape(2 * rows + 1, -1)
+    blocks = [
+        number[2 * i : 2 * i + 3, 2 * j : 2 * j + 3] for i in range(rows) for j in range(columns)
+    ]
+    return np.array(blocks, dtype=np.int64)
+
+
+def _plane(r: Floats, phi: Floats) -> Floats:
+    return np.stack([r * np.sin(phi), r * np.cos(phi)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """One flank of a gear, from the bottom of the gap to the tip."""
+
+    gear: Gear
+
+    @cached_property
+    def start(self) -> float:
+        """Rack normal angle of the point where tooth and foot meet."""
+        return start_angle(self.gear, "30-degree")
+
+    def fillet(self, gamma: Floats) -> tuple[Floats, Floats]:
+        """(r, phi) on the fillet."""
+        x, y = self.gear.fillet.point(gamma)
+        return np.hypot(x, y), np.arctan2(x, y)
+
+    @cached_property
+    def meeting(self) -> tuple[float, float]:
+        """(r, phi) of the point where tooth and foot meet."""
+        r, phi = self.fillet(np.asarray(self.start))
+        return float(r), float(phi)
+
+    def involute(self, arc: Floats) -> tuple[Floats, Floats]:
+        """(r, phi) at the length ``arc`` of the involute from the base circle."""
+        base = self.gear.base_radius
+        t = np.sqrt(2.0 * np.maximum(arc, 0.0) / base)
+        return base * np.sqrt(1.0 + t * t), self.gear.base_half_angle - (t - np.arctan(t))
+
+    def arc(self, t: float) -> float:
+        """Length of the involute from the base circle to t = tan(alpha_k)."""
+        return 0.5 * self.gear.base_radius * t * t
+
+    @cached_property
+    def ends(self) -> tuple[float, float]:
+        """Lengths of the involute at the form circle and at the tip."""
+        gear = self.gear
+        tip = float(np.tan(gear.pressure_angle_at(gear.tip_radius)))
+        return self.arc(gear.junction[1]), self.arc(tip)
+
+    def bottom(self, part: Floats) -> tuple[Floats, Floats]:
+        """(r, phi) from the meeting point (part 0) to the middle of the gap (1), by length."""
+        gear = self.gear
+        r, phi = self.fillet(np.linspace(self.start, 0.5 * np.pi, _FINE_SAMPLES))
+        floor = np.linspace(gear.root_half_angle, np.pi / gear.teeth, _FINE_SAMPLES)[1:]
+        r = np.concatenate([r, np.full(floor.size, gear.root_radius)])
+        phi = np.concatenate([phi, floor])
+        step = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(phi))
+        way = np.concatenate([[0.0], np.cumsum(step)])
+        way /= way[-1]
+        return np.interp(part, way, r), np.interp(part, way, phi)
+
+
+@dataclass(frozen=True, eq=False)
+class Foot:
+    """Sector of the body with the fillets of one tooth; ``across`` is the joint's grading.
+
+    Node numbers of its edges: ``bore``, ``left`` and ``right`` (towards the neighbours, from
+    the bore outward, bore left out) and ``joint`` (towards the tooth, ascending phi).
+    """
+
+    patch: Patch
+    bore: Integers
+    left: Integers
+    right: Integers
+    joint: Integers
+    half_angle: float
+
+
+def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
+    """The foot of a tooth whose joint has corners at ``across`` in -1 .. 1 of its half angle."""
+    profile = Profile(gear)
+    m, half = gear.module, np.pi / gear.teeth
+    r_joint, phi_joint = profile.meeting
+    rim = gear.root_radius - gear.bore_radius
+    r_low = gear.root_radius - min(0.5 * m, 0.5 * rim)
+    # the lines below the joint lean inward, so that three equal corners meet in the fillet
+    phi_low = max(phi_joint - np.tan(np.pi / 6.0) * (r_joint - r_low) / r_joint, 0.5 * phi_joint)
+
+    steps = density.count(5)
+    part = halved(np.linspace(0.0, 1.0, steps + 1))
+    middle = halved(across)
+    low_side = phi_low + part * (half - phi_low)
+    low = np.concatenate([-low_side[::-1], phi_low * middle[1:-1], low_side])
+    r_side, phi_side = profile.bottom(part)
+    top_r = np.concatenate([r_side[::-1], np.full(middle.size - 2, r_joint), r_side])
+    top_phi = np.concatenate([-phi_side[::-1], phi_joint * middle[1:-1], phi_side])
+
+    size = 0.35 * m / density.refinement
+    body = graded(gear.bore_radius, r_low, r_low, 0.0, size, density.rate, 0.25 * gear.bore_radius)
+    body_rows = halved(body)
+    lift = halved(np.linspace(0.0, 1.0, density.count(3) + 1))[1:]
+    r = np.concatenate(
+        [
+            np.broadcast_to(body_rows[:, None], (body_rows.size, low.size)),
+            (1.0 - lift[:, None]) * r_low + lift[:, None] * top_r,
+        ]
+    )
+    phi = np.concatenate(
+        [
+            np.broadcast_to(low, (body_rows.size, low.size)),
+            (1.0 - lift[:, None]) * low + lift[:, None] * top_phi,
+        ]
+    )
+    rows, columns = r.shape
+    number = np.arange(r.size).reshape(r.shape)
+    nodes = _plane(r, phi).reshape(-1, 2)
+    cells = cells_of((rows - 1) // 2, (columns - 1) // 2)
+    return Foot(
+        Patch(nodes, cells, gear.material.poisson_ratio),
+        bore=number[0],
+        left=number[1:, 0],
+        right=number[1:, -1],
+        joint=number[-1, 2 * steps : columns - 2 * steps],
+        half_angle=half,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Tooth:
+    """Mesh of a tooth above its joint; ``flank``: nodes of the loaded flank, upward."""
+
+    patch: Patch
+    joint: Integers
+    flank: Integers
+
+
+def tooth_mesh(gear: Gear, across: Floats, arcs: Floats, density: Density) -> Tooth:
+    """A tooth with corners at ``across`` (joint) and at the involute lengths ``arcs``.
+
+    ``arcs`` ascend from the form circle to the tip.
+    """
+    profile = Profile(gear)
+    r, phi = profile.involute(halved(arcs))
+    if abs(profile.start - gear.junction[0]) > 1e-9:
+        gammas = halved(np.linspace(profile.start, gear.junction[0], density.count(3) + 1))
+        r_fillet, phi_fillet = profile.fillet(gammas[:-1])
+        r, phi = np.concatenate([r_fillet, r]), np.concatenate([phi_fillet, phi])
+    columns = halved(across)
+    grid_r = np.broadcast_to(r[:, None], (r.size, columns.size))
+    nodes = _plane(grid_r, phi[:, None] * columns).reshape(-1, 2)
+    number = np.arange(nodes.shape[0]).reshape(r.size, columns.size)
+    cells = cells_of((r.size - 1) // 2, (columns.size - 1) // 2)
+    return Tooth(Patch(nodes, cells, gear.material.poisson_ratio), number[0], number[:, -1])
+
+
+def plain_arcs(gear: Gear, density: Density) -> Floats:
+    """Involute lengths of a tooth that nothing touches."""
+    low, high = Profile(gear).ends
+    return np.linspace(low, high, density.count(4) + 1)
+
+
+def contact_arcs(gear: Gear, t: float, half_width: float, density: Density) -> Floats:
+    """Involute lengths graded towards a contact of ``half_width`` [m] at t = tan(alpha_k)."""
+    profile = Profile(gear)
+    low, high = profile.ends
+    fine = half_width / (density.per_half_width * density.refinement)
+    return graded(
+        low,
+        high,
+        profile.arc(t),
+        1.25 * half_width,
+        fine,
+        density.rate,
+        density.coarsest * gear.module / density.refinement,
+    )
+
+
+def contact_across(gear: Gear, half_width: float, density: Density) -> Floats:
+    """The joint's corners in -1 .. 1, graded towards the loaded flank at 1."""
+    thickness = gear.module * 0.5 * np.pi
+    fine = 2.0 * half_width / thickness / (density.per_half_width * density.refinement)
+    coarse = 2.0 * density.coarsest * gear.module / thickness / density.refinement
+    return graded(-1.0, 1.0, 1.0, 0.0, fine, density.rate, coarse)
+
+
+def plain_across(density: Density) -> Floats:
+    """The joint's corners under a tooth that nothing touches."""
+    return np.linspace(-1.0, 1.0, density.count(4) + 1)
