@@ -91,6 +91,27 @@ class TestRig:
         gear = Gear(25, 5e-3)
         assert (gear.tip_radius, gear.face_width, gear.bore_radius) == (0.0675, 0.025, 0.025)
 
+    def test_unstated_rack_ends_in_a_full_round_where_the_flanks_are_steep(self) -> None:
+        assert Gear(25, 5e-3).rack == Rack(1.0, 1.25, 0.38)
+        steep = Gear(25, 5e-3, pressure_angle=math.radians(25.0))
+        # the rack's half tip width there: pi/4 - h_fP tan(a) = rho (1 - sin a)/cos a
+        width = math.pi / 4 - 1.25 * math.tan(math.radians(25.0))
+        slope = (1.0 - math.sin(math.radians(25.0))) / math.cos(math.radians(25.0))
+        assert steep.rack.fillet_radius == pytest.approx(width / slope, rel=1e-12)
+        assert (steep.rack.addendum, steep.rack.dedendum) == (1.0, 1.25)
+        # the tooth's foot then spans the whole pitch
+        assert steep.root_half_angle == pytest.approx(math.pi / 25, rel=1e-12)
+        # a rack that was asked for is not changed
+        with pytest.raises(GeometryError, match=r"rack\.fillet_radius: got 0\.38 modules"):
+            Gear(25, 5e-3, pressure_angle=math.radians(25.0), rack=Rack())
+
+    def test_one_gear_given_twice_is_two_equal_gears(self) -> None:
+        gear = Gear(30, 3e-3)
+        pair = GearPair(gear, gear)
+        assert pair.pinion is gear
+        assert pair.wheel is not gear
+        assert pair.wheel == gear
+
 
 class TestRandomGears:
     @pytest.fixture(scope="class")

@@ -133,6 +133,15 @@ def test_start_section_slope_and_unknown_name() -> None:
     )
 
 
+@pytest.mark.parametrize("shift", [-0.3, 0.0, 0.8, 0.9, 1.2])
+def test_the_30_degree_section_has_that_tangent_at_every_profile_shift(shift: float) -> None:
+    gear = Gear(80, 3e-3, profile_shift=shift)
+    gamma, h = start_angle(gear, "30-degree"), 1e-6
+    x, y = gear.fillet.point(np.array([gamma - h, gamma + h]))
+    assert gear.junction[0] < gamma < 0.5 * math.pi
+    assert abs((x[1] - x[0]) / (y[1] - y[0])) == pytest.approx(math.tan(math.pi / 6), rel=1e-7)
+
+
 def test_compliance_scales_with_modulus_and_width() -> None:
     gear = Gear(25, 5e-3)
     t = np.linspace(0.25, 0.5, 5)

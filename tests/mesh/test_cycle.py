@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES, STATUS
+from thermogear.mesh.elastic import LoadedPair, MeshCurves
 
 T0 = ZERO_CELSIUS + 20.0
 BUNDLES = [MeshModel.consistent(), MeshModel.thesis()]
@@ -226,6 +228,65 @@ def test_temperatures_may_differ_between_operating_points(
             np.testing.assert_allclose(
                 cycle[name].values[point], alone[name].values[point], rtol=1e-14, err_msg=name
             )
+
+
+def test_two_equal_gears_keep_their_own_temperatures(hot_rig: Operating) -> None:
+    gear = Gear(30, 3e-3)
+    warm = Temperatures(T0, T0 + 100.0, T0 + 80.0, T0 + 40.0, T0 + 20.0, T0 + 20.0)
+    once = mesh_cycle(GearPair(gear, gear), at(hot_rig, warm))
+    apart = mesh_cycle(GearPair(Gear(30, 3e-3), Gear(30, 3e-3)), at(hot_rig, warm))
+    xr.testing.assert_identical(once, apart)
+    assert np.all(once["pinion_base_growth"] > 1.5 * once["wheel_base_growth"])
+
+
+def test_a_row_of_temperatures_makes_as_many_operating_points(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    one = replace(hot_rig, speed=np.array(100.0), torque=np.array(100.0))
+    housing = T0 + np.array([0.0, 30.0, 60.0])
+    row = at(one, replace(one.temperatures, housing=housing))
+    assert row.speed.shape == row.torque.shape == (3,)
+    lost = 125e-6 - mesh_cycle(rig, row)["half_backlash"].values
+    slope = 11.5e-6 * rig.centre_distance * np.sin(rig.operating_pressure_angle)
+    np.testing.assert_allclose(np.diff(lost), -30.0 * slope, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "got"),
+    [
+        ({"torque": np.ones(2)}, "speed (3,), torque (2,)"),
+        ({"oil_temperature": np.full(2, 350.0)}, "speed (3,), torque (3,), oil_temperature (2,)"),
+        ({"speed": np.ones((3, 1))}, "speed (3, 1), torque (3,)"),
+    ],
+)
+def test_operating_arrays_of_different_lengths_are_one_line(
+    hot_rig: Operating, change: dict[str, object], got: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        replace(hot_rig, **change)  # type: ignore[arg-type]
+    assert str(caught.value) == f"operating: got {got}; allowed numbers and arrays of one length"
+
+
+def test_a_pitch_circle_outside_the_teeth_leaves_the_cycle_whole(hot_rig: Operating) -> None:
+    far = GearPair(Gear(80, 3e-3, profile_shift=1.2), Gear(90, 3e-3, profile_shift=-1.2))
+    assert far.wheel.tip_radius < far.wheel.pitch_radius
+    cold = mesh_cycle(far, at(hot_rig, hot_rig.temperatures.cold()))["mean_stiffness"].values
+    uniform = at(hot_rig, Temperatures.uniform(T0 + 110.0, T0))
+    warm = mesh_cycle(far, uniform)["mean_stiffness"].values
+    np.testing.assert_allclose(warm / cold, 1.0 - 3.3e-4 * 110.0, rtol=4e-3)
+
+
+def test_a_contact_that_does_not_settle_is_a_status(
+    rig: GearPair, hot_rig: Operating, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lost(self: LoadedPair, phase: np.ndarray) -> MeshCurves:
+        k = np.full((3, phase.size), 4e8)
+        k[1, 0] = np.nan
+        return MeshCurves(k, np.zeros_like(k), np.zeros_like(k))
+
+    monkeypatch.setattr(LoadedPair, "over", lost)
+    status = mesh_cycle(rig, hot_rig)["status"].values
+    assert [STATUS[i] for i in status] == ["ok", "not_converged", "ok"]
 
 
 def test_the_printed_stiffness_curve_within_half_a_per_cent(hot_rig: Operating) -> None:

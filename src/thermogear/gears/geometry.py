@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -100,13 +100,19 @@ class Rack:
         return (0.25 * math.pi - self.dedendum * math.tan(pressure_angle)) / slope
 
 
+_UNSTATED = Rack()
+"""Stands for a rack left out; one that was asked for is taken as it is or refused."""
+
+
 @dataclass(frozen=True)
 class Gear:
     """A spur gear as it is drawn, at the reference temperature (SI).
 
     ``profile_shift`` x in modules, ``roughness`` Ra of the flanks. ``tip_radius`` left out is
     pitch radius + (h_aP + x) m; ``face_width`` left out is 5 modules and ``bore_radius`` 0.4
-    pitch radii (our choices). An undercut tooth is refused unless ``allow_undercut``.
+    pitch radii (our choices). ``rack`` left out is that of ISO 53, with a full round where a
+    steep pressure angle leaves no room for its fillet. An undercut tooth is refused unless
+    ``allow_undercut``.
     """
 
     teeth: int
@@ -116,7 +122,7 @@ class Gear:
     face_width: float = math.nan
     bore_radius: float = math.nan
     tip_radius: float = math.nan
-    rack: Rack = field(default_factory=Rack)
+    rack: Rack = _UNSTATED
     material: Material = MATERIALS["steel"]
     roughness: float = 0.4e-6
     allow_undercut: bool = False
@@ -133,6 +139,8 @@ class Gear:
         if not math.isfinite(self.profile_shift):
             raise InputError("profile_shift", self.profile_shift, allowed="finite")
         largest = self.rack.largest_fillet_radius(self.pressure_angle)
+        if self.rack is _UNSTATED and 0.0 <= largest < self.rack.fillet_radius:
+            object.__setattr__(self, "rack", replace(self.rack, fillet_radius=largest))
         if self.rack.fillet_radius > largest * (1.0 + 1e-12):
             raise GeometryError(
                 "rack.fillet_radius",
@@ -338,6 +346,7 @@ class GearPair:
     """A driving pinion and a driven wheel; ``centre_distance`` left out is free of backlash.
 
     A centre distance above that opens a normal backlash; one below it jams and is refused.
+    One gear given twice means two equal ones.
     """
 
     pinion: Gear
@@ -345,6 +354,9 @@ class GearPair:
     centre_distance: float = math.nan
 
     def __post_init__(self) -> None:
+        if self.wheel is self.pinion:
+            # each has temperatures of its own
+            object.__setattr__(self, "wheel", replace(self.pinion))
         for name in ("module", "pressure_angle"):
             mine, other = getattr(self.pinion, name), getattr(self.wheel, name)
             if not math.isclose(mine, other, rel_tol=1e-12):

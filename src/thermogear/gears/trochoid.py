@@ -65,10 +65,14 @@ class Trochoid:
     def section_at_slope(self, slope: float) -> float:
         """gamma [rad] where the fillet's tangent makes ``slope`` [rad] with the tooth axis.
 
-        The tangent is normal to the contact normal: the angle is gamma - phi(gamma).
+        The tangent is normal to the contact normal: the angle is gamma - phi(gamma). It rises
+        towards the root circle, with the centre above the rolling line only from
+        sin^2(gamma) = -a1/r on.
         """
+        turning = math.asin(math.sqrt(min(max(-self.centre_depth / self.pitch_radius, 0.0), 1.0)))
+        low = max(turning, 1e-3)
         return float(
-            brentq(lambda g: g - float(self.roll(g)) - slope, 1e-3, 0.5 * math.pi, xtol=1e-15)
+            brentq(lambda g: g - float(self.roll(g)) - slope, low, 0.5 * math.pi, xtol=1e-15)
         )
 
     def crossing(self, base_radius: float, base_half_angle: float) -> float | None:

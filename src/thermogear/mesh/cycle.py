@@ -52,8 +52,9 @@ def mesh_cycle(
     friction, flash and contact temperature, thermal growth of both flanks, and the springs of
     the pair. Over the mesh phase (0 where a pair enters at A): mesh stiffness, half backlash,
     thermal error. Per operating point: normal force, mean and extreme stiffness, half backlash,
-    jam temperature, and ``status``: ``ok``, or ``jammed`` where the least half backlash over the
-    phase is <= 0 (the values stay, for they say how far it is jammed).
+    jam temperature (the pinion's addendum when both gears warm alike), and ``status``: ``ok``;
+    ``jammed`` where the least half backlash over the phase is <= 0 (the values stay, for they
+    say how far it is jammed); ``not_converged`` where the loaded contact did not settle.
 
     ``deviations`` of the flanks (relief, pitch errors, ...) enter the loaded contact; heat's own
     is added there. ``model`` defaults to :meth:`MeshModel.consistent`. Zero torque gives zero
@@ -180,9 +181,11 @@ def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
     total = k + thermal
     backlash = hot_backlash(hot, phase, elastic.pair_stiffness)
     least = backlash.half_backlash.min(axis=1)
-    hottest = np.broadcast_to(
+    addendum = np.broadcast_to(
         np.asarray(hot.temperatures.pinion_addendum, dtype=float), (hot.count,)
     )
+    status = np.where(least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))
+    status[~np.isfinite(total).all(axis=1)] = STATUS.index("not_converged")
     highest, lowest = total.max(axis=1), total.min(axis=1)
     return {
         "elastic_stiffness": (PHASE, k),
@@ -199,6 +202,6 @@ def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
         "mid_range_stiffness": (POINT, 0.5 * (highest + lowest)),
         "half_backlash": (POINT, backlash.half_backlash.mean(axis=1)),
         "cold_half_backlash": (POINT, np.full(hot.count, hot.operating.half_backlash)),
-        "jam_temperature": (POINT, hottest + backlash.jam_rise),
-        "status": (POINT, np.where(least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))),
+        "jam_temperature": (POINT, addendum + backlash.jam_rise),
+        "status": (POINT, status),
     }

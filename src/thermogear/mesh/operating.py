@@ -49,6 +49,8 @@ class Temperatures:
 class Operating:
     """Operating points of a gear pair (SI), arrays of one shape ``(operating,)``.
 
+    Speed, torque and all temperatures are numbers or arrays that broadcast to that shape.
+
     ``speed`` pinion speed [rad/s] > 0, ``torque`` pinion torque [N m] >= 0 (the wheel carries
     torque x ratio), ``half_backlash`` cold half backlash b [m] along the line of action,
     ``oil_temperature`` [K] of the oil that enters the mesh; ``housing`` the material that moves
@@ -64,14 +66,23 @@ class Operating:
     housing: Material = MATERIALS["steel"]
 
     def __post_init__(self) -> None:
-        speed, torque = np.broadcast_arrays(
-            np.atleast_1d(np.asarray(self.speed, dtype=float)),
-            np.atleast_1d(np.asarray(self.torque, dtype=float)),
+        t = self.temperatures
+        shapes = {name: np.shape(getattr(self, name)) for name in ("speed", "torque")}
+        shapes["oil_temperature"] = np.shape(self.oil_temperature)
+        shapes |= {f.name: np.shape(getattr(t, f.name)) for f in fields(t) if f.name != "reference"}
+        try:
+            shape = np.broadcast_shapes((1,), *shapes.values())
+        except ValueError:
+            shape = ()
+        if len(shape) != 1:
+            given = ", ".join(f"{name} {s}" for name, s in shapes.items() if s)
+            raise InputError("operating", given, allowed="numbers and arrays of one length")
+        speed, torque = (
+            np.broadcast_to(np.asarray(values, dtype=float), shape)
+            for values in (self.speed, self.torque)
         )
         object.__setattr__(self, "speed", speed)
         object.__setattr__(self, "torque", torque)
-        if speed.ndim != 1:
-            raise InputError("operating.speed", f"shape {speed.shape}", allowed="one axis")
         if not np.all(np.isfinite(speed) & (speed >= 0.0)):
             raise InputError("operating.speed", f"{speed} rad/s", allowed=">= 0, finite")
         oil = np.asarray(self.oil_temperature, dtype=float)

@@ -127,14 +127,16 @@ class HotPair:
     def moduli(self, gear: Gear) -> tuple[Floats, Floats]:
         """(E of the teeth, E of the body) [Pa], shape (count,).
 
-        Teeth at the pitch radius's temperature, the body at its mean by area up to the root
-        circle; E at 20 C where the model keeps the modulus constant.
+        Teeth at the pitch radius's temperature (at root or tip circle where a large profile
+        shift puts the pitch circle outside the tooth), the body at its mean by area up to the
+        root circle; E at 20 C where the model keeps the modulus constant.
         """
         if self.model.modulus == "constant":
             both = np.full(self.count, gear.material.youngs_modulus)
             return both, both
         field = self.field(gear)
-        teeth = gear.material.youngs_modulus_at(field.temperature(gear.pitch_radius))
+        middle = min(max(gear.pitch_radius, gear.root_radius), gear.tip_radius)
+        teeth = gear.material.youngs_modulus_at(field.temperature(middle))
         body = gear.material.youngs_modulus_at(field.area_mean(gear.root_radius))
         return teeth[:, 0], body[:, 0]
 
