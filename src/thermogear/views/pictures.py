@@ -1,0 +1,61 @@
+"""The pictures of a page as files of their own, for a paper or a slide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from thermogear.base.errors import InputError
+from thermogear.views.page import Cell, Pictures
+from thermogear.views.report import ORDER
+from thermogear.views.results import read_results
+from thermogear.views.style import styled
+
+KINDS = ("png", "svg", "pdf")
+
+
+@dataclass
+class _Files(Pictures):
+    """Saves every picture instead of putting it into a page."""
+
+    folder: Path = Path()
+    kind: str = "png"
+    written: list[Path] = field(default_factory=list)
+
+    def add(
+        self,
+        name: str,
+        heading: str,
+        caption: Cell,
+        data: xr.Dataset,
+        needs: Iterable[str],
+        make: Callable[[], Figure],
+        wide: bool = False,
+    ) -> None:
+        if not all(need in data.variables for need in needs):
+            return
+        path = self.folder / f"{name}.{self.kind}"
+        with styled():
+            make().savefig(path, dpi=130, facecolor="white")
+        self.written.append(path)
+
+
+def write_pictures(directory: Path, folder: Path, kind: str = "png") -> list[Path]:
+    """Save every picture of the page of ``directory`` to ``folder``; the paths, in page order.
+
+    ``kind`` is png, svg or pdf. Existing files of the same names are replaced. Raises InputError,
+    in one line, where the results are missing or damaged or the kind is unknown.
+    """
+    if kind not in KINDS:
+        raise InputError("kind", repr(kind), allowed=" | ".join(KINDS))
+    results = read_results(Path(directory))
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    files = _Files(folder=folder, kind=kind)
+    for make in ORDER:
+        make(results, files)
+    return files.written
