@@ -17,6 +17,7 @@ import click
 
 from thermogear import __version__
 from thermogear.base.errors import ThermogearError, nearest
+from thermogear.front.engine_commands import COMMANDS as ENGINE_COMMANDS
 from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
@@ -155,6 +156,10 @@ def schema() -> None:
     from thermogear.study.schema import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+
+
+for _command in ENGINE_COMMANDS:
+    cli.add_command(_command)
 
 
 def _load(case: str, overrides: Sequence[str]) -> GearCase | DimensionlessCase:

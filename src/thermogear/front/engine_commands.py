@@ -1,0 +1,417 @@
+"""``thermogear orbit``, ``lyapunov`` and ``continue``: one motion and its proof.
+
+Each works on a case file (gear or dimensionless, or the name of a ready-made one) or on plain
+numbers. Importing this module imports nothing heavy.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from thermogear.base.errors import InputError
+
+if TYPE_CHECKING:
+    from thermogear.study.engine import Found
+    from thermogear.study.subject import Subject
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+SYMBOLS = {
+    "zeta": "damping ratio",
+    "w": "frequency ratio",
+    "eps": "stiffness amplitude",
+    "fm": "mean force",
+    "fh": "force amplitude",
+    "b": "half backlash over the cold one [1]",
+    "eps_t": "thermal stiffness [0]",
+}
+MOST_BATCHES = 100_000
+
+
+class Stopped(KeyboardInterrupt):
+    """Ctrl+C after what was finished had been kept."""
+
+
+def _subject_options(command: _Command) -> _Command:
+    """CASE and the options that pick one motion out of it, or plain numbers."""
+    options = [
+        click.argument("case", metavar="[CASE]", required=False),
+        *(
+            click.option(f"--{name.replace('_', '-')}", name, type=float, help=f"{words}.")
+            for name, words in SYMBOLS.items()
+        ),
+        click.option("--start", metavar="X,V", help="Start (X, X') instead of the case's."),
+        click.option("--row", metavar="NAME", help="Row of a dimensionless case [the first]."),
+        click.option(
+            "--point", type=int, default=1, show_default=True, help="Point of the row, from 1."
+        ),
+        click.option(
+            "--operating", type=int, default=1, show_default=True,
+            help="Operating point of a gear case, from 1 (speeds x torques).",
+        ),
+        click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
+        click.option("--state", default="hot", show_default=True, help="cold | hot."),
+        click.option(
+            "--set", "overrides", multiple=True, metavar="PATH=VALUE",
+            help="Put a value in place of the file's. May be repeated.",
+        ),
+        click.option("-o", "--output", metavar="DIR", help="Also store data, pictures and a page."),
+        click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def _start(text: str | None) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    try:
+        x, v = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError("--start", repr(text), allowed="two numbers X,V", fix="0,0") from None
+    if not abs(x) < 1e6 or not abs(v) < 1e6:
+        raise InputError("--start", text, allowed="finite numbers below 1e6")
+    return x, v
+
+
+def _numbers(options: dict[str, Any]) -> dict[str, float]:
+    """The given numbers of the equation, by their long names."""
+    from thermogear.study.subject import SHORT
+
+    given = {name.replace("_", "-"): options[name] for name in SYMBOLS}
+    return {SHORT[name]: float(v) for name, v in given.items() if v is not None}
+
+
+def _case(options: dict[str, Any]) -> Any:
+    """The case named on the command line: a file, or a ready-made one; None without."""
+    from thermogear.study.case import load_case, load_example
+    from thermogear.study.ready import EXAMPLES
+
+    name = options["case"]
+    if name is None:
+        if options["overrides"]:
+            raise InputError("--set", options["overrides"][0], why="no case is named")
+        return None
+    if name.removesuffix(".toml") in EXAMPLES and not Path(name).exists():
+        return load_example(name, options["overrides"])
+    return load_case(Path(name), options["overrides"])
+
+
+def _subject(options: dict[str, Any], case: Any) -> Subject:
+    from thermogear.study.subject import of_case, of_numbers
+
+    start, numbers = _start(options["start"]), _numbers(options)
+    if case is None:
+        return of_numbers(numbers, start)
+    return of_case(
+        case,
+        row=options["row"],
+        point=options["point"],
+        operating=options["operating"],
+        bundle=options["bundle"],
+        state=options["state"],
+        numbers=numbers,
+        start=start,
+    )
+
+
+def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, Any]], Any]) -> None:
+    """Store and print what was found; Ctrl+C is passed on once that is done."""
+    page = None
+    if options["output"] is not None:
+        from thermogear.views.engine_page import write_pages
+
+        directory = Path(options["output"])
+        _claim(directory)
+        page = write_pages(result.write(directory))[0]
+    if options["as_json"]:
+        click.echo(json.dumps(result.summary, indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        for line in lines(result.summary):
+            click.echo(line)
+        for notice in result.summary["notices"]:
+            click.echo(f"- {notice}")
+        if page is not None:
+            click.echo(page)
+    if result.interrupted:
+        raise Stopped
+
+
+OURS = ("orbit", "lyapunov", "branch", "cascade")
+
+
+def _claim(directory: Path) -> None:
+    """Make the directory ours: new, empty, or holding our files alone."""
+    from thermogear.study.results import is_ours
+
+    if directory.exists() and not directory.is_dir():
+        raise InputError("output", str(directory), why="it is a file", fix="name a directory")
+    foreign = directory.is_dir() and any(
+        not path.name.lstrip(".").startswith(OURS) for path in directory.iterdir()
+    )
+    if foreign and not is_ours(directory):
+        raise InputError(
+            "output",
+            str(directory),
+            why="the directory holds files that are not results of thermogear",
+            fix="name a new or an empty directory",
+        )
+    directory.mkdir(parents=True, exist_ok=True)
+
+
+def _claim_early(options: dict[str, Any]) -> None:
+    if options["output"] is not None:
+        _claim(Path(options["output"]))
+
+
+@click.command()
+@_subject_options
+@click.option("--period", type=int, help="Mesh periods of the orbit [what the motion settles on].")
+@click.option(
+    "--direct", is_flag=True, help="Newton from the start itself, which reaches unstable orbits."
+)
+def orbit(period: int | None, direct: bool, **options: Any) -> None:
+    """The closed orbit a motion settles on, with its Floquet multipliers.
+
+    \b
+      thermogear orbit table-4.2 --row zeta --point 2
+      thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2
+    """
+    from thermogear.front.progress import progress
+    from thermogear.study.engine import orbit_results
+
+    subject = _subject(options, _case(options))
+    _claim_early(options)
+    with progress(wanted=not options["as_json"]) as report:
+        result = orbit_results(subject, period, transient=not direct, progress=report)
+    _finish(result, options, _orbit_lines)
+
+
+def _orbit_lines(s: dict[str, Any]) -> list[str]:
+    si = s["units"] == "SI"
+    scale, unit = (1e6, " um") if si else (1.0, "")
+    share = s["time_share"]
+    factor = s["dynamic_load_factor"]
+    lines = [
+        s["title"],
+        f"  period                 {s['period']} ({'stable' if s['stable'] else 'unstable'})",
+        f"  state at phase 0       {s['state'][0]:.12g}, {s['state'][1]:.12g}  (X, X')",
+    ]
+    for number, mu in enumerate(s["multipliers"], start=1):
+        imag = f" {mu['imag']:+.9f}i" if mu["imag"] else ""
+        lines.append(
+            f"  Floquet multiplier {number}   {mu['real']:+.9f}{imag}  "
+            f"(modulus {mu['modulus']:.9f})"
+        )
+    lines += [
+        f"  losses of contact      {s['contact_losses']} per orbit",
+        f"  back-side impacts      {s['back_impacts']} per orbit",
+        f"  time                   {100 * share['drive']:.4g} % drive contact, "
+        f"{100 * share['free']:.4g} % free, {100 * share['back']:.4g} % back contact",
+        f"  dynamic load factor    {'infinite' if factor is None else f'{factor:.6g}'}",
+        f"  displacement           {s['least'] * scale:.6g} .. {s['greatest'] * scale:.6g}{unit}"
+        f" (edge of the backlash {s['half_backlash'] * scale:.6g}{unit})",
+        "  greatest lines         order     amplitude" + ("       f [Hz]" if si else ""),
+    ]
+    for line in sorted(s["lines"], key=lambda one: -float(one["amplitude"]))[:8]:
+        hertz = f"{line['frequency_hz']:13.6g}" if si else ""
+        mark = "  half order" if line["half_order"] else ""
+        lines.append(f"{line['order']:28.4g} {line['amplitude'] * scale:13.6g}{hertz}{mark}")
+    return lines
+
+
+@click.command()
+@_subject_options
+@click.option("--discard", type=int, default=2000, show_default=True, help="Periods thrown away.")
+@click.option("--batches", type=int, default=40, show_default=True, help="Batches of the mean.")
+@click.option("--batch-periods", type=int, default=500, show_default=True, help="Periods in each.")
+def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> None:
+    """The largest Lyapunov exponent of a motion with its error.
+
+    \b
+      thermogear lyapunov table-4.2 --row zeta --point 4
+    """
+    from thermogear.front.progress import progress
+    from thermogear.study.engine import lyapunov_results
+
+    if batches > MOST_BATCHES:
+        raise InputError("--batches", batches, allowed=f"4..{MOST_BATCHES}")
+    subject = _subject(options, _case(options))
+    _claim_early(options)
+    with progress(wanted=not options["as_json"]) as report:
+        result = lyapunov_results(
+            subject,
+            discard=discard,
+            batches=batches,
+            batch_periods=batch_periods,
+            progress=report,
+        )
+    _finish(result, options, _lyapunov_lines)
+
+
+def _lyapunov_lines(s: dict[str, Any]) -> list[str]:
+    lines = [
+        s["title"],
+        f"  lambda_1               {s['exponent']:.6f} +- {s['error']:.6f}  ({s['verdict']})",
+        f"  lambda_2               {s['second']:.6f}",
+        f"  sum                    {s['sum']:.9g}  (-2 zeta, exactly)",
+        f"  Kaplan-Yorke dimension {s['kaplan_yorke']:.5f}  (of the section)",
+        f"  per mesh period        {s['per_mesh_period']:.6f}",
+    ]
+    if s["per_second"] is not None:
+        lines.append(f"  per second             {s['per_second']:.6g} 1/s")
+    lines.append(f"  batches                {s['batches']} of {s['batch_periods']} periods")
+    return lines
+
+
+@click.command("continue")
+@_subject_options
+@click.option("--parameter", metavar="NAME", help="zeta, w, ...; speed, torque, temperature.")
+@click.option("--from", "begin", metavar="VALUE", help="Where to begin [the present value].")
+@click.option("--to", metavar="VALUE", help="Where to end; gear values with unit: '4000 rpm'.")
+@click.option("--period", type=int, help="Mesh periods of the orbit [what the motion settles on].")
+@click.option("--direct", is_flag=True, help="Newton from the start itself.")
+@click.option(
+    "--switch", type=int, default=0, show_default=True,
+    help="Follow doubled branches at flips, so many levels deep.",
+)  # fmt: skip
+@click.option(
+    "--cascade", type=int, metavar="N",
+    help="Find the first N period doublings of every row (or of --parameter).",
+)  # fmt: skip
+@click.option("--hot", is_flag=True, help="The cascades with section 4.1's heat beside the cold.")
+def continue_(
+    parameter: str | None,
+    begin: str | None,
+    to: str | None,
+    period: int | None,
+    direct: bool,
+    switch: int,
+    cascade: int | None,
+    hot: bool,
+    **options: Any,
+) -> None:
+    """Follow an orbit in a parameter; locate folds, flips and grazing.
+
+    \b
+      thermogear continue table-4.2 --cascade 4 --hot
+      thermogear continue rig.toml --parameter speed --to "6000 rpm" -o branches
+      thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
+        --parameter zeta --to 0.10 --switch 2
+    """
+    from thermogear.front.progress import progress
+    from thermogear.study.cascades import branch_results, cascade_results
+    from thermogear.study.subject import parameter_name, parameter_value
+
+    case = _case(options)
+    if cascade is not None:
+        sweeps, title = _sweeps(options, case, parameter, begin, to)
+        _claim_early(options)
+        with progress(wanted=not options["as_json"]) as report:
+            result = cascade_results(
+                sweeps, cascade, title=title, hot=hot, start=_start(options["start"]),
+                progress=report,
+            )  # fmt: skip
+        _finish(result, options, _cascade_lines)
+        return
+    if hot:
+        raise InputError("--hot", "without --cascade", fix="add --cascade 4")
+    if parameter is None or to is None:
+        missing = "--parameter" if parameter is None else "--to"
+        raise InputError(missing, "nothing", fix="for instance --parameter zeta --to 0.1")
+    subject = _subject(options, case)
+    name = parameter_name(subject, parameter)
+    end = parameter_value("--to", name, to)
+    first = None if begin is None else parameter_value("--from", name, begin)
+    _claim_early(options)
+    with progress(wanted=not options["as_json"]) as report:
+        result = branch_results(
+            subject, name, end, start=first, period=period, transient=not direct, switch=switch,
+            progress=report,
+        )  # fmt: skip
+    _finish(result, options, _branch_lines)
+
+
+def _sweeps(
+    options: dict[str, Any], case: Any, parameter: str | None, begin: str | None, to: str | None
+) -> tuple[Any, str]:
+    """What a cascade runs through: the parameter, the case's rows, or those of table 4.2."""
+    from thermogear.study.cascades import on_numbers, sweep_of_subject, sweeps_of
+    from thermogear.study.case import DimensionlessCase, load_example
+    from thermogear.study.subject import of_numbers, parameter_name, parameter_value
+
+    if parameter is not None:
+        subject = _subject(options, case)
+        name = parameter_name(subject, parameter)
+        if to is None:
+            raise InputError("--to", "nothing", fix="for instance --to 0.1")
+        first = subject.parameters.get(name, 0.0)
+        if begin is not None:
+            first = parameter_value("--from", name, begin)
+        last = parameter_value("--to", name, to)
+        return (sweep_of_subject(subject, name, first, last),), subject.title
+    if begin is not None or to is not None:
+        raise InputError("--parameter", "nothing", fix="name what runs from --from to --to")
+    numbers = _numbers(options)
+    if case is None:
+        title = "Cascades of plain numbers"
+        numbers = of_numbers(numbers).parameters
+        case = load_example("table-4.2")
+    elif isinstance(case, DimensionlessCase):
+        title = f"Cascades of {case.title}"
+    else:
+        raise InputError(
+            "--cascade",
+            "a gear case",
+            why="cascades are tabled for the dimensionless equation",
+            fix="use --parameter speed --to '4000 rpm' --switch 2",
+        )
+    sweeps = sweeps_of(case, options["row"])
+    return (on_numbers(sweeps, numbers) if numbers else sweeps), title
+
+
+def _branch_lines(s: dict[str, Any]) -> list[str]:
+    lines = [s["title"]]
+    for event in s["bifurcations"]:
+        mu = event["multipliers"][0]
+        imag = f"{mu['imag']:+.6f}i" if mu["imag"] else ""
+        note = f"  {event['note']}" if event["note"] else ""
+        lines.append(
+            f"  {event['kind']:<16} period {event['period']:<3} {s['parameter']} = "
+            f"{event['shown']:<18} multiplier {mu['real']:+.6f}{imag}{note}"
+        )
+    for branch in s["branches"]:
+        lines.append(
+            f"  branch of period {branch['period']}: {branch['points']} orbits, "
+            f"{branch['stable_points']} stable; {branch['ended']}"
+        )
+    return lines
+
+
+def _cascade_lines(s: dict[str, Any]) -> list[str]:
+    lines = [s["title"]]
+    for row in dict.fromkeys(c["row"] for c in s["cascades"]):
+        own = [c for c in s["cascades"] if c["row"] == row]
+        lines.append(f"\n{row}: {own[0]['parameter']} {own[0]['from']:g} to {own[0]['to']:g}")
+        names = [c["heat"].split(" (")[0] for c in own]
+        lines.append("  flip     " + " ".join(f"{name:>20}" for name in names))
+        for k in range(s["flips"]):
+            cells = [
+                f"{c['flips'][k]['value']:20.9f}" if k < len(c["flips"]) else f"{'-':>20}"
+                for c in own
+            ]
+            lines.append(f"  {2**k:>2} -> {2 ** (k + 1):<3} " + " ".join(cells))
+        for c in own:
+            if len(c["flips"]) < s["flips"]:
+                lines.append(f"  {c['heat']}: no further flip, {c['ended']}")
+    heats = dict.fromkeys(c["heat"] for c in s["cascades"] if c["heat"] != "cold")
+    return lines + ([""] + [f"heat: {name}" for name in heats] if heats else [])
+
+
+COMMANDS: list[click.Command] = [orbit, lyapunov, continue_]

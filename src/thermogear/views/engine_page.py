@@ -1,0 +1,276 @@
+"""Pages, pictures and CSV of one orbit, one Lyapunov exponent, branches or cascades.
+
+Everything is drawn from the one stored file; nothing is computed again.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import xarray as xr
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from thermogear.base.errors import InputError
+from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text
+from thermogear.views.plots import engine as plots
+from thermogear.views.results import put
+from thermogear.views.style import styled
+from thermogear.views.svg import draw
+from thermogear.views.words import number
+
+KINDS = ("orbit", "lyapunov", "branch", "cascade")
+
+Groups = dict[str, xr.Dataset]
+Summary = dict[str, Any]
+
+
+def read_engine(path: Path) -> tuple[str, Summary, Groups]:
+    """Kind, summary and groups of a stored file; InputError where it is not ours."""
+    if not path.is_file():
+        raise InputError("results", str(path), why="there is no such file")
+    try:
+        with xr.open_datatree(path, engine="h5netcdf") as tree:
+            attributes = dict(tree.attrs)
+            groups = {
+                node.path.strip("/"): node.to_dataset(inherit=True).load()
+                for node in tree.subtree
+                if node.has_data
+            }
+        kind, summary = str(attributes["kind"]), json.loads(str(attributes["summary"]))
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
+        raise InputError("results", str(path), why="it is damaged or not ours") from error
+    if kind not in KINDS:
+        raise InputError("results", kind, allowed=" | ".join(KINDS))
+    summary["thermogear"] = str(attributes.get("thermogear", ""))
+    return kind, summary, groups
+
+
+def write_pages(path: Path) -> list[Path]:
+    """HTML, SVG, PNG and CSV beside the stored file ``path``; the files, the page first."""
+    kind, summary, groups = read_engine(path)
+    directory = path.parent
+    make = _picture(kind, groups)
+    written = [put(directory / f"{kind}.html", page(kind, summary, groups))]
+    with styled():
+        figure = make()
+        for ending in ("svg", "png"):
+            target = directory / f"{kind}.{ending}"
+            figure.savefig(target, dpi=160, facecolor="white")
+            written.append(target)
+    return written + write_tables(directory, kind, groups)
+
+
+def _picture(kind: str, groups: Groups) -> Callable[[], Figure]:
+    if kind == "orbit":
+        return partial(plots.orbit_picture, groups["orbit"])
+    if kind == "lyapunov":
+        return partial(plots.lyapunov_picture, groups["lyapunov"])
+    branches = _branches(groups)
+    maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
+    return partial(maker, branches)
+
+
+def _branches(groups: Groups) -> list[xr.Dataset]:
+    names = sorted((n for n in groups if n.startswith("branch_")), key=lambda n: int(n[7:]))
+    return [groups[name] for name in names]
+
+
+def write_tables(directory: Path, kind: str, groups: Groups) -> list[Path]:
+    """Every array along an axis as CSV: one file for each axis, branches below each other."""
+    files: dict[str, list[str]] = {}
+    several = [f"branch_{i}" for i in range(len(groups))] if kind in ("branch", "cascade") else []
+    for name in several or list(groups):
+        data = groups[name]
+        own = {k: data.attrs[k] for k in ("row", "heat", "period") if k in data.attrs}
+        for axis in data.dims:
+            columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
+            if not columns or axis == "multiplier":
+                continue
+            units = [str(data[c].attrs.get("units", "")) for c in columns]
+            heads = [f"{c} [{u}]" if u else c for c, u in zip(columns, units, strict=True)]
+            lines = files.setdefault(f"{kind}_{axis}.csv", [",".join([*own, *heads])])
+            arrays = [data[c].values.tolist() for c in columns]
+            for row in zip(*arrays, strict=True):
+                lines.append(",".join(_cell(v) for v in (*own.values(), *row)))
+    return [put(directory / name, "\n".join(lines) + "\n") for name, lines in files.items()]
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    text = str(value)
+    return f'"{text}"' if "," in text else text
+
+
+def page(kind: str, summary: Summary, groups: Groups) -> str:
+    """The self-contained page of one stored result."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    drawn = draw(_picture(kind, groups), kind, f"{kind} of {summary['title']}")
+    caption = CAPTIONS[kind]
+    gallery = Gallery([Picture(kind, HEADINGS[kind], caption, drawn, wide=True)])
+    blocks: list[Block] = [*_TABLES[kind](summary)]
+    sections = [Section("numbers", "Numbers", blocks), Section("picture", "Picture", [gallery])]
+    return environment.get_template("report.html").render(
+        title=str(summary["title"]),
+        style=Markup(sheet),
+        summary=_headline(kind, summary),
+        tiles=[],
+        notices=[("info", "Note", notice) for notice in summary.get("notices", [])],
+        sections=sections,
+        version=summary["thermogear"],
+    )
+
+
+HEADINGS = {
+    "orbit": "The orbit",
+    "lyapunov": "The exponent as batches come in",
+    "branch": "Branches along the parameter",
+    "cascade": "Cascades",
+}
+CAPTIONS = {
+    "orbit": "Dashed: edges of the backlash. An orbit is stable where its multipliers lie inside "
+    "the circle; lines at half orders show a doubled period.",
+    "lyapunov": "The band is one standard error of the mean.",
+    "branch": "Solid: stable; dotted: unstable. Marks: where folds, period doublings and grazing "
+    "were located.",
+    "cascade": "Dots: period doublings. One colour for each state of heat.",
+}
+
+
+def _headline(kind: str, summary: Summary) -> str:
+    if kind == "orbit":
+        largest = summary["multipliers"][0]["modulus"]
+        firm = "stable" if summary["stable"] else "unstable"
+        return f"{summary['label']}, {firm}: largest Floquet multiplier {largest:.9f} in modulus."
+    if kind == "lyapunov":
+        return (
+            f"λ₁ = {summary['exponent']:.5f} ± {summary['error']:.5f} ({summary['verdict']}); "
+            f"the sum of both exponents is {summary['sum']:.6g}."
+        )
+    if kind == "branch":
+        return (
+            f"{len(summary['bifurcations'])} bifurcations on {len(summary['branches'])} branches."
+        )
+    return f"{sum(len(c['flips']) for c in summary['cascades'])} period doublings located."
+
+
+def _orbit_tables(summary: Summary) -> list[Block]:
+    si = summary["units"] == "SI"
+    length = (1e6, "µm") if si else (1.0, "")
+    share = summary["time_share"]
+    factor = summary["dynamic_load_factor"]
+    rows = [
+        ["period n", str(summary["period"]), "mesh periods"],
+        *(
+            [f"multiplier {i}", _complex(mu), f"modulus {mu['modulus']:.9f}"]
+            for i, mu in enumerate(summary["multipliers"], start=1)
+        ),
+        ["state at phase 0", f"{summary['state'][0]:.12g}, {summary['state'][1]:.12g}", "X, X′"],
+        ["losses of contact", str(summary["contact_losses"]), "per orbit"],
+        ["back-side impacts", str(summary["back_impacts"]), "per orbit"],
+        ["time in drive contact", f"{100 * share['drive']:.4g}", "%"],
+        ["time in free flight", f"{100 * share['free']:.4g}", "%"],
+        ["time in back contact", f"{100 * share['back']:.4g}", "%"],
+        ["dynamic load factor", "–" if factor is None else number(factor, 5), ""],
+        *(
+            [words, number(summary[name] * length[0], 6), length[1]]
+            for words, name in (
+                ("least displacement", "least"),
+                ("greatest displacement", "greatest"),
+                ("half backlash", "half_backlash"),
+            )
+        ),
+    ]
+    lines = [
+        [
+            number(line["order"], 4),
+            "half order" if line["half_order"] else "",
+            number(line["amplitude"] * length[0], 5),
+            "–" if line["frequency_hz"] is None else number(line["frequency_hz"], 6),
+        ]
+        for line in sorted(summary["lines"], key=lambda line: -float(line["amplitude"]))[:12]
+    ]
+    marked = frozenset(i for i, row in enumerate(lines) if row[1])
+    head = ["order", "", f"amplitude {length[1]}".strip(), "frequency [Hz]"]
+    return [
+        Table("Orbit", ["quantity", "value", "unit"], rows, names=1),
+        Table("Greatest lines", head, lines, names=2, marked=marked),
+    ]
+
+
+def _complex(mu: dict[str, float]) -> str:
+    if mu["imag"] == 0.0:
+        return f"{mu['real']:.9f}"
+    return f"{mu['real']:.9f} {'+' if mu['imag'] > 0 else '−'} {abs(mu['imag']):.9f} i"
+
+
+def _lyapunov_tables(summary: Summary) -> list[Block]:
+    rows = [
+        ["largest exponent λ₁", f"{summary['exponent']:.6f}"],
+        ["standard error", f"{summary['error']:.6f}"],
+        ["other exponent", f"{summary['second']:.6f}"],
+        ["sum = −2 ζ", f"{summary['sum']:.9g}"],
+        ["Kaplan-Yorke dimension of the section", f"{summary['kaplan_yorke']:.5f}"],
+        ["λ₁ per mesh period", f"{summary['per_mesh_period']:.6f}"],
+        ["batches", f"{summary['batches']} of {summary['batch_periods']} periods"],
+    ]
+    if summary["per_second"] is not None:
+        rows.insert(1, ["λ₁ [1/s]", number(summary["per_second"], 5)])
+    return [Table("Lyapunov exponents", ["quantity", "value"], rows)]
+
+
+def _branch_tables(summary: Summary) -> list[Block]:
+    rows = [
+        [b["kind"], f"period {b['period']}", b["shown"], _complex(b["multipliers"][0]), b["note"]]
+        for b in summary["bifurcations"]
+    ]
+    legs = [
+        [f"period {b['period']}", b["ended"], str(b["points"]), str(b["stable_points"])]
+        for b in summary["branches"]
+    ]
+    found: list[Block] = []
+    if rows:
+        head = ["kind", "orbit", plots.words(summary["parameter"]), "largest multiplier", "note"]
+        found.append(Table("Bifurcations", head, rows, names=2))
+    else:
+        found.append(Text("No bifurcation was found on the way."))
+    found.append(Table("Branches", ["orbit", "ended", "points", "stable"], legs, names=2))
+    return found
+
+
+def _cascade_tables(summary: Summary) -> list[Block]:
+    found: list[Block] = []
+    for row in dict.fromkeys(c["row"] for c in summary["cascades"]):
+        own = [c for c in summary["cascades"] if c["row"] == row]
+        most = summary["flips"]
+        rows = []
+        for k in range(most):
+            cells = [f"{2**k} → {2 ** (k + 1)}"]
+            cells += [f"{c['flips'][k]['value']:.9f}" if k < len(c["flips"]) else "–" for c in own]
+            rows.append(cells)
+        rows.append(["branch then", *(c["ended"] for c in own)])
+        head = ["period doubling", *(c["heat"] for c in own)]
+        words = plots.words(own[0]["parameter"])
+        found.append(Table(f"{words}, {own[0]['from']:g} to {own[0]['to']:g}", head, rows))
+    return found
+
+
+_TABLES: dict[str, Callable[[Summary], list[Block]]] = {
+    "orbit": _orbit_tables,
+    "lyapunov": _lyapunov_tables,
+    "branch": _branch_tables,
+    "cascade": _cascade_tables,
+}

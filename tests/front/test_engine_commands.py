@@ -1,0 +1,148 @@
+"""orbit, lyapunov and continue on the command line: numbers, files, one-line errors, Ctrl+C."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermogear.front.cli import main
+
+NUMBERS = ["--zeta", "0.1535", "--w", "1.245", "--eps", "0.335", "--fm", "0.017", "--fh", "-1.16"]
+
+
+def test_the_commands_import_nothing_heavy() -> None:
+    heavy = ["numpy", "scipy", "numba", "xarray", "matplotlib", "pydantic", "pint", "jinja2"]
+    code = (
+        "import sys, thermogear.front.engine_commands; "
+        f"print([m for m in {heavy} if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_orbit_prints_stores_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "orbit"
+    assert main(["orbit", *NUMBERS, "--start", "0,0", "--period", "2", "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "+0.511918932" in said
+    assert "half order" in said
+    names = {path.name for path in out.iterdir()}
+    assert names >= {"orbit.nc", "orbit.json", "orbit.html", "orbit.svg", "orbit.png"}
+    page = (out / "orbit.html").read_text(encoding="utf-8")
+    assert "0.511918932" in page
+    assert "http" not in page.replace("http://www.w3.org", "")
+    header = (out / "orbit_sample.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert header.startswith("time [1],displacement [1]")
+    # the directory is ours, so a second command may write there
+    assert main(["orbit", *NUMBERS, "-o", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["contact_losses"] == 2
+
+
+def test_lyapunov_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["table-4.2", "--row", "zeta", "--point", "4", "--batches", "8"]
+    assert main(["lyapunov", *arguments, "--batch-periods", "100", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["sum"] == pytest.approx(-0.2)
+    assert said["batches"] == 8
+
+
+@pytest.mark.slow
+def test_one_command_finds_a_whole_cascade(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "cascade"
+    wanted = ["continue", "table-4.2", "--row", "epsilon", "--cascade", "4", "--hot"]
+    assert main([*wanted, "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    for value in ("0.258236471", "0.523447310", "0.562794274", "0.579050411"):
+        assert value in said
+    page = (out / "cascade.html").read_text(encoding="utf-8")
+    assert "0.523447310" in page
+    assert "160 °C" in page
+    assert (out / "cascade_point.csv").read_text(encoding="utf-8").startswith("row,heat,period,")
+
+
+def test_continue_marks_fold_and_grazing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    numbers = ["--zeta", "0.05", "--w", "0.7", "--eps", "0.1", "--fm", "0.1", "--fh", "0.05"]
+    numbers += ["--start", "1.1,0", "--parameter", "w", "--to", "0.9"]
+    out = tmp_path / "branch"
+    assert main(["continue", *numbers, "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "0.773310335" in said
+    assert "0.791736889" in said
+    assert (out / "branch.html").is_file()
+
+
+def test_ctrl_c_keeps_what_is_done(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from thermogear.study import engine
+
+    called = 0
+    real = engine.lyapunov_exponents
+
+    def tired(*arguments: Any, **options: Any) -> Any:
+        nonlocal called
+        called += 1
+        if called == 3:
+            raise KeyboardInterrupt
+        return real(*arguments, **options)
+
+    monkeypatch.setattr(engine, "lyapunov_exponents", tired)
+    out = tmp_path / "kept"
+    arguments = ["lyapunov", *NUMBERS, "--batches", "20", "--batch-periods", "50", "-o", str(out)]
+    assert main(arguments) == 130
+    said = capsys.readouterr()
+    assert "batches                4 of 50 periods" in said.out
+    assert said.err.strip().splitlines()[-1].startswith("interrupted: ")
+    assert (out / "lyapunov.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["orbit"], "--zeta: got nothing"),
+        (["orbit", *NUMBERS, "--start", "1"], "--start: got '1'; allowed two numbers X,V"),
+        (["orbit", *NUMBERS, "--period", "0"], "period: got 0; allowed a whole number >= 1"),
+        (["orbit", "--zeta", "-1", *NUMBERS[2:]], "damping_ratio: got -1.0; allowed >= 0"),
+        (["orbit", "nowhere.toml"], "nowhere.toml: got no such file"),
+        (["orbit", "rig", "--state", "warm"], "--state: got 'warm'; allowed cold | hot"),
+        (["lyapunov", *NUMBERS, "--batches", "1"], "--batches: got 1; allowed >= 4"),
+        (["continue", *NUMBERS], "--parameter: got nothing"),
+        (["continue", *NUMBERS, "--parameter", "zeta"], "--to: got nothing"),
+        (
+            ["continue", *NUMBERS, "--parameter", "zetta", "--to", "1"],
+            "--parameter: got 'zetta'",
+        ),
+        (["continue", *NUMBERS, "--parameter", "zeta", "--to", "x"], "--to: got 'x'"),
+        (["continue", *NUMBERS, "--cascade", "9"], "--cascade: got 9; allowed 1..6"),
+        (["continue", *NUMBERS, "--hot"], "--hot: got without --cascade"),
+        (["continue", "rig", "--cascade", "2"], "--cascade: got a gear case"),
+        (
+            ["continue", "rig", "--parameter", "speed", "--to", "4000"],
+            "--to: got '4000'; the unit is missing",
+        ),
+    ],
+)
+def test_errors_are_one_line(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    lines = said.err.strip().splitlines()
+    assert lines[-1].startswith("error: ")
+    assert message in lines[-1]
+
+
+def test_a_foreign_directory_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "holiday.jpg").write_bytes(b"x")
+    assert main(["orbit", *NUMBERS, "-o", str(tmp_path)]) == 2
+    assert "files that are not results of thermogear" in capsys.readouterr().err
