@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.labels import labels
+from thermogear.analysis.labels import Label, labels
 from thermogear.base.excitation import Excitation
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.integrate import simulate
@@ -99,6 +99,7 @@ def follow(
         "status": status,
         "label": np.array([one.name for one in found]),
         "label_reason": np.array([one.reason for one in found]),
+        **proofs(found),
     }
     return Motion(
         phase=np.arange(shown) / simulation.samples,
@@ -107,6 +108,36 @@ def follow(
         periods=periods,
         values=values,
     )
+
+
+PROOFS = (
+    "orbit_period",
+    "multiplier_real",
+    "multiplier_imag",
+    "multiplier_modulus",
+    "lyapunov_exponent",
+    "lyapunov_error",
+)
+"""What proves a label: n and the largest Floquet multiplier, or lambda_1 with its error."""
+
+
+def proofs(found: Sequence[Label]) -> dict[str, NDArray[np.generic]]:
+    """:data:`PROOFS` of every label; a period of 0 and NaN where there is no such proof.
+
+    The multiplier is the largest over the whole orbit, of a complex pair the one above the real
+    axis; lambda_1 is per omega_n t.
+    """
+    rows = []
+    for one in found:
+        mu = complex(np.nan, np.nan) if one.orbit is None else complex(one.orbit.multipliers[0])
+        rate = (np.nan, np.nan)
+        if one.lyapunov is not None:
+            rate = (one.lyapunov.value, one.lyapunov.error)
+        rows.append((one.period, mu.real, mu.imag, abs(mu), *rate))
+    columns = np.array(rows, dtype=float).reshape(-1, len(PROOFS)).T
+    values: dict[str, NDArray[np.generic]] = dict(zip(PROOFS, columns, strict=True))
+    values["orbit_period"] = columns[0].astype(np.int32)
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +166,7 @@ def follow_gears(
     length = np.array([one.reference_half_backlash for one in present])
     rate = np.array([one.natural_frequency for one in present])
     scales = {"velocity": length * rate, "section_velocity": length * rate}
-    plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason"}
+    plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason", *PROOFS}
     values: dict[str, NDArray[np.generic]] = {}
     for name, rows in motion.values.items():
         if name not in plain:
@@ -151,6 +182,8 @@ def _missing(name: str) -> object:
         return "jammed"
     if name == "label_reason":
         return "the half backlash is used up: no clearance is left to move in"
+    if name == "orbit_period":
+        return 0
     return STATUS.index("jammed") if name == "status" else np.nan
 
 

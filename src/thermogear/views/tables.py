@@ -153,7 +153,11 @@ def motion_proofs(motion: xr.Dataset, axis: str, words: Sequence[str]) -> Table:
 
 
 def _reason(one: xr.Dataset) -> Cell:
-    return prose(one["label_reason"].item()) if "label_reason" in one else ""
+    said = prose(one["label_reason"].item()) if "label_reason" in one else Markup("")
+    if "multiplier_imag" not in one or not float(one["multiplier_imag"]) > 0.0:
+        return said
+    real, imag = (number(float(one[f"multiplier_{part}"]), 4) for part in ("real", "imag"))
+    return Markup("{}, pair {} ± {} i").format(said, real, imag)
 
 
 def _half_order(one: xr.Dataset) -> str:
