@@ -44,6 +44,9 @@ _HOME = {
     "heat_balance": "thermogear.mesh.balance",
     "load_case": "thermogear.study.case",
     "run": "thermogear.study.run",
+    "read_record": "thermogear.measured.readers",
+    "measure": "thermogear.measured.reduction",
+    "compare": "thermogear.study.comparison",
 }
 
 __all__ = ["__version__", *_HOME]

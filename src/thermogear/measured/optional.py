@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import importlib
+import io
+import logging
+import sys
+import warnings
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -29,77 +36,103 @@ def _load(module: str, path: Path, kind: str) -> ModuleType:
         ) from error
 
 
+class _Parts:
+    """What a foreign reader found, before it becomes a record."""
+
+    def __init__(self) -> None:
+        self.channels: list[Channel] = []
+        self.rates: list[tuple[float, str]] = []
+        self.notes: list[Notice] = []
+
+
+def _guarded(
+    path: Path, kind: str, module: str, read: Callable[[ModuleType, Path, _Parts], None]
+) -> Record:
+    """Run a foreign reader: whatever it raises, logs, prints or leaves in its destructors on a
+    malformed file becomes one refusal."""
+    foreign = _load(module, path, kind)
+    parts, reason = _Parts(), ""
+    hook, disabled = sys.unraisablehook, logging.root.manager.disable
+    sys.unraisablehook = lambda _: None
+    logging.disable(logging.CRITICAL)
+    try:
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+            warnings.simplefilter("ignore")
+            try:
+                read(foreign, path, parts)
+            except Exception as error:  # a foreign reader's failures are of any type
+                reason = str(error) or type(error).__name__
+            gc.collect()  # half-built readers fail again when they are taken away: here, unheard
+    finally:
+        sys.unraisablehook = hook
+        logging.disable(disabled)
+    if reason:
+        raise refused(path, kind, reason)
+    return _record(path, kind, parts.channels, parts.rates, parts.notes)
+
+
 def read_tdms(path: Path, options: ReadOptions) -> Record:
     """TDMS: every channel of numbers; rate from wf_increment, unit from unit_string."""
-    nptdms = _load("nptdms", path, "TDMS")
-    channels: list[Channel] = []
-    rates: list[tuple[float, str]] = []
-    try:
-        file = nptdms.TdmsFile.read(path)
-        for group in file.groups():
-            for item in group.channels():
-                values = np.asarray(item[:])
-                if values.dtype.kind not in "iuf" or values.size < 2:
-                    continue
-                said = item.properties
-                step = said.get("wf_increment")
-                if isinstance(step, float) and step > 0:
-                    rates.append((1.0 / step, f"wf_increment of {item.name}"))
-                name = unit(str(said.get("unit_string", said.get("NI_UnitDescription", ""))))
-                channels.append(Channel(f"{group.name}/{item.name}", values, name))
-    except Exception as error:  # a foreign reader's failures are of any type
-        raise refused(path, "TDMS", error) from error
-    return _record(path, "TDMS", channels, rates)
+    return _guarded(path, "TDMS", "nptdms", _tdms)
+
+
+def _tdms(nptdms: ModuleType, path: Path, parts: _Parts) -> None:
+    for group in nptdms.TdmsFile.read(path).groups():
+        for item in group.channels():
+            values = np.asarray(item[:])
+            if values.dtype.kind not in "iuf" or values.size < 2:
+                continue
+            said = item.properties
+            step = said.get("wf_increment")
+            if isinstance(step, float) and step > 0:
+                parts.rates.append((1.0 / step, f"wf_increment of {item.name}"))
+            name = unit(str(said.get("unit_string", said.get("NI_UnitDescription", ""))))
+            parts.channels.append(Channel(f"{group.name}/{item.name}", values, name))
 
 
 def read_uff(path: Path, options: ReadOptions) -> Record:
     """Universal file, data sets 58 that are time responses; step and unit as stored."""
-    pyuff = _load("pyuff", path, "UFF")
-    channels: list[Channel] = []
-    rates: list[tuple[float, str]] = []
-    try:
-        sets = pyuff.UFF(str(path)).read_sets()
-        for number, item in enumerate([sets] if isinstance(sets, dict) else sets, start=1):
-            if item.get("type") != 58 or item.get("func_type") != 1:
-                continue
-            values = np.asarray(item["data"])
-            x = np.asarray(item["x"], dtype=float)
-            if values.dtype.kind not in "iuf" or values.size < 2:
-                continue
-            step = float(item.get("abscissa_inc", 0.0) or 0.0) or float(x[1] - x[0])
-            if step > 0:
-                rates.append((1.0 / step, f"abscissa of set {number}"))
-            name = str(item.get("id1", "")).strip() or f"set {number}"
-            label = str(item.get("ordinate_axis_units_lab", "")).strip()
-            channels.append(Channel(f"{name} {number}", values, unit(label)))
-    except Exception as error:  # a foreign reader's failures are of any type
-        raise refused(path, "UFF", error) from error
-    return _record(path, "UFF", channels, rates)
+    return _guarded(path, "UFF", "pyuff", _uff)
+
+
+def _uff(pyuff: ModuleType, path: Path, parts: _Parts) -> None:
+    sets = pyuff.UFF(str(path)).read_sets()
+    for number, item in enumerate([sets] if isinstance(sets, dict) else sets, start=1):
+        if item.get("type") != 58 or item.get("func_type") != 1:
+            continue
+        values = np.asarray(item["data"])
+        x = np.asarray(item["x"], dtype=float)
+        if values.dtype.kind not in "iuf" or values.size < 2:
+            continue
+        step = float(item.get("abscissa_inc", 0.0) or 0.0) or float(x[1] - x[0])
+        if step > 0:
+            parts.rates.append((1.0 / step, f"abscissa of set {number}"))
+        name = str(item.get("id1", "")).strip() or f"set {number}"
+        label = str(item.get("ordinate_axis_units_lab", "")).strip()
+        parts.channels.append(Channel(f"{name} {number}", values, unit(label)))
 
 
 def read_mdf(path: Path, options: ReadOptions) -> Record:
     """MDF 4 (and 3): the channels of the longest common time base; unit as stored."""
-    asammdf = _load("asammdf", path, "MDF")
-    channels: list[Channel] = []
-    rates: list[tuple[float, str]] = []
-    notes: list[Notice] = []
-    try:
-        with asammdf.MDF(str(path)) as file:
-            signals: list[Any] = [s for s in file.iter_channels() if s.samples.dtype.kind in "iuf"]
-            for item in signals:
-                stamps = np.asarray(item.timestamps, dtype=float)
-                if stamps.size < 3:
-                    continue
-                steps = np.diff(stamps)
-                step = (stamps[-1] - stamps[0]) / steps.size
-                if step > 0 and np.max(np.abs(steps - step)) <= 0.5 * step:
-                    rates.append((1.0 / step, f"time base of {item.name}"))
-                else:
-                    notes.append(Notice("important", f"{item.name}: its time base is not uniform"))
-                channels.append(Channel(item.name, np.asarray(item.samples), unit(item.unit or "")))
-    except Exception as error:  # a foreign reader's failures are of any type
-        raise refused(path, "MDF", error) from error
-    return _record(path, "MDF", channels, rates, notes)
+    return _guarded(path, "MDF", "asammdf", _mdf)
+
+
+def _mdf(asammdf: ModuleType, path: Path, parts: _Parts) -> None:
+    with asammdf.MDF(str(path)) as file:
+        signals: list[Any] = [s for s in file.iter_channels() if s.samples.dtype.kind in "iuf"]
+        for item in signals:
+            stamps = np.asarray(item.timestamps, dtype=float)
+            if stamps.size < 3:
+                continue
+            steps = np.diff(stamps)
+            step = float((stamps[-1] - stamps[0]) / steps.size)
+            if step > 0 and np.max(np.abs(steps - step)) <= 0.5 * step:
+                parts.rates.append((1.0 / step, f"time base of {item.name}"))
+            else:
+                text = f"{item.name}: its time base is not uniform"
+                parts.notes.append(Notice("important", text))
+            samples = np.asarray(item.samples)
+            parts.channels.append(Channel(item.name, samples, unit(item.unit or "")))
 
 
 def _record(
@@ -107,11 +140,11 @@ def _record(
     kind: str,
     channels: list[Channel],
     rates: list[tuple[float, str]],
-    notes: list[Notice] | None = None,
+    notes: list[Notice],
 ) -> Record:
     if not channels:
         raise refused(path, kind, "it holds no channel of numbers")
-    said = list(notes or [])
+    said = list(notes)
     longest = max(map(len, channels))
     aside = [c.name for c in channels if len(c) != longest]
     if aside:

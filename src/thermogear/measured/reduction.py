@@ -23,7 +23,7 @@ from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
 
-LONGEST = 1 << 22
+LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import IO
@@ -17,7 +17,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.measured.layout import MISSING, NUMBER, Layout, cells_of, find_layout
 from thermogear.measured.options import ReadOptions, refused, too_large
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.store import ColumnStore
+from thermogear.measured.store import ColumnStore, FileTable
 from thermogear.measured.traps import (
     is_tacho_name,
     is_time_name,
@@ -241,24 +241,26 @@ def _value(cell: str) -> float:
 # --- the record ----------------------------------------------------------------------------------
 
 
-def _record(path: Path, layout: Layout, keep: list[int], columns: list[Floats]) -> Record:
+def _record(
+    path: Path, layout: Layout, keep: list[int], columns: Sequence[Floats | FileTable]
+) -> Record:
     notes = list(layout.notices)
     names = [layout.names[i] for i in keep]
     units = [layout.units[i] for i in keep]
     rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
     times = [i for i, name in enumerate(names) if is_time_name(name)]
     for place in times[:1]:
-        t = np.asarray(columns[place])
+        t = np.asarray(columns[place][:])
         same = {
             int(i) + 1
             for i in np.flatnonzero(np.diff(t) == 0.0)
-            if all(c[i] == c[i + 1] for c in columns)
+            if all(np.ptp(np.asarray(c[int(i) : int(i) + 2])) == 0.0 for c in columns)
         }
         base = read_time(names[place], units[place], t, same)
         notes += base.notices
         start = base.start
         if base.drop:
-            columns = [np.delete(c, base.drop) for c in columns]
+            columns = [np.delete(np.asarray(c[:]), base.drop) for c in columns]
         if base.rate is not None and rate is not None and abs(base.rate / rate - 1) > 1e-3:
             notes.append(
                 Notice(

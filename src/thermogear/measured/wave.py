@@ -1,4 +1,4 @@
-"""WAV (RIFF and RF64): integer and float samples, left on disk as a memory map."""
+"""WAV (RIFF and RF64): integer and float samples, left on disk and read slice by slice."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.store import FileTable
 from thermogear.measured.tables import Column
 
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
@@ -18,12 +19,13 @@ _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 class _Packed24:
     """24-bit integers, three bytes each, unpacked slice by slice; shape (frames, channels)."""
 
-    def __init__(self, raw: Any) -> None:
-        self._raw = raw  # (frames, channels, 3) bytes
-        self.shape = raw.shape[:2]
+    def __init__(self, raw: FileTable, channels: int) -> None:
+        self._raw = raw  # frames of 3 bytes per channel
+        self.shape = (raw.shape[0], channels)
 
     def __getitem__(self, key: tuple[slice, int]) -> Any:
-        part = np.asarray(self._raw[key[0], key[1]]).astype(np.int32)
+        first = 3 * key[1]
+        part = self._raw.frames(key[0])[:, first : first + 3].astype(np.int32)
         value = part[..., 0] | part[..., 1] << 8 | part[..., 2] << 16
         return (value ^ 0x800000) - 0x800000
 
@@ -91,16 +93,15 @@ def _samples(
     path: Path, code: int, bits: int, offset: int, frames: int, channels: int
 ) -> tuple[Any, float, float, bool]:
     """Stored samples with scale and offset to fractions of full scale, and whether integer."""
-    shape = (frames, channels)
     if code == _FLOAT and bits in (32, 64):
         kind = "<f4" if bits == 32 else "<f8"
-        return np.memmap(path, kind, "r", offset, shape), 1.0, 0.0, False
+        return FileTable.of(path, kind, offset, frames, channels), 1.0, 0.0, False
     if code == _PCM and bits == 8:  # unsigned, 128 is zero
-        return np.memmap(path, "u1", "r", offset, shape), 1 / 128, -1.0, True
+        return FileTable.of(path, "u1", offset, frames, channels), 1 / 128, -1.0, True
     if code == _PCM and bits in (16, 32):
         kind = "<i2" if bits == 16 else "<i4"
-        return np.memmap(path, kind, "r", offset, shape), 2.0 ** (1 - bits), 0.0, True
+        return FileTable.of(path, kind, offset, frames, channels), 2.0 ** (1 - bits), 0.0, True
     if code == _PCM and bits == 24:
-        raw = np.memmap(path, "u1", "r", offset, (*shape, 3))
-        return _Packed24(raw), 2.0**-23, 0.0, True
+        raw = FileTable.of(path, "u1", offset, frames, 3 * channels)
+        return _Packed24(raw, channels), 2.0**-23, 0.0, True
     raise refused(path, "WAV", f"format {code} with {bits} bits is not supported")

@@ -102,10 +102,10 @@ def case_lines(
         rng = np.random.default_rng(seed)
         spread: dict[float, list[float]] = {}
         for _ in range(max(2, samples)):
-            changes = {
-                name: scaled(_stated(text, kept, name), 1.0 + sigma * rng.standard_normal())
+            changes = dict(
+                override_of(text, kept, name, float(1.0 + sigma * rng.standard_normal()))
                 for name, sigma in tolerances.items()
-            }
+            )
             for speed, value in _relative(base, tables(changes)).items():
                 spread.setdefault(speed, []).append(value)
         u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
@@ -163,6 +163,29 @@ def scaled(value: str, factor: float) -> str:
         raise InputError("tolerances", repr(value), why="it is no number with a unit")
     number = float(found.group(1)) * factor
     return f"{number!r} {found.group(2)}".strip()
+
+
+def override_of(text: str, changes: Mapping[str, str], name: str, factor: float) -> tuple[str, str]:
+    """The override that multiplies a field by a factor.
+
+    "transmission_error.amplitude" means the amplitudes of all its harmonics.
+    """
+    if name != "transmission_error.amplitude":
+        return name, scaled(_stated(text, changes, name), factor)
+    field = "transmission_error.harmonics"
+    if field in changes:
+        table: Any = tomllib.loads(f"harmonics = {changes[field]}")
+    else:
+        table = tomllib.loads(text).get("transmission_error", {})
+    rows = table.get("harmonics", [])
+    if not rows:
+        raise InputError("parameters", repr(name), why="the case states no transmission error")
+    parts = []
+    for row in rows:
+        grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
+        pairs = (f"{k} = {v if not isinstance(v, str) else repr(v)}" for k, v in grown.items())
+        parts.append("{ " + ", ".join(pairs) + " }")
+    return field, "[" + ", ".join(parts) + "]"
 
 
 def simulated_record(
