@@ -9,8 +9,10 @@ import pytest
 import xarray as xr
 
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
+from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES, STATUS
+from thermogear.gears.deviations import PitchError
 from thermogear.mesh.elastic import LoadedPair, MeshCurves
 
 T0 = ZERO_CELSIUS + 20.0
@@ -43,8 +45,9 @@ def test_everything_uniformly_hot_changes_no_backlash_at_all(
     rig: GearPair, hot_rig: Operating
 ) -> None:
     warm = at(hot_rig, Temperatures.uniform(ZERO_CELSIUS + 130.0, T0))
-    cycle = mesh_cycle(rig, warm)
+    cycle = mesh_cycle(rig, warm, mesh_positions=240)
     assert np.all(cycle["half_backlash_curve"].values == hot_rig.half_backlash)
+    assert np.all(cycle["half_backlash"].values == hot_rig.half_backlash)
     assert np.all(cycle["thermal_error"].values == 0.0)
     # the flanks did grow: an involute of the larger base circle, lambda tau rho
     rise = 110.0 * rig.pinion.material.thermal_expansion
@@ -274,6 +277,18 @@ def test_a_pitch_circle_outside_the_teeth_leaves_the_cycle_whole(hot_rig: Operat
     uniform = at(hot_rig, Temperatures.uniform(T0 + 110.0, T0))
     warm = mesh_cycle(far, uniform)["mean_stiffness"].values
     np.testing.assert_allclose(warm / cold, 1.0 - 3.3e-4 * 110.0, rtol=4e-3)
+
+
+def test_pitch_errors_are_said_to_reach_one_mesh_period_alone(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    whole = PitchError("pinion", (1e-6,) * 25)
+    shifted = mesh_cycle(rig, hot_rig, deviations=[whole])
+    np.testing.assert_allclose(
+        shifted["mesh_stiffness"].values, mesh_cycle(rig, hot_rig)["mesh_stiffness"], rtol=1e-9
+    )
+    with pytest.warns(ValidityWarning, match="pitch errors: the mesh cycle holds one mesh period"):
+        mesh_cycle(rig, hot_rig, deviations=[PitchError("pinion", (1e-6,) + (0.0,) * 24)])
 
 
 def test_a_contact_that_does_not_settle_is_a_status(

@@ -1,7 +1,7 @@
 """Approach of two flanks in line contact: Hertzian laws by three sources.
 
-Every law here has the form delta = F (A - C ln F) + K F^0.9; :class:`ContactLaw` carries
-those coefficients to the load-sharing solver, the functions say the formulas.
+Every law here has the form delta = F (A - C ln F) + K F^0.9, whose coefficients the
+load-sharing solver takes; the functions say the formulas.
 """
 
 from __future__ import annotations

@@ -62,6 +62,3 @@ def stiffness_share(
     return np.asarray(
         np.divide(stiffness[reach], total, out=np.zeros_like(total), where=total > 0.0)
     )
-
-
-SHARING = {"equal": equal_share, "stiffness": stiffness_share}

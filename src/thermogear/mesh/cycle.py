@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.gears.contact import (
     entrainment_velocity,
@@ -17,7 +18,7 @@ from thermogear.gears.contact import (
     path_of_contact,
     sliding_velocity,
 )
-from thermogear.gears.deviations import Deviation
+from thermogear.gears.deviations import Deviation, PitchError
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.losses import efficiency
@@ -56,14 +57,23 @@ def mesh_cycle(
     ``jammed`` where the least half backlash over the phase is <= 0 (the values stay, for they
     say how far it is jammed); ``not_converged`` where the loaded contact did not settle.
 
-    ``deviations`` of the flanks (relief, pitch errors, ...) enter the loaded contact; heat's own
-    is added there. ``model`` defaults to :meth:`MeshModel.consistent`. Zero torque gives zero
-    contact and flash; zero speed gives zero flash; the pitch point has its limit values. Warns
-    outside the ranges of the sources; raises InputError for fewer than 2 positions.
+    ``deviations`` of the flanks (relief, profile, ...) enter the loaded contact; heat's own is
+    added there. The cycle is one mesh period: pitch errors, which differ from tooth to tooth,
+    enter with the teeth of the first period alone, and a warning says so. ``model`` defaults to
+    :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
+    zero flash; the pitch point has its limit values. Warns outside the ranges of the sources;
+    raises InputError for fewer than 2 positions.
     """
     for name, count in (("path_positions", path_positions), ("mesh_positions", mesh_positions)):
         if count < 2:
             raise InputError(name, count, allowed=">= 2")
+    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in deviations):
+        warnings.warn(
+            "pitch errors: the mesh cycle holds one mesh period, in which the first teeth alone "
+            "stand; ask loaded_contact for phases of a whole revolution",
+            ValidityWarning,
+            stacklevel=2,
+        )
     hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
     elastic = elastic_pair(hot, deviations)
     s = path_of_contact(pair, path_positions)
@@ -200,7 +210,8 @@ def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
         "bore_clamped_stiffness": (POINT, mean_stiffness_of_body(elastic, phase, "bore-clamped")),
         "peak_to_peak_stiffness": (POINT, highest - lowest),
         "mid_range_stiffness": (POINT, 0.5 * (highest + lowest)),
-        "half_backlash": (POINT, backlash.half_backlash.mean(axis=1)),
+        # counted from the least, so that a constant gap keeps its last bit
+        "half_backlash": (POINT, least + (backlash.half_backlash - least[:, None]).mean(axis=1)),
         "cold_half_backlash": (POINT, np.full(hot.count, hot.operating.half_backlash)),
         "jam_temperature": (POINT, addendum + backlash.jam_rise),
         "status": (POINT, status),
