@@ -1,0 +1,501 @@
+"""``bifurcation``, ``map``, ``basins``, ``runup`` and ``sweep`` for the command line to register.
+
+Each works into a store directory: killed or stopped, the same command goes on where it was.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from thermogear.base.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from thermogear.analysis.plan import Plan
+    from thermogear.study.case import DimensionlessCase, GearCase
+    from thermogear.study.work import Report, Step
+
+_case = click.argument("case", metavar="CASE")
+
+
+def _common(command: Callable[..., None]) -> Callable[..., None]:
+    """Options of every one of these commands."""
+    options = [
+        click.option("-o", "--output", required=True, metavar="DIR", help="Store of the results; "
+                     "the same command goes on with an unfinished one."),
+        click.option("--set", "overrides", multiple=True, metavar="PATH=VALUE",
+                     help="Put a value in place of the file's. May be repeated."),
+        click.option("--bundle", default="", help="Bundle of choices; default: the case's first."),
+        click.option("--state", default="hot", show_default=True,
+                     help="hot, cold, or the gears' temperature in degC."),
+        click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
+        click.option("--scheduler", metavar="ADDRESS",
+                     help="Hand the chunks to this dask scheduler (extra [cluster])."),
+        click.option("--force", is_flag=True, help="Run even if it may not fit."),
+        click.option("--estimate", "only_estimate", is_flag=True,
+                     help="Print time, memory and disk it will take, and stop."),
+        click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+_over = click.option(
+    "--over",
+    multiple=True,
+    required=True,
+    metavar="NAME=FROM:TO:COUNT",
+    help="A parameter and its values: rpm, torque, temperature, backlash, damping or a dotted "
+    "field of a gear case; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.",
+)
+_but = click.option(
+    "--but",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Change a number of a dimensionless base set. May be repeated.",
+)
+
+
+@click.command()
+@_case
+@_over
+@_but
+@click.option("--start", "starts", multiple=True, metavar="X,V",
+              help="A start in half backlashes. May be repeated.")  # fmt: skip
+@click.option("--branch-period", type=click.IntRange(0, 64), default=4, show_default=True,
+              help="Follow branches of orbits up to this period; 0: none.")  # fmt: skip
+@click.option("--against", multiple=True, metavar="NAME=VALUE",
+              help="A second diagram with these numbers changed (state=VALUE for a gear case), "
+              "and a table of what moved.")  # fmt: skip
+@_common
+def bifurcation(
+    case: str,
+    over: tuple[str, ...],
+    but: tuple[str, ...],
+    starts: tuple[str, ...],
+    branch_period: int,
+    against: tuple[str, ...],
+    output: str,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
+    from thermogear.study.analyses import case_diagram, moved_points, parse_axis
+
+    read = _load(case, options["overrides"])
+    if len(over) != 1:
+        raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
+    name, values = parse_axis(read, over[0])
+    begin = tuple(_pair_of(text) for text in starts)
+    changes = _numbers(but)
+
+    def plan(state: str | float, changed: dict[str, float]) -> Plan:
+        return case_diagram(
+            read, name, values, bundle=options["bundle"], state=state, changes=changed,
+            branch_period=branch_period, starts=begin,
+        )  # fmt: skip
+
+    state = _state(options["state"])
+    directory = Path(output)
+    whole = plan(state, changes)
+    if not against:
+        _carry(whole, directory, read.title, as_json, options, _diagram_summary)
+        return
+    other_state = state
+    second: dict[str, str] = dict(_split(text) for text in against)
+    if "state" in second:
+        other_state = _state(second.pop("state"))
+    other = plan(other_state, changes | _numbers(tuple(f"{k}={v}" for k, v in second.items())))
+    one = _compute(whole, directory / "one", read.title, options)
+    two = _compute(other, directory / "other", read.title, options)
+    if one is None or two is None:
+        return
+    rows = moved_points(one, two)
+    if as_json:
+        content = {
+            "one": _diagram_summary(one), "other": _diagram_summary(two), "moved": rows
+        }  # fmt: skip
+        _echo_json(content)
+        return
+    shown = _show(name)
+    click.echo(f"{'kind':<17}{'period':>6}{'one':>16}{'other':>16}{'moved by':>14}")
+    for row in rows:
+        cells = [
+            "-" if row[key] is None else f"{shown(row[key]) - base:.9g}"
+            for key, base in (("one", 0.0), ("other", 0.0), ("moved", shown(0.0)))
+        ]
+        click.echo(f"{row['kind']:<17}{row['period']:>6}{cells[0]:>16}{cells[1]:>16}{cells[2]:>14}")
+
+
+@click.command("map")
+@_case
+@_over
+@_but
+@click.option("--full", is_flag=True, help="Compute every point, give none up to its neighbours.")
+@_common
+def map_(
+    case: str,
+    over: tuple[str, ...],
+    but: tuple[str, ...],
+    full: bool,
+    output: str,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Map of the regimes of CASE over two parameters (--over twice)."""
+    from thermogear.study.analyses import case_map, parse_axis
+
+    read = _load(case, options["overrides"])
+    if len(over) != 2:
+        raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
+    axes = dict(parse_axis(read, text) for text in over)
+    plan = case_map(
+        read, axes, bundle=options["bundle"], state=_state(options["state"]),
+        changes=_numbers(but), refine=not full,
+    )  # fmt: skip
+    _carry(plan, Path(output), read.title, as_json, options, _label_summary)
+
+
+@click.command()
+@_case
+@_but
+@click.option("--x", "x", default="-2:2:401", show_default=True, metavar="FROM:TO:COUNT")
+@click.option("--v", "v", default="-2:2:401", show_default=True, metavar="FROM:TO:COUNT")
+@_common
+def basins(
+    case: str, but: tuple[str, ...], x: str, v: str, output: str, as_json: bool, **options: Any
+) -> None:
+    """Basins of attraction of CASE at its base set (a gear case: first speed and torque)."""
+    from thermogear.study.analyses import case_basins
+
+    read = _load(case, options["overrides"])
+    plan = case_basins(
+        read, _grid("x", x), _grid("v", v), bundle=options["bundle"],
+        state=_state(options["state"]), changes=_numbers(but),
+    )  # fmt: skip
+    _carry(plan, Path(output), read.title, as_json, options, _basin_summary)
+
+
+@click.command()
+@_case
+@click.option("--rpm", default="200:12000:119", show_default=True, metavar="FROM:TO:COUNT")
+@click.option("--hot", multiple=True, type=float, metavar="DEGC",
+              help="Gear temperature beside the cold run; the case's own if left out.")  # fmt: skip
+@click.option("--torque", type=float, metavar="NM", help="The case's first if left out.")
+@click.option("--branch-period", type=click.IntRange(0, 16), default=2, show_default=True,
+              help="Locate folds on branches up to this period; 0: none.")  # fmt: skip
+@_common
+def runup(
+    case: str,
+    rpm: str,
+    hot: tuple[float, ...],
+    torque: float | None,
+    branch_period: int,
+    output: str,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Run CASE up and down in speed, cold and hot: transmission error, mesh force, K_v, jumps."""
+    import math
+
+    from thermogear.study.runup import run_up_plan
+
+    read = _load(case, options["overrides"])
+    speeds = _grid("rpm", rpm) * math.pi / 30.0
+    states = (None, *(t + 273.15 for t in hot)) if hot else None
+    plan = run_up_plan(
+        read, speeds, temperatures=states, bundle=options["bundle"], torque=torque,
+        branch_period=branch_period,
+    )  # fmt: skip
+    _carry(plan, Path(output), read.title, as_json, options, _run_up_summary)
+
+
+@click.command()
+@_case
+@_over
+@_common
+def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
+    """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
+    from thermogear.study.analyses import parse_axis
+    from thermogear.study.sweep import sweep_plan
+
+    read = _load(case, options["overrides"])
+    axes = dict(parse_axis(read, text) for text in over)
+    plan = sweep_plan(_gear(read), axes, bundle=options["bundle"], state=_state(options["state"]))
+    _carry(plan, Path(output), read.title, as_json, options, _label_summary)
+
+
+COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, sweep)
+"""What the main group registers."""
+
+
+# --- from words to values -----------------------------------------------------------------
+
+
+def _load(case: str, overrides: tuple[str, ...]) -> GearCase | DimensionlessCase:
+    from thermogear.study.case import load_case
+
+    return load_case(Path(case), overrides)
+
+
+def _gear(case: GearCase | DimensionlessCase) -> GearCase:
+    from thermogear.study.case import GearCase
+
+    if not isinstance(case, GearCase):
+        raise InputError("case", f"kind = {case.kind!r}", allowed="kind = 'gear'")
+    return case
+
+
+def _state(text: str) -> str | float:
+    if text in ("hot", "cold"):
+        return text
+    try:
+        return float(text) + 273.15
+    except ValueError:
+        raise InputError("state", repr(text), allowed="hot | cold | degrees Celsius") from None
+
+
+def _split(text: str) -> tuple[str, str]:
+    name, sign, value = text.partition("=")
+    if not sign:
+        raise InputError("change", repr(text), allowed="NAME=VALUE")
+    return name, value
+
+
+def _numbers(texts: tuple[str, ...]) -> dict[str, float]:
+    from thermogear.study.analyses import dimensionless_name
+
+    found = {}
+    for text in texts:
+        name, value = _split(text)
+        try:
+            found[dimensionless_name(name)] = float(value)
+        except ValueError as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(name, repr(value), allowed="a number") from None
+    return found
+
+
+def _pair_of(text: str) -> tuple[float, float]:
+    try:
+        x, v = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError("start", repr(text), allowed="X,V") from None
+    return x, v
+
+
+def _grid(name: str, text: str) -> Any:
+    import numpy as np
+
+    try:
+        low, high, count = text.split(":")
+        values = np.linspace(float(low), float(high), int(count))
+    except ValueError:
+        raise InputError(name, repr(text), allowed="FROM:TO:COUNT") from None
+    if values.size < 1:
+        raise InputError(name, repr(text), allowed="a count >= 1")
+    return values
+
+
+def _show(name: str) -> Callable[[float], float]:
+    from thermogear.study.gearwords import WORDS
+
+    one = WORDS.get(name)
+    return (lambda v: v) if one is None else (lambda v: one.factor * (v - one.zero))
+
+
+# --- running ------------------------------------------------------------------------------
+
+
+@contextmanager
+def _watched() -> Iterator[Report]:
+    """A bar with the remaining time on the error stream, where a person is watching."""
+    if not sys.stderr.isatty():
+        yield lambda step: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    from thermogear.study.work import duration
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[left]}"))
+    with Progress(*columns, console=Console(stderr=True)) as bars:
+        task = bars.add_task("chunks", total=None, left="")
+
+        def report(step: Step) -> None:
+            left = "" if step.remaining != step.remaining else f"{duration(step.remaining)} left"
+            bars.update(
+                task, completed=step.done, total=step.total,
+                description=f"chunks {step.done}/{step.total}", left=left,
+            )  # fmt: skip
+
+        yield report
+
+
+def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -> xr.Dataset | None:
+    """Carry ``plan`` out and draw its page; None where only an estimate was wanted."""
+    from thermogear.front.lines import say
+    from thermogear.study.work import carry_out, estimate, require_space
+
+    require_space(plan, directory, threads=options["threads"], forced=options["force"])
+    if options["only_estimate"] or sys.stderr.isatty():
+        say("estimate", estimate(plan, threads=options["threads"]))
+    if options["only_estimate"]:
+        return None
+    with _watched() as report:
+        data = carry_out(
+            plan, directory, threads=options["threads"], scheduler=options["scheduler"],
+            report=report, forced=options["force"],
+        )  # fmt: skip
+    from thermogear.views.sweep_report import write_sweep_report
+
+    write_sweep_report(directory, title)
+    return data
+
+
+def _carry(
+    plan: Plan,
+    directory: Path,
+    title: str,
+    as_json: bool,
+    options: dict[str, Any],
+    summary: Callable[[xr.Dataset], dict[str, Any]],
+) -> None:
+    begun = time.monotonic()
+    data = _compute(plan, directory, title, options)
+    if data is None:
+        return
+    content = {"kind": plan.kind, **summary(data), "seconds": round(time.monotonic() - begun, 3)}
+    if as_json:
+        _echo_json(content)
+        return
+    for name, value in content.items():
+        if isinstance(value, list):
+            for row in value:
+                click.echo(f"- {row if isinstance(row, str) else _line(row)}")
+        elif isinstance(value, dict):
+            click.echo(f"{name}: " + _line(value))
+        else:
+            click.echo(f"{name}: {value}")
+    click.echo(directory / "report.html")
+
+
+def _line(row: dict[str, Any]) -> str:
+    return ", ".join(f"{k} {v:.9g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())
+
+
+def _echo_json(content: dict[str, Any]) -> None:
+    click.echo(json.dumps(_finite(content), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _finite(value: Any) -> Any:
+    """NaN and infinity as null: JSON has no word for them."""
+    if isinstance(value, dict):
+        return {k: _finite(v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_finite(v) for v in value]
+    if isinstance(value, float) and not abs(value) < float("inf"):
+        return None
+    return value
+
+
+# --- what a result comes to ---------------------------------------------------------------
+
+
+def _label_summary(data: xr.Dataset) -> dict[str, Any]:
+    import numpy as np
+
+    from thermogear.analysis.outcome import label_names
+    from thermogear.study.notices import back_side_notice
+
+    names, counts = np.unique(label_names(data), return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    found: dict[str, Any] = {
+        "points": int(data["label"].size),
+        "labels": {str(names[i]): int(counts[i]) for i in order},
+    }
+    for name in ("total_periods", "full_periods", "computed_points"):
+        if name in data.attrs:
+            found[name] = int(data.attrs[name])
+    stored = data.attrs.get("notices")
+    found["notices"] = json.loads(stored) if stored else back_side_notice(data)
+    return found
+
+
+def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
+    from thermogear.analysis.branches import KINDS
+
+    if "bifurcation_kind" not in data:
+        return []
+    shown = _show(name)
+    rows = []
+    for i in range(data.sizes["bifurcation"]):
+        row: dict[str, Any] = {
+            "kind": KINDS[int(data["bifurcation_kind"].values[i])],
+            "period": int(data["bifurcation_period"].values[i]),
+            "value": shown(float(data["bifurcation_value"].values[i])),
+        }
+        if "bifurcation_state" in data:
+            state = int(data["bifurcation_state"].values[i])
+            row["gears_degC"] = round(float(data["gear_temperature"].values[state]) - 273.15, 6)
+        rows.append(row)
+    return rows
+
+
+def _diagram_summary(data: xr.Dataset) -> dict[str, Any]:
+    found = _label_summary(data)
+    found["parameter"] = str(data.attrs["parameter"])
+    found["bifurcations"] = _bifurcations(data, found["parameter"])
+    return found
+
+
+def _basin_summary(data: xr.Dataset) -> dict[str, Any]:
+    rows = [
+        {
+            "period": int(data["attractor_period"].values[i]),
+            "x": float(data["attractor_x"].values[i, 0]),
+            "v": float(data["attractor_v"].values[i, 0]),
+            "count": int(data["count"].values[i]),
+            "fraction": float(data["fraction"].values[i]),
+            "border_distance": float(data["border_distance"].values[i]),
+        }
+        for i in range(data.sizes["attractor_number"])
+    ]
+    figures = {
+        name: float(data.attrs[name])
+        for name in ("basin_entropy", "boundary_basin_entropy", "unassigned")
+    }
+    return {"points": int(data["attractor"].size), "attractors": rows, **figures}
+
+
+def _run_up_summary(data: xr.Dataset) -> dict[str, Any]:
+    found = _label_summary(data)
+    rpm = _show("pinion_speed")
+    jumps = []
+    for i in range(data.sizes["jump"]):
+        state = int(data["jump_state"].values[i])
+        jumps.append(
+            {
+                "gears_degC": round(float(data["gear_temperature"].values[state]) - 273.15, 6),
+                "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
+                "from_rpm": rpm(float(data["jump_from"].values[i])),
+                "to_rpm": rpm(float(data["jump_to"].values[i])),
+                "fold_rpm": rpm(float(data["jump_fold"].values[i])),
+                "before_um": 1e6 * float(data["jump_before"].values[i]),
+                "after_um": 1e6 * float(data["jump_after"].values[i]),
+            }
+        )
+    found["jumps"] = jumps
+    found["bifurcations"] = _bifurcations(data, "pinion_speed")
+    return found

@@ -1,0 +1,217 @@
+"""Diagrams, maps and basins of a case: its words become plans, two states become one table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.analysis.basins import BasinPlan, basin_plan
+from thermogear.analysis.branches import KINDS
+from thermogear.analysis.diagram import BRANCH_PERIOD, DiagramPlan, diagram_plan
+from thermogear.analysis.family import Family, ModelFamily
+from thermogear.analysis.maps import MapPlan, map_plan
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.excitation import Periodic
+from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
+from thermogear.study.case import Case, DimensionlessCase, GearCase
+from thermogear.study.gearwords import GearFamily, GearPoints, Tabulated, to_si, word
+from thermogear.study.schema import PARAMETERS, DimensionlessFile
+from thermogear.study.source import overridden, tables
+
+Floats = NDArray[np.float64]
+
+SHORT = {
+    "zeta": "damping_ratio",
+    "omega": "frequency",
+    "omega_h": "frequency",
+    "epsilon": "stiffness_amplitude",
+    "eps": "stiffness_amplitude",
+    "F_m": "mean_force",
+    "F_h": "force_amplitude",
+    "b": "half_backlash",
+    "b_prime": "half_backlash",
+    "eps_T": "thermal_stiffness",
+    "epsilon_T": "thermal_stiffness",
+}
+"""Names a command line may use for the dimensionless numbers."""
+
+
+def base_model(
+    case: DimensionlessCase, changes: Mapping[str, float] | None = None
+) -> TorsionalModel:
+    """The base set of a dimensionless case, with some numbers changed."""
+    read = DimensionlessFile.model_validate(overridden(tables("case", case.text), case.overrides))
+    values: dict[str, float] = {}
+    for name in PARAMETERS:
+        given = getattr(read.base, name)
+        if len(given) != 1 and name not in (changes or {}):
+            raise InputError(
+                f"base.{name}",
+                f"{len(given)} entries",
+                allowed="one",
+                why="a base set is one point",
+            )
+        values[name] = float(given[0])
+    return TorsionalModel(**(values | dict(changes or {})))
+
+
+def dimensionless_name(name: str) -> str:
+    """The full name of a dimensionless number."""
+    full = SHORT.get(name, name)
+    if full not in PARAMETERS:
+        raise InputError("parameter", repr(name), fix=nearest(name, [*PARAMETERS, *SHORT]))
+    return full
+
+
+def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
+    """NAME=FROM:TO:COUNT or NAME=A,B,C in the units a person writes, as name and SI values."""
+    name, sign, rest = text.partition("=")
+    example = "rpm=200:12000:120" if isinstance(case, GearCase) else "zeta=0.10:0.18:200"
+    try:
+        if ":" in rest:
+            low, high, count = rest.split(":")
+            number = int(count)
+            if number < 1:
+                raise ValueError
+            values = np.linspace(float(low), float(high), number)
+        else:
+            values = np.array([float(v) for v in rest.split(",")])
+        if not sign or not np.all(np.isfinite(values)):
+            raise ValueError
+    except ValueError:
+        raise InputError(
+            "over", repr(text), allowed="NAME=FROM:TO:COUNT or NAME=A,B,C", fix=f"as {example}"
+        ) from None
+    if isinstance(case, GearCase):
+        full = word(name)
+        return full, to_si(full, values)
+    return dimensionless_name(name), values
+
+
+def family_of_case(
+    case: Case,
+    names: tuple[str, ...],
+    *,
+    bundle: str = "",
+    state: str | float = "hot",
+    changes: Mapping[str, float] | None = None,
+) -> Family:
+    """The family of models behind a case of either kind."""
+    if isinstance(case, GearCase):
+        return GearFamily(case, names, bundle, state)
+    if isinstance(case, DimensionlessCase):
+        return ModelFamily(base_model(case, changes), names)
+    raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
+
+
+def case_diagram(
+    case: Case,
+    name: str,
+    values: Floats,
+    *,
+    bundle: str = "",
+    state: str | float = "hot",
+    changes: Mapping[str, float] | None = None,
+    branch_period: int = BRANCH_PERIOD,
+    starts: tuple[tuple[float, float], ...] = (),
+) -> DiagramPlan:
+    """The orbit diagram of a case over one parameter.
+
+    Over a gear parameter the tables are computed at ``values`` and run straight between them,
+    which is where bifurcations are located.
+    """
+    family: Family = family_of_case(case, (name,), bundle=bundle, state=state, changes=changes)
+    axis = np.sort(values)
+    if isinstance(family, GearFamily) and axis.size > 1:
+        family = Tabulated.of(family, axis)
+    begin = starts or (case.simulation.initial_state,)
+    return diagram_plan(family, name, axis, starts=begin, branch_period=branch_period)
+
+
+def case_map(
+    case: Case,
+    axes: Mapping[str, Floats],
+    *,
+    bundle: str = "",
+    state: str | float = "hot",
+    changes: Mapping[str, float] | None = None,
+    refine: bool = True,
+) -> MapPlan:
+    """The map of regimes of a case over two parameters."""
+    family = family_of_case(case, tuple(axes), bundle=bundle, state=state, changes=changes)
+    return map_plan(family, axes, initial_state=case.simulation.initial_state, refine=refine)
+
+
+def case_basins(
+    case: Case,
+    x: Floats,
+    v: Floats,
+    *,
+    bundle: str = "",
+    state: str | float = "hot",
+    changes: Mapping[str, float] | None = None,
+) -> BasinPlan:
+    """The basins of a case at its base set, or at its first speed and torque."""
+    if isinstance(case, GearCase):
+        points = GearFamily(case, ("pinion_speed",), bundle, state)(np.array([[case.speeds[0]]]))
+        if points.status[0] != 0:
+            raise InputError("case", "jammed", why="a jammed pair has no motion")
+        return basin_plan(gear_point_model(points), x, v)
+    if isinstance(case, DimensionlessCase):
+        return basin_plan(base_model(case, changes), x, v)
+    raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
+
+
+def gear_point_model(points: GearPoints) -> DeadZoneModel:
+    """The dimensionless model of the first of ``points``."""
+    lane = points.flat
+    stiffness, force = lane.stiffness[0], lane.force[0]
+    return DeadZoneModel(
+        0.5 * float(lane.damping[0]),
+        2.0 * np.pi / float(lane.period[0]),
+        Periodic(float(stiffness[0].real), tuple(stiffness[1:])),
+        Periodic(float(force[0].real), tuple(force[1:])),
+        float(lane.half_backlash[0]),
+    )
+
+
+def moved_points(one: xr.Dataset, other: xr.Dataset) -> list[dict[str, Any]]:
+    """Bifurcations of two diagrams side by side: kind, period, both values, what moved.
+
+    Matched in the order of the parameter within each kind and period; one that the other
+    diagram lacks has None there.
+    """
+
+    def sorted_values(data: xr.Dataset, kind: int, period: int) -> list[float]:
+        chosen = (data["bifurcation_kind"].values == kind) & (
+            data["bifurcation_period"].values == period
+        )
+        return sorted(map(float, data["bifurcation_value"].values[chosen]))
+
+    pairs = {
+        (int(k), int(n))
+        for data in (one, other)
+        for k, n in zip(
+            data["bifurcation_kind"].values, data["bifurcation_period"].values, strict=True
+        )
+    }
+    rows: list[dict[str, Any]] = []
+    for kind, period in sorted(pairs, key=lambda p: (p[1], p[0])):
+        first, second = sorted_values(one, kind, period), sorted_values(other, kind, period)
+        for place in range(max(len(first), len(second))):
+            a = first[place] if place < len(first) else None
+            b = second[place] if place < len(second) else None
+            rows.append(
+                {
+                    "kind": KINDS[kind],
+                    "period": period,
+                    "one": a,
+                    "other": b,
+                    "moved": None if a is None or b is None else b - a,
+                }
+            )
+    return rows

@@ -1,0 +1,230 @@
+"""The page of a diagram, map, basin, sweep or run-up, from its stored dataset alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import jinja2
+import numpy as np
+import xarray as xr
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from thermogear import __version__
+from thermogear.base.errors import InputError
+from thermogear.views.page import Block, Pictures, Section, Table, Text
+from thermogear.views.plots import sweeps
+from thermogear.views.results import put
+from thermogear.views.words import number
+
+RESULT = "result.zarr"
+TITLES = {
+    "diagram": "Orbit diagram",
+    "map": "Map of regimes",
+    "basins": "Basins of attraction",
+    "sweep": "Sweep",
+    "run-up": "Run-up",
+}
+
+
+def read_result(directory: Path) -> xr.Dataset:
+    """The stored dataset in memory; InputError where there is none."""
+    try:
+        with xr.open_zarr(
+            Path(directory) / RESULT, consolidated=False, mask_and_scale=False
+        ) as opened:
+            data: xr.Dataset = opened.load()
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError("store", str(directory), why="it cannot be read") from error
+    if data.attrs.get("kind") not in TITLES:
+        raise InputError("store", str(directory), why="it holds no finished result")
+    return data
+
+
+def write_sweep_report(directory: Path, title: str = "") -> Path:
+    """Draw ``directory/report.html`` from the store there."""
+    return put(Path(directory) / "report.html", page_of(read_result(directory), title))
+
+
+def page_of(data: xr.Dataset, title: str = "") -> str:
+    """The whole page as text."""
+    kind = str(data.attrs["kind"])
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    notices = [("info", "Note", text) for text in json.loads(data.attrs.get("notices", "[]"))]
+    return environment.get_template("report.html").render(
+        title=title or TITLES[kind],
+        style=Markup(sheet),
+        summary=_summary(data),
+        tiles=[],
+        notices=notices,
+        sections=[s for s in (_pictures(data), _points(data), _settings(data)) if s.blocks],
+        version=__version__,
+    )
+
+
+def _summary(data: xr.Dataset) -> str:
+    kind = str(data.attrs["kind"])
+    if "label" in data:
+        code = sweeps.classes_of(data)
+        parts = [
+            f"{sweeps.CLASSES[n][0]} {100.0 * np.mean(code == n):.3g} %" for n in np.unique(code)
+        ]
+        return f"{TITLES[kind]}, {code.size} points: " + ", ".join(parts) + "."
+    return TITLES[kind]
+
+
+def _pictures(data: xr.Dataset) -> Section:
+    kind = str(data.attrs["kind"])
+    makers: dict[str, list[tuple[str, str, str, Callable[[xr.Dataset], Figure]]]] = {
+        "diagram": [
+            (
+                "orbits", "Orbit diagram",
+                "Sections at phase 0 of the settled motion, each value starting from the end of "
+                "the last; branches from continuation; the largest Lyapunov exponent below.",
+                sweeps.orbit_diagram_picture,
+            )
+        ],
+        "map": [
+            (
+                "regimes", "Regimes over two parameters",
+                "What the motion from one start settles on.", sweeps.map_picture,
+            )
+        ],
+        "basins": [
+            (
+                "basins", "Basins", "Which attractor every start ends on; dots are their sections.",
+                sweeps.basins_picture,
+            )
+        ],
+        "sweep": [
+            ("sweep", "Response", "Every point from the case's own start.", sweeps.sweep_picture)
+        ],
+        "run-up": [
+            (
+                "runup", "Response over speed",
+                "Full lines run up, dashed ones down; thin vertical lines are located folds.",
+                sweeps.run_up_picture,
+            ),
+            (
+                "waterfall", "Waterfall",
+                "Lines of the transmission error over speed and order, running up.",
+                sweeps.waterfall_picture,
+            ),
+        ],
+    }  # fmt: skip
+    pictures = Pictures()
+    for name, heading, caption, make in makers[kind]:
+
+        def drawn(make: Callable[[xr.Dataset], Figure] = make) -> Figure:
+            return make(data)
+
+        pictures.add(name, heading, caption, data, (), drawn, wide=True)
+    return Section("pictures", "Pictures", pictures.take())
+
+
+def _points(data: xr.Dataset) -> Section:
+    blocks: list[Block] = []
+    parameter = str(data.attrs.get("parameter", "pinion_speed"))
+    if data.sizes.get("bifurcation"):
+        rows = [
+            (
+                sweeps.KINDS[int(kind)],
+                str(int(period)),
+                number(float(sweeps.shown(parameter, value)), 8),
+                "" if state is None else number(float(state) - 273.15, 4),
+            )
+            for kind, period, value, state in _bifurcations(data)
+        ]
+        head = ["kind", "period", sweeps.words(parameter), "gears [°C]"]
+        if not any(row[3] for row in rows):
+            head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
+        blocks.append(Table("Located bifurcations", head, rows))
+    if data.sizes.get("jump"):
+        jumps = []
+        for i in range(data.sizes["jump"]):
+            fold = float(data["jump_fold"].values[i])
+            jumps.append(
+                (
+                    "up" if int(data["jump_direction"].values[i]) > 0 else "down",
+                    number(
+                        float(data["gear_temperature"].values[int(data["jump_state"].values[i])])
+                        - 273.15,
+                        4,
+                    ),
+                    number(float(sweeps.shown("pinion_speed", data["jump_from"].values[i])), 6),
+                    number(float(sweeps.shown("pinion_speed", data["jump_to"].values[i])), 6),
+                    number(float(sweeps.shown("pinion_speed", fold)), 8),
+                    number(1e6 * float(data["jump_before"].values[i])),
+                    number(1e6 * float(data["jump_after"].values[i])),
+                )
+            )
+        head = ["run", "gears [°C]", "from [rpm]", "to [rpm]", "fold [rpm]", "p-p before [µm]",
+                "p-p after [µm]"]  # fmt: skip
+        blocks.append(Table("Jumps", head, jumps))
+    if data.sizes.get("attractor_number"):
+        rows_ = []
+        for i in range(data.sizes["attractor_number"]):
+            period = int(data["attractor_period"].values[i])
+            rows_.append(
+                (
+                    f"period {period}" if period else "chaotic",
+                    number(float(data["attractor_x"].values[i, 0]), 9),
+                    number(float(data["attractor_v"].values[i, 0]), 9),
+                    number(float(data["attractor_multiplier"].values[i]), 6),
+                    str(int(data["count"].values[i])),
+                    number(100.0 * float(data["fraction"].values[i]), 5),
+                    number(float(data["border_distance"].values[i]), 3),
+                )
+            )
+        head = ["attractor", "x", "x′", "multiplier", "starts", "share [%]", "to the border [b]"]
+        blocks.append(Table("Attractors", head, rows_))
+        entropy = data.attrs
+        blocks.append(
+            Text(
+                f"Basin entropy {entropy['basin_entropy']:.4f}, on borders "
+                f"{entropy['boundary_basin_entropy']:.4f} (above ln 2 = 0.6931 a border is "
+                f"fractal), in boxes of {entropy['box_cells']} x {entropy['box_cells']} starts."
+            )
+        )
+    return Section("points", "Located points", blocks)
+
+
+def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]]:
+    found: list[tuple[int, int, float, float | None]] = []
+    for i in range(data.sizes["bifurcation"]):
+        state = None
+        if "bifurcation_state" in data:
+            place = int(data["bifurcation_state"].values[i])
+            state = float(data["gear_temperature"].values[place])
+        found.append(
+            (
+                int(data["bifurcation_kind"].values[i]),
+                int(data["bifurcation_period"].values[i]),
+                float(data["bifurcation_value"].values[i]),
+                state,
+            )
+        )
+    return found
+
+
+def _settings(data: xr.Dataset) -> Section:
+    shown = {
+        "total_periods": "mesh periods run",
+        "full_periods": "mesh periods of the full run",
+        "computed_points": "points computed, the rest taken over from equal neighbours",
+        "bundle": "bundle of choices",
+        "branch_notes": "branches",
+    }
+    rows = [(words, str(data.attrs[name])) for name, words in shown.items() if data.attrs.get(name)]
+    return Section(
+        "settings", "How it was computed", [Table("", ["what", "value"], rows)] if rows else []
+    )
