@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import xarray as xr
 from markupsafe import Markup
@@ -102,7 +102,12 @@ class Pictures:
         if own in self._names:
             raise ValueError(f"two pictures named {name}")
         self._names.add(own)
-        self.drawn.append(Picture(own, heading, caption, draw(make, own, heading), wide))
+        self.keep(name, Picture(own, heading, caption, Markup(), wide), make)
+
+    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
+        """Draw the picture into the page."""
+        svg = draw(make, picture.name, picture.heading)
+        self.drawn.append(replace(picture, svg=svg))
 
     def take(self) -> list[Block]:
         """The pictures drawn since the last call, as galleries: wide ones by themselves."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import xarray as xr
 from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
-from thermogear.views.page import Cell, Pictures
+from thermogear.views.page import Picture, Pictures
 from thermogear.views.report import ORDER
 from thermogear.views.results import read_results
 from thermogear.views.style import styled
@@ -26,18 +25,7 @@ class _Files(Pictures):
     kind: str = "png"
     written: list[Path] = field(default_factory=list)
 
-    def add(
-        self,
-        name: str,
-        heading: str,
-        caption: Cell,
-        data: xr.Dataset,
-        needs: Iterable[str],
-        make: Callable[[], Figure],
-        wide: bool = False,
-    ) -> None:
-        if not all(need in data.variables for need in needs):
-            return
+    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
         path = self.folder / f"{name}.{self.kind}"
         with styled():
             make().savefig(path, dpi=130, facecolor="white")
