@@ -214,7 +214,7 @@ def runup(
     speeds = _grid("rpm", rpm) * math.pi / 30.0
     states = (None, *(t + 273.15 for t in hot)) if hot else None
     plan = run_up_plan(
-        read, speeds, temperatures=states, bundle=options["bundle"], torque=torque,
+        _gear(read), speeds, temperatures=states, bundle=options["bundle"], torque=torque,
         branch_period=branch_period,
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options, _run_up_summary)

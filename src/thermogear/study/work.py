@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import math
 import os
 import shutil
 import time
@@ -91,6 +92,7 @@ def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Esti
     """
     count = threads or os.cpu_count() or 1
     size = bytes_of(plan)
+    chunks = math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items())
     seconds = float("inf")
     if pilot > 0:
         plan.pilot(2)  # loads the compiled kernels
@@ -98,9 +100,7 @@ def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Esti
         run = plan.pilot(pilot)
         each = (time.perf_counter() - begun) / max(run, 1)
         seconds = each * points_of(plan) / count
-    return Estimate(
-        points_of(plan), len(keys_of(plan)), 2 * size + count * WORKSPACE, size, seconds
-    )
+    return Estimate(points_of(plan), chunks, 2 * size + count * WORKSPACE, size, seconds)
 
 
 def require_space(
