@@ -1,0 +1,202 @@
+"""Every public formula of the floor in two coherent systems of units: only the units differ.
+
+Lengths, forces and times are counted in other units; a result must change by the factor of
+its own dimension and by nothing else, which a missing or wrong unit cannot do.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import replace
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from thermogear.base.materials import MATERIALS
+from thermogear.gears import (
+    body,
+    contact,
+    contact_compliance,
+    corner,
+    loaded,
+    ring,
+    sharing,
+    stiffness,
+    tooth,
+)
+from thermogear.gears.deviations import BasePitchDifference, PitchError, Relief
+from thermogear.gears.geometry import Gear, GearPair
+
+
+class Units(NamedTuple):
+    """How many new units one metre, newton and second are."""
+
+    length: float = 1.0
+    force: float = 1.0
+    time: float = 1.0
+
+
+OTHER = Units(1e3, 0.37, 60.0)
+
+# powers of length, force and time
+NUMBER, LENGTH, SPEED = (0, 0, 0), (1, 0, 0), (1, 0, -1)
+COMPLIANCE, STIFFNESS, STRESS = (1, -1, 0), (-1, 1, 0), (-2, 1, 0)
+
+
+def factor(dimension: tuple[int, int, int]) -> float:
+    """By what a quantity of that dimension grows in the other units."""
+    return float(np.prod([u**p for u, p in zip(OTHER, dimension, strict=True)]))
+
+
+class Given(NamedTuple):
+    """Arguments in one system of units."""
+
+    pair: GearPair
+    gear: Gear
+    s: np.ndarray
+    t: np.ndarray
+    omega: float
+    force: float
+    width: float
+    load: float
+    radius: float
+    half: float
+    depth: float
+    young: float
+    phase: np.ndarray
+    amount: float
+
+
+def given(u: Units) -> Given:
+    young = 206e9 * u.force / u.length**2
+    steel = replace(MATERIALS["steel"], youngs_modulus=young)
+
+    def gear(teeth: int, shift: float) -> Gear:
+        m = 5e-3 * u.length
+        return Gear(teeth, m, profile_shift=shift, face_width=4.0 * m, material=steel)
+
+    pair = GearPair(gear(25, 0.2), gear(75, -0.1))
+    s = np.linspace(pair.path.a, pair.path.e, 7)
+    return Given(
+        pair,
+        pair.pinion,
+        s,
+        s / pair.pinion.base_radius,
+        100.0 / u.time,
+        4e3 * u.force,
+        20e-3 * u.length,
+        2e5 * u.force / u.length,
+        15e-3 * u.length,
+        0.2e-3 * u.length,
+        4e-3 * u.length,
+        young,
+        np.array([0.03, 0.4, 0.8]),
+        8e-6 * u.length,
+    )
+
+
+def solved(g: Given) -> loaded.LoadedMesh:
+    flanks = [
+        Relief("wheel", g.amount, 0.3 * g.pair.base_pitch),
+        PitchError("pinion", tuple(0.1 * g.amount * np.cos(np.arange(25)))),
+        BasePitchDifference(2e-4),
+    ]
+    return loaded.solve_mesh(g.pair, g.force, g.phase, deviations=flanks)
+
+
+Formula = Callable[[Given], object]
+FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
+    "path_of_contact": (LENGTH, lambda g: contact.path_of_contact(g.pair)),
+    "pair_positions": (LENGTH, lambda g: contact.pair_positions(g.pair, g.phase)),
+    "mirror_position": (LENGTH, lambda g: contact.mirror_position(g.pair)),
+    "back_flank_position": (LENGTH, lambda g: contact.back_flank_position(g.pair, g.s)),
+    "curvature_radii": (LENGTH, lambda g: contact.curvature_radii(g.pair, g.s)),
+    "flank_radii": (LENGTH, lambda g: contact.flank_radii(g.pair, g.s)),
+    "reduced_radius": (LENGTH, lambda g: contact.reduced_radius(g.pair, g.s)),
+    "rolling_velocities": (SPEED, lambda g: contact.rolling_velocities(g.pair, g.omega, g.s)),
+    "sliding_velocity": (SPEED, lambda g: contact.sliding_velocity(g.pair, g.omega, g.s)),
+    "sum_velocity": (SPEED, lambda g: contact.sum_velocity(g.pair, g.omega, g.s)),
+    "entrainment_velocity": (SPEED, lambda g: contact.entrainment_velocity(g.pair, g.omega, g.s)),
+    "reduced_modulus": (STRESS, lambda g: contact.reduced_modulus(g.young, 0.3, g.young, 0.2)),
+    "pair_reduced_modulus": (STRESS, lambda g: contact.pair_reduced_modulus(g.pair)),
+    "hertz_half_width": (LENGTH, lambda g: contact.hertz_half_width(g.load, g.radius, g.young)),
+    "hertz_pressure": (STRESS, lambda g: contact.hertz_pressure(g.load, g.radius, g.young)),
+    "yang_sun_stiffness": (
+        STIFFNESS,
+        lambda g: contact_compliance.yang_sun_stiffness(g.young, g.width),
+    ),
+    "weber_approach": (
+        LENGTH,
+        lambda g: contact_compliance.weber_approach(
+            g.force, g.depth, g.half, g.young, 0.3, g.width
+        ),
+    ),
+    "palmgren_approach": (
+        LENGTH,
+        lambda g: contact_compliance.palmgren_approach(g.force, g.young, g.width),
+    ),
+    "contact_point": (LENGTH, lambda g: corner.contact_point(g.pair, 1.02 * g.s)),
+    "flank_point": (LENGTH, lambda g: tooth.flank_point(g.gear, g.t)[:2]),
+    "start_angle": (NUMBER, lambda g: tooth.start_angle(g.gear, "30-degree")),
+    "tooth_compliances": (COMPLIANCE, lambda g: tooth.tooth_compliances(g.gear, g.t)),
+    "sainsot_coefficients": (
+        NUMBER,
+        lambda g: list(
+            body.sainsot_coefficients(
+                g.gear.root_half_angle, g.gear.root_radius / g.gear.bore_radius
+            ).values()
+        ),
+    ),
+    "sainsot_compliance": (COMPLIANCE, lambda g: body.sainsot_compliance(g.gear, g.t)),
+    "rim_compliance": (
+        NUMBER,
+        lambda g: ring.rim_compliance([1, 2, 5], g.gear.root_radius, g.gear.bore_radius, 0.3),
+    ),
+    "foot_load": (NUMBER, lambda g: ring.foot_load(g.gear, g.t)),
+    "body_matrices": (NUMBER, lambda g: ring.body_matrices(g.gear)[0]),
+    "ring_compliance": (COMPLIANCE, lambda g: ring.ring_compliance(g.gear, g.t, pitches=1)),
+    "pair_compliances": (
+        COMPLIANCE,
+        lambda g: stiffness.pair_compliances(g.pair, g.s).total,
+    ),
+    "pair_stiffness": (STIFFNESS, lambda g: stiffness.pair_stiffness(g.pair, g.s)),
+    "mesh_stiffness": (STIFFNESS, lambda g: stiffness.mesh_stiffness(g.pair, g.phase)),
+    "mesh_figures": (STIFFNESS, lambda g: stiffness.mesh_figures(g.pair)),
+    "equal_share": (NUMBER, lambda g: sharing.equal_share(g.pair, g.s)),
+    "stiffness_share": (NUMBER, lambda g: sharing.stiffness_share(g.pair, g.s)),
+    "solve_mesh": (LENGTH, lambda g: solved(g).deflection),
+    "solve_mesh forces": ((0, 1, 0), lambda g: solved(g).force),
+    "solve_mesh pressure": (STRESS, lambda g: solved(g).pressure),
+    "solve_mesh springs": (STIFFNESS, lambda g: (solved(g).tangent, solved(g).secant)),
+    "mesh_force": ((0, 1, 0), lambda g: loaded.mesh_force(g.pair, 2 * g.amount, g.phase)[0]),
+    "loaded_contact": (
+        LENGTH,
+        lambda g: loaded.loaded_contact(g.pair, g.force, g.phase).transmission_error.values,
+    ),
+}
+MODULES = (body, contact, contact_compliance, corner, loaded, ring, sharing, stiffness, tooth)
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_formula_is_the_same_in_any_coherent_units(name: str) -> None:
+    dimension, formula = FORMULAS[name]
+    here, there = (np.asarray(formula(given(u)), dtype=float) for u in (Units(), OTHER))
+    expected = factor(dimension) * here
+    scale = float(np.nanmax(np.abs(expected)))
+    np.testing.assert_allclose(there, expected, rtol=1e-9, atol=1e-12 * scale)
+
+
+def formulas_of(module: ModuleType) -> set[str]:
+    return {
+        name
+        for name, member in inspect.getmembers(module, inspect.isfunction)
+        if member.__module__ == module.__name__ and not name.startswith("_")
+    }
+
+
+def test_no_public_formula_is_left_out() -> None:
+    public = set().union(*(formulas_of(module) for module in MODULES))
+    assert public == {name.split(" ")[0] for name in FORMULAS}
