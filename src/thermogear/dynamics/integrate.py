@@ -14,6 +14,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.kernels.rk4 import advance_rk4
+from thermogear.dynamics.load_shared import LoadSharedModel, simulate_shared
 from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import Result, dataset
 from thermogear.dynamics.pair import simulate_pair, two_of, with_angles
@@ -45,6 +46,8 @@ def _choose(model: object, method: str) -> tuple[str, str]:
                 fix="use method='adaptive'",
             )
         return method, "asked for"
+    if isinstance(model, LoadSharedModel):
+        return "rk4", "tooth pairs touch one by one: their edges are none of one backlash"
     if not isinstance(model, ClearanceModel):
         return "adaptive", "coefficients may depend on the state: neither maps nor tables apply"
     try:
@@ -197,7 +200,8 @@ def simulate(
     """Run ``model`` for ``discard`` + ``periods`` mesh periods from phase 0.
 
     ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
-    :class:`PairModel`, or anything with ``derivative(t, y)`` and ``period``.
+    :class:`PairModel`, :class:`LoadSharedModel`, or anything with ``derivative(t, y)`` and
+    ``period``.
     ``initial_state`` (x, x') for all lanes, or an array (lane, 2); for the pair (x, x') or
     (theta1, theta2, theta1', theta2'). ``samples_per_period`` (0: none) uniform samples of the
     kept periods, the first of each at phase 0. ``method``: "exact", "rk4" (with
@@ -232,7 +236,9 @@ def simulate(
         settings |= {"steps_per_period": steps, "precision": precision}
     if chosen == "adaptive":
         settings |= {"rtol": rtol, "atol": atol}
-    if not isinstance(model, ClearanceModel):
+    if isinstance(model, LoadSharedModel) and chosen == "rk4":
+        data = simulate_shared(model, start, periods, discard, steps, samples)
+    elif not isinstance(model, ClearanceModel):
         data = _free(model, start, periods, discard, samples, (rtol, atol))
     elif isinstance(model, PairModel) and chosen != "exact":
         data = simulate_pair(model, chosen, start, periods, discard, steps, samples, (rtol, atol))
@@ -273,13 +279,14 @@ def simulate(
         data = dataset(result, lanes.period, periods, discard, samples)
         if isinstance(model, PairModel):
             data = with_angles(data, model, pair_start)
-    unit, rate_unit = ("m", "m/s") if isinstance(model, PairModel) else ("1", "1")
+    si = isinstance(model, PairModel | LoadSharedModel)
+    unit, rate_unit = ("m", "m/s") if si else ("1", "1")
     for name in ("x", "section_x"):
         data[name].attrs["units"] = unit
     for name in ("v", "section_v"):
         data[name].attrs["units"] = rate_unit
     for name in ("time", "section_time"):
-        data[name].attrs["units"] = "s" if isinstance(model, PairModel) else "1"
+        data[name].attrs["units"] = "s" if si else "1"
     data.attrs.update(settings)
     data.attrs.update(
         {

@@ -31,6 +31,7 @@ SYMBOLS = {
     "eps_t": "thermal stiffness [0]",
 }
 MOST_BATCHES = 100_000
+MOST_SPEEDS = 10_000
 
 
 class Stopped(KeyboardInterrupt):
@@ -143,7 +144,7 @@ def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, A
         raise Stopped
 
 
-OURS = ("orbit", "lyapunov", "branch", "cascade")
+OURS = ("orbit", "lyapunov", "branch", "cascade", "shared")
 
 
 def _claim(directory: Path) -> None:
@@ -414,4 +415,39 @@ def _cascade_lines(s: dict[str, Any]) -> list[str]:
     return lines + ([""] + [f"heat: {name}" for name in heats] if heats else [])
 
 
-COMMANDS: list[click.Command] = [orbit, lyapunov, continue_]
+@click.command("shared-force")
+@_subject_options
+@click.option("--speeds", type=int, default=41, show_default=True, help="Speeds of the sweep.")
+def shared_force(speeds: int, **options: Any) -> None:
+    """The mesh force shared pair by pair beside the one-spring form, at rest and in motion.
+
+    \b
+      thermogear shared-force rig.toml -o shared
+    """
+    from thermogear.front.progress import progress
+    from thermogear.study.shared_force import shared_results
+
+    if not 2 <= speeds <= MOST_SPEEDS:
+        raise InputError("--speeds", speeds, allowed=f"2..{MOST_SPEEDS}")
+    subject = _subject(options, _case(options))
+    _claim_early(options)
+    with progress(wanted=not options["as_json"]) as report:
+        result = shared_results(subject, count=speeds, progress=report)
+    _finish(result, options, _shared_lines)
+
+
+def _shared_lines(s: dict[str, Any]) -> list[str]:
+    lines = [s["title"], "  load-shared against one spring, difference"]
+    for where in ("mean", "light"):
+        for words, name in (
+            ("mean stiffness", f"stiffness_at_{where}_load"),
+            ("deflection at rest, peak to peak", f"swing_at_rest_{where}_load"),
+            ("motion over speed, median", f"median_swing_in_motion_{where}_load"),
+            ("motion over speed, greatest", f"swing_in_motion_{where}_load"),
+        ):
+            if name in s:
+                lines.append(f"  {where:>5} load: {words:<34} {100 * s[name]:7.2f} %")
+    return lines
+
+
+COMMANDS: list[click.Command] = [orbit, lyapunov, continue_, shared_force]

@@ -19,12 +19,13 @@ from matplotlib.figure import Figure
 from thermogear.base.errors import InputError
 from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text
 from thermogear.views.plots import engine as plots
+from thermogear.views.plots.shared import shared_picture
 from thermogear.views.results import put
 from thermogear.views.style import styled
 from thermogear.views.svg import draw
 from thermogear.views.words import number
 
-KINDS = ("orbit", "lyapunov", "branch", "cascade")
+KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
 
 Groups = dict[str, xr.Dataset]
 Summary = dict[str, Any]
@@ -71,6 +72,8 @@ def _picture(kind: str, groups: Groups) -> Callable[[], Figure]:
         return partial(plots.orbit_picture, groups["orbit"])
     if kind == "lyapunov":
         return partial(plots.lyapunov_picture, groups["lyapunov"])
+    if kind == "shared":
+        return partial(shared_picture, groups["rest"], groups["motion"])
     branches = _branches(groups)
     maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
     return partial(maker, branches)
@@ -135,12 +138,16 @@ def page(kind: str, summary: Summary, groups: Groups) -> str:
 
 
 HEADINGS = {
+    "shared": "Where the two forms part",
     "orbit": "The orbit",
     "lyapunov": "The exponent as batches come in",
     "branch": "Branches along the parameter",
     "cascade": "Cascades",
 }
 CAPTIONS = {
+    "shared": "Above: at rest over the load, the exact loaded contact beside both forms built at "
+    "the mean load (dotted). Below: settled motion over the speed, at the mean load and at a "
+    "light one.",
     "orbit": "Dashed: edges of the backlash. An orbit is stable where its multipliers lie inside "
     "the circle; lines at half orders show a doubled period.",
     "lyapunov": "The band is one standard error of the mean.",
@@ -163,6 +170,11 @@ def _headline(kind: str, summary: Summary) -> str:
     if kind == "branch":
         return (
             f"{len(summary['bifurcations'])} bifurcations on {len(summary['branches'])} branches."
+        )
+    if kind == "shared":
+        return (
+            "Mean stiffness of the load-shared force and of the one spring differ by "
+            f"{100 * summary['stiffness_at_mean_load']:.2f} % at the mean load."
         )
     return f"{sum(len(c['flips']) for c in summary['cascades'])} period doublings located."
 
@@ -268,9 +280,28 @@ def _cascade_tables(summary: Summary) -> list[Block]:
     return found
 
 
+def _shared_tables(summary: Summary) -> list[Block]:
+    rows = [
+        [words, *(_percent(summary.get(f"{name}_{where}_load")) for where in ("mean", "light"))]
+        for words, name in (
+            ("mean stiffness", "stiffness_at"),
+            ("deflection at rest, peak to peak", "swing_at_rest"),
+            ("motion over speed, peak to peak, median", "median_swing_in_motion"),
+            ("motion over speed, peak to peak, greatest", "swing_in_motion"),
+        )
+    ]
+    head = ["difference", "mean load", "light load"]
+    return [Table("Load-shared force against the one spring", head, rows)]
+
+
+def _percent(part: float | None) -> str:
+    return "–" if part is None else f"{100.0 * part:.2f} %"
+
+
 _TABLES: dict[str, Callable[[Summary], list[Block]]] = {
     "orbit": _orbit_tables,
     "lyapunov": _lyapunov_tables,
     "branch": _branch_tables,
     "cascade": _cascade_tables,
+    "shared": _shared_tables,
 }

@@ -1,0 +1,161 @@
+"""How far the load-shared mesh force stands from the one-spring form, for one gear case."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Excitation
+from thermogear.base.pair_springs import PairSprings
+from thermogear.dynamics.integrate import simulate
+from thermogear.dynamics.load_shared import LoadSharedModel
+from thermogear.dynamics.models import from_excitation
+from thermogear.mesh.load_shared import contact_at, pair_springs
+from thermogear.mesh.thermal import HotPair
+from thermogear.study.engine import Found, Progress, found, silent
+from thermogear.study.subject import Gears, Subject
+
+POSITIONS = 240
+FACTORS = np.geomspace(0.01, 4.0, 25)
+"""Loads over the mean load at which springs are compared at rest."""
+LIGHT = 0.05
+"""Part of the mean load that counts as light."""
+STEPS, SAMPLES, PERIODS, DISCARD = 1024, 128, 64, 192
+METRES = {"units": "m"}
+SPRING = {"units": "N/m"}
+
+
+def shared_results(
+    subject: Subject,
+    *,
+    speeds: tuple[float, float] | None = None,
+    count: int = 41,
+    progress: Progress = silent,
+) -> Found:
+    """Both mesh forces of a gear case at rest and in motion.
+
+    At rest over load: mean tangent stiffness and peak to peak deflection of the exact loaded
+    contact, of the pairs' springs and of the one spring. In motion over ``count`` speeds from
+    ``speeds`` first to last [rad/s] (default a third to five thirds of resonance): peak to peak
+    displacement at the mean load and at :data:`LIGHT` of it. Both forms are built at the mean
+    load.
+    """
+    gears = subject.gears
+    if gears is None:
+        raise InputError(
+            "case", "a dimensionless case", why="it has no tooth pairs to share a load"
+        )
+    if gears.bundle.stiffness != "loaded":
+        raise InputError(
+            "--bundle",
+            repr(gears.bundle.name),
+            why="tooth pairs share a load in the loaded contact alone",
+            fix="choose the bundle 'consistent'",
+        )
+    here = gears.excitation()
+    hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
+    progress("springs", 0, 2)
+    drive = pair_springs(hot, positions=POSITIONS)
+    back = pair_springs(hot, flank="back", positions=POSITIONS)
+    progress("springs", 2, 2)
+    data = at_rest(gears, here, drive)
+    resonance = here.natural_frequency / gears.case.pair.pinion.teeth
+    low, high = speeds or (resonance / 3.0, 5.0 * resonance / 3.0)
+    rows: dict[str, list[list[float]]] = {"shared_swing": [], "one_spring_swing": []}
+    done: list[float] = []
+    cut = False
+    try:
+        for number, speed in enumerate(np.linspace(low, high, count).tolist()):
+            progress("speeds", number, count)
+            turning = replace(here, mesh_frequency=gears.case.pair.pinion.teeth * speed)
+            pairs = [_swings(turning, gears, drive, back, part) for part in (1.0, LIGHT)]
+            for name, place in (("shared_swing", 0), ("one_spring_swing", 1)):
+                rows[name].append([pair[place] for pair in pairs])
+            done.append(speed)
+        progress("speeds", count, count)
+    except KeyboardInterrupt:
+        cut = True
+    swing = {
+        name: (("speed", "part"), np.array(values).reshape(-1, 2), METRES)
+        for name, values in rows.items()
+    }
+    moving = xr.Dataset(
+        swing,
+        coords={
+            "speed": ("speed", np.array(done), {"units": "rad/s", "long_name": "pinion speed"}),
+            "part": ("part", [1.0, LIGHT], {"units": "1", "long_name": "load over the mean load"}),
+        },
+    )
+    summary = {"title": subject.title, **_summary(data, moving), "interrupted": cut, "notices": []}
+    return found("shared", {"rest": data, "motion": moving}, summary, cut)
+
+
+def at_rest(gears: Gears, here: Excitation, drive: PairSprings) -> xr.Dataset:
+    """Mean stiffness and peak to peak deflection over load: exact, pair springs, one spring."""
+    hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
+    phase = np.arange(POSITIONS) / POSITIONS + 1e-12
+    loads = FACTORS * here.mean_force
+    exact = contact_at(hot, 0, loads, phase)
+    shared = drive.deflection(loads[:, None], phase)
+    k = here.stiffness(phase)
+    # the kinematic error is in neither of the static curves
+    error = here.error + (gears.case.transmission_error * -1.0)
+    one = loads[:, None] / k + error(phase)
+    values = {
+        "exact_stiffness": exact.tangent.mean(axis=1),
+        "shared_stiffness": drive.stiffness_at(shared, phase).mean(axis=1),
+        "one_spring_stiffness": np.full(loads.size, k.mean()),
+        "exact_swing": np.ptp(exact.deflection, axis=1),
+        "shared_swing": np.ptp(shared, axis=1),
+        "one_spring_swing": np.ptp(one, axis=1),
+    }
+    return xr.Dataset(
+        {
+            name: ("load", v, SPRING if name.endswith("stiffness") else METRES)
+            for name, v in values.items()
+        },
+        coords={
+            "load": ("load", loads, {"units": "N", "long_name": "normal force"}),
+            "factor": ("load", FACTORS, {"units": "1", "long_name": "load over the mean load"}),
+        },
+    )
+
+
+def _swings(
+    here: Excitation, gears: Gears, drive: PairSprings, back: PairSprings, part: float
+) -> tuple[float, float]:
+    """Peak to peak [m] of the settled motion: load-shared, one spring."""
+    light = replace(here, mean_force=part * here.mean_force)
+    shared = LoadSharedModel.from_excitation(light, drive, back, gears.case.transmission_error)
+    length = here.reference_half_backlash
+    run: dict[str, Any] = {"periods": PERIODS, "discard": DISCARD, "samples_per_period": SAMPLES}
+    ours = simulate(shared, steps_per_period=STEPS, initial_state=(shared.rest(), 0.0), **run)
+    one = simulate(from_excitation(light), initial_state=(light.half_backlash / length, 0.0), **run)
+    return float(np.ptp(ours["x"].values)), float(np.ptp(one["x"].values)) * length
+
+
+def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:
+    """How far apart the two forms are, at the mean load and where they part."""
+
+    def apart(data: xr.Dataset, quantity: str, middle: bool = False, **at: Any) -> float:
+        here = data.sel(at, method="nearest")
+        ratio = here[f"shared_{quantity}"] / here[f"one_spring_{quantity}"]
+        if not ratio.size:
+            return float("nan")
+        gap = np.abs(ratio.values - 1.0)
+        return float(np.median(gap) if middle else gap.max())
+
+    rested = rest.swap_dims(load="factor")
+    found_here: dict[str, float] = {}
+    for where, part in (("mean", 1.0), ("light", LIGHT)):
+        found_here |= {
+            f"stiffness_at_{where}_load": apart(rested, "stiffness", factor=part),
+            f"swing_at_rest_{where}_load": apart(rested, "swing", factor=part),
+            f"median_swing_in_motion_{where}_load": apart(moving, "swing", True, part=part),
+            f"swing_in_motion_{where}_load": apart(moving, "swing", part=part),
+        }
+    return {name: value for name, value in found_here.items() if np.isfinite(value)}

@@ -1,0 +1,34 @@
+"""Load-shared force against the one spring: alike at the mean load, apart at light load."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import InputError
+from thermogear.study.case import load_example
+from thermogear.study.shared_force import shared_results
+from thermogear.study.subject import SHORT, of_case, of_numbers
+
+
+def test_where_the_two_forms_part() -> None:
+    found = shared_results(of_case(load_example("rig")), speeds=(100.0, 400.0), count=3)
+    summary, rest = found.summary, found.tree["rest"].to_dataset()
+    assert summary["stiffness_at_mean_load"] < 0.01
+    assert summary["swing_at_rest_mean_load"] < 0.06
+    assert summary["swing_in_motion_mean_load"] < 0.08
+    assert summary["swing_at_rest_light_load"] > 0.3
+    # at light load the springs of the pairs follow the contact, the one spring does not
+    light = rest.isel(load=0)
+    exact = float(light["exact_stiffness"])
+    assert float(light["shared_stiffness"]) == pytest.approx(exact, rel=0.05)
+    assert float(light["one_spring_stiffness"]) > 1.5 * exact
+    assert np.all(np.diff(rest["exact_stiffness"].values) > 0.0)
+
+
+def test_without_gears_there_is_no_load_to_share() -> None:
+    numbers = {"zeta": 0.1, "w": 1.2, "eps": 0.3, "fm": 0.1, "fh": 0.1}
+    with pytest.raises(InputError, match="it has no tooth pairs to share a load"):
+        shared_results(of_numbers({SHORT[k]: v for k, v in numbers.items()}))
+    with pytest.raises(InputError, match="choose the bundle 'consistent'"):
+        shared_results(of_case(load_example("rig"), bundle="thesis"))
