@@ -94,7 +94,7 @@ def follow(
         "line_amplitude": spectrum.amplitudes[:, kept],
         "half_order_amplitude": order_amplitudes(x, simulation.samples, periods, [0.5])[..., 0],
         "peak_to_peak_displacement": x.max(axis=1) - x.min(axis=1),
-        "contact_loss_share": missing if share is None else 1.0 - share,
+        "contact_loss_share": missing if share is None else np.maximum(1.0 - share, 0.0),
         "back_impacts": missing if impacts is None else impacts,
         "status": status,
         "label": np.array([one.name for one in found]),

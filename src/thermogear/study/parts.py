@@ -22,6 +22,7 @@ from thermogear.base.materials import (
 )
 from thermogear.gears.geometry import Gear, GearPair, Rack
 from thermogear.heat.friction import ROUGHNESS_LIMIT
+from thermogear.mesh.excite import disc_inertia
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.study.backlash import Backlash, from_tolerances, from_value
@@ -130,6 +131,8 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
     gears = file.gears
     tip = math.nan if table.tip_diameter is None else 0.5 * table.tip_diameter
     material = named_material(table.material, f"{prefix}.material", known)
+    # a rack left out is the gear's own to choose, with a fillet that fits its pressure angle
+    rack = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
     return _under(
         prefix,
         lambda: Gear(
@@ -140,10 +143,10 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
             face_width=table.face_width,
             bore_radius=table.bore_radius,
             tip_radius=tip,
-            rack=Rack(gears.rack.addendum, gears.rack.dedendum, gears.rack.fillet_radius),
             material=material,
             roughness=table.roughness,
             allow_undercut=table.allow_undercut,
+            **rack,
         ),
     )
 
@@ -229,18 +232,10 @@ def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
     def disc(gear: Gear) -> float:
         outer = gear.pitch_radius if radius == "pitch" else gear.tip_radius
         inner = gear.bore_radius if bored else 0.0
-        return disc_inertia(gear.material.density, gear.face_width, outer, inner)
+        return disc_inertia(gear, outer, inner)
 
     words = f"solid discs of {radius} radius, {'bored' if bored else 'unbored'}"
     return (disc(pair.pinion), disc(pair.wheel)), words
-
-
-def disc_inertia(density: float, width: float, outer: float, inner: float = 0.0) -> float:
-    """I = (pi/2) rho b (R^4 - r^4) [kg m^2] of a disc about its axis.
-
-    density rho [kg/m^3], width b [m], outer R and inner r radius [m].
-    """
-    return 0.5 * math.pi * density * width * (outer**4 - inner**4)
 
 
 def transmission_error(file: GearFile) -> Periodic:

@@ -94,7 +94,9 @@ class GearsTable(Table):
     centre_distance: Annotated[
         float | None, Measure("length", "0.1 mm", "20000 mm", example="250 mm")
     ] = Field(default=None, title="left out: the mesh of the profile shifts without backlash")
-    rack: RackTable = RackTable()
+    rack: RackTable | None = Field(
+        default=None, description="left out: basic rack of ISO 53, its fillet as round as fits"
+    )
     pinion: GearTable
     wheel: GearTable
 
