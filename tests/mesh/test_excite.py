@@ -47,6 +47,13 @@ def test_disc_inertias_of_tip_and_bored_discs(rig: GearPair) -> None:
     assert mass(bored) == pytest.approx(1.195, abs=5e-4)
 
 
+def test_inertia_of_a_thin_ring_is_mass_times_radius_squared(rig: GearPair) -> None:
+    gear = rig.wheel
+    mass = 7850.0 * gear.face_width * np.pi * (0.1**2 - 0.0999**2)
+    ring = disc_inertia(gear, 0.1, 0.0999)
+    assert ring == pytest.approx(mass * 0.5 * (0.1**2 + 0.0999**2), rel=1e-12)
+
+
 def test_jammed_points_have_no_excitation(rig: GearPair, hot_rig: Operating) -> None:
     cycle = mesh_cycle(rig, replace(hot_rig, half_backlash=20e-6))
     assert excitation(cycle, rig, damping_ratio=0.07) == [None, None, None]

@@ -24,7 +24,6 @@ from thermogear.study.case import (
     load_example,
 )
 from thermogear.study.facts import facts
-from thermogear.study.parts import disc_inertia
 from thermogear.study.ready import EXAMPLES, example_text
 from thermogear.study.schema import ModelTable, json_schema
 from thermogear.study.size import estimated_bytes, free_bytes, require_room
@@ -86,12 +85,6 @@ def test_given_inertias_are_taken_as_they_are() -> None:
     assert isinstance(case, GearCase)
     assert case.inertias == pytest.approx((0.01, 0.4), rel=1e-14)
     assert case.inertia_kind == "given"
-
-
-def test_inertia_of_a_thin_ring_is_mass_times_radius_squared() -> None:
-    mass = 7850.0 * 0.02 * math.pi * (0.1**2 - 0.0999**2)
-    ring = disc_inertia(7850.0, 0.02, 0.1, 0.0999)
-    assert ring == pytest.approx(mass * 0.5 * (0.1**2 + 0.0999**2), rel=1e-12)
 
 
 def test_every_value_the_thesis_does_not_state_is_declared_ours() -> None:
