@@ -6,6 +6,8 @@ can make is one line on the error stream and exit code 2.
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 import json
 import os
 import sys
@@ -17,7 +19,6 @@ import click
 
 from thermogear import __version__
 from thermogear.base.errors import ThermogearError, nearest
-from thermogear.front.engine_commands import COMMANDS as ENGINE_COMMANDS
 from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ def run(case: str, output: str, overrides: tuple[str, ...], as_json: bool, force
             read, directory, case_text=_text_of(read), progress=report_progress
         )
     _report(directory)
+    _curves(directory)
     if as_json:
         click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
     else:
@@ -158,8 +160,28 @@ def schema() -> None:
     click.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
 
-for _command in ENGINE_COMMANDS:
-    cli.add_command(_command)
+LISTS = ("gear", "engine", "sweep", "measure", "verify")
+"""Further command lists, ``thermogear.front.<name>_commands``; they import click alone."""
+
+
+def _register() -> None:
+    """Put the commands of every list that is installed behind the main ones."""
+    for name in LISTS:
+        module = f"thermogear.front.{name}_commands"
+        if importlib.util.find_spec(module) is None:
+            continue
+        known = vars(importlib.import_module(module))
+        listed = known.get("COMMANDS")
+        if listed is None:
+            every = [entry for entry in known.values() if isinstance(entry, click.Command)]
+            # members of a group are reached through it
+            inner = [c for g in every if isinstance(g, click.Group) for c in g.commands.values()]
+            listed = [entry for entry in every if entry not in inner]
+        for command in listed:
+            cli.add_command(command)
+
+
+_register()
 
 
 def _load(case: str, overrides: Sequence[str]) -> GearCase | DimensionlessCase:
@@ -178,6 +200,12 @@ def _report(directory: Path) -> Path:
     from thermogear.views.report import write_report
 
     return write_report(directory)
+
+
+def _curves(directory: Path) -> None:
+    from thermogear.views.csv import write_csv
+
+    write_csv(directory)
 
 
 def _print_summary(summary: dict[str, Any], directory: Path) -> None:

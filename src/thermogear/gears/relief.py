@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,10 @@ from thermogear.gears.stiffness import Moduli
 Floats = NDArray[np.float64]
 
 _SHORTEST = 0.05  # base pitches
-_STARTS = ((0.2, 0.15), (0.3, 0.3), (0.4, 0.45), (0.5, 0.3))  # parts of the bounds
+STARTS = ((0.2, 0.15), (0.3, 0.3), (0.4, 0.45), (0.5, 0.3))
+"""Amount and length from which the searches begin, parts of their bounds."""
+MOST_EVALUATIONS = 400
+"""Evaluations of the mesh period from one start, at most."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,8 @@ def optimise_tip_relief(
     shape: str = "linear",
     largest: float | None = None,
     positions: int = 100,
+    symmetric: bool = False,
+    progress: Callable[[int], None] | None = None,
 ) -> ReliefDesign:
     """Amount and length of the tip relief of both gears with the least peak-to-peak error.
 
@@ -53,7 +58,8 @@ def optimise_tip_relief(
     normal_force: F_n [N] > 0; moduli and deviations (for example the hot pair's base-pitch
     difference) as :func:`loaded_contact`, without leading axes; shape: "linear" or "parabolic";
     largest: greatest amount [m], default three times the mean deflection; positions: of the
-    mesh period. Lengths lie between 0.05 base pitches and the active profile.
+    mesh period; symmetric: both gears with one amount and one length; progress: told the
+    evaluations so far. Lengths lie between 0.05 base pitches and the active profile.
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
         raise InputError("normal_force", f"{normal_force} N", allowed="> 0, finite")
@@ -84,17 +90,28 @@ def optimise_tip_relief(
             Relief("wheel", float(amount[1]), float(length[1]), shape=shape),
         )
 
+    def full(x: Floats) -> Floats:
+        return np.repeat(x, 2) if symmetric else x
+
     best_x, best, evaluations = np.array([0.0, 0.0, 0.3, 0.3]), unrelieved, 1
-    for amount, length in _STARTS:
+
+    def peak(x: Floats) -> float:
+        nonlocal evaluations
+        evaluations += 1
+        if progress is not None:
+            progress(evaluations)
+        return float(np.ptp(error(reliefs(full(x)))))
+
+    for amount, length in STARTS:
+        start = np.array([amount, length] if symmetric else [amount, amount, length, length])
         found = minimize(
-            lambda x: float(np.ptp(error(reliefs(x)))),
-            np.array([amount, amount, length, length]),
+            peak,
+            start,
             method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * 4,
-            options={"xatol": 1e-3, "fatol": 1e-4 * unrelieved, "maxfev": 400},
+            bounds=[(0.0, 1.0)] * start.size,
+            options={"xatol": 1e-3, "fatol": 1e-4 * unrelieved, "maxfev": MOST_EVALUATIONS},
         )
-        evaluations += int(found.nfev)
         if found.fun < best:
-            best, best_x = float(found.fun), np.asarray(found.x)
+            best, best_x = float(found.fun), full(np.asarray(found.x))
     one, two = reliefs(best_x)
     return ReliefDesign(one, two, unrelieved, best, evaluations)

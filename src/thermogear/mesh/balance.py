@@ -152,7 +152,7 @@ def heat_balance(
         hot = HotPair(pair, here, choice)
         elastic = elastic_pair(hot, deviations)
         path = FrictionPath(elastic, path_of_contact(pair, path_positions))
-        losses = _losses(pair, here, path, box)
+        losses = pair_losses(pair, here, path, box)
         network = thermal_network(
             pair.pinion,
             pair.wheel,
@@ -211,7 +211,7 @@ def _aitken(factor: Floats, before: Floats, change: Floats) -> Floats:
     return np.asarray(-factor * np.divide(along, square, out=-np.ones_like(factor), where=known))
 
 
-def _losses(pair: GearPair, operating: Operating, path: FrictionPath, box: Gearbox) -> Losses:
+def pair_losses(pair: GearPair, operating: Operating, path: FrictionPath, box: Gearbox) -> Losses:
     """Mesh, churning and bearing losses [W] at the present temperatures, (count,)."""
     mesh, share = path.power()
     oil = operating.lubricant

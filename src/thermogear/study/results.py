@@ -31,9 +31,9 @@ def write_atomically(path: Path, data: bytes) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def write_results(tree: xr.DataTree, directory: Path) -> Path:
-    """Write ``tree`` as ``directory/results.nc`` (netCDF-4); an older file stays until then."""
-    path = directory / RESULTS
+def write_results(tree: xr.DataTree, directory: Path, name: str = RESULTS) -> Path:
+    """Write ``tree`` as ``directory/name`` (netCDF-4); an older file stays until then."""
+    path = directory / name
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         tree.to_netcdf(temporary, engine="h5netcdf")

@@ -299,7 +299,7 @@ def _unsettled(motion: xr.Dataset, cycles: Mapping[str, xr.Dataset]) -> xr.Datas
         return motion
     words = {
         "label": "not converged",
-        "label_reason": "the heat balance did not settle: there is no temperature to move at",
+        "label_reason": "heat balance or loaded contact did not settle: nothing to move in",
     }
     texts = {
         name: (motion[name].dims, np.where(lost, text, motion[name].values))

@@ -39,6 +39,23 @@ def free_bytes() -> int:
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
+_POINT = 40_000  # bytes of one operating point of a thermal map, working copies included
+
+
+def require_points(count: int, *, forced: bool = False, free: int | None = None) -> int:
+    """Memory [bytes] of a thermal map of ``count`` points; refused above 70 % of the free."""
+    needed, free = _POINT * count, free_bytes() if free is None else free
+    if needed > SHARE * free and not forced:
+        raise InputError(
+            "map",
+            f"about {needed / 2**30:.3g} GiB for {count} operating points",
+            allowed=f"0..{SHARE * free / 2**30:.3g} GiB (70 % of the free memory)",
+            why="the grid of speeds and torques is large",
+            fix="thin it out, or pass --force",
+        )
+    return needed
+
+
 def require_room(case: Case, *, forced: bool = False, free: int | None = None) -> int:
     """The estimate [bytes]; refused above 70 % of the free memory unless ``forced``."""
     needed, free = estimated_bytes(case), free_bytes() if free is None else free

@@ -1,0 +1,418 @@
+"""``friction``, ``temperature``, ``relief`` and ``contact``: surveys of a gear case."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from thermogear.base.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from thermogear.study.case import GearCase
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+Report = Callable[[str, int, int], None]
+RPM = math.pi / 30.0
+
+
+def _common(command: _Command) -> _Command:
+    """What every survey takes."""
+    for option in (
+        click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON."),
+        click.option(
+            "--set",
+            "overrides",
+            multiple=True,
+            metavar="PATH=VALUE",
+            help="Put a value in place of the file's, as gears.pinion.teeth=30. May be repeated.",
+        ),
+        click.option(
+            "-o",
+            "--output",
+            required=True,
+            metavar="DIR",
+            help="Directory of the results; made if new.",
+        ),
+        click.argument("case", metavar="CASE"),
+    ):
+        command = option(command)
+    return command
+
+
+@click.command()
+@_common
+def friction(case: str, output: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Draw every friction law over CASE's path of contact, with ranges and regime.
+
+    Writes friction.nc, friction.html, pictures and CSV to DIR.
+    """
+    read = _gear_case(case, overrides)
+
+    def make(report: Report) -> xr.DataTree:
+        from thermogear.study.friction_survey import friction_survey
+
+        return friction_survey(read)
+
+    tree = _carry_out("friction", Path(output), make, quiet=as_json)
+    data = tree["laws"].to_dataset()
+    rows: list[dict[str, Any]] = []
+    for law in data["law"].values:
+        mean = data["mean_friction"].sel(law=law).values
+        rows.append({"law": str(law), "mean_friction": [_finite(v) for v in mean]})
+    found: dict[str, Any] = {
+        "operating": _operating(data),
+        "laws": rows,
+        "regime_share": [
+            dict(zip(map(str, data["regime_name"].values), map(float, shares), strict=True))
+            for shares in data["regime_share"].values
+        ],
+    }
+    lines = [f"{'law':<18}" + "".join(f"{name:>22}" for name in _names(data))]
+    for row in rows:
+        cells = "".join(f"{_text(v):>22}" for v in row["mean_friction"])
+        lines.append(f"{row['law']:<18}{cells}")
+    for name, shares in zip(_names(data), found["regime_share"], strict=True):
+        words = ", ".join(f"{100.0 * v:.0f} % {k}" for k, v in shares.items())
+        lines.append(f"{name}: {words}")
+    _finish(tree, found, lines, Path(output) / "friction.html", as_json)
+
+
+@click.command()
+@_common
+@click.option(
+    "--speeds",
+    metavar="RPM[,RPM...]",
+    help="Pinion speeds, or FROM:TO:COUNT; 500:6000:12 if left out.",
+)
+@click.option(
+    "--torques",
+    metavar="NM[,NM...]",
+    help="Pinion torques, or FROM:TO:COUNT; 50:500:10 if left out.",
+)
+@click.option("--own", is_flag=True, help="Take the speeds and torques of the case instead.")
+@click.option(
+    "--warm-up",
+    "warm_up",
+    metavar="RPM,NM",
+    help="Operating point of the warm-up curve; the middle of the map if left out.",
+)
+@click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
+def temperature(
+    case: str,
+    output: str,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    speeds: str | None,
+    torques: str | None,
+    own: bool,
+    warm_up: str | None,
+    force: bool,
+) -> None:
+    """Close the loop of friction and heat over speeds and torques: the map of everything hot.
+
+    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates, warm-up,
+    and the thesis's first conclusion checked. Temperatures that CASE gives are not used; nodes
+    that [gearbox.measured] holds are. Writes temperature.nc, temperature.html, pictures and CSV.
+    """
+    read = _gear_case(case, overrides)
+    if own and (speeds or torques):
+        raise InputError("--own", "speeds or torques beside it", fix="leave one out")
+    at = None
+    if warm_up is not None:
+        pair = _numbers("--warm-up", warm_up)
+        if len(pair) != 2:
+            raise InputError("--warm-up", repr(warm_up), allowed="RPM,NM", fix="write 2000,150")
+        _positive("--warm-up", pair)
+        at = (pair[0] * RPM, pair[1])
+
+    from thermogear.study.size import require_points
+    from thermogear.study.thermal_map import SPEEDS, TORQUES, thermal_map
+
+    omega = _axis("--speeds", speeds, RPM, SPEEDS) if not own else read.speeds
+    moment = _axis("--torques", torques, 1.0, TORQUES) if not own else read.torques
+    require_points(len(omega) * len(moment), forced=force)
+
+    def make(report: Report) -> xr.DataTree:
+        return thermal_map(read, omega, moment, warm_up_at=at, progress=report)
+
+    tree = _carry_out("temperature", Path(output), make, quiet=as_json)
+    data = tree["map"].to_dataset()
+    names = (
+        "greatest_flash",
+        "least_half_backlash",
+        "scuffing_margin",
+        "least_film_parameter",
+        "mean_friction",
+        "residual",
+    )
+    found: dict[str, Any] = {
+        "seconds": float(tree.attrs["seconds"]),
+        "points": int(data["status"].size),
+        "pinion_speed_rpm": [float(v) / RPM for v in data["pinion_speed"].values],
+        "pinion_torque_Nm": [float(v) for v in data["pinion_torque"].values],
+        "status": data["status"].values.tolist(),
+        "iterations": data["iterations"].values.tolist(),
+        "pinion_tooth_K": _table(data["node_temperature"].sel(node="pinion_tooth")),
+        "oil_K": _table(data["node_temperature"].sel(node="oil")),
+        **{name: _table(data[name]) for name in names},
+        "conclusion": json.loads(tree.attrs["verdicts"]),
+    }
+    lines = [f"{one['claim']}: {one['verdict']} ({one['found']})" for one in found["conclusion"]]
+    _finish(tree, found, lines, Path(output) / "temperature.html", as_json)
+
+
+@click.command()
+@_common
+@click.option(
+    "--torque", type=float, metavar="NM", help="Pinion torque; the case's greatest if left out."
+)
+@click.option(
+    "--temperature",
+    "celsius",
+    type=float,
+    metavar="DEGC",
+    help="Addendum temperature of both gears; the case's hot state if left out.",
+)
+@click.option(
+    "--shape",
+    type=click.Choice(["linear", "parabolic"]),
+    default="linear",
+    show_default=True,
+    help="Form of the relief.",
+)
+@click.option("--symmetric", is_flag=True, help="The same amount and length on both gears.")
+@click.option("--largest", type=float, metavar="UM", help="Greatest amount to be tried.")
+def relief(
+    case: str,
+    output: str,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    torque: float | None,
+    celsius: float | None,
+    shape: str,
+    symmetric: bool,
+    largest: float | None,
+) -> None:
+    """Find the tip relief that makes CASE's hot pair run most evenly under load.
+
+    Least peak-to-peak static transmission error, drawn against the unrelieved pair; prints the
+    lines for the case file. Writes relief.nc, relief.html, pictures and CSV to DIR.
+    """
+    read = _gear_case(case, overrides)
+    for name, value in (("--torque", torque), ("--largest", largest)):
+        if value is not None:
+            _positive(name, [value])
+    kelvin = None if celsius is None else celsius + 273.15
+    if kelvin is not None and not 0.0 < kelvin < math.inf:
+        raise InputError("--temperature", f"{celsius:g} degC", allowed="> -273.15 degC")
+
+    def make(report: Report) -> xr.DataTree:
+        from thermogear.study.relief import relief_survey
+
+        return relief_survey(
+            read,
+            torque=torque,
+            gear_temperature=kelvin,
+            shape=shape,
+            symmetric=symmetric,
+            largest=None if largest is None else 1e-6 * largest,
+            progress=report,
+        )
+
+    tree = _carry_out("relief", Path(output), make, quiet=as_json)
+    attributes = tree.attrs
+    found: dict[str, Any] = {
+        "torque_Nm": float(attributes["torque"]),
+        "unrelieved_m": float(attributes["unrelieved"]),
+        "relieved_m": float(attributes["relieved"]),
+        "evaluations": int(attributes["evaluations"]),
+        "reliefs": json.loads(attributes["reliefs"]),
+        "paste": attributes["paste"],
+    }
+    before, after = 1e6 * found["unrelieved_m"], 1e6 * found["relieved_m"]
+    lines = [
+        f"transmission error at {found['torque_Nm']:g} N m: {before:.3f} um peak to peak without, "
+        f"{after:.3f} um with relief",
+        "",
+        "# for the case file, in place of tip reliefs it has already",
+        *found["paste"].splitlines(),
+        "",
+    ]
+    _finish(tree, found, lines, Path(output) / "relief.html", as_json)
+
+
+@click.command()
+@_common
+@click.option(
+    "--torques",
+    metavar="NM[,NM...]",
+    help="Pinion torques, or FROM:TO:COUNT; parts of the case's greatest if left out.",
+)
+@click.option(
+    "--body",
+    type=click.Choice(["bore_clamped", "rim"]),
+    default="bore_clamped",
+    show_default=True,
+    help="Reading of the hub: held at the bore (statics), or without its wind-up.",
+)
+def contact(
+    case: str,
+    output: str,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    torques: str | None,
+    body: str,
+) -> None:
+    """Loaded tooth contact of CASE over mesh position, load and temperature.
+
+    Tangent and secant stiffness, transmission error, load shares, pressure, double contact (and
+    how gears of unequal temperature lose it at light load), beside ISO 6336-1. Writes contact.nc,
+    contact.html, pictures and CSV to DIR.
+    """
+    read = _gear_case(case, overrides)
+    moments = _axis("--torques", torques, 1.0, ())
+
+    def make(report: Report) -> xr.DataTree:
+        from thermogear.study.loaded_survey import loaded_survey
+
+        return loaded_survey(read, moments, body=body, progress=report)
+
+    tree = _carry_out("contact", Path(output), make, quiet=as_json)
+    data, iso = tree["contact"].to_dataset(), tree["iso_6336"].to_dataset()
+    found: dict[str, Any] = {
+        "pinion_torque_Nm": [float(v) for v in data["load"].values],
+        "temperature": [str(v) for v in data["temperature"].values],
+        "mean_stiffness": _table(data["mean_stiffness"]),
+        "double_contact_length_m": _table(data["double_contact_length"]),
+        "iso_6336_stiffness": [float(v) for v in iso["iso_stiffness"].values],
+    }
+    lines = [f"{'N m':>10} {'k cold':>12} {'k hot':>12} {'ISO 6336':>12}   [1e8 N/m]"]
+    for place, torque in enumerate(found["pinion_torque_Nm"]):
+        cold, hot = (1e-8 * found["mean_stiffness"][t][place] for t in (0, 1))
+        standard = 1e-8 * found["iso_6336_stiffness"][place]
+        lines.append(f"{torque:>10.4g} {cold:>12.4f} {hot:>12.4f} {standard:>12.4f}")
+    _finish(tree, found, lines, Path(output) / "contact.html", as_json)
+
+
+COMMANDS: tuple[click.Command, ...] = (friction, temperature, relief, contact)
+"""For the main group to register."""
+
+
+# --- what the commands share ----------------------------------------------------------------
+
+
+def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
+    from thermogear.study.case import GearCase, load_case
+
+    read = load_case(Path(case), overrides)
+    if not isinstance(read, GearCase):
+        raise InputError(
+            "kind", "a dimensionless case", allowed="a gear case", why="there is no gear in it"
+        )
+    return read
+
+
+def _carry_out(
+    name: str, directory: Path, make: Callable[[Report], xr.DataTree], quiet: bool
+) -> xr.DataTree:
+    """Claim the directory, compute, store, draw."""
+    from thermogear.front.progress import progress
+    from thermogear.study.results import claim_directory, write_results
+    from thermogear.views.survey_report import write_survey
+
+    claim_directory(directory)
+    with progress(wanted=not quiet) as report:
+        tree = make(report)
+    write_results(tree, directory, f"{name}.nc")
+    write_survey(directory, name)
+    return tree
+
+
+def _finish(
+    tree: xr.DataTree, found: dict[str, Any], lines: list[str], page: Path, as_json: bool
+) -> None:
+    notices = json.loads(tree.attrs["notices"])
+    if as_json:
+        content = {"title": tree.attrs["title"], **found, "notices": notices}
+        click.echo(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False))
+        return
+    for line in lines:
+        click.echo(line)
+    for notice in notices:
+        click.echo(f"- {notice['text']}")
+    click.echo(page)
+
+
+def _axis(
+    option: str, text: str | None, scale: float, otherwise: tuple[float, ...]
+) -> tuple[float, ...]:
+    """SI values of an axis: numbers with commas, or FROM:TO:COUNT."""
+    if text is None:
+        return otherwise
+    if ":" in text:
+        parts = text.split(":")
+        low, high, number = (_numbers(option, ",".join(parts)) + [math.nan] * 3)[:3]
+        if len(parts) != 3 or not (number == int(number or 0) and 2 <= number <= 100_000):
+            raise InputError(
+                option,
+                repr(text),
+                allowed="FROM:TO:COUNT, COUNT 2..100000",
+                fix="write 500:6000:12",
+            )
+        count = int(number)
+        values = [low + (high - low) * k / (count - 1) for k in range(count)]
+    else:
+        values = _numbers(option, text)
+    _positive(option, values)
+    if any(b <= a for a, b in pairwise(values)):
+        raise InputError(option, repr(text), allowed="strictly rising values")
+    return tuple(scale * value for value in values)
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError as cause:
+        raise InputError(
+            option, repr(text), allowed="numbers with commas between", fix="write 500,1000,2000"
+        ) from cause
+
+
+def _positive(option: str, values: list[float]) -> None:
+    for value in values:
+        if not 0.0 < value < 1e9:
+            raise InputError(option, f"{value:g}", allowed="> 0, finite")
+
+
+def _operating(data: xr.Dataset) -> list[dict[str, float]]:
+    pairs = zip(data["pinion_speed"].values, data["pinion_torque"].values, strict=True)
+    return [{"pinion_speed_rpm": float(s) / RPM, "pinion_torque_Nm": float(t)} for s, t in pairs]
+
+
+def _names(data: xr.Dataset) -> list[str]:
+    return [
+        f"{one['pinion_speed_rpm']:.0f} rpm {one['pinion_torque_Nm']:.4g} N m"
+        for one in _operating(data)
+    ]
+
+
+def _finite(value: object) -> float | None:
+    number = float(str(value))
+    return number if math.isfinite(number) else None
+
+
+def _text(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
+
+
+def _table(data: xr.DataArray) -> list[list[float | None]]:
+    return [[_finite(v) for v in row] for row in data.values]

@@ -1,0 +1,90 @@
+"""Body temperatures as the ISO reports estimate them, beside those of the heat balance."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.gears.contact import curvature_radii, reduced_modulus, reduced_radius
+from thermogear.gears.geometry import GearPair
+from thermogear.heat.laws import ISO_LUBRICANT_FACTOR, iso_13989_2
+from thermogear.heat.losses import gear_loss_factor, mesh_loss
+from thermogear.heat.lubrication import dynamic_viscosity
+from thermogear.heat.scuffing import (
+    angle_factor,
+    body_temperature_13989_1,
+    body_temperature_13989_2,
+    body_temperature_15144,
+    contact_ratio_factor,
+    flash_at_tip_13989_2,
+    geometry_factor,
+    rotation_factor,
+    thermo_elastic_factor,
+)
+from thermogear.mesh.operating import Operating
+
+Floats = NDArray[np.float64]
+
+ESTIMATES = ("ISO/TR 13989-1", "ISO/TR 13989-2", "ISO/TR 15144-1")
+
+
+def body_estimates(
+    pair: GearPair, operating: Operating, mean_flash: Floats, dipped: bool = True
+) -> Floats:
+    """Body temperature [K] by each of :data:`ESTIMATES`, shape (estimate, operating).
+
+    ``mean_flash`` [K] along the path, (operating,), for part 1; the oil's temperature is that of
+    ``operating``; X_S is 1.0 dipped, 1.2 sprayed. Parts 2 and 15144 take the friction of
+    Michaelis. nan where an estimate has no value (contact ratio from 2 on).
+    """
+    oil = np.broadcast_to(np.asarray(operating.oil_temperature, dtype=float), operating.speed.shape)
+    supply = 1.0 if dipped else 1.2
+    speed = operating.speed * pair.pinion.pitch_radius
+    tangential = operating.torque / pair.pinion.pitch_radius / pair.face_width
+    alpha, working = pair.pinion.pressure_angle, pair.operating_pressure_angle
+    with warnings.catch_warnings():
+        # the heat balance has said already where the oil leaves its line
+        warnings.simplefilter("ignore", ValidityWarning)
+        friction = iso_13989_2(
+            tangential,
+            2.0 * speed * np.tan(working) * np.cos(alpha),
+            float(reduced_radius(pair, np.array([pair.path.c]))[0]),
+            dynamic_viscosity(operating.lubricant, oil),
+            0.5 * (pair.pinion.roughness + pair.wheel.roughness),
+            ISO_LUBRICANT_FACTOR.get(operating.lubricant.kind, 1.0),
+        )
+    path = pair.path
+    approach = (path.c - path.a) / pair.base_pitch
+    recess = (path.e - path.c) / pair.base_pitch
+    loss = mesh_loss(
+        operating.speed * operating.torque,
+        friction,
+        gear_loss_factor(pair.pinion.teeth, pair.ratio, approach, recess),
+    )
+    first = body_temperature_13989_1(oil, mean_flash, supply)
+    third = body_temperature_15144(oil, loss, pair.centre_distance, pair.face_width, supply)
+    try:
+        factor = contact_ratio_factor(approach, recess)
+    except InputError:
+        return np.stack([first, np.full_like(first, np.nan), third])
+    rho_1, rho_2 = (float(r[0]) for r in curvature_radii(pair, np.array([path.e])))
+    one, two = pair.pinion.material, pair.wheel.material
+    modulus = 2.0 * reduced_modulus(
+        one.youngs_modulus, one.poisson_ratio, two.youngs_modulus, two.poisson_ratio
+    )
+    contact = 0.5 * (one.thermal_contact_coefficient + two.thermal_contact_coefficient)
+    tip = flash_at_tip_13989_2(
+        friction,
+        tangential,
+        speed,
+        pair.centre_distance,
+        geometry_factor(rho_1, rho_2, pair.ratio),
+        angle_factor(alpha, working),
+        rotation_factor(approach, recess),
+        1.0,
+        thermo_elastic_factor(modulus, contact),
+    )
+    return np.stack([first, body_temperature_13989_2(oil, tip * factor, supply), third])

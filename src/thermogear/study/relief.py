@@ -1,0 +1,216 @@
+"""Tip relief of a case's hot pair: the one that evens the loaded transmission error."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base.errors import InputError
+from thermogear.gears.deviations import Contacts, Relief
+from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
+from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
+from thermogear.gears.stiffness import Moduli
+from thermogear.mesh.elastic import LoadedPair
+from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair, ThermalDeviation
+from thermogear.study.balances import dressed
+from thermogear.study.case import GearCase
+from thermogear.study.flanks import relief_text
+
+Floats = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+KIND = "relief"
+LOADS = tuple(np.arange(0.1, 1.75, 0.1))
+"""Loads, as parts of the one designed for, at which the pairs are compared."""
+PHASES = 200
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """No progress wanted."""
+
+
+def relief_survey(
+    case: GearCase,
+    *,
+    torque: float | None = None,
+    gear_temperature: float | None = None,
+    shape: str = "linear",
+    symmetric: bool = False,
+    largest: float | None = None,
+    progress: Progress = _silent,
+) -> xr.DataTree:
+    """The tip relief of both gears with the least peak-to-peak static transmission error.
+
+    ``torque`` [N m] of the pinion (default: the case's greatest) and ``gear_temperature`` [K] of
+    both addenda (default: the case's hot state) are what is designed for; ``shape`` linear or
+    parabolic; ``symmetric``: both gears alike; ``largest`` amount [m]. Other deviations of the
+    case stay; tip reliefs it has already are replaced.
+
+    Groups: ``error`` over (pair_kind, mesh_phase) at the design load; ``loads`` the peak-to-peak
+    error over other loads; attributes carry the relief and its lines for the case file.
+    """
+    if not case.torques:
+        raise InputError("operating.torque", "nothing", allowed="one torque")
+    moment = max(case.torques) if torque is None else torque
+    if not (np.isfinite(moment) and moment > 0.0):
+        raise InputError("torque", f"{moment} N m", allowed="> 0 N m")
+    model = case.models[0].override(stiffness="loaded")
+    found = (
+        case.operating_of(case.models[0])
+        if gear_temperature is None
+        else case.operating_at(gear_temperature, case.models[0])
+    )
+    hot = HotPair(case.pair, one_point(found, moment), model)
+    elastic = LoadedPair(hot)
+    moduli = [Moduli(np.ravel(m.tooth)[0], np.ravel(m.body)[0]) for m in elastic.moduli]
+    kept = [d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")]
+    deviations = [*kept, FirstPoint(ThermalDeviation(hot))]
+    loaded = LoadedModel(body="bore_clamped")
+    force = moment / case.pair.pinion.base_radius
+    most = len(STARTS) * MOST_EVALUATIONS
+    design = optimise_tip_relief(
+        case.pair,
+        force,
+        pinion=moduli[0],
+        wheel=moduli[1],
+        deviations=deviations,
+        model=loaded,
+        shape=shape,
+        largest=largest,
+        symmetric=symmetric,
+        progress=lambda done: progress("relief", done, most),
+    )
+    progress("relief", most, most)
+    phase = np.arange(PHASES) / PHASES
+
+    def mesh(reliefs: tuple[Relief, ...], forces: Floats) -> LoadedMesh:
+        return solve_mesh(
+            case.pair,
+            forces,
+            phase,
+            pinion=moduli[0],
+            wheel=moduli[1],
+            deviations=[*deviations, *reliefs],
+            model=loaded,
+        )
+
+    pairs = {"unrelieved": (), "relieved": (design.pinion, design.wheel)}
+    loads = force * np.asarray(LOADS)
+    curves = [mesh(reliefs, np.array([force])) for reliefs in pairs.values()]
+    ranges = [np.ptp(mesh(reliefs, loads).deflection, axis=-1) for reliefs in pairs.values()]
+    by = ("pair_kind", "mesh_phase")
+    error = xr.Dataset(
+        {
+            "transmission_error": dressed(
+                by,
+                np.stack([c.deflection[0] for c in curves]),
+                "m",
+                "static transmission error under load",
+            ),
+            "tangent_stiffness": dressed(
+                by, np.stack([c.tangent[0] for c in curves]), "N/m", "tangent mesh stiffness"
+            ),
+            "greatest_pressure": dressed(
+                by,
+                np.stack([c.pressure[0].max(axis=-1) for c in curves]),
+                "Pa",
+                "greatest Hertzian pressure of any pair",
+            ),
+        },
+        {
+            "pair_kind": list(pairs),
+            "mesh_phase": dressed(("mesh_phase",), phase, "1", "mesh phase"),
+        },
+    )
+    over = xr.Dataset(
+        {
+            "peak_to_peak_error": dressed(
+                ("pair_kind", "load"),
+                np.stack(ranges),
+                "m",
+                "transmission error, peak to peak",
+            )
+        },
+        {
+            "pair_kind": list(pairs),
+            "load": dressed(
+                ("load",), loads * case.pair.pinion.base_radius, "N m", "pinion torque"
+            ),
+        },
+    )
+    lines = "\n\n".join(relief_text(r.gear, r) for r in (design.pinion, design.wheel))
+    tree = xr.DataTree.from_dict({"error": error, "loads": over})
+    tree.attrs = {
+        "thermogear": thermogear.__version__,
+        "kind": KIND,
+        "title": f"Tip relief: {case.title}",
+        "case": case.text,
+        "overrides": json.dumps([list(pair) for pair in case.overrides]),
+        "torque": moment,
+        "pinion_addendum": float(np.ravel(hot.temperatures.pinion_addendum)[0]),
+        "wheel_addendum": float(np.ravel(hot.temperatures.wheel_addendum)[0]),
+        "shape": shape,
+        "symmetric": int(symmetric),
+        "unrelieved": design.unrelieved,
+        "relieved": design.relieved,
+        "evaluations": design.evaluations,
+        "reliefs": json.dumps(
+            {
+                r.gear: {"amount_m": r.amount, "length_m": r.length, "shape": r.shape}
+                for r in (design.pinion, design.wheel)
+            }
+        ),
+        "paste": lines,
+        "notices": json.dumps(_notices(case)),
+    }
+    return tree
+
+
+def one_point(operating: Operating, torque: float) -> Operating:
+    """The first point of ``operating`` alone, under ``torque`` [N m]."""
+    t = operating.temperatures
+    names = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore", "housing")
+    first = replace(t, **{name: float(np.ravel(getattr(t, name))[0]) for name in names})
+    return replace(
+        operating,
+        speed=operating.speed[:1],
+        torque=np.array([torque]),
+        oil_temperature=float(np.ravel(operating.oil_temperature)[0]),
+        temperatures=first,
+    )
+
+
+class FirstPoint:
+    """A deviation over operating points, seen at the first of them."""
+
+    def __init__(self, deviation: ThermalDeviation) -> None:
+        self.deviation = deviation
+
+    def gap(self, at: Contacts) -> Floats:
+        """e [m], (position, pair)."""
+        return np.asarray(self.deviation.gap(at)[0])
+
+
+def _notices(case: GearCase) -> list[dict[str, str]]:
+    found = [
+        {
+            "level": "info",
+            "text": "Bodies clamped at their bores (statics), plane stress; contact on tip corners "
+            "and relief stand without a finite-element check.",
+        },
+        {
+            "level": "info",
+            "text": "The relief is best at the load and temperature it is made for; the second "
+            "picture says what it costs at others.",
+        },
+    ]
+    if any(isinstance(d, Relief) and d.end == "tip" for d in case.deviations):
+        found.append({"level": "warning", "text": "The case's own tip relief is replaced."})
+    return found

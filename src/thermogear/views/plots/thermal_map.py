@@ -1,0 +1,197 @@
+"""The map of everything hot over speed and torque, and the warm-up curve."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS
+from thermogear.views.style import INK, OKABE_ITO, QUIET, WIDE, legend_below, note, picture
+from thermogear.views.words import CELSIUS, plain
+
+Floats = NDArray[np.float64]
+
+SAFE = 50.0
+"""Scuffing margin [K] that is advised at least."""
+
+NODE_COLOURS = {
+    "pinion_tooth": (OKABE_ITO[1], "-"),
+    "pinion_body": (OKABE_ITO[1], (0, (4, 1.5))),
+    "pinion_shaft": (OKABE_ITO[1], (0, (1, 1.5))),
+    "wheel_tooth": (OKABE_ITO[0], "-"),
+    "wheel_body": (OKABE_ITO[0], (0, (4, 1.5))),
+    "wheel_shaft": (OKABE_ITO[0], (0, (1, 1.5))),
+    "oil": (OKABE_ITO[2], "-"),
+    "housing": (QUIET, "-"),
+}
+
+
+def thermal_map(data: xr.Dataset) -> Figure:
+    """Regime, flash, body temperature, backlash left, scuffing margin and friction: six maps.
+
+    Points without a steady state are white; where the oil leaves its viscosity line the map is
+    hatched.
+    """
+    figure, axes = picture(2, 3, size=(WIDE, 6.6), between=1.0, above=0.95)
+    figure.subplots_adjust(right=0.95)
+    settled = data["status"].values != STATUS.index("not_converged")
+
+    def kept(values: Floats) -> Floats:
+        return np.where(settled, values, np.nan)
+
+    boundary = 100.0 * data["regime_share"].isel(regime_name=0).values
+    film = kept(data["least_film_parameter"].values)
+    _panel(axes[0, 0], data, kept(boundary), "boundary lubrication [% of path]", "Reds", (0, 100))
+    _lines(axes[0, 0], data, film, _nice(film, 4), "Λ = %.2g")
+    flash = kept(data["greatest_flash"].values)
+    _panel(axes[0, 1], data, flash, "greatest flash temperature [K]", "YlOrRd")
+    teeth = data["node_temperature"].sel(node="pinion_tooth").values
+    body = kept(teeth - ZERO_CELSIUS)
+    _panel(axes[0, 2], data, body, "pinion teeth, body temperature [°C]", "YlOrRd")
+    tempering = np.where(data["tempered"].values == 1, 1.0, 0.0)
+    if 0.0 < tempering.mean() < 1.0:
+        _lines(axes[0, 2], data, tempering, [0.5], "tempered")
+    left = kept(1e6 * data["least_half_backlash"].values)
+    _panel(axes[1, 0], data, left, "half backlash left [µm]", "viridis")
+    _jam(axes[1, 0], data, left)
+    margin = kept(data["scuffing_margin"].values)
+    if np.isfinite(margin).any():
+        _panel(axes[1, 1], data, margin, "scuffing margin [K]", "RdYlGn", (-200.0, 200.0))
+        _lines(axes[1, 1], data, margin, [0.0, SAFE], "%.0f K")
+    else:
+        note(axes[1, 1], "scuffing margin: oil.scuffing_load_stage is not given")
+    friction = kept(data["mean_friction"].values)
+    _panel(axes[1, 2], data, friction, "mean friction coefficient [–]", "PuBu")
+    for axis in axes.ravel():
+        _hatch(axis, data, settled)
+        axis.set_xlabel("pinion speed [rpm]")
+        axis.set_ylabel("pinion torque [N m]")
+    return figure
+
+
+def _grid(data: xr.Dataset) -> tuple[Floats, Floats]:
+    return data["pinion_speed"].values * 30.0 / np.pi, data["pinion_torque"].values
+
+
+def _panel(
+    axis: Axes,
+    data: xr.Dataset,
+    values: Floats,
+    title: str,
+    colours: str,
+    ends: tuple[float, float] | None = None,
+) -> None:
+    """Filled contours over speed and torque; a grid of one line is drawn as that line."""
+    axis.set_title(plain(title))
+    speed, torque = _grid(data)
+    if not np.isfinite(values).any():
+        note(axis, "no point has a steady state")
+        return
+    low, high = ends or (float(np.nanmin(values)), float(np.nanmax(values)))
+    if min(values.shape) < 2:
+        along = speed if speed.size >= torque.size else torque
+        axis.plot(along, values.ravel(), marker="o", markersize=3.5, color=OKABE_ITO[1])
+        return
+    if high - low < 1e-9 * max(abs(high), 1e-12):
+        high = low + max(abs(low), 1.0) * 1e-3
+    levels = np.linspace(low, high, 13)
+    drawn = axis.contourf(
+        speed, torque, values.T, levels=levels, cmap=mpl.colormaps[colours], extend="both"
+    )
+    bar = axis.figure.colorbar(drawn, ax=axis, pad=0.02, aspect=24, format="%.3g")
+    bar.set_ticks([float(v) for v in levels[::3]])
+    bar.ax.tick_params(labelsize=7.5)
+    bar.outline.set_visible(False)
+    axis.grid(visible=False)
+
+
+def _nice(values: Floats, count: int) -> list[float]:
+    """A few levels in geometric steps that lie inside ``values``."""
+    known = values[np.isfinite(values) & (values > 0.0)]
+    if not known.size or known.max() <= 1.02 * known.min():
+        return []
+    steps = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0)
+    inside = [s for s in steps if known.min() < s < known.max()]
+    return inside[-count:]
+
+
+def _lines(axis: Axes, data: xr.Dataset, values: Floats, levels: list[float], words: str) -> None:
+    """Named contour lines, where they exist."""
+    speed, torque = _grid(data)
+    known = values[np.isfinite(values)]
+    inside = [v for v in levels if known.size and known.min() < v < known.max()]
+    if not inside or min(values.shape) < 2:
+        return
+    lines = axis.contour(speed, torque, values.T, levels=inside, colors=INK, linewidths=1.1)
+    text = (lambda v: words % v) if "%" in words else (lambda _: words)
+    axis.clabel(lines, fmt=text, fontsize=7.5)
+
+
+def _jam(axis: Axes, data: xr.Dataset, left: Floats) -> None:
+    """The border where the backlash is used up, or that there is none."""
+    known = left[np.isfinite(left)]
+    if known.size and known.min() <= 0.0:
+        _lines(axis, data, left, [0.0], "jam")
+        return
+    jam = data["jam_temperature"].values
+    finite = jam[np.isfinite(jam) & np.isfinite(left)]
+    words = "no point jams"
+    if finite.size:
+        words += f"; it would from teeth of {float(CELSIUS(finite.min())):.0f} °C on"
+    axis.text(
+        0.03,
+        0.04,
+        words,
+        transform=axis.transAxes,
+        fontsize=7.5,
+        color=INK,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 2.0},
+    )
+
+
+def _hatch(axis: Axes, data: xr.Dataset, settled: NDArray[np.bool_]) -> None:
+    """Hatch what rests on an oil beyond its viscosity line."""
+    outside = (data["within_oil_range"].values == 0) & settled
+    if not outside.any() or min(outside.shape) < 2:
+        return
+    speed, torque = _grid(data)
+    hatched = axis.contourf(
+        speed,
+        torque,
+        outside.T.astype(float),
+        levels=[0.5, 1.5],
+        colors="none",
+        hatches=["///"],
+    )
+    hatched.set_edgecolor(QUIET)
+    hatched.set_linewidth(0.0)
+
+
+def warm_up(data: xr.Dataset) -> Figure:
+    """Node temperatures over time from the ambient."""
+    figure, axes = picture(size=(6.4, 3.6))
+    axis = axes[0, 0]
+    minutes = data["time"].values / 60.0
+    for name in (str(n) for n in data["node"].values):
+        if name not in NODE_COLOURS:
+            continue
+        colour, line = NODE_COLOURS[name]
+        axis.plot(
+            minutes,
+            CELSIUS(data["node_temperature"].sel(node=name).values),
+            color=colour,
+            linestyle=line,
+            label=name.replace("_", " "),
+        )
+    speed = float(data.attrs["pinion_speed"]) * 30.0 / np.pi
+    axis.set_title(f"{speed:.0f} rpm, {float(data.attrs['pinion_torque']):.0f} N m")
+    axis.set_xlabel("time from the start [min]")
+    axis.set_ylabel("temperature T [°C]")
+    axis.set_xlim(0.0, float(minutes[-1]))
+    legend_below(figure, axis, 4)
+    return figure

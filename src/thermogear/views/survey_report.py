@@ -1,0 +1,145 @@
+"""Pages, pictures and CSV files of the gear surveys, each drawn from one stored file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import xarray as xr
+from markupsafe import Markup
+
+from thermogear.base.errors import InputError
+from thermogear.views.page import Block, Code, Gallery, Picture, Section
+from thermogear.views.results import put
+from thermogear.views.style import styled
+from thermogear.views.survey_sections import SURVEYS, Drawn, Survey
+from thermogear.views.svg import draw
+from thermogear.views.words import prose
+
+RESOLUTION = 160
+"""Dots per inch of the PNG files."""
+
+LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
+
+
+def write_survey(directory: Path, kind: str) -> list[Path]:
+    """Draw everything of ``directory/kind.nc`` beside it; the files, the page first.
+
+    ``kind.html`` needs no other file; every picture stands beside it as SVG and PNG, every
+    table of numbers as CSV. Raises InputError where the file is missing, damaged or not ours.
+    """
+    directory = Path(directory)
+    texts, groups = read_survey(directory / f"{kind}.nc")
+    survey = SURVEYS[str(texts["kind"])](texts, groups)
+    written = [put(directory / f"{kind}.html", page(texts, survey))]
+    for one in survey.pictures:
+        written += _files(directory, kind, one)
+    for name, data in groups.items():
+        written += _tables(directory, f"{kind}_{name}", data)
+    return written
+
+
+def read_survey(path: Path) -> tuple[dict[str, Any], dict[str, xr.Dataset]]:
+    """Attributes and groups of a stored survey, in memory."""
+    if not path.is_file():
+        raise InputError("results", str(path), why="there is no such file")
+    try:
+        with xr.open_datatree(path, engine="h5netcdf") as tree:
+            texts = {str(name): value for name, value in tree.attrs.items()}
+            groups = {
+                node.path.strip("/"): node.to_dataset(inherit=True).load()
+                for node in tree.subtree
+                if node.has_data
+            }
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
+        raise InputError(
+            "results", str(path), why="it cannot be read as netCDF; it is damaged"
+        ) from error
+    if "thermogear" not in texts or texts.get("kind") not in SURVEYS:
+        raise InputError("results", str(path), why="it was not written by thermogear")
+    return texts, groups
+
+
+def page(texts: Mapping[str, Any], survey: Survey) -> str:
+    """The whole page as text."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    pictures: list[Block] = [Gallery([_picture(one)]) for one in survey.pictures if one.wide]
+    small = [_picture(one) for one in survey.pictures if not one.wide]
+    if small:
+        pictures.append(Gallery(small))
+    sections = [Section("pictures", "Pictures", pictures)]
+    if survey.code:
+        sections.append(Section("paste", "For the case file", [Code(survey.code)]))
+    sections.append(Section("numbers", "Numbers", list(survey.tables)))
+    sections.append(Section("case", "The case", [Code(_case_text(texts))]))
+    notices = [
+        (row["level"], LEVELS[row["level"]], prose(row["text"]))
+        for row in json.loads(str(texts["notices"]))
+    ]
+    return environment.get_template("report.html").render(
+        title=" ".join(str(texts["title"]).split()),
+        style=Markup(sheet),
+        summary=prose(survey.summary),
+        tiles=[],
+        notices=notices,
+        sections=sections,
+        version=texts["thermogear"],
+    )
+
+
+def _case_text(texts: Mapping[str, Any]) -> str:
+    """The file as read, and below it what the command line put in its place."""
+    changes = json.loads(str(texts.get("overrides", "[]")))
+    notes = "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)
+    return str(texts["case"]).rstrip() + notes
+
+
+def _picture(one: Drawn) -> Picture:
+    svg = draw(one.make, f"fig-{one.name}", one.heading)
+    return Picture(f"fig-{one.name}", one.heading, prose(one.caption), svg, one.wide)
+
+
+def _files(directory: Path, kind: str, one: Drawn) -> list[Path]:
+    """SVG and PNG of a picture, on white."""
+    written = []
+    with styled():
+        figure = one.make()
+        for ending in ("svg", "png"):
+            path = directory / f"{kind}_{one.name}.{ending}"
+            figure.savefig(path, dpi=RESOLUTION, facecolor="white")
+            written.append(path)
+    return written
+
+
+def _tables(directory: Path, stem: str, data: xr.Dataset) -> list[Path]:
+    """One CSV file for each set of dimensions; the header names the units."""
+    families: dict[tuple[str, ...], list[str]] = {}
+    for name, variable in data.data_vars.items():
+        dims = tuple(str(d) for d in variable.dims)
+        families.setdefault(tuple(sorted(dims)), []).append(str(name))
+    written = []
+    for dims, names in families.items():
+        if not dims:
+            continue
+        frame = data[names].to_dataframe().reset_index()
+        units = {
+            str(column): f"{column} [{data[column].attrs['units']}]"
+            for column in frame.columns
+            if column in data.variables and data[column].attrs.get("units")
+        }
+        tail = "" if len(families) == 1 else f"_by_{'_'.join(dims)}"
+        text = frame.rename(columns=units).to_csv(
+            index=False, float_format="%.9g", lineterminator="\n"
+        )
+        written.append(put(directory / f"{stem}{tail}.csv", text))
+    return written
