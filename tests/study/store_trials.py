@@ -12,6 +12,7 @@ import shutil
 import signal
 import sys
 import time
+import traceback
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,10 @@ def in_child(work) -> int:
         code = 1
         try:
             code = 0 if work() else 3
+        except BaseException:
+            traceback.print_exc()
         finally:
+            sys.stderr.flush()
             os._exit(code)
     return child
 
@@ -68,7 +72,7 @@ def kills(directory: Path, count: int) -> dict:
     os.waitpid(child, 0)
     expected = expected_file.read_text()
     store = directory / "store"
-    longest = 0.4
+    longest = 1.0
     while done < count:
         before = {tuple(e["chunk"]) for e in read_journal(store) if "chunk" in e}
         begun = time.monotonic()

@@ -238,7 +238,7 @@ def _on_client(
     missing = set(wanted)
     # a few chunks ahead of the workers: enough to keep them busy, few enough to hold
     room = 3 * max(1, sum(client.nthreads().values()))
-    ready = distributed.as_completed()
+    ready = distributed.as_completed(loop=client.loop)
 
     def send() -> None:
         for key in list(waiting):
