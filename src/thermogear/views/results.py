@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -62,8 +62,8 @@ class Results:
             ) from error
 
 
-def read_results(directory: Path) -> Results:
-    """All of ``directory/results.nc`` in memory.
+def read_results(directory: Path, kinds: Collection[str] = KINDS) -> Results:
+    """All of ``directory/results.nc`` in memory; its kind is one of ``kinds``.
 
     Raises InputError, in one line, where the file is missing, unreadable or not ours.
     """
@@ -87,7 +87,7 @@ def read_results(directory: Path) -> Results:
         raise InputError(
             "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=_FIX
         ) from error
-    if "thermogear" not in texts or texts.get("kind") not in KINDS:
+    if "thermogear" not in texts or texts.get("kind") not in kinds:
         raise InputError("results", str(path), why="it was not written by thermogear", fix=_FIX)
     return Results(texts, groups)
 

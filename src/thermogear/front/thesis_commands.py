@@ -1,0 +1,103 @@
+"""``thermogear thesis`` and ``thermogear sensitivity``: commands for the main group to register."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import click
+
+RPM = math.pi / 30.0
+
+
+@click.command()
+@click.option(
+    "-o", "--output", required=True, metavar="DIR", help="Directory of the report; made if new."
+)
+@click.option("--redraw", is_flag=True, help="Draw the page anew from what DIR holds already.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+def thesis(output: str, redraw: bool, as_json: bool) -> None:
+    """Judge every claim of the thesis and write the report to DIR.
+
+    Sections 2 to 6: what is said, what is computed as in the thesis and consistently, a verdict,
+    its argument and the code behind it.
+    """
+    from thermogear.views.claims_report import write_claims_report
+
+    directory = Path(output)
+    if redraw:
+        click.echo(write_claims_report(directory))
+        return
+    from thermogear.front.progress import progress
+    from thermogear.study.sensitivity import require_salib
+    from thermogear.thesis.report import build_to_directory
+
+    require_salib()
+    with progress(wanted=not as_json) as told:
+        summary = build_to_directory(
+            directory, progress=lambda stage, done, total: told("thesis", done, total)
+        )
+    path = write_claims_report(directory)
+    if as_json:
+        click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
+        return
+    click.echo(f"{summary['claims']} claims in {summary['seconds']:.0f} s")
+    for verdict, count in summary["verdicts"].items():
+        click.echo(f"{count:6d}  {verdict}")
+    click.echo(path)
+
+
+@click.command()
+@click.argument("case", metavar="CASE")
+@click.option("-o", "--output", metavar="DIR", help="Store the study and its page in DIR.")
+@click.option("--samples", default=128, show_default=True, help="Base samples, a power of two.")
+@click.option("--speed", type=float, metavar="RPM", help="Pinion speed; the case's middle one.")
+@click.option("--seed", default=1, show_default=True, help="Seed of sampling and bootstrap.")
+@click.option(
+    "--set", "overrides", multiple=True, metavar="PATH=VALUE",
+    help="Put a value in place of the file's. May be repeated.",
+)  # fmt: skip
+@click.option("--json", "as_json", is_flag=True, help="Print the indices as JSON.")
+def sensitivity(
+    case: str,
+    output: str | None,
+    samples: int,
+    speed: float | None,
+    seed: int,
+    overrides: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Which unstated inputs of CASE decide its results (extra [sensitivity])."""
+    from thermogear.base.errors import InputError
+    from thermogear.front.progress import progress
+    from thermogear.study.case import GearCase, load_case
+    from thermogear.study.results import claim_directory
+    from thermogear.study.sensitivity import Plan, as_rows, plain_words, require_salib, store
+    from thermogear.study.sensitivity import sensitivity as study
+
+    require_salib()
+    plan = Plan(samples=samples, speed=None if speed is None else speed * RPM, seed=seed)
+    read = load_case(Path(case), overrides)
+    if not isinstance(read, GearCase):
+        raise InputError("case", "a dimensionless case", allowed="a gear case")
+    if output is not None:
+        claim_directory(Path(output))
+    with progress(wanted=not as_json) as told:
+        data = study(read, plan, progress=told)
+    if as_json:
+        click.echo(json.dumps(as_rows(data), indent=2, ensure_ascii=False))
+    else:
+        for text in plain_words(data):
+            click.echo(f"- {text}")
+        click.echo(f"{data.attrs['evaluations']} evaluations in {data.attrs['seconds']:.1f} s")
+    if output is not None:
+        from thermogear.views.claims_report import write_claims_report
+
+        store(data, Path(output))
+        path = write_claims_report(Path(output))
+        if not as_json:
+            click.echo(path)
+
+
+COMMANDS: list[click.Command] = [thesis, sensitivity]

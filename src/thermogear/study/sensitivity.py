@@ -1,0 +1,572 @@
+"""Which input that nobody stated decides which conclusion: a variance-based study of the chain.
+
+Every unstated input runs through a range; first-order and total indices (Sobol', Saltelli's
+sampling, bootstrap confidence intervals) say what share of a result's variance each brings.
+Needs the extra ``sensitivity`` (SALib), imported when used.
+"""
+
+from __future__ import annotations
+
+import datetime
+import importlib
+import time
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear import __version__
+from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
+from thermogear.base.excitation import Excitation, Periodic
+from thermogear.base.materials import LUBRICANTS, ZERO_CELSIUS, Lubricant
+from thermogear.dynamics.integrate import simulate
+from thermogear.dynamics.models import from_excitation
+from thermogear.gears.geometry import GearPair
+from thermogear.heat.lubrication import kinematic_viscosity
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.excite import disc_inertia, excitation
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.study.case import GearCase
+from thermogear.study.results import write_results, write_summary
+
+Floats = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+PATH, PHASES, HARMONICS = 41, 64, 16
+DISCARD, PERIODS, SAMPLES = 300, 8, 64
+LANES = 1024
+COLD, HOT = 0, 1
+
+FIXED = ("face_width", "viscosity", "roughness", "backlash")
+"""Inputs of which a mesh cycle takes one value for all its operating points."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input without a stated value: its range in SI, how it is shown, and its spacing.
+
+    Shown value = ``scale`` times the SI value less ``zero``. ``logarithmic``: all decades alike.
+    """
+
+    name: str
+    words: str
+    unit: str
+    low: float
+    high: float
+    scale: float = 1.0
+    zero: float = 0.0
+    logarithmic: bool = False
+
+    def values(self, unit_interval: Floats) -> Floats:
+        """The range's values at places 0..1."""
+        if self.logarithmic:
+            return np.asarray(self.low * (self.high / self.low) ** unit_interval)
+        return np.asarray(self.low + (self.high - self.low) * unit_interval)
+
+
+INPUTS: tuple[Input, ...] = (
+    Input("face_width", "face width", "mm", 0.015, 0.040, 1e3),
+    Input("torque", "pinion torque", "N m", 50.0, 200.0),
+    Input("viscosity", "oil viscosity at 40 °C", "mm²/s", 46e-6, 320e-6, 1e6, 0.0, True),
+    Input("roughness", "roughness Ra", "µm", 0.2e-6, 0.8e-6, 1e6),
+    Input("backlash", "cold backlash (total, normal)", "mm", 0.20e-3, 0.40e-3, 1e3),
+    Input("damping", "damping ratio", "–", 0.03, 0.17),
+    Input("error", "kinematic error amplitude", "µm", 1e-6, 10e-6, 1e6),
+    Input("gear", "gear temperature", "°C", 373.15, 433.15, 1.0, ZERO_CELSIUS),
+    Input("housing", "housing below the gears", "K", 0.0, 60.0),
+    Input("shaft", "shafts below the gears", "K", 0.0, 40.0),
+    Input("oil", "oil below the gears", "K", 0.0, 60.0),
+)
+"""Every range is ours, as wide as rigs of this kind are; only the gear temperature's is stated."""
+
+
+@dataclass(frozen=True)
+class Output:
+    """A figure that a conclusion rests on, and when the conclusion ``holds`` for it."""
+
+    name: str
+    words: str
+    unit: str
+    conclusion: str
+    holds: Callable[[Floats], NDArray[np.bool_]]
+    scale: float = 1.0
+
+
+OUTPUTS: tuple[Output, ...] = (
+    Output("friction", "mean mixed friction coefficient", "–",
+           "mixed friction stays below dry friction of 0.1", lambda y: y < 0.1),
+    Output("flash", "highest flash temperature, mixed", "K",
+           "the flash stays below 50 K", lambda y: y < 50.0),
+    Output("dry_over_mixed", "highest flash, dry over mixed", "–",
+           "mixed lubrication runs cooler than dry friction of 0.2", lambda y: y > 1.0),
+    Output("growth", "mean growth of both flanks", "µm",
+           "hot flanks grow", lambda y: y > 0.0, 1e6),
+    Output("backlash_left", "hot over cold half backlash, consistent", "–",
+           "heat reduces the backlash", lambda y: y < 1.0),
+    Output("stiffness_change", "change of the mean stiffness, consistent", "%",
+           "heat raises the mesh stiffness", lambda y: y > 0.0, 100.0),
+    Output("stiffness_change_thesis", "change of the mean stiffness, thesis", "%",
+           "heat raises the mesh stiffness", lambda y: y > 0.0, 100.0),
+    Output("frequency_ratio", "mesh over natural frequency, hot", "–",
+           "the tests lie below the range 1.1 to 1.3 of the diagrams", lambda y: y < 1.1),
+    Output("swing", "swing of the displacement, hot", "µm",
+           "the swing reaches the printed simulation's 2 x 15.9 µm", lambda y: y >= 31.8e-6, 1e6),
+    Output("swing_change", "change of the swing by heat, consistent", "%",
+           "heat raises the displacement", lambda y: y > 0.0, 100.0),
+    Output("out_of_contact", "share of time out of drive contact, hot", "–",
+           "the teeth lose contact", lambda y: y > 0.0),
+)  # fmt: skip
+"""What is watched; the conclusions are the thesis's, or what a reader would ask of it."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The study: ``samples`` base samples N (a power of two; N (inputs + 2) evaluations).
+
+    ``speed`` [rad/s] of the pinion (None: the case's middle one), ``inputs`` with their ranges,
+    ``resamples`` of the bootstrap, ``confidence`` of its intervals, ``seed``.
+    """
+
+    samples: int = 128
+    speed: float | None = None
+    inputs: tuple[Input, ...] = INPUTS
+    resamples: int = 200
+    confidence: float = 0.95
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        if self.samples < 8 or self.samples & (self.samples - 1):
+            raise InputError("samples", self.samples, allowed="a power of two, 8 or more")
+        if not 0.0 < self.confidence < 1.0:
+            raise InputError("confidence", self.confidence, allowed="0 < confidence < 1")
+        known = [one.name for one in INPUTS]
+        for one in self.inputs:
+            if one.name not in known:
+                raise InputError("inputs", repr(one.name), fix=nearest(one.name, known))
+            if not one.low < one.high:
+                raise InputError(f"inputs.{one.name}", f"{one.low} .. {one.high}", allowed="rising")
+
+    @property
+    def evaluations(self) -> int:
+        """How often the chain is computed."""
+        return self.samples * (len(self.inputs) + 2)
+
+
+def salib(module: str) -> Any:
+    """A module of SALib, or an error that says how to install it."""
+    try:
+        return importlib.import_module(f"SALib.{module}")
+    except ImportError as error:
+        raise ThermogearError(
+            "sensitivity needs the package SALib: pip install 'thermogear[sensitivity]'"
+        ) from error
+
+
+def require_salib() -> None:
+    """Refuse in one line where SALib is missing, before anything is computed."""
+    salib("sample.sobol")
+
+
+def grade(viscosity_40: float) -> Lubricant:
+    """A mineral oil with the kinematic viscosity ``viscosity_40`` [m^2/s] at 40 °C.
+
+    Its viscosity at 100 °C follows the package's own mineral oils: nu_100 = c nu_40^p, fitted to
+    them.
+    """
+    known = [LUBRICANTS[name] for name in sorted(LUBRICANTS) if name.startswith("M")]
+    warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
+    low = np.log([float(kinematic_viscosity(one, warm)) for one in known])
+    high = np.log([float(kinematic_viscosity(one, hot)) for one in known])
+    slope, level = np.polyfit(low, high, 1)
+    at_100 = float(np.exp(level + slope * np.log(viscosity_40)))
+    name = f"mineral oil of {viscosity_40 * 1e6:.4g} mm2/s"
+    return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """No progress wanted."""
+
+
+def sensitivity(
+    case: GearCase, plan: Plan | None = None, *, progress: Progress = _silent
+) -> xr.Dataset:
+    """Sobol' indices of every output for every input, with confidence intervals.
+
+    First order: the share of the variance an input brings alone; total: with everything it does
+    together with others. Inputs are independent and uniform in their ranges (viscosity in its
+    logarithm). Each sample computes the chain cold and hot with the consistent bundle (and the
+    thesis's for its stiffness) at one speed, and the settled vibration. A jammed pair has swing
+    0 and counts in ``jammed``.
+
+    Returns a dataset over (output, input): ``first_order``, ``total`` with ``..._conf`` (half
+    width), per output ``mean``, ``low``, ``high`` (5 and 95 % of the samples), ``holds`` (share
+    of samples in which the conclusion holds) in shown units; attributes: evaluations, seconds.
+    """
+    chosen = Plan() if plan is None else plan
+    sampler, analyser = salib("sample.sobol"), salib("analyze.sobol")
+    problem = {
+        "num_vars": len(chosen.inputs),
+        "names": [one.name for one in chosen.inputs],
+        "bounds": [[0.0, 1.0]] * len(chosen.inputs),
+    }
+    began = time.perf_counter()
+    places = sampler.sample(problem, chosen.samples, calc_second_order=False, seed=chosen.seed)
+    values, jammed = evaluate(case, chosen, places, progress)
+    seconds = time.perf_counter() - began
+    shape = (len(OUTPUTS), len(chosen.inputs))
+    indices = {name: np.zeros(shape) for name in ("S1", "S1_conf", "ST", "ST_conf")}
+    for row, output in enumerate(OUTPUTS):
+        y = values[output.name]
+        if np.ptp(y) <= 1e-12 * max(float(np.abs(y).max()), 1e-300):
+            continue  # nothing decides what never changes
+        found = analyser.analyze(
+            problem,
+            y,
+            calc_second_order=False,
+            num_resamples=chosen.resamples,
+            conf_level=chosen.confidence,
+            seed=chosen.seed,
+        )
+        for name, table in indices.items():
+            table[row] = found[name]
+    return _dataset(case, chosen, values, indices, jammed, seconds)
+
+
+def _dataset(
+    case: GearCase,
+    plan: Plan,
+    values: dict[str, Floats],
+    indices: dict[str, Floats],
+    jammed: int,
+    seconds: float,
+) -> xr.Dataset:
+    two = ("output", "input")
+    one = ("output",)
+    shown = [values[o.name] * o.scale for o in OUTPUTS]
+    share = {"units": "1"}
+    return xr.Dataset(
+        {
+            "first_order": (two, indices["S1"], {"long_name": "first-order index", **share}),
+            "first_order_conf": (two, indices["S1_conf"], {"long_name": "half width", **share}),
+            "total": (two, indices["ST"], {"long_name": "total index", **share}),
+            "total_conf": (two, indices["ST_conf"], {"long_name": "half width", **share}),
+            "mean": (one, [float(y.mean()) for y in shown]),
+            "low": (one, [float(np.quantile(y, 0.05)) for y in shown]),
+            "high": (one, [float(np.quantile(y, 0.95)) for y in shown]),
+            "holds": (one, [float(o.holds(values[o.name]).mean()) for o in OUTPUTS], share),
+            "output_words": (one, [o.words for o in OUTPUTS]),
+            "output_unit": (one, [o.unit for o in OUTPUTS]),
+            "conclusion": (one, [o.conclusion for o in OUTPUTS]),
+            "input_words": (("input",), [i.words for i in plan.inputs]),
+            "input_unit": (("input",), [i.unit for i in plan.inputs]),
+            "input_low": (("input",), [i.scale * (i.low - i.zero) for i in plan.inputs]),
+            "input_high": (("input",), [i.scale * (i.high - i.zero) for i in plan.inputs]),
+        },
+        {
+            "output": [o.name for o in OUTPUTS],
+            "input": [i.name for i in plan.inputs],
+        },
+        {
+            "title": case.title,
+            "evaluations": plan.evaluations,
+            "samples": plan.samples,
+            "confidence": plan.confidence,
+            "seconds": seconds,
+            "jammed": jammed,
+            "speed": _speed(case, plan),
+            "seed": plan.seed,
+        },
+    )
+
+
+def _speed(case: GearCase, plan: Plan) -> float:
+    return float(case.speeds[len(case.speeds) // 2]) if plan.speed is None else float(plan.speed)
+
+
+def evaluate(
+    case: GearCase, plan: Plan, places: Floats, progress: Progress = _silent
+) -> tuple[dict[str, Floats], int]:
+    """Every output at ``places`` (sample, input) of the unit cube, and how many pairs jam.
+
+    Samples that share what one mesh cycle cannot vary (:data:`FIXED`) are computed together.
+    """
+    columns = {one.name: one.values(places[:, k]) for k, one in enumerate(plan.inputs)}
+    count = len(places)
+    values = {output.name: np.zeros(count) for output in OUTPUTS}
+    together: dict[tuple[float, ...], list[int]] = {}
+    fixed = [columns[name] for name in FIXED if name in columns]
+    for sample in range(count):
+        together.setdefault(tuple(float(c[sample]) for c in fixed), []).append(sample)
+    waiting: list[tuple[int, Excitation, Excitation]] = []
+    done = 0
+    with warnings.catch_warnings():
+        # corners of the ranges leave an oil's range; the ranges stand beside the results
+        warnings.simplefilter("ignore", ValidityWarning)
+        for samples in together.values():
+            progress("sensitivity", done, count)
+            rows = np.array(samples)
+            at = {name: column[rows] for name, column in columns.items()}
+            found, pairs = _chain(case, _speed(case, plan), at, len(samples))
+            for name, row in found.items():
+                values[name][rows] = row
+            waiting += [
+                (sample, *pair)
+                for sample, pair in zip(samples, pairs, strict=True)
+                if pair is not None
+            ]
+            done += len(samples)
+    progress("sensitivity", count, count)
+    for start in range(0, len(waiting), LANES):
+        _vibrate(waiting[start : start + LANES], values)
+    return values, count - len(waiting)
+
+
+def _chain(
+    case: GearCase, speed: float, at: dict[str, Floats], count: int
+) -> tuple[dict[str, Floats], list[tuple[Excitation, Excitation] | None]]:
+    """The quasi-static outputs of samples of one pair and oil, and their excitations.
+
+    The operating points are all cold ones, then all hot ones; a jammed pair has None.
+    """
+    one = {name: float(at[name][0]) for name in FIXED if name in at}
+    pair = _pair(case, one)
+    operating = _operating(case, speed, at, one, count)
+    model = MeshModel.consistent()
+    cycle = mesh_cycle(pair, operating, model, path_positions=PATH, mesh_positions=PHASES)
+    printed = mesh_cycle(
+        pair, operating, MeshModel.thesis(), path_positions=2, mesh_positions=PHASES
+    )
+    row: dict[str, Floats] = {}
+    for name, data in (("stiffness_change", cycle), ("stiffness_change_thesis", printed)):
+        cold, hot = data["mean_stiffness"].values.reshape(2, count)
+        row[name] = hot / cold - 1.0
+    warm = cycle.isel(operating=slice(count, None))
+    flash = {
+        kind: warm[f"flash_temperature_{kind}"].values.max(axis=1) for kind in ("mixed", "dry")
+    }
+    row |= {
+        "friction": warm["friction_coefficient_mixed"].values.mean(axis=1),
+        "flash": flash["mixed"],
+        "dry_over_mixed": flash["dry"] / flash["mixed"],
+        "growth": warm["deformation_sum"].values.mean(axis=1),
+        "backlash_left": warm["half_backlash"].values / warm["cold_half_backlash"].values,
+    }
+    found = excitation(
+        cycle,
+        pair,
+        damping_ratio=case.damping_ratio,
+        inertias=_inertias(case, pair),
+        harmonics=HARMONICS,
+    )
+    ratio = np.zeros(count)
+    pairs: list[tuple[Excitation, Excitation] | None] = []
+    for k in range(count):
+        here, there = found[k], found[count + k]
+        if here is None or there is None:
+            pairs.append(None)
+            continue
+        damping = float(at["damping"][k]) if "damping" in at else case.damping_ratio
+        error = _error(case, float(at["error"][k]) if "error" in at else None)
+        cold_one, hot_one = (
+            replace(x, error=x.error + error, damping_ratio=damping) for x in (here, there)
+        )
+        ratio[k] = hot_one.mesh_frequency / hot_one.natural_frequency
+        pairs.append((cold_one, hot_one))
+    row["frequency_ratio"] = ratio
+    return row, pairs
+
+
+def _pair(case: GearCase, at: dict[str, float]) -> GearPair:
+    pinion, wheel = (
+        replace(
+            gear,
+            face_width=at.get("face_width", gear.face_width),
+            roughness=at.get("roughness", gear.roughness),
+        )
+        for gear in (case.pair.pinion, case.pair.wheel)
+    )
+    return GearPair(pinion, wheel, case.pair.centre_distance)
+
+
+def _inertias(case: GearCase, pair: GearPair) -> tuple[float, float]:
+    """The case's inertias, of discs that are as wide as the gears."""
+    first, second = (
+        disc_inertia(new, new.pitch_radius) / disc_inertia(old, old.pitch_radius)
+        for new, old in (
+            (pair.pinion, case.pair.pinion),
+            (pair.wheel, case.pair.wheel),
+        )
+    )
+    return case.inertias[0] * first, case.inertias[1] * second
+
+
+def _error(case: GearCase, amplitude: float | None) -> Periodic:
+    """The case's kinematic error, its first harmonic scaled to ``amplitude`` [m]."""
+    error = case.transmission_error
+    own = abs(error.harmonics[0]) if error.harmonics else 0.0
+    return error if amplitude is None or own == 0.0 else error * (amplitude / own)
+
+
+def _operating(
+    case: GearCase, speed: float, at: dict[str, Floats], one: dict[str, float], count: int
+) -> Operating:
+    """All samples cold, then all hot; the oil that enters is equally warm in both."""
+    given = case.operating.temperatures
+    reference = given.reference
+    own = _first(given.pinion_addendum)
+    tip = at.get("gear", np.full(count, own))
+
+    def below(name: str, value: object) -> Floats:
+        return np.asarray(tip - at.get(name, np.full(count, own - _first(value))))
+
+    bore, housing = below("shaft", given.pinion_bore), below("housing", given.housing)
+    oil = below("oil", case.operating.oil_temperature)
+    hot = {
+        "pinion_addendum": tip,
+        "pinion_bore": bore,
+        "wheel_addendum": tip,
+        "wheel_bore": bore,
+        "housing": housing,
+    }
+    cold = np.full(count, reference)
+    torque = at.get("torque", np.full(count, float(case.torques[0])))
+    return replace(
+        case.operating,
+        speed=np.full(2 * count, speed),
+        torque=np.tile(torque, 2),
+        lubricant=grade(one["viscosity"]) if "viscosity" in one else case.operating.lubricant,
+        oil_temperature=np.tile(oil, 2),
+        temperatures=Temperatures(
+            reference, **{name: np.concatenate([cold, row]) for name, row in hot.items()}
+        ),
+        half_backlash=0.5 * one["backlash"] if "backlash" in one else case.operating.half_backlash,
+        housing=case.housing,
+    )
+
+
+def _first(values: object) -> float:
+    return float(np.ravel(np.asarray(values, dtype=float))[0])
+
+
+def _vibrate(
+    waiting: Sequence[tuple[int, Excitation, Excitation]], values: dict[str, Floats]
+) -> None:
+    """Settled swing and loss of contact of many samples at once."""
+    swings = []
+    for state in (COLD, HOT):
+        lanes = [hot if state == HOT else cold for _, cold, hot in waiting]
+        data = simulate(
+            from_excitation(lanes),
+            discard=DISCARD,
+            periods=PERIODS,
+            samples_per_period=SAMPLES,
+            initial_state=(1.0, 0.0),
+        )
+        length = np.array([one.reference_half_backlash for one in lanes])
+        swings.append(np.ptp(data["x"].values, axis=1) * length)
+        lost = 1.0 - data["time_share"].sel(side="drive").values
+    places = [sample for sample, _, _ in waiting]
+    values["swing"][places] = swings[HOT]
+    values["swing_change"][places] = swings[HOT] / swings[COLD] - 1.0
+    values["out_of_contact"][places] = np.where(lost > 1e-9, lost, 0.0)
+
+
+def ranking(data: xr.Dataset, output: str) -> list[tuple[str, float, float]]:
+    """(words of the input, total index, half width of its interval), the strongest first."""
+    here = data.sel(output=output)
+    order = np.argsort(-here["total"].values, kind="stable")
+    return [
+        (
+            str(here["input_words"].values[k]),
+            float(here["total"].values[k]),
+            float(here["total_conf"].values[k]),
+        )
+        for k in order
+    ]
+
+
+def plain_words(data: xr.Dataset) -> list[str]:
+    """One sentence for every output: what decides it, and how often its conclusion holds."""
+    found = []
+    for place, output in enumerate(data["output"].values):
+        here = data.isel(output=place)
+        rows = ranking(data, str(output))
+        deciding = [row for row in rows if row[1] - row[2] > 0.05][:4]
+        span = f"{_short(here['low'])} to {_short(here['high'])} {here['output_unit'].item()}"
+        span = span.removesuffix(" –")
+        if not deciding:
+            text = f"{here['output_words'].item()}: {span}; no input decides it."
+        else:
+            names = ", ".join(f"{w} ({100 * t:.0f} ± {100 * c:.0f} %)" for w, t, c in deciding)
+            rest = [w for w, t, c in rows if t + c < 0.01]
+            text = f"{here['output_words'].item()}: {span}; decided by {names}"
+            text += f"; {len(rest)} of {len(rows)} inputs do not matter." if rest else "."
+        holds = 100.0 * float(here["holds"])
+        found.append(f"{text} That {here['conclusion'].item()} holds in {holds:.0f} % of cases.")
+    return found
+
+
+def _short(value: object) -> str:
+    return f"{float(np.asarray(value)):.3g}"
+
+
+def as_rows(data: xr.Dataset) -> dict[str, Any]:
+    """The study JSON-ready: settings, and for every output its spread, conclusion and ranking."""
+    names = ("evaluations", "samples", "confidence", "seconds", "jammed", "speed", "seed")
+    found: dict[str, Any] = {name: _number(data.attrs[name]) for name in names}
+    found["outputs"] = [
+        {
+            "output": str(output),
+            "mean": float(here["mean"]),
+            "low": float(here["low"]),
+            "high": float(here["high"]),
+            "unit": str(here["output_unit"].item()),
+            "conclusion": str(here["conclusion"].item()),
+            "holds": float(here["holds"]),
+            "inputs": [
+                {
+                    "input": str(name),
+                    "first_order": float(here["first_order"].sel(input=name)),
+                    "first_order_conf": float(here["first_order_conf"].sel(input=name)),
+                    "total": float(here["total"].sel(input=name)),
+                    "total_conf": float(here["total_conf"].sel(input=name)),
+                }
+                for name in data["input"].values
+            ],
+        }
+        for output in data["output"].values
+        for here in (data.sel(output=output),)
+    ]
+    return found
+
+
+def _number(value: object) -> float | int:
+    number = float(np.asarray(value))
+    return int(number) if number.is_integer() else number
+
+
+def store(data: xr.Dataset, directory: Path) -> Path:
+    """Write the study as ``results.nc`` with ``summary.json`` in ``directory``."""
+    words = data.assign(sentence=(("output",), plain_words(data)))
+    tree = xr.DataTree.from_dict({"sensitivity": words})
+    tree.attrs = {
+        "thermogear": __version__,
+        "kind": "sensitivity",
+        "title": f"Sensitivity: {data.attrs['title']}",
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+    }
+    path = write_results(tree, directory)
+    summary = {
+        "thermogear": __version__,
+        "title": tree.attrs["title"],
+        "kind": "sensitivity",
+        **as_rows(data),
+    }
+    write_summary(summary, directory)
+    return path

@@ -1,0 +1,356 @@
+"""The page of the thesis's claims, and of a sensitivity study, from what is stored alone."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import jinja2
+import numpy as np
+import xarray as xr
+from markupsafe import Markup
+
+from thermogear.views import gear_sections, row_sections
+from thermogear.views.closing import closing
+from thermogear.views.opening import Tile
+from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text
+from thermogear.views.plots import claims as plots
+from thermogear.views.results import Results, put, read_results
+from thermogear.views.words import celsius, number, prose
+
+REPORT = "report.html"
+KINDS = ("thesis", "sensitivity")
+RPM = 30.0 / np.pi
+PREFIX = "diagrams/"
+SECTIONS = {
+    2: "Thermal deformation of the tooth",
+    3: "Dynamic model",
+    4: "Simulation results",
+    5: "Tests",
+    6: "Conclusions",
+}
+MARKED = ("contradicted",)
+BASE_SETS = ("base_sets/table-4.2", "base_sets/section-4.1")
+
+
+def write_claims_report(directory: Path) -> Path:
+    """Draw ``directory/report.html`` from ``directory/results.nc`` alone; the page's path."""
+    directory = Path(directory)
+    return put(directory / REPORT, page(read_results(directory, KINDS)))
+
+
+def page(results: Results) -> str:
+    """The whole page as text."""
+    whole = results.kind == "thesis"
+    pictures = Pictures()
+    sections = _thesis_sections(results, pictures) if whole else []
+    sections.append(_sensitivity(results, pictures))
+    sections += closing(results)
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    return environment.get_template("report.html").render(
+        title=results.text("title"),
+        style=Markup(sheet),
+        summary=_summary(results) if whole else _study_words(results),
+        tiles=_tiles(results) if whole else [],
+        notices=[],
+        sections=sections,
+        version=results.text("thermogear"),
+    )
+
+
+def _summary(results: Results) -> str:
+    sentences = results.table("sentences")
+    count = sum(results.table("counts").values())
+    return (
+        f"{count} statements, formulas, figures and table entries of sections 2 to 6, each with "
+        "what the package computes as in the thesis and consistently, a verdict, its argument and "
+        f"the code behind it. {sentences.get('claimed', 0)} of the document's "
+        f"{sentences.get('all', 0)} sentences claim something; the others are headings, background "
+        f"and outlook. Computed in {float(results.text('seconds')):.0f} s."
+    )
+
+
+def _tiles(results: Results) -> list[Tile]:
+    found = results.table("counts")
+    total = sum(found.values())
+    return [
+        Tile(name, str(count), f"{100 * count / total:.0f} % of {total} claims")
+        for name, count in found.items()
+    ]
+
+
+def _thesis_sections(results: Results, pictures: Pictures) -> list[Section]:
+    claims = results.groups["claims"]
+    ordered = {name: results.groups[name] for name in BASE_SETS if name in results.groups}
+    rest = {name: data for name, data in results.groups.items() if name not in ordered}
+    results = Results(results.texts, {**ordered, **rest})
+    found = [_counted(results, claims)]
+    drawn = {
+        2: _deformation(results, pictures),
+        3: _model(results, pictures),
+        4: _simulation(results, pictures),
+        5: _tests(results, pictures),
+        6: [],
+    }
+    for place, title in SECTIONS.items():
+        here = claims.isel(claim=np.flatnonzero([_section(n) == place for n in _names(claims)]))
+        blocks: list[Block] = [_claims_table(here, place), *drawn[place]]
+        found.append(Section(f"section-{place}", f"{place} {title}", blocks))
+    return found
+
+
+def _names(claims: xr.Dataset) -> list[str]:
+    return [str(value) for value in claims["number"].values]
+
+
+def _section(name: str) -> int:
+    return int(name.split(".")[0])
+
+
+def _counted(results: Results, claims: xr.Dataset) -> Section:
+    verdicts = list(results.table("counts"))
+    found = Counter(
+        (_section(n), str(v)) for n, v in zip(_names(claims), claims["verdict"].values, strict=True)
+    )
+    rows: list[list[Cell]] = []
+    for place, title in SECTIONS.items():
+        numbers = [found[place, verdict] for verdict in verdicts]
+        rows.append([f"{place} {title}", *map(str, numbers), str(sum(numbers))])
+    total = [sum(found[p, v] for p in SECTIONS) for v in verdicts]
+    rows.append(["all", *map(str, total), str(sum(total))])
+    intro = Text(
+        "A claim is reproduced where the computation gives it from what the document states; under "
+        "a stated assumption where a value or a reading of ours is needed; it cannot be decided "
+        "where what is missing decides the result; it is contradicted where the result differs "
+        "whatever is assumed."
+    )
+    table = Table("Verdicts by section of the document.", ["section", *verdicts, "claims"], rows)
+    return Section("verdicts", "Verdicts", [intro, table])
+
+
+def _claims_table(claims: xr.Dataset, place: int) -> Table:
+    rows: list[list[Cell]] = []
+    marked: set[int] = set()
+    for k in range(claims.sizes["claim"]):
+        one = {name: str(claims[name].values[k]) for name in claims.data_vars}
+        if one["verdict"] in MARKED:
+            marked.add(k)
+        picture = (
+            Markup('<br/><small><a href="#fig-{}">picture</a></small>').format(one["picture"])
+            if one["picture"]
+            else Markup("")
+        )
+        rows.append([
+            Markup('<b id="claim-{0}">{0}</b><br/><small>{1}</small>').format(
+                one["number"], one["kind"]),
+            Markup("{}<br/><small>{}</small>{}").format(
+                prose(one["words"]), one["place"], picture),
+            Markup("<b>as in the thesis</b> {}<br/><b>consistent</b> {}").format(
+                prose(one["as_in_the_thesis"]), prose(one["consistent"])),
+            Markup("<b>{}</b><br/>{}<br/><small>{}</small>").format(
+                one["verdict"], prose(one["argument"]), _code(one["code"])),
+        ])  # fmt: skip
+    head: list[Cell] = ["no.", "claim, in our words", "computed", "verdict, argument, code"]
+    caption = f"Section {place}, claim by claim; contradicted ones are marked."
+    return Table(caption, head, rows, names=4, marked=frozenset(marked), wordy=True)
+
+
+def _code(names: str) -> Markup:
+    short = [name.removeprefix("thermogear.") for name in names.split()]
+    return Markup(", ").join(Markup("{}").format(name.replace(".", ".\u200b")) for name in short)
+
+
+def _blocks(section: Section | None) -> list[Block]:
+    return [] if section is None else [block for block in section.blocks if block.kind != "text"]
+
+
+def _deformation(results: Results, pictures: Pictures) -> list[Block]:
+    found = _blocks(gear_sections.friction(results, pictures))
+    grid = results.group("grid")
+    if grid is not None:
+        for name, heading, unit, scale in (
+            ("friction", "Friction over speed and torque", "mean friction coefficient [–]", 1.0),
+            ("flash", "Flash temperature over speed and torque", "highest flash [K]", 1.0),
+            ("growth", "Growth over speed and torque", "mean growth of both flanks [µm]", 1e6),
+        ):
+            pictures.add(
+                f"grid-{name}", heading,
+                "Left with the gear temperature of the case at every point, right with the one "
+                "that losses and cooling lead to. Full lines mixed, dashed ones dry.",
+                grid, ("speed", "torque"),
+                lambda n=name, u=unit, s=scale: plots.over_grid(grid, n, u, s),  # type: ignore[misc]
+                wide=True,
+            )  # fmt: skip
+        found += pictures.take()
+    return found + _blocks(gear_sections.heat(results, pictures))
+
+
+def _model(results: Results, pictures: Pictures) -> list[Block]:
+    found = _blocks(gear_sections.gap(results, pictures))
+    return found + _blocks(gear_sections.springs(results, pictures))
+
+
+def _simulation(results: Results, pictures: Pictures) -> list[Block]:
+    found = _blocks(row_sections.base_sets(results, pictures))
+    warming, flips = results.group("warming"), results.group("flips")
+    if warming is not None:
+        pictures.add(
+            "warming", "Stability over temperature",
+            "The temperature row of section 4.1. Stiffening by heat leads to a flip; the softening "
+            "of steel leads away from it.",
+            warming, ("multiplier",), lambda: plots.warming(warming),
+        )  # fmt: skip
+    diagrams = {
+        name.removeprefix(PREFIX): data
+        for name, data in results.groups.items()
+        if name.startswith(PREFIX)
+    }
+    if flips is None:
+        return found + pictures.take()
+    for row, words in (("zeta", "damping"), ("omega", "frequency"), ("epsilon", "stiffness")):
+        pictures.add(
+            f"diagram-{row}", f"Bifurcation diagram over {words}",
+            "Sections of the settled motion, swept up and down; dashed lines are located period "
+            "doublings. Without heat, with the heat of the thesis, with the consistent one.",
+            flips, ("value",),
+            lambda r=row: plots.diagram(diagrams, flips, r),  # type: ignore[misc]
+            wide=True,
+        )  # fmt: skip
+    return [*found, *pictures.take(), _flip_table(flips)]
+
+
+def _flip_table(flips: xr.Dataset) -> Table:
+    heats = {
+        "none": "none",
+        "thesis": "as in the thesis",
+        "consistent": "by E(T)",
+        "backlash": "closing gap alone",
+    }
+    rows: list[list[Cell]] = []
+    for row in flips["row"].values:
+        for heat in flips["heat"].values:
+            one = flips.sel(row=row, heat=heat)
+            cells = [f"{v:.9g}" if np.isfinite(v) else "–" for v in one["value"].values]
+            symbol = {"zeta": "ζ", "omega": "ω_h", "epsilon": "ε"}[str(row)]
+            rows.append([symbol, heats[str(heat)], *cells, str(one["note"].item())])
+    head = [
+        "parameter", "heat", *(f"{2**k} → {2 ** (k + 1)}" for k in range(flips.sizes["flip"])),
+        "why no more",
+    ]  # fmt: skip
+    warm = celsius(float(flips.attrs.get("temperature", np.nan)))
+    caption = (
+        "Period doublings located by continuation, along the document's direction; heat is that "
+        f"at {warm}. The gap alone moves nothing as long as no back flank is hit."
+    )
+    lines = [[*row[:2], row[-1], *row[2:-1]] for row in rows]
+    order = [head[0], head[1], head[-1], *head[2:-1]]
+    return Table(caption, order, lines, names=3)
+
+
+def _tests(results: Results, pictures: Pictures) -> list[Block]:
+    data = results.group("experiment")
+    if data is None:
+        return []
+    pictures.add(
+        "experiment", "Errors of the printed table",
+        "Recomputed from the table's own entries; black bars as printed. Grey is what the unstated "
+        "processing leaves open: no pair of bars differs by more.",
+        data, ("u_val",), lambda: plots.experiment(data),
+    )  # fmt: skip
+    found: list[Block] = [_experiment_table(data), *pictures.take()]
+    return found + _blocks(gear_sections.vibration(results, pictures))
+
+
+def _experiment_table(data: xr.Dataset) -> Table:
+    rows: list[list[Cell]] = []
+    marked: set[int] = set()
+    for k in range(data.sizes["entry"]):
+        one = data.isel(entry=k)
+        wrong = [
+            f"{float(one[f'{n}_error']):.{len(str(one[f'{n}_printed'].item()).partition('.')[2])}f}"
+            != str(one[f"{n}_printed"].item())
+            for n in ("with", "without")
+        ]
+        if any(wrong):
+            marked.add(k)
+        unit = "Hz" if one["quantity"].item() == "frequency" else "µm"
+        rows.append([
+            f"{float(one['speed']) * RPM:.0f} rpm",
+            f"{one['quantity'].item()} [{unit}]",
+            str(one["verdict"].item()),
+            *(f"{float(one[f'{n}_value']):g}" for n in ("with", "without")),
+            f"{float(one['measured']):g}",
+            *(f"{one[f'{n}_printed'].item()} | {float(one[f'{n}_error']):.2f}"
+              for n in ("with", "without")),
+            f"{float(one['u_val']):.1f}",
+            f"{float(one['implied_rpm']):.1f}",
+            f"{float(one['implied_g']):.1f}",
+        ])  # fmt: skip
+    head: list[Cell] = [
+        "speed", "quantity", "what can be told", "with heat", "without heat", "measured",
+        "error with heat [%], printed | recomputed", "error without heat [%], printed | recomputed",
+        "u_val [%]", "implied speed [rpm]", "implied acceleration [g]",
+    ]  # fmt: skip
+    caption = "The table of section 5.2 recomputed; rows with a misprinted error are marked."
+    return Table(caption, head, rows, names=3, marked=frozenset(marked))
+
+
+def _study_words(results: Results) -> str:
+    data = results.groups["sensitivity"]
+    return (
+        f"{int(data.attrs['evaluations'])} evaluations of the chain from friction to vibration at "
+        f"{float(data.attrs['speed']) * RPM:.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
+        f"intervals at {100 * float(data.attrs['confidence']):.0f} %. Every input runs through "
+        "its whole range, independently of the others."
+    )
+
+
+def _sensitivity(results: Results, pictures: Pictures) -> Section:
+    data = results.groups["sensitivity"]
+    blocks: list[Block] = [Text(_study_words(results))]
+    blocks += [Text(str(text)) for text in data["sentence"].values]
+    pictures.add(
+        "sensitivity", "What decides what",
+        "Total index [%] with its confidence interval: the share of a result's variance that goes "
+        "with an input, alone and together with others. Cells without a number are below 1 %.",
+        data, ("total",), lambda: plots.sensitivity(data), wide=True,
+    )  # fmt: skip
+    blocks += pictures.take()
+    blocks.append(_ranges(data))
+    blocks.append(_indices(data))
+    return Section("sensitivity", "Which unstated inputs decide", blocks)
+
+
+def _ranges(data: xr.Dataset) -> Table:
+    rows = [
+        [str(w), number(float(low), 4), number(float(high), 4), str(u)]
+        for w, low, high, u in zip(
+            data["input_words"].values, data["input_low"].values, data["input_high"].values,
+            data["input_unit"].values, strict=True,
+        )
+    ]  # fmt: skip
+    return Table("The ranges, all ours.", ["input", "from", "to", "unit"], rows)
+
+
+def _indices(data: xr.Dataset) -> Table:
+    rows: list[Sequence[Cell]] = []
+    for o in range(data.sizes["output"]):
+        one = data.isel(output=o)
+        for k in np.argsort(-one["total"].values, kind="stable")[:4]:
+            pair = [
+                f"{float(one[n][k]):.3f} ± {float(one[f'{n}_conf'][k]):.3f}"
+                for n in ("first_order", "total")
+            ]
+            rows.append(
+                [str(one["output_words"].item()), str(data["input_words"].values[k]), *pair]
+            )
+    head = ["result", "input", "first order", "total"]
+    return Table("The four strongest inputs of every result.", head, rows, names=2)
