@@ -66,11 +66,19 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen["reported"] = directory
         return directory / "report.html"
 
+    def write_csv(directory: Path) -> list[Path]:
+        assert seen["reported"] == directory
+        seen["curves"] = directory
+        return []
+
     running = types.ModuleType("thermogear.study.run")
     running.run_to_directory = run_to_directory  # type: ignore[attr-defined]
     reporting = types.ModuleType("thermogear.views.report")
     reporting.write_report = write_report  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "thermogear.study.run", running)
+    curves = types.ModuleType("thermogear.views.csv")
+    curves.write_csv = write_csv  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "thermogear.views.csv", curves)
     monkeypatch.setitem(sys.modules, "thermogear.views.report", reporting)
     return seen
 
@@ -185,7 +193,7 @@ def test_run_hands_case_and_directory_on(
     assert shown.out == f"- two lines\n{results / 'report.html'}\n"
     assert shown.err == ""
     assert pretended["case"].torques == (150.0,)
-    assert pretended["directory"] == pretended["reported"] == results
+    assert pretended["directory"] == pretended["reported"] == pretended["curves"] == results
     assert results.is_dir()
     text = pretended["case_text"]
     assert text.startswith(example_text("rig").rstrip())
