@@ -3,7 +3,10 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
 
-.PHONY: demo test check lint unit lock warmup clean
+BENCH_BIN := .bench-venv/bin
+BENCH_STAMP := .bench-venv/.installed
+
+.PHONY: bench demo test check lint unit lock warmup clean
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -32,11 +35,26 @@ $(STAMP): pyproject.toml requirements/boot.txt requirements/dev.txt
 	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/uv pip install --quiet --no-deps --no-build-isolation -e .
 	@touch $@
 
+bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
+	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
+
+$(BENCH_STAMP): $(STAMP) requirements/bench.txt requirements/bench-fortran.txt
+	test -x $(BENCH_BIN)/python || $(BIN)/python -m venv .bench-venv
+	VIRTUAL_ENV=$(CURDIR)/.bench-venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/bench.txt
+	@VIRTUAL_ENV=$(CURDIR)/.bench-venv $(BIN)/uv pip install --quiet --no-deps --require-hashes \
+	  -r requirements/bench-fortran.txt 2> .bench-venv/fortran.log || \
+	  echo "numbalsoda could not be installed (.bench-venv/fortran.log); the table says so"
+	@touch $@
+
 lock: $(STAMP)  ## refresh the hashed locks (no addresses are written)
 	echo "uv" | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	  --no-header --no-emit-index-url --no-emit-find-links - -o requirements/boot.txt
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	  --no-header --no-emit-index-url --no-emit-find-links --all-extras pyproject.toml -o requirements/dev.txt
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	  --no-header --no-emit-index-url --no-emit-find-links bench/requirements.in -o requirements/bench.txt
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-deps \
+	  --no-header --no-emit-index-url --no-emit-find-links bench/fortran.in -o requirements/bench-fortran.txt
 
 clean:
-	rm -rf .venv .demo
+	rm -rf .venv .bench-venv .demo
