@@ -14,6 +14,7 @@ from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.heat.measured_temperature import InfraredReading
 from thermogear.mesh.balance import heat_balance
+from thermogear.study.balances import balances, carried_uncertainty
 from thermogear.study.case import GearCase, load_case
 from thermogear.study.facts import facts
 from thermogear.study.ready import example_text
@@ -113,6 +114,32 @@ def test_a_corrected_reading_holds_its_node_and_keeps_its_uncertainty() -> None:
     assert one.temperature == pytest.approx(expected.temperature(), abs=1e-9)
     assert one.uncertainty == pytest.approx(expected.uncertainty(), rel=1e-9)
     np.testing.assert_allclose(case.operating.temperatures.pinion_addendum, one.temperature)
+
+
+def test_an_uncertain_reading_makes_an_uncertain_backlash() -> None:
+    def found(*readings: str) -> tuple[GearCase, np.ndarray]:
+        case = left_out(*readings, 'operating.speed="1000 rpm"')
+        return case, carried_uncertainty(case)
+
+    def reading(node: str, sigma: str) -> str:
+        return (
+            f'gearbox.readings.{node}={{kind="thermocouple", indicated="100 degC", depth="0 mm", '
+            f'flux="0 kW/m^2", indicated_uncertainty="{sigma}"}}'
+        )
+
+    _, one = found(reading("housing", "1 K"))
+    # a housing 1 K warmer opens the mesh by lambda a_w sin(alpha_w); the gears follow a little
+    axes = 11.5e-6 * 0.25 * np.sin(np.radians(20.0))
+    assert 0.0 < one[0] < axes
+    _, two = found(reading("housing", "2 K"))
+    np.testing.assert_allclose(two, 2.0 * one, rtol=0.02)
+    _, tooth = found(reading("pinion_tooth", "1 K"))
+    _, both = found(reading("housing", "1 K"), reading("pinion_tooth", "1 K"))
+    assert max(one[0], tooth[0]) > 0.0
+    assert both[0] > 0.0
+    case, none = found(reading("housing", "0 K"))
+    np.testing.assert_array_equal(none, 0.0)
+    assert "half_backlash_uncertainty" in balances(case)
 
 
 def test_an_embedded_thermocouple_is_carried_to_the_surface() -> None:

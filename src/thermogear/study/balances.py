@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, status_attributes
-from thermogear.mesh.balance import HeatBalance
+from thermogear.mesh.balance import HeatBalance, heat_balance
+from thermogear.mesh.elastic import elastic_pair
+from thermogear.mesh.thermal import HotPair, hot_backlash
 from thermogear.study.case import GearCase
+
+Floats = NDArray[np.float64]
 
 LOSSES = ("mesh", "churning", "bearing_1", "bearing_2")
 
@@ -80,7 +85,49 @@ def balances(case: GearCase) -> xr.Dataset:
         for one in case.readings
     ]
     held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
+    if case.readings:
+        whole["half_backlash_uncertainty"] = dressed(
+            ("operating",),
+            carried_uncertainty(case),
+            "m",
+            "standard uncertainty of the half backlash from the readings",
+        )
     return whole.assign_attrs(readings=json.dumps(readings), held=json.dumps(held))
+
+
+def carried_uncertainty(case: GearCase) -> Floats:
+    """Standard uncertainty [m] of the mean half backlash from the readings' own, (operating,).
+
+    Each reading is moved by its standard uncertainty up and down, the heat balance solved anew,
+    and the differences added in squares: first order, independent readings, the first model.
+    0 without readings.
+    """
+    model, at = case.models[0], case.stated
+    square = np.zeros(at.speed.size)
+    phase = np.arange(16) / 16.0
+    for one in case.readings:
+        if one.uncertainty == 0.0:
+            continue
+        ends = []
+        for sign in (1.0, -1.0):
+            held = {**case.gearbox.measured, one.node: one.temperature + sign * one.uncertainty}
+            moved = heat_balance(
+                case.pair,
+                at.speed,
+                at.torque,
+                at.lubricant,
+                at.half_backlash,
+                model,
+                gearbox=replace(case.gearbox, measured=held),
+                reference=at.temperatures.reference,
+                housing=at.housing,
+                deviations=case.deviations,
+            )
+            hot = HotPair(case.pair, moved.operating, model)
+            gap = hot_backlash(hot, phase, elastic_pair(hot, case.deviations).pair_stiffness)
+            ends.append(gap.half_backlash.mean(axis=1))
+        square += (0.5 * (ends[0] - ends[1])) ** 2
+    return np.sqrt(square)
 
 
 def celsius(kelvin: float) -> str:

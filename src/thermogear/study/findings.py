@@ -326,6 +326,13 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
         words = f"{one['node']}, {one['kind']} reading {celsius(one['indicated_K'])} corrected"
         value = f"{celsius(one['temperature_K'])} +- {one['uncertainty_K']:.2g} K"
         found.append(Fact("measured temperatures", words, value))
+    if "half_backlash_uncertainty" in balance:
+        for o in range(min(balance.sizes["operating"], MOST_POINTS)):
+            here = balance.isel(operating=o)
+            at = f"at {_rpm(float(here['pinion_speed'])):.0f} rpm, "
+            at += f"{float(here['pinion_torque']):.0f} N m"
+            sigma = 1e6 * float(here["half_backlash_uncertainty"])
+            found.append(Fact("uncertainty of b' from the measured temperatures", at, sigma, "um"))
     for place, bundle in enumerate(balance["bundle"].values):
         for o in range(min(balance.sizes["operating"], MOST_POINTS)):
             here = balance.isel(bundle=place, operating=o)

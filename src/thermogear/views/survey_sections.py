@@ -124,7 +124,8 @@ def temperature(texts: Mapping[str, Any], groups: Groups) -> Survey:
         Drawn(
             "warm_up",
             "Warm-up from the ambient",
-            "The viscosity follows the oil; losses are renewed from interval to interval.",
+            "The viscosity follows the oil; losses are renewed from interval to interval. A kink "
+            "is where the oil on a rotating face turns turbulent and cools better at once.",
             partial(thermal_map.warm_up, warm),
             wide=True,
         ),

@@ -142,7 +142,7 @@ def _jam(axis: Axes, data: xr.Dataset, left: Floats) -> None:
     finite = jam[np.isfinite(jam) & np.isfinite(left)]
     words = "no point jams"
     if finite.size:
-        words += f"; it would from teeth of {float(CELSIUS(finite.min())):.0f} °C on"
+        words += f";\npinion teeth would at {float(CELSIUS(finite.min())):.0f} °C"
     axis.text(
         0.03,
         0.04,
