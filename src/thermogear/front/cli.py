@@ -103,9 +103,16 @@ def run(case: str, output: str, overrides: tuple[str, ...], as_json: bool, force
 
 @cli.command()
 @click.argument("directory", metavar="DIR")
-def report(directory: str) -> None:
+@click.option("--pictures", metavar="FOLDER", help="Save the page's pictures to FOLDER as well.")
+@click.option("--kind", default="png", metavar="KIND", help="Of the pictures: png, svg or pdf.")
+def report(directory: str, pictures: str | None, kind: str) -> None:
     """Draw report.html anew from the results stored in DIR."""
     click.echo(_report(Path(directory)))
+    if pictures is not None:
+        from thermogear.views.pictures import write_pictures
+
+        for path in write_pictures(Path(directory), Path(pictures), kind):
+            click.echo(path)
 
 
 @cli.command()
