@@ -6,8 +6,6 @@ can make is one line on the error stream and exit code 2.
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import json
 import os
 import sys
@@ -19,6 +17,14 @@ import click
 
 from thermogear import __version__
 from thermogear.base.errors import ThermogearError, nearest
+from thermogear.front import (
+    engine_commands,
+    gear_commands,
+    measure_commands,
+    sweep_commands,
+    thesis_commands,
+    verify_commands,
+)
 from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
@@ -167,28 +173,16 @@ def schema() -> None:
     click.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
 
-LISTS = ("gear", "engine", "sweep", "measure", "verify")
-"""Further command lists, ``thermogear.front.<name>_commands``; they import click alone."""
-
-
-def _register() -> None:
-    """Put the commands of every list that is installed behind the main ones."""
-    for name in LISTS:
-        module = f"thermogear.front.{name}_commands"
-        if importlib.util.find_spec(module) is None:
-            continue
-        known = vars(importlib.import_module(module))
-        listed = known.get("COMMANDS")
-        if listed is None:
-            every = [entry for entry in known.values() if isinstance(entry, click.Command)]
-            # members of a group are reached through it
-            inner = [c for g in every if isinstance(g, click.Group) for c in g.commands.values()]
-            listed = [entry for entry in every if entry not in inner]
-        for command in listed:
-            cli.add_command(command)
-
-
-_register()
+for _list in (
+    gear_commands,
+    engine_commands,
+    sweep_commands,
+    measure_commands,
+    thesis_commands,
+    verify_commands,
+):
+    for _command in _list.COMMANDS:
+        cli.add_command(_command)
 
 
 def _load(case: str, overrides: Sequence[str]) -> GearCase | DimensionlessCase:

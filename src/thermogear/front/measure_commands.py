@@ -229,3 +229,6 @@ def _as_dict(found: Measurement) -> dict[str, Any]:
         "lines": [{k: plain(v) for k, v in line.__dict__.items()} for line in found.lines],
         "notices": [notice.__dict__ for notice in found.notices],
     }
+
+
+COMMANDS: tuple[click.Command, ...] = (measure, compare)

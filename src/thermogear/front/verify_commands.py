@@ -254,3 +254,6 @@ def _print_stiffness(found: StiffnessCheck) -> None:
         f"worst: stiffness {100.0 * found.difference[worst]:+.2f} % at {found.phase[worst]:.4f}, "
         f"share {found.worst_share:.4f}"
     )
+
+
+COMMANDS: tuple[click.Command, ...] = (verify,)
