@@ -47,7 +47,7 @@ class Size:
     """How much is computed; a small one answers every claim too, on coarser grids."""
 
     speeds: int = 6
-    torques: int = 5
+    torques: int = 4
     diagram: int = 241
     flips: int = 4
     samples: int = 128

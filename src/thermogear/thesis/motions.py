@@ -261,6 +261,20 @@ def sequence(data: xr.Dataset, falling: bool) -> list[str]:
     return list(dict.fromkeys(names))
 
 
+def coexisting(data: xr.Dataset) -> int:
+    """Values of a diagram at which the way up and the way down end on different orbits."""
+    up, down = (data.sel(direction=d).isel(start=0) for d in (1, -1))
+    periodic = (up["label"].values == PERIODIC) & (down["label"].values == PERIODIC)
+    other = up["period"].values != down["period"].values
+    edges = [
+        np.abs(
+            extreme(up["section_x"].values, axis=-1) - extreme(down["section_x"].values, axis=-1)
+        )
+        for extreme in (np.nanmin, np.nanmax)
+    ]
+    return int(np.sum(periodic & (other | (np.maximum(*edges) > 1e-3))))
+
+
 def scatter(data: xr.Dataset) -> int:
     """Section points beyond the period, the most of all periodic points of a diagram."""
     worst = 0

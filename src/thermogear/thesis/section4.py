@@ -253,6 +253,11 @@ def _diagrams(e: Evidence) -> Finding:
     )
 
 
+def _beside(e: Evidence, heat: str) -> int:
+    """Values of the three diagrams at which the two directions end on different motions."""
+    return sum(motions.coexisting(e.diagrams[f"{row}/{heat}"]) for row in motions.SWEPT)
+
+
 def _structure(e: Evidence) -> Finding:
     counts = {}
     for row in motions.SWEPT:
@@ -271,7 +276,9 @@ def _structure(e: Evidence) -> Finding:
     )
     return Finding(
         f"flips inside the range: {said('none')} without, {said('thesis')} with heat",
-        f"{said('consistent')} with E(T)",
+        f"{said('consistent')} with E(T); values with a second motion beside: "
+        f"{_beside(e, 'none')} without, {_beside(e, 'thesis')} and {_beside(e, 'consistent')} "
+        "with heat",
         verdict_of(same),
         "Over ζ and ε the cascade stays and shifts; over ω_h the smaller gap lets the teeth hit "
         "the back side and the cascade is gone. Section 4.1 itself has heat change the period.",
@@ -317,7 +324,8 @@ def _scattered(e: Evidence) -> Finding:
         "the same",
         verdict_of(hot > cold),
         "A settled orbit of n periods has n points. Scatter is what a transient leaves that is not "
-        "waited for; near a flip that takes hundreds of periods.",
+        "waited for; near a flip that takes hundreds of periods. With heat some values have a "
+        "second motion beside the first, which a diagram from several starts shows too.",
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +18,7 @@ from thermogear.views.opening import Tile
 from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text
 from thermogear.views.plots import claims as plots
 from thermogear.views.results import Results, put, read_results
-from thermogear.views.words import celsius, number, prose
+from thermogear.views.words import celsius, number, prose, raised
 
 REPORT = "report.html"
 KINDS = ("thesis", "sensitivity")
@@ -153,14 +154,28 @@ def _claims_table(claims: xr.Dataset, place: int) -> Table:
                 one["number"], one["kind"]),
             Markup("{}<br/><small>{}</small>{}").format(
                 prose(one["words"]), one["place"], picture),
-            Markup("<b>as in the thesis</b> {}<br/><b>consistent</b> {}").format(
-                prose(one["as_in_the_thesis"]), prose(one["consistent"])),
+            Markup("<b>as in the thesis:</b> {}<br/><b>consistent:</b> {}").format(
+                _prose(one["as_in_the_thesis"]), _prose(one["consistent"])),
             Markup("<b>{}</b><br/>{}<br/><small>{}</small>").format(
-                one["verdict"], prose(one["argument"]), _code(one["code"])),
+                one["verdict"], _prose(one["argument"]), _code(one["code"])),
         ])  # fmt: skip
     head: list[Cell] = ["no.", "claim, in our words", "computed", "verdict, argument, code"]
     caption = f"Section {place}, claim by claim; contradicted ones are marked."
     return Table(caption, head, rows, names=4, marked=frozenset(marked), wordy=True)
+
+
+_POWER = re.compile(r"(\d(?:\.\d+)?)e([+-]\d+)\b")
+
+
+def _prose(text: str) -> Markup:
+    """Stored words with powers of ten as a reader writes them."""
+
+    def power(found: re.Match[str]) -> str:
+        if float(found[0]) == 0.0:
+            return "0"
+        return f"{found[1]}·10{raised(int(found[2]))}"
+
+    return prose(_POWER.sub(power, text))
 
 
 def _code(names: str) -> Markup:
@@ -262,7 +277,7 @@ def _tests(results: Results, pictures: Pictures) -> list[Block]:
     pictures.add(
         "experiment", "Errors of the printed table",
         "Recomputed from the table's own entries; black bars as printed. Grey is what the unstated "
-        "processing leaves open: no pair of bars differs by more.",
+        "processing leaves open: a smaller difference of two bars tells nothing.",
         data, ("u_val",), lambda: plots.experiment(data),
     )  # fmt: skip
     found: list[Block] = [_experiment_table(data), *pictures.take()]
@@ -285,7 +300,7 @@ def _experiment_table(data: xr.Dataset) -> Table:
         rows.append([
             f"{float(one['speed']) * RPM:.0f} rpm",
             f"{one['quantity'].item()} [{unit}]",
-            str(one["verdict"].item()),
+            str(one["verdict"].item()).partition(":")[0],
             *(f"{float(one[f'{n}_value']):g}" for n in ("with", "without")),
             f"{float(one['measured']):g}",
             *(f"{one[f'{n}_printed'].item()} | {float(one[f'{n}_error']):.2f}"
@@ -297,7 +312,7 @@ def _experiment_table(data: xr.Dataset) -> Table:
     head: list[Cell] = [
         "speed", "quantity", "what can be told", "with heat", "without heat", "measured",
         "error with heat [%], printed | recomputed", "error without heat [%], printed | recomputed",
-        "u_val [%]", "implied speed [rpm]", "implied acceleration [g]",
+        "u_val [%]", "implied speed [rpm]", "implied [g]",
     ]  # fmt: skip
     caption = "The table of section 5.2 recomputed; rows with a misprinted error are marked."
     return Table(caption, head, rows, names=3, marked=frozenset(marked))
@@ -316,7 +331,7 @@ def _study_words(results: Results) -> str:
 def _sensitivity(results: Results, pictures: Pictures) -> Section:
     data = results.groups["sensitivity"]
     blocks: list[Block] = [Text(_study_words(results))]
-    blocks += [Text(str(text)) for text in data["sentence"].values]
+    blocks += [Text(prose(_capital(str(text)))) for text in data["sentence"].values]
     pictures.add(
         "sensitivity", "What decides what",
         "Total index [%] with its confidence interval: the share of a result's variance that goes "
@@ -327,6 +342,10 @@ def _sensitivity(results: Results, pictures: Pictures) -> Section:
     blocks.append(_ranges(data))
     blocks.append(_indices(data))
     return Section("sensitivity", "Which unstated inputs decide", blocks)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _ranges(data: xr.Dataset) -> Table:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from thermogear.base.materials import ZERO_CELSIUS
@@ -58,6 +59,7 @@ def diagram(diagrams: Mapping[str, xr.Dataset], flips: xr.Dataset, row: str) -> 
                 axis.axvline(value, color=QUIET, linewidth=0.7, linestyle=(0, (4, 3)), zorder=0.5)
         axis.set_title(words)
         axis.set_xlabel(AXES[row])
+        axis.xaxis.set_major_locator(MaxNLocator(5))
         axis.grid(visible=False)
     axes[0, 0].set_ylabel("X on the section [half backlashes]")
     return figure
@@ -108,14 +110,19 @@ def warming(data: xr.Dataset) -> Figure:
     axis = axes[0, 0]
     celsius = data["temperature"].values - ZERO_CELSIUS
     for row, colour in (("thesis", HOT), ("consistent", MIXED)):
-        axis.plot(
-            celsius, data["multiplier"].sel(row=row).values, marker="o", color=colour,
-            label=HEATS[row][0],
-        )  # fmt: skip
+        modulus = data["multiplier"].sel(row=row).values
         flip = float(data["flip"].sel(row=row)) - ZERO_CELSIUS
+        x, y = celsius, modulus
         if np.isfinite(flip):
+            place = int(np.searchsorted(celsius, flip))
+            x, y = np.insert(celsius, place, flip), np.insert(modulus, place, 1.0)
             axis.axvline(flip, color=QUIET, linewidth=0.9, linestyle=(0, (4, 3)))
-            axis.text(flip + 1.5, 0.915, f"flip at {flip:.1f} °C", color=QUIET, fontsize=8.5)
+            axis.annotate(
+                f"flip at {flip:.1f} °C", (flip, 0.5), xycoords=("data", "axes fraction"),
+                xytext=(4, 0), textcoords="offset points", color=QUIET, fontsize=8.5,
+            )  # fmt: skip
+        axis.plot(x, y, color=colour, label=HEATS[row][0])
+        axis.plot(celsius, modulus, linestyle="none", marker="o", color=colour)
     axis.axhline(1.0, color=FAINT, linewidth=1.2)
     axis.set_xlabel("gear temperature $T$ [°C]")
     axis.set_ylabel("largest Floquet multiplier, modulus [–]")

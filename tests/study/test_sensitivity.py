@@ -1,0 +1,140 @@
+"""The variance-based study: grouping changes nothing, one input alone is everything, bounds hold."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import InputError, ThermogearError
+from thermogear.heat.lubrication import kinematic_viscosity
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.model import MeshModel
+from thermogear.study import sensitivity as study
+from thermogear.study.case import GearCase, load_example
+from thermogear.study.sensitivity import INPUTS, OUTPUTS, Plan, evaluate, grade, plain_words
+
+BY_NAME = {one.name: one for one in INPUTS}
+
+
+@pytest.fixture(scope="module")
+def case() -> GearCase:
+    found = load_example("rig")
+    assert isinstance(found, GearCase)
+    return found
+
+
+def places(rows: int, seed: int = 3) -> np.ndarray:
+    return np.random.default_rng(seed).random((rows, len(INPUTS)))
+
+
+def test_a_sample_is_the_chain_of_the_case_it_describes(case: GearCase) -> None:
+    at = places(1)
+    found, jammed = evaluate(case, Plan(), at)
+    value = {one.name: float(one.values(at[0, k])) for k, one in enumerate(INPUTS)}
+    gear = value["gear"]
+    overrides = {
+        "gears.pinion.face_width": f"{value['face_width']} m",
+        "gears.wheel.face_width": f"{value['face_width']} m",
+        "gears.pinion.roughness": f"{value['roughness']} m",
+        "gears.wheel.roughness": f"{value['roughness']} m",
+        "operating.torque": f"{value['torque']} N m",
+        "operating.speed": "2000 rpm",
+        "backlash.value": f"{value['backlash']} m",
+        "temperatures.pinion_addendum": f"{gear} K",
+        "temperatures.wheel_addendum": f"{gear} K",
+        "temperatures.pinion_bore_below_addendum": f"{value['shaft']} K",
+        "temperatures.wheel_bore_below_addendum": f"{value['shaft']} K",
+        "temperatures.housing_below_addendum": f"{value['housing']} K",
+        "oil.temperature_below_addendum": f"{value['oil']} K",
+    }
+    same = load_example("rig", overrides)
+    assert isinstance(same, GearCase)
+    operating = replace(same.operating, housing=same.housing, lubricant=grade(value["viscosity"]))
+    cycle = mesh_cycle(
+        same.pair,
+        operating,
+        MeshModel.consistent(),
+        path_positions=study.PATH,
+        mesh_positions=study.PHASES,
+    )
+    assert jammed == 0
+    assert found["flash"][0] == pytest.approx(
+        float(cycle["flash_temperature_mixed"].max()), rel=1e-9
+    )
+    assert found["growth"][0] == pytest.approx(float(cycle["deformation_sum"].mean()), rel=1e-9)
+    left = float(cycle["half_backlash"][0] / cycle["cold_half_backlash"][0])
+    assert found["backlash_left"][0] == pytest.approx(left, rel=1e-9)
+
+
+def test_samples_computed_together_are_those_computed_alone(case: GearCase) -> None:
+    at = places(4)
+    fixed = [k for k, one in enumerate(INPUTS) if one.name in study.FIXED]
+    at[:3, fixed] = at[0, fixed]  # three of one pair and oil, one of another
+    together, _ = evaluate(case, Plan(), at)
+    for row in range(4):
+        alone, _ = evaluate(case, Plan(), at[row : row + 1])
+        for name in together:
+            assert alone[name][0] == pytest.approx(together[name][row], rel=1e-9, abs=1e-12)
+
+
+def test_one_input_alone_brings_all_the_variance(case: GearCase) -> None:
+    plan = Plan(samples=8, inputs=(BY_NAME["gear"],))
+    data = study.sensitivity(case, plan)
+    assert data.attrs["evaluations"] == 24
+    growth = data.sel(output="growth")
+    assert float(growth["total"][0]) == pytest.approx(1.0, abs=0.35)
+    # what it cannot move has no index at all
+    assert float(data["total"].sel(output="out_of_contact")[0]) == 0.0
+
+
+@pytest.fixture(scope="module")
+def small(case: GearCase):  # type: ignore[no-untyped-def]
+    names = ("gear", "damping", "housing")
+    return study.sensitivity(case, Plan(samples=16, inputs=tuple(BY_NAME[n] for n in names)))
+
+
+def test_damping_and_housing_touch_what_they_can(small) -> None:  # type: ignore[no-untyped-def]
+    total = small["total"]
+    for output in ("growth", "stiffness_change", "friction", "backlash_left"):
+        assert float(total.sel(output=output, input="damping")) == pytest.approx(0.0, abs=1e-12)
+    assert float(total.sel(output="growth", input="housing")) == pytest.approx(0.0, abs=1e-12)
+    left = total.sel(output="backlash_left")
+    assert float(left.sel(input="housing")) > 5.0 * float(left.sel(input="gear"))
+
+
+def test_signs_of_the_stiffness_changes_do_not_depend_on_the_inputs(small) -> None:  # type: ignore[no-untyped-def]
+    assert float(small["holds"].sel(output="stiffness_change")) == 0.0
+    assert float(small["holds"].sel(output="stiffness_change_thesis")) == 1.0
+
+
+def test_words_name_every_output(small) -> None:  # type: ignore[no-untyped-def]
+    texts = plain_words(small)
+    assert len(texts) == len(OUTPUTS)
+    assert all(" % of cases." in text for text in texts)
+    assert "gear temperature" in texts[[o.name for o in OUTPUTS].index("growth")]
+
+
+def test_grades_lie_between_the_oils_they_are_fitted_to() -> None:
+    oil = grade(100e-6)
+    assert float(kinematic_viscosity(oil, 313.15)) == pytest.approx(100e-6, rel=1e-9)
+    assert 10.5e-6 < float(kinematic_viscosity(oil, 373.15)) < 11.5e-6
+
+
+def test_plans_that_make_no_sense_are_refused() -> None:
+    with pytest.raises(InputError, match="samples: got 100; allowed a power of two, 8 or more"):
+        Plan(samples=100)
+    with pytest.raises(InputError, match="inputs: got 'widht'"):
+        Plan(inputs=(replace(INPUTS[0], name="widht"),))
+    with pytest.raises(InputError, match="confidence: got 1.5"):
+        Plan(confidence=1.5)
+
+
+def test_a_missing_library_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(name: str) -> None:
+        raise ImportError(name)
+
+    monkeypatch.setattr(study.importlib, "import_module", none)
+    with pytest.raises(ThermogearError, match=r"needs the package SALib: pip install 'thermogear"):
+        study.require_salib()

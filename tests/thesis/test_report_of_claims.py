@@ -1,0 +1,105 @@
+"""Verdicts on coarse grids: published numbers, misprints, the page and its links."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thermogear.thesis import motions, section5
+from thermogear.thesis.claim import Verdict, rising, verdict_of
+from thermogear.thesis.evidence import Evidence, Size
+from thermogear.thesis.report import CLAIMS, build_to_directory
+from thermogear.views.claims_report import write_claims_report
+
+SMALL = Size(speeds=3, torques=2, diagram=41, flips=2, samples=8)
+
+
+@pytest.fixture(scope="module")
+def evidence() -> Evidence:
+    return Evidence(SMALL)
+
+
+def test_of_twelve_printed_errors_two_are_wrong(evidence: Evidence) -> None:
+    found = {
+        claim.number: claim.judge(evidence)
+        for claim in section5.CLAIMS
+        if claim.words.startswith("Error of the")
+    }
+    assert len(found) == 12
+    wrong = {n: f.consistent for n, f in found.items() if f.verdict is Verdict.CONTRADICTED}
+    assert wrong == {"5.2.214": "recomputed 21.50 %", "5.2.313": "recomputed 15.46 %"}
+
+
+def test_base_set_and_heat_come_from_the_ready_made_cases(evidence: Evidence) -> None:
+    rows = evidence.row_points
+    assert rows.ends == {"zeta": (0.18, 0.10), "omega": (1.3, 1.1), "epsilon": (0.1, 0.9)}
+    assert set(rows.base) == {
+        "damping_ratio", "frequency", "stiffness_amplitude", "mean_force", "force_amplitude",
+    }  # fmt: skip
+    assert rows.heat["none"] == (1.0, 0.0)
+    assert rows.heat["thesis"][1] > 0.0 > rows.heat["consistent"][1]
+
+
+def test_located_flips_are_the_published_ones(evidence: Evidence) -> None:
+    value = evidence.flips["value"]
+    known = {"zeta": 0.170043027, "omega": 1.291353857, "epsilon": 0.258236471}
+    for row, flip in known.items():
+        assert float(value.sel(row=row, heat="none", flip=1)) == pytest.approx(flip, abs=1e-8)
+    # while no back flank is hit the gap alone moves no flip
+    first = value.sel(flip=1)
+    assert np.allclose(first.sel(heat="backlash"), first.sel(heat="none"), rtol=1e-9)
+
+
+def test_heat_flips_at_120_degrees_in_the_thesis_row_alone(evidence: Evidence) -> None:
+    flip = evidence.warming["flip"]
+    assert float(flip.sel(row="thesis")) == pytest.approx(393.15, abs=0.02)
+    assert np.isnan(float(flip.sel(row="consistent")))
+
+
+def test_runge_kutta_loses_its_order_at_the_kink(evidence: Evidence) -> None:
+    found = motions.solver_orders(evidence.row_points)
+    steps = np.log(found["steps"])
+    smooth, kinked = (-np.polyfit(steps, np.log(found[n]), 1)[0] for n in ("smooth", "rattling"))
+    assert smooth == pytest.approx(4.0, abs=0.1)
+    assert kinked < 3.0
+
+
+def test_words_for_trends() -> None:
+    assert rising([[1.0, 2.0, 3.0], [1.0, 1.0, 2.0]]) == "rises"
+    assert rising([3.0, 2.0, 1.0]) == "falls"
+    assert rising([1.0, 1.0]) == "stays"
+    assert rising([[1.0, 2.0], [2.0, 1.0]]) == "rises and falls"
+    assert verdict_of(True) is Verdict.REPRODUCED
+    assert verdict_of(True, assumption=True) is Verdict.ASSUMED
+    assert verdict_of(False, assumption=True) is Verdict.CONTRADICTED
+
+
+@pytest.mark.slow
+def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path) -> None:
+    summary = build_to_directory(tmp_path, SMALL)
+    assert summary["claims"] == len(CLAIMS) == sum(summary["verdicts"].values())
+    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8")) == summary
+    verdicts = {row["number"]: row["verdict"] for row in summary["rows"]}
+    # misprints and impossibilities that no grid decides
+    for number in ("2.1.1", "2.2.3", "2.3.6", "2.3.8", "3.1.2", "3.2.3", "3.2.7", "3.3.5",
+                   "4.1.7", "4.1.9", "4.2.2", "4.2.12", "4.3.9", "5.2.3", "5.2.214"):  # fmt: skip
+        assert verdicts[number] == "contradicted", number
+    for number in ("2.1.3", "2.2.1", "3.1.4", "3.2.2", "3.3.2", "4.1.1", "5.1.1", "5.2.8"):
+        assert verdicts[number] == "reproduced", number
+    for number in ("2.2.6", "5.1.3", "5.2.9", "5.2.10", "6.4.1"):
+        assert verdicts[number] == "cannot be decided", number
+    with xr.open_datatree(tmp_path / "results.nc", engine="h5netcdf") as tree:
+        assert tree.attrs["kind"] == "thesis"
+    page = write_claims_report(tmp_path).read_text(encoding="utf-8")
+    ids = set(re.findall(r'\bid="([^"]+)"', page))
+    assert set(re.findall(r'href="#([^"]+)"', page)) <= ids
+    assert {f"claim-{claim.number}" for claim in CLAIMS} <= ids
+    assert {f"fig-{claim.picture}" for claim in CLAIMS if claim.picture} <= ids
+    prose = re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
+    assert not re.search(r"\b(nan|inf)\b", prose)
+    assert write_claims_report(tmp_path).read_text(encoding="utf-8") == page
