@@ -158,6 +158,27 @@ def test_estimates_lie_above_the_oil_and_grow_with_the_loss() -> None:
     np.testing.assert_allclose(sprayed - oil, 1.2 * (found - oil), rtol=1e-9, atol=1e-9)
 
 
+def test_a_tight_pair_jams_where_the_teeth_pass_the_jam_temperature() -> None:
+    # the housing held cold: hot gears close the gap
+    case = rig('gearbox.measured.housing="20 degC"', 'backlash.value="0.014 mm"')
+    grid = thermal_map(case, SPEEDS, (50.0, 200.0))["map"]
+    jammed = grid["status"].values == STATUS.index("jammed")
+    assert jammed.any()
+    assert not jammed.all()
+    np.testing.assert_array_equal(jammed, grid["least_half_backlash"].values <= 0.0)
+    teeth = grid["node_temperature"].sel(node="pinion_tooth").values
+    np.testing.assert_array_equal(jammed, teeth >= grid["jam_temperature"].values - 1e-6)
+
+
+def test_a_cooler_keeps_the_oil_on_its_line_and_flash_then_falls_with_speed() -> None:
+    case = rig('gearbox.oil_flow="5 l/min"')
+    cooled = thermal_map(case, tuple(RPM * np.array([1000.0, 3500.0, 6000.0])), (100.0, 300.0))
+    assert np.all(cooled["map"]["within_oil_range"].values == 1)
+    rising = cooled["conclusion"]["rising_share"].sel(lubrication="mixed", quantity="flash")
+    assert float(rising.sel(axis="speed")) < 1.0
+    assert float(rising.sel(axis="torque")) == 1.0
+
+
 def test_a_huge_map_is_refused_before_it_runs() -> None:
     with pytest.raises(InputError, match=r"map: got about 37.3 GiB for 1000000 operating points"):
         require_points(10**6, free=8 * 2**30)

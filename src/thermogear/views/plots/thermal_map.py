@@ -61,7 +61,9 @@ def thermal_map(data: xr.Dataset) -> Figure:
     _jam(axes[1, 0], data, left)
     margin = kept(data["scuffing_margin"].values)
     if np.isfinite(margin).any():
-        _panel(axes[1, 1], data, margin, "scuffing margin [K]", "RdYlGn", (-200.0, 200.0))
+        # red is always below 0 K and the deepest green the greatest margin
+        ends = (min(-SAFE, float(np.nanmin(margin))), max(2.0 * SAFE, float(np.nanmax(margin))))
+        _panel(axes[1, 1], data, margin, "scuffing margin [K]", "RdYlGn", ends)
         _lines(axes[1, 1], data, margin, [0.0, SAFE], "%.0f K")
     else:
         note(axes[1, 1], "scuffing margin: oil.scuffing_load_stage is not given")
