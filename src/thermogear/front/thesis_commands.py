@@ -51,7 +51,9 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
 @click.command()
 @click.argument("case", metavar="CASE")
 @click.option("-o", "--output", metavar="DIR", help="Store the study and its page in DIR.")
-@click.option("--samples", default=128, show_default=True, help="Base samples, a power of two.")
+@click.option(
+    "--samples", default=128, show_default=True, help="Base samples, a power of two; 128 or more."
+)
 @click.option("--speed", type=float, metavar="RPM", help="Pinion speed; the case's middle one.")
 @click.option("--seed", default=1, show_default=True, help="Seed of sampling and bootstrap.")
 @click.option(

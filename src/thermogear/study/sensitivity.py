@@ -129,6 +129,7 @@ OUTPUTS: tuple[Output, ...] = (
 class Plan:
     """The study: ``samples`` base samples N (a power of two; N (inputs + 2) evaluations).
 
+    Below about 100 base samples the bootstrap's intervals are too narrow themselves.
     ``speed`` [rad/s] of the pinion (None: the case's middle one), ``inputs`` with their ranges,
     ``resamples`` of the bootstrap, ``confidence`` of its intervals, ``seed``.
     """
@@ -501,7 +502,9 @@ def plain_words(data: xr.Dataset) -> list[str]:
         span = f"{_short(here['low'])} to {_short(here['high'])} {here['output_unit'].item()}"
         span = span.removesuffix(" –")
         if not deciding:
-            text = f"{here['output_words'].item()}: {span}; no input decides it."
+            still = float(here["total"].max()) == 0.0
+            why = "no input changes it" if still else "too few samples to say what decides it"
+            text = f"{here['output_words'].item()}: {span}; {why}."
         else:
             names = ", ".join(f"{w} ({100 * t:.0f} ± {100 * c:.0f} %)" for w, t, c in deciding)
             rest = [w for w, t, c in rows if t + c < 0.01]
