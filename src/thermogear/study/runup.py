@@ -36,10 +36,10 @@ RUN_UP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 DIRECTIONS = (1, -1)
 BLOCK = 24
 KEEP = 16
-JUMP = 0.1
-"""Sections that move by so many half backlashes between two speeds have jumped ..."""
-STEEP = 4.0
-"""... when that is so many times what they moved by at the speeds before and after."""
+JUMP = 0.15
+"""A transmission error that changes by this share between two speeds has jumped ..."""
+STEEP = 3.0
+"""... when that is so many times what it changes by at the speeds before and after."""
 
 
 @dataclass(frozen=True)
@@ -241,14 +241,13 @@ def _with_jumps(data: xr.Dataset) -> xr.Dataset:
         for direction, sign in enumerate(DIRECTIONS):
             here = data.isel(state=state, direction=direction)
             order = np.arange(speeds.size)[::sign]
-            x = here["section_x"].values
-            v = here["section_v"].values
             size = here["dte_peak_to_peak"].values
+            # a chaotic motion fluctuates from speed to speed without jumping
+            calm = here["period"].values > 0
             moves = np.full(speeds.size - 1, np.nan)
             for step, (a, b) in enumerate(pairwise(order.tolist())):
-                gaps = np.maximum(abs(x[a] - x[b][-1]), abs(v[a] - v[b][-1]))
-                if np.isfinite(gaps).any():
-                    moves[step] = float(np.nanmin(gaps))
+                if calm[a] and calm[b]:
+                    moves[step] = abs(size[b] - size[a]) / min(size[a], size[b])
             for place in np.flatnonzero(moves > JUMP):
                 around = np.concatenate(
                     [moves[max(0, place - 2) : place], moves[place + 1 : place + 3]]

@@ -11,11 +11,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, picture
+from thermogear.views.style import (
+    COLD,
+    FAINT,
+    HOT,
+    INK,
+    OKABE_ITO,
+    QUIET,
+    WIDE,
+    legend_below,
+    picture,
+)
 
 Floats = NDArray[np.float64]
 
@@ -94,7 +102,9 @@ def orbit_diagram_picture(data: xr.Dataset) -> Figure:
     """Sections over the parameter, up and down, with branches and bifurcations; exponent below."""
     name = _parameter(data)
     p = shown(name, data[name].values)
-    figure, axes = picture(2, 1, (WIDE, 6.0), sharex=True, gridspec_kw={"height_ratios": (3, 1)})
+    figure, axes = picture(
+        2, 1, (WIDE, 6.0), sharex=True, above=0.15, gridspec_kw={"height_ratios": (3, 1)}
+    )
     top, low = axes[0, 0], axes[1, 0]
     colours = (COLD, HOT)
     for direction, (colour, word) in enumerate(zip(colours, ("up", "down"), strict=True)):
@@ -110,7 +120,7 @@ def orbit_diagram_picture(data: xr.Dataset) -> Figure:
     top.set_ylabel("x at phase 0")
     low.set_ylabel("λ₁")
     low.set_xlabel(words(name))
-    top.legend(loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=6, fontsize=8)
+    legend_below(figure, top, 6)
     return figure
 
 
@@ -172,10 +182,9 @@ def _regimes(axes: Axes, data: xr.Dataset, one: str, two: str, figure: Figure) -
     axes.set_xlabel(words(one))
     axes.set_ylabel(words(two))
     present = np.unique(code)
-    handles = [
-        Patch(facecolor=CLASSES[n][1], edgecolor=QUIET, label=CLASSES[n][0]) for n in present
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
+    for n in present:
+        axes.plot([], [], "s", color=CLASSES[n][1], markeredgecolor=QUIET, label=CLASSES[n][0])
+    legend_below(figure, axes, 6)
 
 
 def basins_picture(data: xr.Dataset) -> Figure:
@@ -192,7 +201,6 @@ def basins_picture(data: xr.Dataset) -> Figure:
         norm=BoundaryNorm(np.arange(-2.5, count + 0.5), count + 2),
         rasterized=True,
     )
-    handles = []
     for n in range(count):
         x, v = data["attractor_x"].values[n], data["attractor_v"].values[n]
         axes[0, 0].plot(
@@ -201,17 +209,13 @@ def basins_picture(data: xr.Dataset) -> Figure:
         period = int(data["attractor_period"].values[n])
         kind = f"period {period}" if period else "chaotic"
         share = 100.0 * float(data["fraction"].values[n])
-        handles.append(
-            Line2D(
-                [], [], marker="o", linestyle="", color=colours[n], label=f"{kind}: {share:.3g} %"
-            )
-        )
+        axes[0, 0].plot([], [], "o", color=colours[n], label=f"{kind}: {share:.3g} %")
     axes[0, 0].grid(visible=False)
     axes[0, 0].set_xlabel("x at phase 0")
     axes[0, 0].set_ylabel("x′ at phase 0")
     axes[0, 0].set_xlim(_edges(data["x"].values)[[0, -1]])
     axes[0, 0].set_ylim(_edges(data["v"].values)[[0, -1]])
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    legend_below(figure, axes[0, 0], 4)
     return figure
 
 
@@ -226,7 +230,7 @@ def run_up_picture(data: xr.Dataset) -> Figure:
         ("mesh_force_max", "greatest mesh force [kN]", 1e-3),
         ("dynamic_factor", "dynamic factor K_v", 1.0),
     )
-    figure, axes = picture(3, 1, (WIDE, 8.0), sharex=True)
+    figure, axes = picture(3, 1, (WIDE, 8.0), above=0.15, sharex=True)
     n = shown("pinion_speed", data["pinion_speed"].values)
     count = data.sizes["state"]
     colours = [COLD, HOT, *OKABE_ITO[2:]][:count]
@@ -250,7 +254,7 @@ def run_up_picture(data: xr.Dataset) -> Figure:
                     ax.axvline(value, color=colours[state % len(colours)], linewidth=0.7, alpha=0.6)
         ax.set_ylabel(label)
     axes[2, 0].set_xlabel(words("pinion_speed"))
-    axes[0, 0].legend(loc="upper left", ncols=2, fontsize=8)
+    legend_below(figure, axes[0, 0], 4)
     return figure
 
 
@@ -287,7 +291,7 @@ def sweep_picture(data: xr.Dataset) -> Figure:
     dims = [str(d) for d in data["label"].dims]
     here = data.isel(dict.fromkeys(dims[2:], 0))
     if len(dims) == 1:
-        figure, axes = picture(2, 1, (WIDE, 5.4), sharex=True)
+        figure, axes = picture(2, 1, (WIDE, 5.4), above=0.15, sharex=True)
         p = shown(dims[0], here[dims[0]].values)
         axes[0, 0].plot(p, 1e6 * here["dte_peak_to_peak"].values, color=COLD)
         axes[0, 0].set_ylabel("transmission error, p-p [µm]")

@@ -1,0 +1,107 @@
+"""Commands for diagrams, maps, basins, run-ups and sweeps: from words to stores and pages."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from thermogear.base.errors import InputError
+from thermogear.front.sweep_commands import COMMANDS
+from thermogear.study.ready import example_text
+
+BY_NAME = {command.name: command for command in COMMANDS}
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory):
+    place = tmp_path_factory.mktemp("cases")
+    for name in ("rig", "table-4.2"):
+        (place / f"{name}.toml").write_text(example_text(name), encoding="utf-8")
+    return place
+
+
+def call(name, *words):
+    result = CliRunner().invoke(BY_NAME[name], [str(w) for w in words], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout) if "--json" in words else result.stdout
+
+
+def test_names_of_the_commands():
+    assert list(BY_NAME) == ["bifurcation", "map", "basins", "runup", "sweep"]
+
+
+@pytest.mark.slow
+def test_bifurcation_with_and_without_heat_in_one_table(cases, tmp_path):
+    """(b, F) scaled alike changes nothing; eps_T moves the flip as its scaling says."""
+    found = call(
+        "bifurcation", cases / "table-4.2.toml", "--over", "zeta=0.165:0.18:3",
+        "--branch-period", 1, "--against", "eps_T=0.02", "--against", "b=0.8",
+        "-o", tmp_path / "d", "--json",
+    )  # fmt: skip
+    (row,) = [r for r in found["moved"] if r["kind"] == "period doubling" and r["period"] == 1]
+    assert row["one"] == pytest.approx(0.17004302692235368, abs=1e-9)
+    assert row["other"] == pytest.approx(0.174447855, abs=1e-8)
+    assert row["moved"] == pytest.approx(row["other"] - row["one"], abs=1e-15)
+    assert (tmp_path / "d" / "one" / "report.html").exists()
+
+
+def test_map_resumes_and_refuses_other_words(cases, tmp_path):
+    words = [cases / "table-4.2.toml", "--over", "omega=1.1:1.3:8", "--over", "eps=0.1:0.9:8",
+             "-o", tmp_path / "m", "--json"]  # fmt: skip
+    one = call("map", *words)
+    again = call("map", *words)
+    assert one["labels"] == again["labels"]
+    assert one["points"] == 64
+    words[2] = "omega=1.1:1.4:8"
+    with pytest.raises(InputError, match=r"axes\.frequency\[1\]: got"):
+        call("map", *words)
+
+
+def test_basins_and_page(cases, tmp_path):
+    found = call(
+        "basins", cases / "table-4.2.toml", "--but", "zeta=0.05", "--but", "omega=0.7",
+        "--but", "eps=0.1", "--but", "F_m=0.1", "--but", "F_h=0.05",
+        "--x=-2:2:21", "--v=-2:2:21", "-o", tmp_path / "b", "--json",
+    )  # fmt: skip
+    assert sum(row["count"] for row in found["attractors"]) == 441
+    page = (tmp_path / "b" / "report.html").read_text(encoding="utf-8")
+    assert "Basins of attraction" in page or "Table 4.2" in page
+    assert "<svg" in page
+    assert "http" not in page.replace("http-equiv", "")
+
+
+def test_run_up_and_sweep_of_the_rig(cases, tmp_path):
+    run = call(
+        "runup", cases / "rig.toml", "--rpm", "4200:5200:6", "--branch-period", 0,
+        "-o", tmp_path / "r", "--json",
+    )  # fmt: skip
+    assert [j["direction"] for j in run["jumps"] if j["gears_degC"] == 20.0] == ["up"]
+    swept = call(
+        "sweep", cases / "rig.toml", "--over", "rpm=1000:2000:2", "--over", "temperature=100:140:2",
+        "-o", tmp_path / "s", "--json",
+    )  # fmt: skip
+    assert swept["labels"] == {"period-1": 4}
+    assert (tmp_path / "s" / "report.html").exists()
+
+
+def test_estimate_alone_writes_nothing(cases, tmp_path):
+    call("map", cases / "table-4.2.toml", "--over", "omega=1.1:1.3:8", "--over", "eps=0.1:0.9:8",
+         "-o", tmp_path / "e", "--estimate")  # fmt: skip
+    assert not (tmp_path / "e").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "message"),
+    [
+        ("bifurcation", ["--over", "zeta=a:b:c"], r"over: got 'zeta=a:b:c'; allowed NAME=FROM:TO"),
+        ("bifurcation", ["--over", "zetta=0.1:0.2:3"], "did you mean 'zeta'"),
+        ("map", ["--over", "zeta=0.1:0.2:3"], "over: got 1 parameters; allowed two for a map"),
+        ("sweep", ["--over", "zeta=0.1:0.2:3"], "allowed kind = 'gear'"),
+        ("runup", [], "allowed kind = 'gear'"),
+        ("basins", ["--x", "1:2"], "x: got '1:2'; allowed FROM:TO:COUNT"),
+    ],
+)
+def test_wrong_words_are_one_line(cases, tmp_path, name, words, message):
+    with pytest.raises(InputError, match=message) as caught:
+        call(name, cases / "table-4.2.toml", *words, "-o", tmp_path / "x")
+    assert "\n" not in str(caught.value)
