@@ -34,7 +34,9 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("command", EXTRA)
+@pytest.mark.parametrize(
+    "command", [pytest.param(c, marks=pytest.mark.slow) if c == "temperature" else c for c in EXTRA]
+)
 def test_a_survey_leaves_data_page_pictures_and_curves(
     command: str, rig: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -68,6 +70,7 @@ def test_a_survey_leaves_data_page_pictures_and_curves(
                 assert values.attrs.get("long_name"), f"{node.path}/{name}"
 
 
+@pytest.mark.slow
 def test_json_figures_of_the_map_are_those_of_its_grid(
     rig: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -71,6 +71,7 @@ def test_the_scuffing_margin_is_what_the_contact_leaves_of_the_limit(tree: xr.Da
     np.testing.assert_allclose(grid["scuffing_margin"].values, left, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_without_a_load_stage_there_is_no_margin() -> None:
     case = rig()
     bare = thermal_map(replace(case, scuffing_load_stage=None), SPEEDS[:1], TORQUES[:1])
@@ -158,6 +159,7 @@ def test_estimates_lie_above_the_oil_and_grow_with_the_loss() -> None:
     np.testing.assert_allclose(sprayed - oil, 1.2 * (found - oil), rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_tight_pair_jams_where_the_teeth_pass_the_jam_temperature() -> None:
     # the housing held cold: hot gears close the gap
     case = rig('gearbox.measured.housing="20 degC"', 'backlash.value="0.014 mm"')
@@ -170,6 +172,7 @@ def test_a_tight_pair_jams_where_the_teeth_pass_the_jam_temperature() -> None:
     np.testing.assert_array_equal(jammed, teeth >= grid["jam_temperature"].values - 1e-6)
 
 
+@pytest.mark.slow
 def test_a_cooler_keeps_the_oil_on_its_line_and_flash_then_falls_with_speed() -> None:
     case = rig('gearbox.oil_flow="5 l/min"')
     cooled = thermal_map(case, tuple(RPM * np.array([1000.0, 3500.0, 6000.0])), (100.0, 300.0))
