@@ -242,6 +242,8 @@ def test_what_is_not_in_a_dimensionless_case(changes: dict[str, object], message
 def test_what_does_not_fit_a_gear_case(rig_case: GearCase) -> None:
     with pytest.raises(InputError, match="--zeta: got a number beside a gear case"):
         of_case(rig_case, numbers={"damping_ratio": 0.1})
+    with pytest.raises(InputError, match="--state: got cold, with a temperature to vary"):
+        family(of_case(rig_case, state="cold"), "temperature")
     with pytest.raises(InputError, match="--bundle: got 'thesys'"):
         of_case(rig_case, bundle="thesys")
     with pytest.raises(InputError, match=r"--parameter: got 'sped'.*did you mean 'speed'"):

@@ -303,6 +303,13 @@ def family(subject: Subject, parameter: str) -> tuple[Family, float]:
     if gears is None or parameter not in GEAR_PARAMETERS:
         return family_of(subject.model, parameter)
 
+    if parameter == "temperature" and gears.state == "cold":
+        raise InputError(
+            "--state",
+            "cold, with a temperature to vary",
+            why="cold means everything at the reference temperature",
+            fix="use --state hot and --from '20 degC'",
+        )
     here = gears.excitation()
 
     @lru_cache(maxsize=256)
