@@ -75,7 +75,7 @@ def test_run_up_and_sweep_of_the_rig(cases, tmp_path):
         "runup", cases / "rig.toml", "--rpm", "4200:5200:6", "--branch-period", 0,
         "-o", tmp_path / "r", "--json",
     )  # fmt: skip
-    assert [j["direction"] for j in run["jumps"] if j["gears_degC"] == 20.0] == ["up"]
+    assert [j["direction"] for j in run["jumps"] if j["gears_degC"] == 20.0] == ["up", "down"]
     swept = call(
         "sweep", cases / "rig.toml", "--over", "rpm=1000:2000:2", "--over", "temperature=100:140:2",
         "-o", tmp_path / "s", "--json",

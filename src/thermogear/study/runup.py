@@ -39,7 +39,7 @@ KEEP = 16
 JUMP = 0.15
 """A transmission error that changes by this share between two speeds has jumped ..."""
 STEEP = 3.0
-"""... when that is so many times what it changes by at the speeds before and after."""
+"""... when that is so many times what it changes by between the speeds beside."""
 
 
 @dataclass(frozen=True)
@@ -249,10 +249,12 @@ def _with_jumps(data: xr.Dataset) -> xr.Dataset:
                 if calm[a] and calm[b]:
                     moves[step] = abs(size[b] - size[a]) / min(size[a], size[b])
             for place in np.flatnonzero(moves > JUMP):
-                around = np.concatenate(
-                    [moves[max(0, place - 2) : place], moves[place + 1 : place + 3]]
+                around = np.delete(
+                    moves[max(0, int(place) - 1) : int(place) + 2], min(1, int(place))
                 )
-                usual = float(np.nanmedian(around)) if np.isfinite(around).any() else 0.0
+                around = around[np.isfinite(around)]
+                # growth behind a period doubling is steep too, but steep on both sides
+                usual = float(around.max()) if around.size else 0.0
                 if moves[place] < STEEP * usual:
                     continue
                 first, then = int(order[place]), int(order[place + 1])
