@@ -25,8 +25,11 @@ before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 start = time.perf_counter()
 record = read_record(sys.argv[1], rate=float(sys.argv[2]), unit="m/s^2")
 numbers = 0
+total = 0.0
 for channel in record.channels:
-    numbers += int(record.samples)
+    for block in channel.blocks():
+        total += float(block.sum())
+        numbers += block.size
 seconds = time.perf_counter() - start
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 print(json.dumps({"numbers": numbers, "seconds": seconds, "before": before, "peak": peak}))

@@ -24,6 +24,7 @@ from thermogear.front import (
     sweep_commands,
     thesis_commands,
     verify_commands,
+    versus_commands,
 )
 from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
 
@@ -82,12 +83,20 @@ def cli() -> None:
 @_overrides
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 @click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
-def run(case: str, output: str, overrides: tuple[str, ...], as_json: bool, force: bool) -> None:
+@click.option("--reference", is_flag=True, help="Flash temperature by the exact moving source.")
+def run(
+    case: str,
+    output: str,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    force: bool,
+    reference: bool,
+) -> None:
     """Run CASE and write results.nc, summary.json, CSV curves and report.html to DIR."""
     from thermogear.study.results import claim_directory
     from thermogear.study.size import require_room
 
-    read = _load(case, overrides)
+    read = _load(case, (*overrides, "model.flash=exact") if reference else overrides)
     require_room(read, forced=force)
     directory = Path(output)
     claim_directory(directory)
@@ -180,6 +189,7 @@ for _list in (
     measure_commands,
     thesis_commands,
     verify_commands,
+    versus_commands,
 ):
     for _command in _list.COMMANDS:
         cli.add_command(_command)

@@ -174,13 +174,16 @@ class FrictionPath:
         name = self.hot.model.friction
         return self.dry if name == "dry" else friction_law(name)(self.state)
 
-    def flash(self, friction: Floats) -> Floats:
-        """Flash temperature rise [K] common to both flanks, by the model's method."""
+    @cached_property
+    def flash_of_unit_friction(self) -> Floats:
+        """Flash temperature rise [K] for |mu| = 1, common to both flanks, by the model's method.
+
+        The heat is linear in the coefficient and its partition does not know it.
+        """
         pair, model = self.hot.pair, self.hot.model
-        known = np.isfinite(friction)
         v1, v2 = self.velocities
-        rise = flash_temperature(
-            np.where(known, friction, 0.0),
+        return flash_temperature(
+            1.0,
             self.line_load,
             v1,
             v2,
@@ -190,7 +193,10 @@ class FrictionPath:
             model.heat_distribution,
             model.flash,
         )
-        return np.where(known, rise, np.nan)
+
+    def flash(self, friction: Floats) -> Floats:
+        """Flash temperature rise [K] under ``friction``; nan where that is unknown."""
+        return np.asarray(friction * self.flash_of_unit_friction)
 
     @cached_property
     def heat_share(self) -> Floats:
