@@ -1,0 +1,539 @@
+"""Case against case: stored results of several cases joined into one labelled Dataset.
+
+Operating points are matched by speed and torque (dimensionless points by row, parameter and
+value), bundles by name. What one case has and another has not is NaN there, and said.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import attributes, status_attributes
+from thermogear.study.results import write_results
+from thermogear.study.source import overridden, pairs, tables
+
+VERSUS = "versus.nc"
+MOST_CASES = 6
+"""As many as colours that a reader tells apart."""
+HIGHEST_ORDER = 8.5
+"""Spectra are kept up to this order of the mesh frequency."""
+OWN = "own bundle"
+"""The bundle of cases that hold one each, under different names."""
+
+FIGURES = (
+    "half_backlash", "jam_temperature", "mean_stiffness", "thermal_stiffness_ratio",
+    "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
+)  # fmt: skip
+CURVES = {
+    "path_position": ("friction_coefficient", "flash_temperature", "deformation_sum"),
+    "mesh_phase": ("half_backlash_curve", "mesh_stiffness"),
+    "order": ("line_amplitude",),
+}
+GROUPS = {"gear": ("mesh", "path", "motion"), "dimensionless": ("points",)}
+PLACE = {"path_position": "path_place", "mesh_phase": "phase_place", "order": "line"}
+"""The axis of a curve whose positions differ from case to case."""
+LEAD = ("bundle", "state", "operating")
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Stored:
+    """Stored results of one case; ``name`` tells cases of the same title apart."""
+
+    name: str
+    texts: Mapping[str, str]
+    groups: Mapping[str, xr.Dataset]
+
+    @property
+    def kind(self) -> str:
+        """``gear`` or ``dimensionless``."""
+        return str(self.texts["kind"])
+
+    @property
+    def bundles(self) -> list[str]:
+        """The names of its bundles of choices."""
+        if self.kind == "dimensionless":
+            return ["equation"]
+        return [str(name) for name in self.groups["mesh"]["bundle"].values]
+
+    @property
+    def states(self) -> list[str]:
+        """Its states, cold first."""
+        if self.kind == "dimensionless":
+            return ["steady"]
+        return [str(name) for name in self.groups["mesh"]["state"].values]
+
+    def points(self) -> list[Hashable]:
+        """What its operating points are matched by, each once."""
+        if self.kind == "gear":
+            mesh = self.groups["mesh"]
+            columns = [_rounded(mesh[name]) for name in ("pinion_speed", "pinion_torque")]
+        else:
+            data = self.groups["points"]
+            words = [[str(v) for v in data[name].values] for name in ("row", "parameter")]
+            columns = [*words, _rounded(data["value"])]
+        seen: Counter[Hashable] = Counter()
+        found: list[Hashable] = []
+        for key in zip(*columns, strict=True):
+            seen[key] += 1
+            found.append((*key, seen[key]))
+        return found
+
+    def table(self) -> dict[str, Any]:
+        """The fields of its case file, what the command line put in their place included."""
+        data = tables(f"case of {self.name}", str(self.texts.get("case", "")))
+        changes = {str(path): str(value) for path, value in self.read("overrides", [])}
+        return flat(overridden(data, pairs(changes)))
+
+    def read(self, name: str, absent: Any) -> Any:
+        """A JSON attribute, ``absent`` where it is not stored."""
+        if name not in self.texts:
+            return absent
+        try:
+            found = json.loads(self.texts[name])
+        except ValueError as cause:
+            found = cause
+        if not isinstance(found, type(absent)):
+            raise InputError(
+                "results", self.name, why=f"attribute {name} is damaged", fix="run the case anew"
+            )
+        return found
+
+
+def of_tree(tree: xr.DataTree, name: str = "case") -> Stored:
+    """The results of a run that still is in memory."""
+    groups = {
+        node.path.strip("/"): node.to_dataset(inherit=True)
+        for node in tree.subtree
+        if node.has_data
+    }
+    return Stored(name, {str(k): str(v) for k, v in tree.attrs.items()}, groups)
+
+
+def require_number(count: int) -> None:
+    """Refuse fewer than two cases, and more than can be told apart."""
+    if not 2 <= count <= MOST_CASES:
+        noun = "case" if count == 1 else "cases"
+        raise InputError(
+            "versus",
+            f"{count} {noun}",
+            allowed=f"2..{MOST_CASES} cases",
+            why="more colours are not told apart" if count > 1 else "a comparison takes two",
+            fix="name directories of `thermogear run`, or case files",
+        )
+
+
+def require_one_kind(kinds: Mapping[str, str]) -> None:
+    """Refuse gear cases beside dimensionless ones; ``kinds`` maps names to kinds."""
+    if len(set(kinds.values())) > 1:
+        raise InputError(
+            "versus",
+            ", ".join(f"{name} ({kind})" for name, kind in kinds.items()),
+            allowed="cases of one kind",
+            why="a dimensionless case has no micrometres to set beside a gear pair's",
+        )
+
+
+def versus(cases: Sequence[Stored]) -> xr.Dataset:
+    """Two to six cases side by side: figures and curves with a leading axis ``case``.
+
+    Figures have the axes (case, bundle, state, operating), curves one more: ``path_place``,
+    ``phase_place`` or ``line``, whose positions are the variables ``path_position``,
+    ``mesh_phase`` and ``order`` of each case. Where a case lacks a point, a bundle or a figure
+    the numbers are NaN and texts empty; ``present`` (case, bundle, operating) tells. The
+    attributes ``differences``, ``choices`` and ``notices`` hold JSON lists.
+    Raises InputError for a wrong number of cases, kinds that differ, and damaged results.
+    """
+    require_number(len(cases))
+    numbered = {f"{place + 1}: {case.name}": case.kind for place, case in enumerate(cases)}
+    require_one_kind(numbered if len({c.name for c in cases}) < len(cases) else
+                     {c.name: c.kind for c in cases})  # fmt: skip
+    for case in cases:
+        _require_groups(case)
+    titles = unique_titles(cases)
+    names = [case.bundles for case in cases]
+    shared = set(names[0]).intersection(*names[1:])
+    own = not shared and all(len(each) == 1 for each in names)
+    bundles = [[OWN]] * len(cases) if own else names
+    axes = {
+        "case": titles,
+        "bundle": _union(bundles),
+        "state": _union([case.states for case in cases]),
+        "operating": _union([case.points() for case in cases]),
+    }
+    if cases[0].kind == "gear":
+        axes["operating"].sort()
+    data = _joined(cases, bundles, axes)
+    return data.assign_attrs(
+        thermogear=thermogear.__version__,
+        kind="versus",
+        of=cases[0].kind,
+        title=" against ".join(titles) if len(titles) == 2 else " · ".join(titles),
+        differences=json.dumps(differences(cases)),
+        choices=json.dumps(choices(cases, bundles)),
+        notices=json.dumps(_notices(cases, data, names if own else None)),
+        cases=json.dumps([_text(case) for case in cases]),
+        path_points=json.dumps([_path_points(case) for case in cases]),
+    )
+
+
+def store(data: xr.Dataset, directory: Path) -> Path:
+    """Write ``directory/versus.nc``."""
+    return write_results(xr.DataTree(data), directory, VERSUS)
+
+
+def summary(data: xr.Dataset) -> dict[str, Any]:
+    """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
+    rows = []
+    figures = [n for n in (*FIGURES, "greatest_flash_temperature") if n in data]
+    for c, title in enumerate(data["case"].values):
+        for b, bundle in enumerate(data["bundle"].values):
+            for o, point in enumerate(data["point"].values):
+                here = data.isel(case=c, bundle=b, operating=o)
+                if not int(here["present"]):
+                    continue
+                for s, state in enumerate(data["state"].values):
+                    one = here.isel(state=s)
+                    numbers = {name: _number(float(one[name])) for name in figures}
+                    rows.append({
+                        "case": str(title), "bundle": str(bundle), "point": str(point),
+                        "state": str(state), "label": str(one["label"].item()), **numbers,
+                    })  # fmt: skip
+    return {
+        "thermogear": thermogear.__version__,
+        "title": data.attrs["title"],
+        "kind": data.attrs["of"],
+        "cases": [str(title) for title in data["case"].values],
+        "notices": json.loads(data.attrs["notices"]),
+        "differences": json.loads(data.attrs["differences"]),
+        "choices": json.loads(data.attrs["choices"]),
+        "units": {name: str(data[name].attrs.get("units", "1")) for name in figures},
+        "figures": rows,
+    }
+
+
+# --- what the cases say -------------------------------------------------------------------
+
+
+def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested tables as dotted fields; places of a list of tables are numbered."""
+    found: dict[str, Any] = {}
+    for key, value in table.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            found |= flat(value, f"{name}.")
+        elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
+            for place, one in enumerate(value):
+                found |= flat(one, f"{name}[{place}].")
+        else:
+            found[name] = value
+    return found
+
+
+def differences(cases: Sequence[Stored]) -> list[dict[str, Any]]:
+    """The fields of the case files that differ, a value for each case; the title is none.
+
+    A field that a file leaves out shows what is taken in its place, where that is on record.
+    """
+    fields = [case.table() for case in cases]
+    taken = [
+        {str(row["field"]): str(row["value"]) for row in case.read("assumptions", [])}
+        for case in cases
+    ]
+    found = []
+    for name in _union([list(each) for each in fields]):
+        if name == "title":
+            continue
+        stated = [each.get(name) for each in fields]
+        if any(value != stated[0] for value in stated[1:]):
+            values = [
+                _shown(each[name]) if name in each
+                else f"not stated: {ours[name]}" if name in ours
+                else "not stated"
+                for each, ours in zip(fields, taken, strict=True)
+            ]  # fmt: skip
+            found.append({"field": name, "values": values})
+    return found
+
+
+def choices(
+    cases: Sequence[Stored], bundles: Sequence[Sequence[str]] | None = None
+) -> list[dict[str, Any]]:
+    """The choices in which bundles of the same name differ, a value for each case."""
+    made = []
+    for place, case in enumerate(cases):
+        stored = case.read("bundles", {})
+        names = case.bundles if bundles is None else bundles[place]
+        made.append(
+            {name: stored.get(own, {}) for name, own in zip(names, case.bundles, strict=True)}
+        )
+    found = []
+    for bundle in _union([list(each) for each in made]):
+        having = [each.get(bundle) for each in made]
+        for choice in _union([list(each) for each in having if each is not None]):
+            values = [None if each is None else each.get(choice) for each in having]
+            there = [v for v, each in zip(values, having, strict=True) if each is not None]
+            if any(value != there[0] for value in there[1:]):
+                found.append({
+                    "bundle": bundle, "choice": choice,
+                    "values": ["no such bundle" if each is None else _shown(v)
+                               for v, each in zip(values, having, strict=True)],
+                })  # fmt: skip
+    return found
+
+
+def unique_titles(cases: Sequence[Stored]) -> list[str]:
+    """The titles on one line; equal ones with the names of their results, or numbered."""
+    plain = [" ".join(str(c.texts.get("title", "")).split()) or c.name for c in cases]
+    twice = Counter(plain)
+    named = [
+        f"{title} [{case.name}]" if twice[title] > 1 else title
+        for title, case in zip(plain, cases, strict=True)
+    ]
+    found: list[str] = []
+    for title in named:
+        own, number = title, 1
+        while own in found:
+            number += 1
+            own = f"{title} ({number})"
+        found.append(own)
+    return found
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list):
+        return ", ".join(_shown(each) for each in value)
+    return f"{value:.9g}" if isinstance(value, float) else " ".join(str(value).split())
+
+
+def _text(case: Stored) -> str:
+    """The file as read, and below it what the command line put in its place."""
+    text = str(case.texts.get("case", "")).rstrip()
+    if "# on the command line:" in text:
+        return text
+    changes = case.read("overrides", [])
+    return text + "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)
+
+
+def _path_points(case: Stored) -> dict[str, float]:
+    path = case.groups.get("path")
+    found = {} if path is None else json.loads(str(path.attrs.get("path_points", "{}")))
+    return {str(name): float(value) for name, value in found.items()}
+
+
+def _notices(
+    cases: Sequence[Stored], data: xr.Dataset, own: Sequence[Sequence[str]] | None
+) -> list[dict[str, str]]:
+    found: list[dict[str, str]] = []
+
+    def note(level: str, text: str) -> None:
+        found.append({"level": level, "text": text})
+
+    titles = [str(title) for title in data["case"].values]
+    if own is not None:
+        pairs_ = ", ".join(f"{name[0]} of {t}" for t, name in zip(titles, own, strict=True))
+        note("info", f"No bundle is in all cases; each case's only one is compared: {pairs_}.")
+    has = data["present"].values.astype(bool)
+    for axis, dims, word in (("bundle", (2,), "bundle"), ("operating", (1,), "operating point")):
+        there = has.any(axis=dims)
+        names = data["bundle" if axis == "bundle" else "point"].values
+        for c, title in enumerate(titles):
+            alone = [str(n) for n, col in zip(names, there.T, strict=True)
+                     if col[c] and col.sum() == 1]  # fmt: skip
+            if alone:
+                shown = ", ".join(alone[:12]) + (" and more" if len(alone) > 12 else "")
+                plural = "s" if len(alone) > 1 else ""
+                note("warning", f"In {title} only: {word}{plural} {shown}.")
+    if not (has.sum(axis=0) > 1).any():
+        note("important", "No operating point is in two of the cases: nothing stands side by side.")
+    versions = [str(case.texts.get("thermogear", "")) for case in cases]
+    if len(set(versions)) > 1:
+        each = ", ".join(f"{t}: {v}" for t, v in zip(titles, versions, strict=True))
+        note("warning", f"The results were written by different versions of thermogear ({each}).")
+    return found
+
+
+# --- joining ------------------------------------------------------------------------------
+
+
+def _joined(
+    cases: Sequence[Stored], bundles: Sequence[Sequence[str]], axes: Mapping[str, list[Any]]
+) -> xr.Dataset:
+    sizes = tuple(len(axes[name]) for name in ("case", *LEAD))
+    variables: dict[str, Any] = {}
+    present = np.zeros((sizes[0], sizes[1], sizes[3]), dtype=np.int8)
+    status = np.full(sizes, -1, dtype=np.int8)
+    label = np.full(sizes, "", dtype=object)
+    places = []
+    for c, case in enumerate(cases):
+        where = np.ix_(
+            [c],
+            [axes["bundle"].index(b) for b in bundles[c]],
+            [axes["state"].index(s) for s in case.states],
+            [axes["operating"].index(p) for p in case.points()],
+        )
+        places.append(where)
+        present[np.ix_([c], where[1].ravel(), where[3].ravel())] = 1
+        for name, whole in (("status", status), ("label", label)):
+            for data in _groups(case):
+                if name in data:
+                    whole[where] = _laid(data, name)[None]
+    widest = {curve: max(_positions(case, curve).size for case in cases) for curve in CURVES}
+    for name in FIGURES:
+        _fill(variables, name, cases, places, sizes)
+    for curve, names in CURVES.items():
+        if not widest[curve]:
+            continue
+        position = np.full((sizes[0], widest[curve]), np.nan)
+        for c, case in enumerate(cases):
+            own = _positions(case, curve)
+            position[c, : own.size] = own
+        described = attributes(curve)
+        variables[curve] = (("case", PLACE[curve]), position, described)
+        for name in names:
+            _fill(variables, name, cases, places, sizes, curve, widest[curve])
+    if "flash_temperature" in variables:
+        dims, values, described = variables["flash_temperature"]
+        variables["greatest_flash_temperature"] = (
+            dims[:-1], np.fmax.reduce(values, axis=-1),
+            {**described, "long_name": "greatest flash temperature rise along the path"},
+        )  # fmt: skip
+    flags = {**status_attributes(), "comment": "-1: the case has no such point"}
+    variables["status"] = (("case", *LEAD), status, flags)
+    variables["label"] = (("case", *LEAD), label.astype(str), {"long_name": "kind of motion"})
+    variables["present"] = (
+        ("case", "bundle", "operating"), present, {"long_name": "1 where the case has the point"}
+    )  # fmt: skip
+    coordinates: dict[str, Any] = {name: axes[name] for name in ("case", "bundle", "state")}
+    keys = axes["operating"]
+    if cases[0].kind == "gear":
+        for place, name in enumerate(("pinion_speed", "pinion_torque")):
+            values = np.array([key[place] for key in keys])
+            coordinates[name] = (("operating",), values, attributes(name))
+    coordinates["point"] = (("operating",), [_point_name(cases[0].kind, key) for key in keys])
+    return xr.Dataset(variables, coordinates)
+
+
+def _fill(
+    variables: dict[str, Any],
+    name: str,
+    cases: Sequence[Stored],
+    places: Sequence[tuple[NDArray[np.intp], ...]],
+    sizes: tuple[int, ...],
+    curve: str | None = None,
+    wide: int = 0,
+) -> None:
+    """Put ``name`` of every case that has it into ``variables``; nothing where none has."""
+    tail = () if curve is None else (wide,)
+    whole = np.full((*sizes, *tail), np.nan)
+    described: dict[str, Any] | None = None
+    for case, where in zip(cases, places, strict=True):
+        for data in _groups(case):
+            if name in data:
+                values = _laid(data, name, curve)
+                if curve is None:
+                    whole[where] = values[None]
+                else:
+                    kept = values[..., : _positions(case, curve).size]
+                    padded = np.full((*kept.shape[:-1], wide), np.nan)
+                    padded[..., : kept.shape[-1]] = kept
+                    whole[where] = padded[None]
+                if described is None:
+                    known = attributes(name)
+                    described = known | {"units": str(data[name].attrs.get("units", "1"))}
+                break
+    if described is not None:
+        dims = ("case", *LEAD, *(() if curve is None else (PLACE[curve],)))
+        variables[name] = (dims, whole, described)
+
+
+def _laid(data: xr.Dataset, name: str, curve: str | None = None) -> NDArray[Any]:
+    """``data[name]`` with the axes (bundle, state, operating[, curve]), whatever it lacks."""
+    variable = data[name].variable
+    if "point" in data.dims:
+        variable = variable.rename({"point": "operating"})
+    lengths = {d: data.sizes.get(d, 1) for d in LEAD}
+    lengths["operating"] = data.sizes.get("operating", data.sizes.get("point", 1))
+    if curve is not None:
+        lengths[curve] = data.sizes[curve]
+    return np.asarray(variable.set_dims(lengths).transpose(*lengths).values)
+
+
+def _groups(case: Stored) -> list[xr.Dataset]:
+    """The groups that figures are looked for in, in this order."""
+    return [case.groups[name] for name in GROUPS[case.kind] if name in case.groups]
+
+
+def _positions(case: Stored, curve: str) -> Floats:
+    """Where the curves along ``curve`` have their values; spectra end at the highest order."""
+    for data in _groups(case):
+        if curve in data.variables and any(n in data for n in CURVES[curve]):
+            values = np.asarray(data[curve].values, dtype=float)
+            return values[values <= HIGHEST_ORDER] if curve == "order" else values
+    return np.zeros(0)
+
+
+def _require_groups(case: Stored) -> None:
+    need = GROUPS[case.kind][0]
+    names = {"mesh": (*LEAD[:2], "pinion_speed"), "points": ("row", "parameter", "value")}[need]
+    data = case.groups.get(need)
+    if data is None or not all(name in data.variables for name in names):
+        raise InputError(
+            "results", case.name, why=f"the group {need} is missing", fix="run the case anew"
+        )
+
+
+def _point_name(kind: str, key: Sequence[Any]) -> str:
+    again = "" if key[-1] == 1 else f" ({key[-1]})"
+    if kind == "gear":
+        return f"{key[0] * 30.0 / math.pi:.6g} rpm, {key[1]:.6g} N m{again}"
+    return f"{key[0]}: {key[1]} = {key[2]:.6g}{again}".replace("_", " ")
+
+
+def _rounded(values: xr.DataArray) -> list[float]:
+    """Numbers that differ by rounding alone made equal."""
+    return [float(f"{float(value):.9g}") for value in values.values]
+
+
+def _union(lists: Sequence[Sequence[Any]]) -> list[Any]:
+    """Every entry once, in the order of first appearance."""
+    return list(dict.fromkeys(entry for each in lists for entry in each))
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+__all__ = [
+    "MOST_CASES",
+    "OWN",
+    "VERSUS",
+    "Stored",
+    "choices",
+    "differences",
+    "flat",
+    "of_tree",
+    "require_number",
+    "require_one_kind",
+    "store",
+    "summary",
+    "unique_titles",
+    "versus",
+]

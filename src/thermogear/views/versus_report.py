@@ -1,0 +1,338 @@
+"""The page of case against case, and its tables as CSV, from ``versus.nc`` alone."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import jinja2
+import numpy as np
+import xarray as xr
+from markupsafe import Markup
+
+from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import STATUS
+from thermogear.views.page import Block, Cell, Code, Pictures, Section, Table, Text
+from thermogear.views.plots import versus as plots
+from thermogear.views.results import put
+from thermogear.views.style import chosen
+from thermogear.views.words import (
+    Display,
+    display,
+    field_name,
+    jam_at,
+    number,
+    operating_names,
+    percent,
+    prose,
+)
+
+VERSUS = "versus.nc"
+REPORT = "versus.html"
+MOST_POINTS = 3
+"""At most so many operating points are drawn."""
+LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
+JAMMED = STATUS.index("jammed")
+
+FIGURES = {
+    "half_backlash": "half backlash b′",
+    "jam_temperature": "jams at",
+    "mean_stiffness": "mean mesh stiffness",
+    "thermal_stiffness_ratio": "its change by heat",
+    "natural_frequency": "natural frequency",
+    "frequency_ratio": "frequency ratio",
+    "greatest_flash_temperature": "greatest flash",
+    "label": "motion",
+    "peak_to_peak_displacement": "swing of x",
+}
+"""Figures of a point in the order of the table."""
+HOT_ALONE = ("jam_temperature", "thermal_stiffness_ratio", "greatest_flash_temperature")
+
+CURVES = (
+    ("friction_coefficient", "Friction coefficient", "By the law each case has chosen."),
+    ("flash_temperature", "Flash temperature rise", "Of the skin alone, zero at the pitch point."),
+    ("deformation_sum", "Growth of both flanks", "Along the line of action, cold it is zero."),
+    ("half_backlash_curve", "Half backlash over a mesh period", "Below zero a pair is jammed."),
+    ("mesh_stiffness", "Mesh stiffness over a mesh period", "High where two pairs carry."),
+)
+
+
+def write_versus(directory: Path) -> list[Path]:
+    """Draw ``directory/versus.html`` and the CSV tables from ``versus.nc``; the page first.
+
+    The page needs no other file; the same results give the same page. Raises InputError where
+    ``versus.nc`` is missing, damaged or not ours.
+    """
+    directory = Path(directory)
+    data = read_versus(directory)
+    written = [put(directory / REPORT, page(data))]
+    for name, (head, rows) in _csv_tables(data).items():
+        written.append(put(directory / f"versus_{name}.csv", _csv(head, rows)))
+    return written
+
+
+def read_versus(directory: Path) -> xr.Dataset:
+    """The stored comparison, in memory."""
+    path = Path(directory) / VERSUS
+    fix = "`thermogear versus RESULTS RESULTS -o DIR` writes it"
+    if not path.is_file():
+        raise InputError("results", str(path), why="there is no such file", fix=fix)
+    import h5py
+
+    try:
+        # h5py first: it refuses a damaged file without a second complaint on stderr
+        with h5py.File(path, "r") as file:
+            file.visititems(lambda name, item: None)
+        with xr.open_dataset(path, engine="h5netcdf") as opened:
+            data = opened.load()
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
+        raise InputError(
+            "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=fix
+        ) from error
+    if "thermogear" not in data.attrs or data.attrs.get("kind") != "versus":
+        raise InputError("results", str(path), why="it was not written by thermogear", fix=fix)
+    return data
+
+
+def page(data: xr.Dataset) -> str:
+    """The whole page as text."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    order = list(LEVELS)
+    notices = sorted(json.loads(data.attrs["notices"]), key=lambda row: order.index(row["level"]))
+    return environment.get_template("report.html").render(
+        title=str(data.attrs["title"]),
+        style=Markup(sheet),
+        summary=_summary(data),
+        tiles=[],
+        notices=[(row["level"], LEVELS[row["level"]], prose(row["text"])) for row in notices],
+        sections=[_differences(data), _figures(data), *_pictures(data), _cases(data)],
+        version=data.attrs["thermogear"],
+    )
+
+
+def _summary(data: xr.Dataset) -> str:
+    has = data["present"].values.astype(bool)
+    shared = int((has.any(axis=1).sum(axis=0) > 1).sum())
+    fields = len(json.loads(data.attrs["differences"]))
+    return (
+        f"{data.sizes['case']} cases side by side. {fields} field{'s' * (fields != 1)} of the case "
+        f"files differ; {shared} of {data.sizes['operating']} operating points stand in more than "
+        "one case."
+    )
+
+
+def _differences(data: xr.Dataset) -> Section:
+    titles = [str(title) for title in data["case"].values]
+    fields = json.loads(data.attrs["differences"])
+    blocks: list[Block] = []
+    if fields:
+        rows = [[field_name(row["field"]), *map(prose, row["values"])] for row in fields]
+        blocks.append(
+            Table("Fields of the case files that differ.", ["field", *titles], rows,
+                  names=len(titles) + 1, wordy=True)
+        )  # fmt: skip
+    else:
+        blocks.append(Text("The case files say the same; at most their titles differ."))
+    made = json.loads(data.attrs["choices"])
+    if made:
+        rows = [
+            [row["bundle"], row["choice"].replace("_", " "), *map(prose, row["values"])]
+            for row in made
+        ]
+        blocks.append(
+            Table("Choices in which bundles of one name differ.", ["bundle", "choice", *titles],
+                  rows, names=len(titles) + 2, wordy=True)
+        )  # fmt: skip
+    elif data.attrs["of"] == "gear":
+        blocks.append(Text("Bundles of one name make the same choices in all cases."))
+    return Section("differences", "What differs", blocks)
+
+
+def _figures(data: xr.Dataset) -> Section:
+    bundles = [str(name) for name in data["bundle"].values]
+    blocks: list[Block] = []
+    for b, bundle in enumerate(bundles):
+        here = data.isel(bundle=b)
+        if here["present"].values.any():
+            words = f"Bundle {bundle}" if data.attrs["of"] == "gear" else "Every point"
+            blocks.append(_table(here, words))
+    return Section("figures", "Key figures", blocks)
+
+
+def _table(here: xr.Dataset, words: str) -> Table:
+    """A row for each case, those of one operating point below each other."""
+    names = [name for name in FIGURES if name in here and _any(here, name)]
+    head: list[Cell] = ["operating point", "case", *[_head(here, name) for name in names]]
+    rows: list[list[Cell]] = []
+    marked: set[int] = set()
+    titles = [str(title) for title in here["case"].values]
+    for o, point in enumerate(_points(here)):
+        there = np.flatnonzero(here["present"].isel(operating=o).values)
+        for place, c in enumerate(there):
+            one = here.isel(case=int(c), operating=o)
+            if (one["status"].values == JAMMED).any():
+                marked.add(len(rows))
+            first = point if place == 0 else ""
+            own = titles[c] if there.size > 1 else f"{titles[c]}, in this case only"
+            rows.append([first, own, *[_cell(one, name) for name in names]])
+    several = here.sizes["state"] > 1
+    caption = f"{words}: cases below each other at every operating point"
+    caption += ", cold → hot; single figures are hot." if several else "."
+    return Table(caption, head, rows, names=2, marked=frozenset(marked))
+
+
+def _any(here: xr.Dataset, name: str) -> bool:
+    values = here[name].values
+    return bool((values != "").any() if values.dtype.kind in "UO" else not np.isnan(values).all())
+
+
+def _head(here: xr.Dataset, name: str) -> str:
+    if name in ("label", "jam_temperature", "thermal_stiffness_ratio"):
+        return FIGURES[name]
+    unit = _display(here, name).unit
+    return FIGURES[name] if unit == "–" else f"{FIGURES[name]} [{unit}]"
+
+
+def _display(here: xr.Dataset, name: str) -> Display:
+    known = "flash_temperature" if name == "greatest_flash_temperature" else name
+    return display(known, str(here[name].attrs["units"]))
+
+
+def _cell(one: xr.Dataset, name: str) -> Cell:
+    states = [one.isel(state=s) for s in range(one.sizes["state"])]
+    if name in HOT_ALONE:
+        value = float(states[-1][name])
+        if name == "jam_temperature":
+            return jam_at(value)
+        if name == "thermal_stiffness_ratio":
+            return percent(value)
+        return number(float(_display(one, name)(value)))
+    if name == "label":
+        return _both([str(state["label"].item()) or "–" for state in states])
+    texts = []
+    for state in states:
+        jammed = name == "half_backlash" and int(state["status"]) == JAMMED
+        value = float(_display(one, name)(float(state[name])))
+        texts.append("none" if jammed else number(value, 4 if name == "natural_frequency" else 3))
+    return _both(texts)
+
+
+def _both(texts: Sequence[str]) -> str:
+    return texts[0] if len(set(texts)) == 1 else " → ".join(texts)
+
+
+def _points(data: xr.Dataset) -> list[str]:
+    if "pinion_speed" not in data.coords:
+        return [str(name) for name in data["point"].values]
+    names = operating_names(data)
+    twice = len(set(names)) < len(names)
+    return [str(name) for name in data["point"].values] if twice else names
+
+
+def _pictures(data: xr.Dataset) -> list[Section]:
+    """One section for each bundle; points that several cases share come before others."""
+    found = []
+    points = _points(data)
+    for b, bundle in enumerate(data["bundle"].values):
+        has = data["present"].isel(bundle=b).values
+        count = has.sum(axis=0)
+        shared = np.flatnonzero(count > 1)
+        of = shared if shared.size else np.flatnonzero(count)
+        pictures, before = Pictures(), list[int]()
+        for o in (int(of[i]) for i in chosen(of.size, MOST_POINTS)):
+            for name, heading, words in CURVES:
+                repeats = any(_alike(data, name, b, o, p) for p in before)
+                if repeats or not plots.has_curve(data, name, b, o):
+                    continue
+                pictures.add(
+                    f"{name}-{b}-{o}", f"{heading}, {points[o]}", words, data, (name,),
+                    lambda n=name, o=o, b=b: plots.curve(data, n, b, o),  # type: ignore[misc]
+                )  # fmt: skip
+            if plots.has_curve(data, "line_amplitude", b, o):
+                pictures.add(
+                    f"spectrum-{b}-{o}", f"Spectrum of the displacement, {points[o]}",
+                    "Lines of one order stand side by side: they are set apart by "
+                    f"{plots.SHIFT:g} orders for each case, so that none hides another.",
+                    data, ("line_amplitude",),
+                    lambda o=o, b=b: plots.spectrum(data, b, o), wide=True,  # type: ignore[misc]
+                )  # fmt: skip
+            before.append(o)
+        blocks = pictures.take()
+        if not blocks:
+            continue
+        gear = data.attrs["of"] == "gear"
+        intro = "A colour for each case."
+        if gear:
+            intro += (
+                " Hot is solid, cold dashed. A curve that is the same at a further operating "
+                "point is drawn once."
+            )
+        title = f"Curves, {bundle}" if gear else "Curves"
+        found.append(Section(f"curves-{b}", title, [Text(intro), *blocks]))
+    return found
+
+
+def _alike(data: xr.Dataset, name: str, bundle: int, one: int, other: int) -> bool:
+    """Whether ``name`` is the same at both operating points, rounding aside."""
+    if name not in data:
+        return False
+    values = data[name].isel(bundle=bundle)
+    a, b = (values.isel(operating=o).values for o in (one, other))
+    size = float(np.nanmax(np.abs(a))) if np.isfinite(a).any() else 0.0
+    return bool(np.allclose(a, b, rtol=0.0, atol=1e-6 * size, equal_nan=True))
+
+
+def _cases(data: xr.Dataset) -> Section:
+    blocks: list[Block] = []
+    for title, text in zip(data["case"].values, json.loads(data.attrs["cases"]), strict=True):
+        blocks += [Text(str(title), "title"), Code(str(text))]
+    return Section("cases", "The cases", blocks)
+
+
+# --- tables as files ----------------------------------------------------------------------
+
+
+def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]]:
+    titles = [str(title) for title in data["case"].values]
+    fields = [[r["field"], *r["values"]] for r in json.loads(data.attrs["differences"])]
+    made = [[r["bundle"], r["choice"], *r["values"]] for r in json.loads(data.attrs["choices"])]
+    names = [name for name in FIGURES if name in data and name != "label"]
+    units = [f"{name} [{data[name].attrs['units']}]" for name in names]
+    rows = []
+    for c, b, o in np.argwhere(data["present"].values > 0):
+        for s, state in enumerate(data["state"].values):
+            one = data.isel(case=c, bundle=b, operating=o, state=s)
+            numbers = [float(one[name]) for name in names]
+            rows.append([
+                titles[c], str(one["bundle"].item()), str(one["point"].item()), str(state),
+                str(one["label"].item()), *[f"{v:.9g}" if v == v else "" for v in numbers],
+            ])  # fmt: skip
+    return {
+        "differences": (["field", *titles], fields),
+        "choices": (["bundle", "choice", *titles], made),
+        "figures": (["case", "bundle", "point", "state", "label", *units], rows),
+    }
+
+
+def _csv(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow([_safe(cell) for cell in head])
+    writer.writerows([[_safe(cell) for cell in row] for row in rows])
+    return stream.getvalue()
+
+
+def _safe(cell: str) -> str:
+    """Words that a spreadsheet would take for a formula, made plain text."""
+    formula = cell[:1] in {"=", "+", "@"} or (cell[:1] == "-" and not cell[1:2].isdigit())
+    return f"'{cell}" if formula else cell
