@@ -515,3 +515,12 @@ def test_defaults_of_the_schema_can_be_written_in_a_file() -> None:
     whole = json_schema()
     for schema in whole["$defs"].values():
         check(schema, whole)
+
+
+def test_the_bare_name_of_a_ready_made_case_stands_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert load_case(Path("section-4.1")).text == example_text("section-4.1")
+    (tmp_path / "section-4.1").write_text(example_text("table-4.2"), encoding="utf-8")
+    assert load_case(Path("section-4.1")).text == example_text("table-4.2")

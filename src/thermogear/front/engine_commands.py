@@ -91,16 +91,13 @@ def _numbers(options: dict[str, Any]) -> dict[str, float]:
 
 def _case(options: dict[str, Any]) -> Any:
     """The case named on the command line: a file, or a ready-made one; None without."""
-    from thermogear.study.case import load_case, load_example
-    from thermogear.study.ready import EXAMPLES
+    from thermogear.study.case import load_case
 
     name = options["case"]
     if name is None:
         if options["overrides"]:
             raise InputError("--set", options["overrides"][0], why="no case is named")
         return None
-    if name.removesuffix(".toml") in EXAMPLES and not Path(name).exists():
-        return load_example(name, options["overrides"])
     return load_case(Path(name), options["overrides"])
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
-from thermogear.study.ready import EXAMPLES
+from thermogear.study.ready import EXAMPLES, example_text
 from thermogear.study.units import short
 
 LARGEST = 1_000_000
@@ -21,12 +21,15 @@ _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 def case_text(source: str | Path) -> tuple[str, str]:
     """(name, text) of a case given by its path or as text.
 
-    A ``str`` is a text when it holds a line break or an equals sign, or nothing; else a path.
+    A ``str`` is a text when it holds a line break or an equals sign, or nothing; else a path. The
+    bare name of a ready-made case stands for it where no such file exists.
     """
     if isinstance(source, str) and (not source.strip() or "\n" in source or "=" in source):
         return "case", source
     path = Path(source)
     name = path.name or str(path)
+    if str(source) in EXAMPLES and not path.exists():
+        return name, example_text(name)
     if path.is_dir():
         raise InputError(name, "a directory", allowed="a case file (TOML)")
     try:
