@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
 
 from thermogear.analysis.basins import BasinPlan, basin_plan
 from thermogear.analysis.branches import KINDS
@@ -179,11 +180,25 @@ def gear_point_model(points: GearPoints) -> DeadZoneModel:
     )
 
 
+def _nearest_pairs(
+    first: list[float], second: list[float]
+) -> list[tuple[float | None, float | None]]:
+    """Both lists paired with the least total distance, in ascending order; the rest alone."""
+    distance = np.abs(np.subtract.outer(first, second))
+    rows, columns = linear_sum_assignment(distance)
+    found: list[tuple[float | None, float | None]] = [
+        (first[i], second[j]) for i, j in zip(rows, columns, strict=True)
+    ]
+    found += [(value, None) for i, value in enumerate(first) if i not in rows]
+    found += [(None, value) for j, value in enumerate(second) if j not in columns]
+    return sorted(found, key=lambda pair: next(v for v in pair if v is not None))
+
+
 def moved_points(one: xr.Dataset, other: xr.Dataset) -> list[dict[str, Any]]:
     """Bifurcations of two diagrams side by side: kind, period, both values, what moved.
 
-    Matched in the order of the parameter within each kind and period; one that the other
-    diagram lacks has None there.
+    Within each kind and period the pairs are those that move the least in all; one that the
+    other diagram lacks has None there.
     """
 
     def sorted_values(data: xr.Dataset, kind: int, period: int) -> list[float]:
@@ -202,9 +217,7 @@ def moved_points(one: xr.Dataset, other: xr.Dataset) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
     for kind, period in sorted(pairs, key=lambda p: (p[1], p[0])):
         first, second = sorted_values(one, kind, period), sorted_values(other, kind, period)
-        for place in range(max(len(first), len(second))):
-            a = first[place] if place < len(first) else None
-            b = second[place] if place < len(second) else None
+        for a, b in _nearest_pairs(first, second):
             rows.append(
                 {
                     "kind": KINDS[kind],
