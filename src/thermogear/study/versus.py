@@ -80,7 +80,9 @@ class Stored:
         """What its operating points are matched by, each once."""
         if self.kind == "gear":
             mesh = self.groups["mesh"]
-            columns = [_rounded(mesh[name]) for name in ("pinion_speed", "pinion_torque")]
+            columns: list[list[Any]] = [
+                _rounded(mesh[name]) for name in ("pinion_speed", "pinion_torque")
+            ]
         else:
             data = self.groups["points"]
             words = [[str(v) for v in data[name].values] for name in ("row", "parameter")]
@@ -244,9 +246,10 @@ def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def differences(cases: Sequence[Stored]) -> list[dict[str, Any]]:
-    """The fields of the case files that differ, a value for each case; the title is none.
+    """The fields of the case files that differ, a value for each case.
 
-    A field that a file leaves out shows what is taken in its place, where that is on record.
+    Neither the title nor the reasons written for assumptions are a value. A field that a file
+    leaves out shows what is taken in its place, where that is on record.
     """
     fields = [case.table() for case in cases]
     taken = [
@@ -255,7 +258,7 @@ def differences(cases: Sequence[Stored]) -> list[dict[str, Any]]:
     ]
     found = []
     for name in _union([list(each) for each in fields]):
-        if name == "title":
+        if name == "title" or name.startswith("ours."):
             continue
         stated = [each.get(name) for each in fields]
         if any(value != stated[0] for value in stated[1:]):
@@ -352,13 +355,13 @@ def _notices(
         note("info", f"No bundle is in all cases; each case's only one is compared: {pairs_}.")
     has = data["present"].values.astype(bool)
     for axis, dims, word in (("bundle", (2,), "bundle"), ("operating", (1,), "operating point")):
-        there = has.any(axis=dims)
+        there = np.asarray(has.any(axis=dims))
         names = data["bundle" if axis == "bundle" else "point"].values
         for c, title in enumerate(titles):
             alone = [str(n) for n, col in zip(names, there.T, strict=True)
                      if col[c] and col.sum() == 1]  # fmt: skip
             if alone:
-                shown = ", ".join(alone[:12]) + (" and more" if len(alone) > 12 else "")
+                shown = "; ".join(alone[:12]) + ("; and more" if len(alone) > 12 else "")
                 plural = "s" if len(alone) > 1 else ""
                 note("warning", f"In {title} only: {word}{plural} {shown}.")
     if not (has.sum(axis=0) > 1).any():
@@ -390,7 +393,7 @@ def _joined(
             [axes["operating"].index(p) for p in case.points()],
         )
         places.append(where)
-        present[np.ix_([c], where[1].ravel(), where[3].ravel())] = 1
+        present[np.ix_(np.array([c]), where[1].ravel(), where[3].ravel())] = 1
         for name, whole in (("status", status), ("label", label)):
             for data in _groups(case):
                 if name in data:
@@ -467,13 +470,18 @@ def _fill(
 def _laid(data: xr.Dataset, name: str, curve: str | None = None) -> NDArray[Any]:
     """``data[name]`` with the axes (bundle, state, operating[, curve]), whatever it lacks."""
     variable = data[name].variable
-    if "point" in data.dims:
-        variable = variable.rename({"point": "operating"})
+    if "point" in variable.dims:
+        variable = xr.Variable(
+            ["operating" if dim == "point" else dim for dim in variable.dims], variable.values
+        )
     lengths = {d: data.sizes.get(d, 1) for d in LEAD}
     lengths["operating"] = data.sizes.get("operating", data.sizes.get("point", 1))
     if curve is not None:
         lengths[curve] = data.sizes[curve]
-    return np.asarray(variable.set_dims(lengths).transpose(*lengths).values)
+    missing = [d for d in lengths if d not in variable.dims]
+    values = variable.transpose(*[d for d in lengths if d in variable.dims]).values
+    axes = tuple(list(lengths).index(d) for d in missing)
+    return np.broadcast_to(np.expand_dims(values, axes), tuple(lengths.values()))
 
 
 def _groups(case: Stored) -> list[xr.Dataset]:

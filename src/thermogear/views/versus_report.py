@@ -42,13 +42,15 @@ FIGURES = {
     "jam_temperature": "jams at",
     "mean_stiffness": "mean mesh stiffness",
     "thermal_stiffness_ratio": "its change by heat",
+    "greatest_flash_temperature": "greatest flash",
     "natural_frequency": "natural frequency",
     "frequency_ratio": "frequency ratio",
-    "greatest_flash_temperature": "greatest flash",
     "label": "motion",
     "peak_to_peak_displacement": "swing of x",
 }
-"""Figures of a point in the order of the table."""
+"""Figures of a point in the order of the tables."""
+VIBRATION = tuple(FIGURES)[5:]
+"""Those of the second table: both together would not fit beside each other."""
 HOT_ALONE = ("jam_temperature", "thermal_stiffness_ratio", "greatest_flash_temperature")
 
 CURVES = (
@@ -165,13 +167,15 @@ def _figures(data: xr.Dataset) -> Section:
         here = data.isel(bundle=b)
         if here["present"].values.any():
             words = f"Bundle {bundle}" if data.attrs["of"] == "gear" else "Every point"
-            blocks.append(_table(here, words))
+            for names in (tuple(n for n in FIGURES if n not in VIBRATION), VIBRATION):
+                kept = [name for name in names if name in here and _any(here, name)]
+                if kept:
+                    blocks.append(_table(here, kept, words))
     return Section("figures", "Key figures", blocks)
 
 
-def _table(here: xr.Dataset, words: str) -> Table:
+def _table(here: xr.Dataset, names: Sequence[str], words: str) -> Table:
     """A row for each case, those of one operating point below each other."""
-    names = [name for name in FIGURES if name in here and _any(here, name)]
     head: list[Cell] = ["operating point", "case", *[_head(here, name) for name in names]]
     rows: list[list[Cell]] = []
     marked: set[int] = set()
@@ -187,7 +191,10 @@ def _table(here: xr.Dataset, words: str) -> Table:
             rows.append([first, own, *[_cell(one, name) for name in names]])
     several = here.sizes["state"] > 1
     caption = f"{words}: cases below each other at every operating point"
-    caption += ", cold → hot; single figures are hot." if several else "."
+    if several:
+        alone = [FIGURES[name] for name in names if name in HOT_ALONE]
+        caption += ", cold → hot" + (f"; hot alone: {', '.join(alone)}" if alone else "")
+    caption += "."
     return Table(caption, head, rows, names=2, marked=frozenset(marked))
 
 
@@ -271,7 +278,7 @@ def _pictures(data: xr.Dataset) -> list[Section]:
         if not blocks:
             continue
         gear = data.attrs["of"] == "gear"
-        intro = "A colour for each case."
+        intro = "A colour for each case; where curves coincide the first is the broadest."
         if gear:
             intro += (
                 " Hot is solid, cold dashed. A curve that is the same at a further operating "

@@ -37,7 +37,10 @@ def curve(data: xr.Dataset, name: str, bundle: int, operating: int) -> Figure:
     unit = str(data[name].attrs["units"])
     here = data.isel(bundle=bundle, operating=operating)
     drawn: set[str] = set()
-    for c, colour in zip(range(data.sizes["case"]), OKABE_ITO, strict=False):
+    count = data.sizes["case"]
+    for c, colour in zip(range(count), OKABE_ITO, strict=False):
+        # earlier cases are broader, so that a later one on the same curve does not hide them
+        width = 1.3 + min(1.8, 3.0 / max(count - 1, 1)) * (count - 1 - c)
         x = display(along)(here[along].isel(case=c).values)
         for s, state in enumerate(data["state"].values):
             y = here[name].isel(case=c, state=s).values
@@ -49,7 +52,7 @@ def curve(data: xr.Dataset, name: str, bundle: int, operating: int) -> Figure:
                 display(name, unit)(y),
                 color=colour,
                 linestyle=STYLES.get(str(state), "-"),
-                linewidth=1.7 if state != "cold" else 1.2,
+                linewidth=width,
             )
     axis.set_xlabel(axis_label(along))
     axis.set_ylabel(axis_label(name, None if len(axis_label(name)) < 40 else WORDS.get(name)))

@@ -1,0 +1,77 @@
+"""``thermogear versus``: directories and case files, and every slip in one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from thermogear.front.cli import main
+from thermogear.study.case import load_example
+from thermogear.study.ready import example_text
+from thermogear.study.run import run_to_directory
+
+FEW = ["simulation.periods=16", "simulation.discard=16"]
+
+
+@pytest.fixture(scope="module")
+def rows(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("runs") / "rows"
+    run_to_directory(load_example("section-4.1", FEW), place)
+    return place
+
+
+def refused(capsys: pytest.CaptureFixture[str], *words: object) -> str:
+    assert main(["versus", *map(str, words)]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    (line,) = told.err.splitlines()
+    return line
+
+
+def test_a_directory_against_a_case_file(
+    rows: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = example_text("section-4.1")
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["versus", str(rows), str(tmp_path / "mine.toml"), "-o", str(out), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [row["field"] for row in told["differences"]] == [
+        "simulation.periods", "simulation.discard",
+    ]  # fmt: skip
+    assert (out / "mine" / "results.nc").is_file()
+    assert {"versus.html", "versus.nc", "versus_figures.csv"} <= {p.name for p in out.iterdir()}
+
+
+def test_slips_are_told_in_one_line(
+    rows: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert "got 1 case; allowed 2..6 cases; a comparison takes two" in refused(
+        capsys, rows, "-o", out
+    )
+    assert "got 0 cases" in refused(capsys, "-o", out)
+    assert "got 7 cases; allowed 2..6" in refused(capsys, *[rows] * 7, "-o", out)
+    assert "no such directory or case file; did you mean 'rows'?" in refused(
+        capsys, rows, rows.with_name("rwos"), "-o", out
+    )
+    assert "`thermogear run CASE -o DIR`" in refused(capsys, rows, tmp_path / "zzz", "-o", out)
+    (tmp_path / "empty").mkdir()
+    assert "there is no such file" in refused(capsys, rows, tmp_path / "empty", "-o", out)
+    (tmp_path / "rig.toml").write_text(example_text("rig"), encoding="utf-8")
+    line = refused(capsys, rows, tmp_path / "rig.toml", "-o", out)
+    assert "(dimensionless)" in line
+    assert "(gear)" in line
+    (tmp_path / "bad.toml").write_text('kind = "dimensionles"', encoding="utf-8")
+    refused(capsys, rows, tmp_path / "bad.toml", "-o", out)
+    assert not out.exists()
+
+
+def test_output_among_foreign_files_is_refused(
+    rows: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "letter.txt").write_text("mine", encoding="utf-8")
+    assert "not results of thermogear" in refused(capsys, rows, rows, "-o", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]

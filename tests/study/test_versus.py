@@ -1,0 +1,194 @@
+"""Cases side by side: matched points, fields that differ, and what one case has alone."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermogear import InputError, run
+from thermogear.study.case import load_example
+from thermogear.study.versus import (
+    MOST_CASES,
+    OWN,
+    Stored,
+    flat,
+    of_tree,
+    summary,
+    unique_titles,
+    versus,
+)
+
+SMALL = [
+    "grid.path_positions=41",
+    "grid.mesh_positions=96",
+    "simulation.periods=16",
+    "simulation.samples=32",
+    'draw.pictures=["path","motion"]',
+    'operating.speed=["1000 rpm", "3000 rpm"]',
+]
+OTHER = [
+    *SMALL,
+    "grid.path_positions=31",
+    'operating.speed=["3000 rpm", "4000 rpm"]',
+    'gears.pinion.roughness="0.8 um"',
+]
+
+
+def made(overrides: list[str], name: str) -> Stored:
+    return of_tree(run(load_example("rig", overrides)), name)
+
+
+@pytest.fixture(scope="module")
+def first() -> Stored:
+    return made(SMALL, "first")
+
+
+@pytest.fixture(scope="module")
+def second() -> Stored:
+    return made(OTHER, "second")
+
+
+def test_points_are_matched_by_speed_and_figures_are_those_of_each_run(
+    first: Stored, second: Stored
+) -> None:
+    data = versus([first, second])
+    np.testing.assert_allclose(
+        data["pinion_speed"].values * 30.0 / np.pi, [1000.0, 3000.0, 4000.0], rtol=1e-8
+    )
+    assert data["present"].isel(bundle=0).values.tolist() == [[1, 1, 0], [0, 1, 1]]
+    for name in ("half_backlash", "mean_stiffness", "natural_frequency", "frequency_ratio"):
+        one, other = first.groups["mesh"][name], second.groups["mesh"][name]
+        joined = data[name].transpose("case", *one.dims)
+        np.testing.assert_array_equal(joined[0].isel(operating=[0, 1]), one)
+        np.testing.assert_array_equal(joined[1].isel(operating=[1, 2]), other)
+        assert np.isnan(joined[0].isel(operating=2)).all()
+    swing = data["peak_to_peak_displacement"].sel(case=data["case"][1]).isel(operating=[1, 2])
+    np.testing.assert_array_equal(swing, second.groups["motion"]["peak_to_peak_displacement"])
+    assert np.all(data["label"].isel(case=0, operating=2).values == "")
+    assert np.all(data["status"].isel(case=0, operating=2).values == -1)
+
+
+def test_curves_keep_their_own_positions(first: Stored, second: Stored) -> None:
+    data = versus([first, second])
+    place = {"bundle": 1, "state": 1}
+    for c, (case, o) in enumerate(((first, 1), (second, 0))):
+        path = case.groups["path"]
+        size = path.sizes["path_position"]
+        np.testing.assert_array_equal(data["path_position"][c, :size], path["path_position"])
+        friction = data["friction_coefficient"].isel(case=c, operating=1, **place)
+        np.testing.assert_array_equal(
+            friction[:size], path["friction_coefficient"].isel(operating=o, **place)
+        )
+        assert np.isnan(friction[size:]).all()
+        greatest = data["greatest_flash_temperature"].isel(case=c, operating=1, **place)
+        assert float(greatest) == float(path["flash_temperature"].isel(operating=o, **place).max())
+    assert data["order"].max() <= 8.5
+
+
+def test_fields_that_differ_are_named_with_both_values(first: Stored, second: Stored) -> None:
+    data = versus([first, second])
+    rows = {r["field"]: r["values"] for r in json.loads(data.attrs["differences"])}
+    assert set(rows) == {"grid.path_positions", "operating.speed", "gears.pinion.roughness"}
+    more = [*json.loads(first.texts["overrides"]), ["ours.gears", "a reason"]]
+    ours = replace(first, texts={**first.texts, "overrides": json.dumps(more)})
+    told = json.loads(versus([ours, second]).attrs["differences"])
+    assert {row["field"] for row in told} == set(rows)
+    assert rows["grid.path_positions"] == ["41", "31"]
+    assert rows["operating.speed"] == ["1000 rpm, 3000 rpm", "3000 rpm, 4000 rpm"]
+    assert rows["gears.pinion.roughness"][1] == "0.8 um"
+    assert json.loads(data.attrs["choices"]) == []
+    texts = " ".join(notice["text"] for notice in json.loads(data.attrs["notices"]))
+    titles = [str(title) for title in data["case"].values]
+    assert f"In {titles[0]} only: operating point 1000 rpm" in texts
+    assert f"In {titles[1]} only: operating point 4000 rpm" in texts
+
+
+def test_a_case_against_itself_differs_in_nothing(first: Stored) -> None:
+    data = versus([first, replace(first, name="again")])
+    assert json.loads(data.attrs["differences"]) == []
+    assert json.loads(data.attrs["notices"]) == []
+    one, other = data.isel(case=0, drop=True), data.isel(case=1, drop=True)
+    assert one.identical(other)
+    told = summary(data)
+    assert len(told["figures"]) == 2 * 2 * 2 * 2
+    json.dumps(told, allow_nan=False)
+
+
+def test_the_order_of_the_cases_changes_nothing_but_the_order(
+    first: Stored, second: Stored
+) -> None:
+    ahead, back = versus([first, second]), versus([second, first])
+    for name in ahead.data_vars:
+        there = ahead[name].isel(case=[1, 0]).values
+        np.testing.assert_array_equal(there, back[name].values, err_msg=str(name))
+
+
+def test_lone_bundles_of_different_names_stand_beside_each_other(first: Stored) -> None:
+    parts = [
+        replace(
+            first,
+            name=name,
+            groups={
+                key: data.sel(bundle=[name]) if "bundle" in data.dims else data
+                for key, data in first.groups.items()
+            },
+        )
+        for name in ("consistent", "thesis")
+    ]
+    data = versus(parts)
+    assert list(data["bundle"].values) == [OWN]
+    rows = {r["choice"]: r["values"] for r in json.loads(data.attrs["choices"])}
+    made = json.loads(first.texts["bundles"])
+    assert rows["stiffness"] == [made[n]["stiffness"] for n in ("consistent", "thesis")]
+    np.testing.assert_array_equal(
+        data["mean_stiffness"].isel(bundle=0).values,
+        first.groups["mesh"]["mean_stiffness"].transpose("bundle", "state", "operating").values,
+    )
+
+
+def test_dimensionless_cases_are_matched_by_row_and_value() -> None:
+    small = ["simulation.periods=16", "simulation.discard=16"]
+    case = load_example("section-4.1", small)
+    one = of_tree(run(case), "one")
+    data = versus([one, replace(one, name="two")])
+    assert data.attrs["of"] == "dimensionless"
+    assert data.sizes["operating"] == one.groups["points"].sizes["point"]
+    np.testing.assert_array_equal(
+        data["peak_to_peak_displacement"][1, 0, 0].values,
+        one.groups["points"]["peak_to_peak_displacement"].values,
+    )
+    np.testing.assert_array_equal(
+        data["label"][0, 0, 0].values, one.groups["points"]["label"].values
+    )
+
+
+def test_numbers_and_kinds_that_cannot_stand_together_are_refused(first: Stored) -> None:
+    with pytest.raises(InputError, match=r"versus: got 1 case; allowed 2\.\.6 cases"):
+        versus([first])
+    with pytest.raises(InputError, match=r"got 7 cases; allowed 2\.\.6 cases; more colours"):
+        versus([first] * (MOST_CASES + 1))
+    other = Stored("row", {"kind": "dimensionless", "case": "a = 1"}, {})
+    with pytest.raises(InputError, match=r"first \(gear\), row \(dimensionless\)"):
+        versus([first, other])
+    with pytest.raises(InputError, match="the group mesh is missing; run the case anew"):
+        versus([first, replace(first, groups={})])
+    with pytest.raises(InputError, match="attribute bundles is damaged"):
+        versus([first, replace(first, texts={**first.texts, "bundles": "{"})])
+
+
+def test_flat_names_and_unique_titles() -> None:
+    table = {"a": {"b": 1, "c": [1, 2]}, "row": [{"x": 1}, {"x": 2}]}
+    assert flat(table) == {"a.b": 1, "a.c": [1, 2], "row[0].x": 1, "row[1].x": 2}
+    cases = [
+        Stored(n, {"title": t}, {}) for n, t in (("p", "T"), ("q", "T"), ("q", "T"), ("r", ""))
+    ]
+    assert unique_titles(cases) == ["T [p]", "T [q]", "T [q] (2)", "r"]
+
+
+def test_the_command_line_of_a_stored_case_counts_as_its_own() -> None:
+    text = load_example("rig").text
+    stored = Stored("x", {"case": text, "overrides": '[["gears.pinion.teeth", "30"]]'}, {})
+    assert stored.table()["gears.pinion.teeth"] == 30
