@@ -155,6 +155,7 @@ def test_dimensionless_cases_are_matched_by_row_and_value() -> None:
     one = of_tree(run(case), "one")
     data = versus([one, replace(one, name="two")])
     assert data.attrs["of"] == "dimensionless"
+    assert str(data["point"].values[0]) == "thesis: temperature = 293.15 K"
     assert data.sizes["operating"] == one.groups["points"].sizes["point"]
     np.testing.assert_array_equal(
         data["peak_to_peak_displacement"][1, 0, 0].values,

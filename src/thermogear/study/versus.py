@@ -86,7 +86,8 @@ class Stored:
         else:
             data = self.groups["points"]
             words = [[str(v) for v in data[name].values] for name in ("row", "parameter")]
-            columns = [*words, _rounded(data["value"])]
+            units = [str(v) for v in data["value_unit"].values]
+            columns = [*words, _rounded(data["value"]), units]
         seen: Counter[Hashable] = Counter()
         found: list[Hashable] = []
         for key in zip(*columns, strict=True):
@@ -500,7 +501,10 @@ def _positions(case: Stored, curve: str) -> Floats:
 
 def _require_groups(case: Stored) -> None:
     need = GROUPS[case.kind][0]
-    names = {"mesh": (*LEAD[:2], "pinion_speed"), "points": ("row", "parameter", "value")}[need]
+    names = {
+        "mesh": (*LEAD[:2], "pinion_speed"),
+        "points": ("row", "parameter", "value", "value_unit"),
+    }[need]
     data = case.groups.get(need)
     if data is None or not all(name in data.variables for name in names):
         raise InputError(
@@ -512,7 +516,8 @@ def _point_name(kind: str, key: Sequence[Any]) -> str:
     again = "" if key[-1] == 1 else f" ({key[-1]})"
     if kind == "gear":
         return f"{key[0] * 30.0 / math.pi:.6g} rpm, {key[1]:.6g} N m{again}"
-    return f"{key[0]}: {key[1]} = {key[2]:.6g}{again}".replace("_", " ")
+    unit = "" if key[3] == "1" else f" {key[3]}"
+    return f"{key[0]}: {key[1]} = {key[2]:.6g}{unit}{again}".replace("_", " ")
 
 
 def _rounded(values: xr.DataArray) -> list[float]:
