@@ -12,11 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
-from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.tables import Lanes, Pieces
 
 Floats = NDArray[np.float64]
-JAMMED_STATUS = STATUS.index("jammed")
 
 
 @runtime_checkable

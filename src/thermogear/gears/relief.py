@@ -57,9 +57,9 @@ def optimise_tip_relief(
 
     normal_force: F_n [N] > 0; moduli and deviations (for example the hot pair's base-pitch
     difference) as :func:`loaded_contact`, without leading axes; shape: "linear" or "parabolic";
-    largest: greatest amount [m], default three times the mean deflection; positions: of the
-    mesh period; symmetric: both gears with one amount and one length; progress: told the
-    evaluations so far. Lengths lie between 0.05 base pitches and the active profile.
+    largest: greatest amount [m], default three times the unrelieved error's mean height over its
+    least value plus its swing; positions: of the mesh period; symmetric: both gears with one
+    amount and one length; progress: told the evaluations so far. Lengths lie between 0.05 base pitches and the active profile.
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
         raise InputError("normal_force", f"{normal_force} N", allowed="> 0, finite")

@@ -44,7 +44,8 @@ def read_npz(path: Path, options: ReadOptions) -> Record:
         raise refused(path, "NPZ", error) from error
     except InputError:
         raise
-    except (ValueError, NotImplementedError, RuntimeError, KeyError) as error:
+    # zipfile raises a RuntimeError for encrypted members and for compressions it does not know
+    except (ValueError, KeyError, RuntimeError) as error:
         raise refused(path, "NPZ", error) from error
     return record_of(path, "NPZ", arrays, options, {})
 
