@@ -59,7 +59,8 @@ def optimise_tip_relief(
     difference) as :func:`loaded_contact`, without leading axes; shape: "linear" or "parabolic";
     largest: greatest amount [m], default three times the unrelieved error's mean height over its
     least value plus its swing; positions: of the mesh period; symmetric: both gears with one
-    amount and one length; progress: told the evaluations so far. Lengths lie between 0.05 base pitches and the active profile.
+    amount and one length; progress: told the evaluations so far. Lengths lie between 0.05 base
+    pitches and the active profile.
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
         raise InputError("normal_force", f"{normal_force} N", allowed="> 0, finite")
