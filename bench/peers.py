@@ -265,6 +265,7 @@ def ours(method: str, precision: str = "float64", steps: int = STEPS, threads: i
 EXACT = "thermogear exact maps"
 LANES = "thermogear RK4 lanes"
 HEYOKA = "heyoka, terminal events, machine precision"
+HEYOKA_RESTARTED = "heyoka, the same, time set back every period"
 
 MAKERS: list[tuple[str, Callable[[], Run], int, int, str]] = [
     (EXACT, lambda: ours("exact"), 512, 1000, ""),
@@ -272,6 +273,13 @@ MAKERS: list[tuple[str, Callable[[], Run], int, int, str]] = [
     (f"{LANES}, 1024 steps", lambda: ours("rk4", steps=1024), 512, 100, "float64"),
     (f"{LANES}, float32", lambda: ours("rk4", "float32"), 512, 200, f"{STEPS} steps"),
     (HEYOKA, heyoka_solver, 32, 1000, "events found by a callback"),
+    (
+        HEYOKA_RESTARTED,
+        lambda: heyoka_solver(restarted=True),
+        32,
+        1000,
+        "as accurate as the exact maps",
+    ),
     ("heyoka, terminal events, 1e-9", lambda: heyoka_solver(1e-9), 32, 1000, ""),
     ("JAX, lax.scan RK4", jax_rk4, 512, 200, f"{STEPS} steps, float64, compiled once"),
     ("numba loop as users write it", lambda: numba_loop, 64, 200, f"{STEPS} steps"),

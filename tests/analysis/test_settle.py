@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.labels import labels
+from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import CHAOTIC, LABELS, PERIODIC, Rule, settle
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
@@ -27,6 +28,11 @@ def test_known_orbits_with_their_multipliers(numbers, start, period, multiplier)
     zeta, frequency = numbers[:2]
     product = found.multiplier[0].prod()
     assert product == pytest.approx(np.exp(-4 * np.pi * zeta * period / frequency), rel=1e-12)
+    # time in back, free and drive contact, counts: those of the single orbit
+    orbit = periodic_orbit(TorsionalModel(*numbers), period, found.point[0])
+    assert found.shares[0] == pytest.approx(orbit.shares, abs=1e-9)
+    assert found.shares[0].sum() == pytest.approx(1.0, abs=1e-12)
+    assert (found.losses[0], found.impacts[0]) == (orbit.contact_losses, orbit.back_impacts)
 
 
 def test_exponent_of_a_periodic_orbit_is_the_log_of_its_multiplier():

@@ -349,13 +349,13 @@ def basins(
 ) -> xr.Dataset:
     """Which attractor every start (x, x') of a grid at phase 0 ends on.
 
-    ``model`` of one lane; ``x`` and ``v`` the axes. The attractors are found first, from a
-    coarse grid of starts and from ``seeds``; then every start runs until it falls into the
-    neighbourhood of one, whose size was tried out. Starts that fall into none are labelled one
-    by one, and so late attractors are found. Returns the number of the attractor over (x, v),
-    the largest basin first (-1: undecided, -2: diverged), fractions, counts, the attractors'
-    sections and multipliers, their distance to the nearest border and the basin entropies. The
-    result does not depend on ``threads``.
+    ``model`` of one lane; ``x`` and ``v`` the axes, in the units of the model. The attractors are
+    found first, from a coarse grid of starts and from ``seeds``; then every start runs until it
+    falls into the neighbourhood of one, whose size was tried out. Starts that fall into none are
+    labelled one by one, and so late attractors are found. Returns the number of the attractor
+    over (x, v), the largest basin first (-1: undecided, -2: diverged), fractions, counts, the
+    attractors' sections and multipliers, their distance to the nearest border and the basin
+    entropies. The result does not depend on ``threads``.
     """
     plan = basin_plan(model, x, v, rule=rule, seeds=seeds, survey=survey)
     return gather(plan, threads=threads, progress=progress)

@@ -25,7 +25,7 @@ KINDS = (FOLD, FLIP, GRAZING, BIRTH)
 """Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""
 MOST_BRANCHES = 24
 MOST_POINTS = 600
-JUMP = 0.2
+JUMP = 0.2  # half backlashes
 NEAR = 0.5
 
 
@@ -44,7 +44,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
     """Add the branches of all periodic motions of up to ``most_period`` periods to a diagram."""
     lines: list[_Line] = []
     lost: list[str] = []
-    for period, value, state in _seeds(data, parameter, most_period):
+    for period, value, state in _seeds(data, family, parameter, most_period):
         if len(lines) >= MOST_BRANCHES:
             lost.append(f"more than {MOST_BRANCHES} branches: the rest is not followed")
             break
@@ -64,11 +64,11 @@ def _lane(family: Family, value: float) -> Lanes:
 
 
 def _seeds(
-    data: xr.Dataset, parameter: str, most_period: int
+    data: xr.Dataset, family: Family, parameter: str, most_period: int
 ) -> Iterator[tuple[int, float, Floats]]:
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
-    unit = 1.0
+    unit = lanes_of(family(values[:, None])).half_backlash
     for n in range(1, most_period + 1):
         for direction in range(data.sizes["direction"]):
             for start in range(data.sizes["start"]):
@@ -86,7 +86,7 @@ def _seeds(
                                 abs(v[i, -1] - v[run[-1], -1 - k]))
                             for k in range(min(n, x.shape[1]))
                         ]  # fmt: skip
-                        joined = min(gaps) < JUMP * unit
+                        joined = min(gaps) < JUMP * unit[i]
                     if run and not joined:
                         middle = run[len(run) // 2]
                         yield n, float(values[middle]), np.array([x[middle, -1], v[middle, -1]])

@@ -36,6 +36,7 @@ __all__ = [
     "Bifurcation",
     "Branch",
     "Cascade",
+    "Doubled",
     "cascade",
     "continuation",
     "family_of",
@@ -145,10 +146,12 @@ def continuation(
 ) -> Branch:
     """Walk the branch of ``orbit`` in ``parameter`` until it reaches ``to``.
 
-    Pseudo-arclength continuation of stable and unstable orbits alike, around folds; it ends at
-    ``to``, or where the branch leaves the range on the side it came from, shrinks into an orbit
-    of half its period, or after ``most_points``. On the way folds (multiplier +1), period
-    doublings (-1) and grazing (an extremum touches an edge of the backlash) are located.
+    States, parameter and ``to`` are in the units of the model: pure numbers for
+    :class:`TorsionalModel`, SI for a model in SI. Pseudo-arclength continuation of stable and
+    unstable orbits alike, around folds; it ends at ``to``, or where the branch leaves the range
+    on the side it came from, shrinks into an orbit of half its period, or after ``most_points``.
+    On the way folds (multiplier +1), period doublings (-1) and grazing (an extremum touches an
+    edge of the backlash) are located.
 
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
     give ``family``, a function value -> model, and its present value ``start``. ``stop_at`` a
@@ -299,9 +302,14 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
     centre = np.append(orbit.state, value) / curve.unit
     for amplitude in (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-3, 1e-2):
         point = curve.correct(centre + amplitude * normal, normal, normal, 10.0 * amplitude)
-        if point is not None:
-            value = float(point.scaled[2] * curve.unit[2])
-            return Doubled(curve.orbit(point), value, normal)
+        if point is None:
+            continue
+        doubled = curve.orbit(point)
+        # half way round, a doubled orbit stands on the other side of the flipping one; the
+        # flipping orbit itself, elsewhere on its branch, stands where it started
+        across = (doubled.points[orbit.period] - doubled.points[0]) / two
+        if np.linalg.norm(across) > amplitude:
+            return Doubled(doubled, float(point.scaled[2] * curve.unit[2]), normal)
     raise ConvergenceError(
         f"no orbit of period {2 * orbit.period} found beside the flip at "
         f"{bifurcation.parameter} = {value!r}"

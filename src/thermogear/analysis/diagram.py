@@ -201,12 +201,13 @@ def orbit_diagram(
     """The settled motion over ``values`` of a ``parameter``, up and down, from every start.
 
     ``model`` has one lane and a number field ``parameter``, or is a family of it. At the first
-    value of a direction the ``starts`` (x, x') are taken, from then on the state in which the
-    last value ended; chunks of ``block`` values hand it on, so they change nothing. ``keep``
-    sections are stored of each point (on the orbit itself where it is periodic), with label,
-    period, largest multiplier and Lyapunov exponent. Orbits of up to ``branch_period`` periods
-    (0: none) are continued through the whole range, stable and unstable: ``branch_...`` over
-    (branch, branch_point), and the bifurcations located on them, ``bifurcation_...``.
+    value of a direction the ``starts`` (x, x'), in the units of the model, are taken, from then
+    on the state in which the last value ended; chunks of ``block`` values hand it on, so they
+    change nothing. ``keep`` sections are stored of each point (on the orbit itself where it is
+    periodic), with label, period, largest multiplier and Lyapunov exponent. Orbits of up to
+    ``branch_period`` periods (0: none) are continued through the whole range, stable and
+    unstable: ``branch_...`` over (branch, branch_point), and the bifurcations located on them,
+    ``bifurcation_...``.
     """
     plan = diagram_plan(
         model,

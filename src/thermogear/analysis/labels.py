@@ -7,7 +7,7 @@ that never closes is chaotic or has not settled.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -67,6 +67,8 @@ def label(
 ) -> Label:
     """Label of the motion a model of one lane settles on from ``initial_state``.
 
+    ``initial_state`` (x, x') is in the units of the model: pure numbers for
+    :class:`TorsionalModel`, SI for a model in SI.
     The transient runs in rounds, ``discard`` periods first, then doubling to at most ``cap``.
     Periodic: the section returns after n periods, Newton shooting on the event-exact map finds
     the closed orbit there, the trajectory has come within 1e-7 half backlashes of it and still
@@ -80,7 +82,7 @@ def label(
     lanes = lanes_of(model)
     if len(lanes) != 1:
         raise InputError("model", f"{len(lanes)} lanes", allowed="one lane; labels() takes many")
-    return labels(
+    found = labels(
         lanes,
         initial_state=initial_state,
         max_period=max_period,
@@ -91,6 +93,10 @@ def label(
         batch_periods=batch_periods,
         threads=threads,
     )[0]
+    if found.orbit is None:
+        return found
+    # with its model the orbit can be continued
+    return replace(found, orbit=replace(found.orbit, model=model))
 
 
 def labels(
@@ -259,7 +265,7 @@ def _periodic(
     away = np.max(np.abs(scaled - turned), axis=1)
     early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())
     largest = float(np.max(np.abs(orbit.multipliers)))
-    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} periods"
+    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} period{'s' * (period > 1)}"
     if late > SETTLED or (late > 1e-10 and late >= early):
         return None, False
     if period > 1:

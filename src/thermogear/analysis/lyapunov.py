@@ -126,7 +126,8 @@ def lyapunov_exponent(
     lambda_1 = lim ln|D P^n e|/(n T); the tangent vector follows the variational equations
     through every contact change (the saltation matrix is the identity) and is normalised every
     period. The mean of ``batches`` batches of ``batch_periods`` periods after ``discard``; the
-    error is the standard error of the batch means.
+    error is the standard error of the batch means. Unit: one over the model's unit of time,
+    1 for :class:`TorsionalModel`, 1/s for a model in SI.
     """
     return lyapunov_exponents(
         _one(model),

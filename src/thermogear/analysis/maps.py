@@ -24,6 +24,7 @@ from thermogear.analysis.plan import (
     Key,
     Progress,
     Variable,
+    axis_coordinates,
     gather,
     keep_going,
     ranges_of,
@@ -85,12 +86,7 @@ class MapPlan:
         return found
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        return {
-            name: ((name,), np.array(values), {"units": unit})
-            for name, unit, values in zip(
-                self.family.names, self.family.units, self.axes, strict=True
-            )
-        }
+        return axis_coordinates(self.family.names, self.family.units, self.axes)
 
     def needs(self, key: Key) -> Key | None:
         return None
@@ -211,9 +207,10 @@ def parameter_map(
     """What the motion from one start settles on over two parameters.
 
     ``model`` has one lane and number fields named as the two ``axes``, or is a family of these
-    parameters. A point leaves as soon as its label is proven (:class:`Rule`); with ``refine``
-    the map starts on every ``stride``-th point and goes on only where neighbours differ, inside
-    tiles of ``tile`` x ``tile`` points. ``rule.full()`` with ``refine=False`` is the full run.
+    parameters; axes and start are in the units of the model. A point leaves as soon as its label
+    is proven (:class:`Rule`); with ``refine`` the map starts on every ``stride``-th point and
+    goes on only where neighbours differ, inside tiles of ``tile`` x ``tile`` points.
+    ``rule.full()`` with ``refine=False`` is the full run.
 
     Returns label, period, largest multiplier, Lyapunov exponent and counts over the two
     parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The

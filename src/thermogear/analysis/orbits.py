@@ -218,7 +218,9 @@ def periodic_orbit(
 ) -> Orbit:
     """The orbit of ``period`` mesh periods near ``guess`` = (x, x') at phase 0, stable or not.
 
-    Newton shooting on the event-exact return map with its variational equations.
+    Newton shooting on the event-exact return map P with its variational equations: P^n(s) = s,
+    multipliers the eigenvalues of D P^n. States (x, x') are in the units of the model: pure numbers
+    for :class:`TorsionalModel`, SI for a model in SI.
 
     Raises InputError for a period that is no whole number >= 1 or a model of several lanes, and
     ConvergenceError when Newton does not settle from this guess.

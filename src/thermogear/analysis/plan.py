@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
@@ -34,6 +34,16 @@ class Variable:
     dtype: str
     fill: float | int
     attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+def axis_coordinates(
+    names: Sequence[str], units: Sequence[str], axes: Sequence[ArrayLike]
+) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+    """The axes of a grid as coordinates of their own names."""
+    return {
+        name: ((name,), np.array(values), {"units": unit})
+        for name, unit, values in zip(names, units, axes, strict=True)
+    }
 
 
 class Stopped(Exception):

@@ -228,6 +228,8 @@ def simulate(
         )
     if precision not in ("float64", "float32"):
         raise InputError("precision", repr(precision), allowed="'float64' | 'float32'")
+    if precision == "float32" and isinstance(model, PairModel | LoadSharedModel):
+        raise InputError("precision", repr(precision), allowed="'float64' for models in SI units")
     start = np.asarray(initial_state, dtype=float)
     if not np.all(np.isfinite(start)):
         raise InputError("initial_state", start.tolist(), allowed="finite numbers")

@@ -83,9 +83,10 @@ def _root(p: Real, level: float, low: float, high: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _turns(p: Real, start: float, found: Real, work: Real) -> int:
+def _turns(p: Real, start: float, low: float, high: float, found: Real, work: Real) -> int:
     """Roots of p' in (start, 1), ascending, into ``found``; their number.
 
+    A single turn that stays between ``low`` and ``high`` need not be found and is not counted.
     Each derivative is monotone between the roots of the next one; the fourth is taken to keep
     its sign on the halves of a sub-step, which its width guarantees.
     """
@@ -98,6 +99,22 @@ def _turns(p: Real, start: float, found: Real, work: Real) -> int:
     last = p[1] + 2.0 * p[2]
     if (first > tail and last > tail) or (first < -tail and last < -tail):
         return 0
+    # p'' keeps its sign: p' has one root at the most
+    bend = 0.0
+    for m in range(3, width):
+        bend += m * (m - 1.0) * abs(p[m])
+    if 2.0 * abs(p[2]) > bend:
+        first = _slope(p, start)
+        if (first > 0.0) == (_slope(p, 1.0) > 0.0):
+            return 0
+        swing = first * first / (2.0 * (2.0 * abs(p[2]) - bend))
+        value = _value(p, start)
+        if low < value - swing and value + swing < high:
+            return 0
+        for m in range(width - 1):
+            work[m] = (m + 1.0) * p[m + 1]
+        found[0] = _root(work[: width - 1], 0.0, start, 1.0)
+        return 1
     count = 1
     found[0] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
     for level in range(3, 0, -1):
@@ -172,7 +189,7 @@ def step_through(
             high = b
         else:
             high = 0.0
-        turns = _turns(p, start, found, scratch[1])
+        turns = _turns(p, start, low, high, found, scratch[1])
         a = start
         at = 2.0
         edge = 2

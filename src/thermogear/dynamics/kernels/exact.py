@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.batch import ROOM, cross_together, place
 from thermogear.dynamics.kernels.crossing import step_through
+from thermogear.dynamics.kernels.vector import EIGHT
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -58,10 +59,12 @@ def advance_exact(
     touch = frame[1]
     low = frame[2]
     high = frame[3]
-    lane = np.empty(lanes, np.int64)
-    room = np.empty((ROOM, lanes))
-    curve = np.empty((3, polys.shape[3], lanes))
-    basis = np.empty((3, polys.shape[3], lanes))
+    other = np.empty(lanes, np.int64)
+    lane = np.empty(EIGHT, np.int64)
+    room = np.ones((ROOM, EIGHT))
+    curve = np.ones((3, polys.shape[3], EIGHT))
+    basis = np.ones((3, polys.shape[3], EIGHT))
+    values = np.ones((6, 3, EIGHT))
     jacobian = np.empty(4)
     state = np.empty(2)
     scratch = np.empty((2, polys.shape[3]))
@@ -76,17 +79,17 @@ def advance_exact(
                 samples[taken, 1, :] = y
                 taken += 1
             for i in range(lanes):
-                contact = touch[i] != 0.0
-                f11 = maps[n, 0, i] if contact else 1.0
-                f21 = maps[n, 1, i] if contact else 0.0
-                f12 = maps[n, 2, i] if contact else maps[n, 6, i]
-                f22 = maps[n, 3, i] if contact else maps[n, 7, i]
-                g1 = maps[n, 4, i] if contact else maps[n, 8, i]
-                g2 = maps[n, 5, i] if contact else maps[n, 9, i]
+                # contact and free step both, then the choice: choosing the maps' entries instead
+                # would read them one by one
                 z = x[i] - shift[i]
                 w = y[i]
-                xn = f11 * z + f12 * w + g1 + shift[i]
-                yn = f21 * z + f22 * w + g2
+                xn = maps[n, 0, i] * z + maps[n, 2, i] * w + maps[n, 4, i]
+                yn = maps[n, 1, i] * z + maps[n, 3, i] * w + maps[n, 5, i]
+                xf = z + maps[n, 6, i] * w + maps[n, 8, i]
+                yf = maps[n, 7, i] * w + maps[n, 9, i]
+                contact = touch[i] != 0.0
+                xn = (xn if contact else xf) + shift[i]
+                yn = yn if contact else yf
                 fresh_x[i] = xn
                 fresh_y[i] = yn
                 # can the path between the ends have left the region?
@@ -103,23 +106,20 @@ def advance_exact(
             for i in range(lanes):
                 queue[waiting] = i
                 waiting += doubt[i]
-            if columns > 0:
+            for c in range(columns):
                 for i in range(lanes):
+                    moves = doubt[i] == 0
                     contact = touch[i] != 0.0
-                    f11 = maps[n, 0, i] if contact else 1.0
-                    f21 = maps[n, 1, i] if contact else 0.0
-                    f12 = maps[n, 2, i] if contact else maps[n, 6, i]
-                    f22 = maps[n, 3, i] if contact else maps[n, 7, i]
-                    keep = doubt[i] != 0
-                    a = tangent[0, i]
-                    b = tangent[2, i]
-                    tangent[0, i] = a if keep else f11 * a + f12 * b
-                    tangent[2, i] = b if keep else f21 * a + f22 * b
-                    if columns > 1:
-                        a = tangent[1, i]
-                        b = tangent[3, i]
-                        tangent[1, i] = a if keep else f11 * a + f12 * b
-                        tangent[3, i] = b if keep else f21 * a + f22 * b
+                    a = tangent[c, i]
+                    b = tangent[2 + c, i]
+                    an = maps[n, 0, i] * a + maps[n, 2, i] * b
+                    bn = maps[n, 1, i] * a + maps[n, 3, i] * b
+                    af = a + maps[n, 6, i] * b
+                    bf = maps[n, 7, i] * b
+                    an = an if contact else af
+                    bn = bn if contact else bf
+                    tangent[c, i] = an if moves else a
+                    tangent[2 + c, i] = bn if moves else b
             if waiting > 0:
                 waiting = cross_together(
                     polys[n],
@@ -140,10 +140,12 @@ def advance_exact(
                     waiting,
                     counts,
                     spent,
+                    other,
                     lane,
                     room,
                     curve,
                     basis,
+                    values,
                 )
             for w in range(waiting):
                 i = queue[w]

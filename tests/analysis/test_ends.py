@@ -1,0 +1,68 @@
+"""Ends of ranges and grids: branches that begin there, surveys that include them."""
+
+import numpy as np
+import pytest
+
+from thermogear.analysis.basins import _spread, basin_plan
+from thermogear.analysis.diagram import orbit_diagram
+from thermogear.analysis.maps import parameter_map
+from thermogear.analysis.plan import bytes_of, empty_arrays
+from thermogear.dynamics.models import TorsionalModel
+
+BISTABLE = TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05)
+
+
+@pytest.mark.parametrize("values", [[0.60, 0.62], [0.62, 0.60], [0.60, 0.61, 0.62]])
+def test_a_branch_reaches_both_ends_wherever_it_was_found(values):
+    """Of two values the later one is the seed: one arm is all there is."""
+    data = orbit_diagram(BISTABLE, "frequency", values, branch_period=1)
+    assert data.sizes["branch"] >= 1
+    for line in data.branch_value.values:
+        known = line[np.isfinite(line)]
+        assert known.min() == pytest.approx(0.60, abs=1e-12)
+        assert known.max() == pytest.approx(0.62, abs=1e-12)
+        # every value once, in order
+        assert np.all(np.diff(known) > 0.0) or np.all(np.diff(known) < 0.0)
+
+
+@pytest.mark.parametrize("side", [2, 3, 5, 40])
+def test_a_survey_of_a_grid_stands_on_its_corners(side):
+    x, v = [0.0, 0.25, 0.5, 1.0, 2.0, 3.0, 7.0], [-1.0, 0.0, 4.0]
+    starts = _spread(x, v, side)
+    assert len(starts) == min(side, 7) * min(side, 3)
+    assert len(np.unique(starts, axis=0)) == len(starts)
+    for corner in ((0.0, -1.0), (0.0, 4.0), (7.0, -1.0), (7.0, 4.0)):
+        assert corner in {(float(a), float(b)) for a, b in starts}
+
+
+@pytest.mark.slow
+def test_a_point_without_an_orbit_has_no_numbers_of_one():
+    """Table 4.2: period 1 at zeta = 0.18, chaos at 0.10; unknown counts are -1, not 0 or 1."""
+    model = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+    told: list[tuple[int, int]] = []
+    data = parameter_map(
+        model,
+        {"damping_ratio": [0.10, 0.18], "mean_force": [0.017, 0.0171]},
+        refine=False,
+        progress=lambda done, total: told.append((done, total)),
+    )
+    chaos, orbit = data.isel(damping_ratio=0), data.isel(damping_ratio=1)
+    assert np.all(chaos["period"] == 0)
+    assert np.all(orbit["period"] == 1)
+    for name in ("contact_losses", "back_impacts"):
+        assert np.all(chaos[name] == -1)
+        assert np.all(orbit[name] >= 0)
+    for name in ("multiplier_real", "point_x", "drive_share"):
+        assert np.all(np.isnan(chaos[name]))
+        assert np.all(np.isfinite(orbit[name]))
+    assert np.all(chaos["lyapunov"] > 0.0)
+    assert np.all(orbit["lyapunov"] < 0.0)
+    # progress ends at the whole
+    assert told[-1][0] == told[-1][1]
+    assert len({total for _, total in told}) == 1
+
+
+def test_the_announced_size_is_that_of_the_arrays():
+    axis = np.linspace(-1.0, 1.0, 7)
+    plan = basin_plan(BISTABLE, axis, axis[:3])
+    assert bytes_of(plan) == sum(values.nbytes for values in empty_arrays(plan).values())
