@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
-ZERO_CELSIUS = 273.15
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,17 @@ class Quantity:
 STATUS = ("ok", "jammed", "not_converged", "diverged")
 """Meaning of the values 0, 1, 2, ... of every ``status`` variable."""
 
+DIMENSIONLESS = (
+    "damping_ratio",
+    "frequency_ratio",
+    "stiffness_amplitude",
+    "thermal_stiffness_ratio",
+    "mean_force",
+    "force_amplitude",
+    "half_backlash_ratio",
+)
+"""The stored numbers of the dimensionless equation, in the order of a table."""
+
 _PHYSICS = "geometry of the involute"
 _THESIS = "thesis, as printed with the smallest repair"
 

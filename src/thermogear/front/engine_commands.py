@@ -123,10 +123,11 @@ def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, A
     """Store and print what was found; Ctrl+C is passed on once that is done."""
     page = None
     if options["output"] is not None:
+        from thermogear.study.results import claim_directory
         from thermogear.views.engine_page import write_pages
 
         directory = Path(options["output"])
-        _claim(directory)
+        claim_directory(directory, OURS)
         page = write_pages(result.write(directory))[0]
     if options["as_json"]:
         click.echo(json.dumps(result.summary, indent=2, ensure_ascii=False, allow_nan=False))
@@ -144,28 +145,11 @@ def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, A
 OURS = ("orbit", "lyapunov", "branch", "cascade", "shared")
 
 
-def _claim(directory: Path) -> None:
-    """Make the directory ours: new, empty, or holding our files alone."""
-    from thermogear.study.results import is_ours
-
-    if directory.exists() and not directory.is_dir():
-        raise InputError("output", str(directory), why="it is a file", fix="name a directory")
-    foreign = directory.is_dir() and any(
-        not path.name.lstrip(".").startswith(OURS) for path in directory.iterdir()
-    )
-    if foreign and not is_ours(directory):
-        raise InputError(
-            "output",
-            str(directory),
-            why="the directory holds files that are not results of thermogear",
-            fix="name a new or an empty directory",
-        )
-    directory.mkdir(parents=True, exist_ok=True)
-
-
 def _claim_early(options: dict[str, Any]) -> None:
     if options["output"] is not None:
-        _claim(Path(options["output"]))
+        from thermogear.study.results import claim_directory
+
+        claim_directory(Path(options["output"]), OURS)
 
 
 @click.command()

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress
+from thermogear.base.units import RPM, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,9 +21,6 @@ if TYPE_CHECKING:
     from thermogear.study.case import GearCase
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
-
-Report = Callable[[str, int, int], None]
-RPM = math.pi / 30.0
 
 
 def _common(command: _Command) -> _Command:
@@ -57,7 +56,7 @@ def friction(case: str, output: str, overrides: tuple[str, ...], as_json: bool) 
     """
     read = _gear_case(case, overrides)
 
-    def make(report: Report) -> xr.DataTree:
+    def make(report: Progress) -> xr.DataTree:
         from thermogear.study.friction_survey import friction_survey
 
         return friction_survey(read)
@@ -141,7 +140,7 @@ def temperature(
     moment = _axis("--torques", torques, 1.0, TORQUES) if not own else read.torques
     require_points(len(omega) * len(moment), forced=force)
 
-    def make(report: Report) -> xr.DataTree:
+    def make(report: Progress) -> xr.DataTree:
         return thermal_map(read, omega, moment, warm_up_at=at, progress=report)
 
     tree = _carry_out("temperature", Path(output), make, quiet=as_json)
@@ -211,11 +210,11 @@ def relief(
     for name, value in (("--torque", torque), ("--largest", largest)):
         if value is not None:
             _positive(name, [value])
-    kelvin = None if celsius is None else celsius + 273.15
-    if kelvin is not None and not 0.0 < kelvin < math.inf:
-        raise InputError("--temperature", f"{celsius:g} degC", allowed="> -273.15 degC")
+    kelvin = None if celsius is None else celsius + ZERO_CELSIUS
+    if celsius is not None and not -150.0 <= celsius <= 600.0:
+        raise InputError("--temperature", f"{celsius:g} degC", allowed="-150..600 degC")
 
-    def make(report: Report) -> xr.DataTree:
+    def make(report: Progress) -> xr.DataTree:
         from thermogear.study.relief import relief_survey
 
         return relief_survey(
@@ -281,7 +280,7 @@ def contact(
     read = _gear_case(case, overrides)
     moments = _axis("--torques", torques, 1.0, ())
 
-    def make(report: Report) -> xr.DataTree:
+    def make(report: Progress) -> xr.DataTree:
         from thermogear.study.loaded_survey import loaded_survey
 
         return loaded_survey(read, moments, body=body, progress=report)
@@ -311,18 +310,13 @@ COMMANDS: tuple[click.Command, ...] = (friction, temperature, relief, contact)
 
 
 def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
-    from thermogear.study.case import GearCase, load_case
+    from thermogear.study.case import gear_case, load_case
 
-    read = load_case(Path(case), overrides)
-    if not isinstance(read, GearCase):
-        raise InputError(
-            "kind", "a dimensionless case", allowed="a gear case", why="there is no gear in it"
-        )
-    return read
+    return gear_case(load_case(Path(case), overrides))
 
 
 def _carry_out(
-    name: str, directory: Path, make: Callable[[Report], xr.DataTree], quiet: bool
+    name: str, directory: Path, make: Callable[[Progress], xr.DataTree], quiet: bool
 ) -> xr.DataTree:
     """Claim the directory, compute, store, draw."""
     from thermogear.front.progress import progress
@@ -389,8 +383,10 @@ def _numbers(option: str, text: str) -> list[float]:
 
 def _positive(option: str, values: list[float]) -> None:
     for value in values:
-        if not 0.0 < value < 1e9:
+        if not 0.0 < value < math.inf:
             raise InputError(option, f"{value:g}", allowed="> 0, finite")
+        if value >= 1e9:
+            raise InputError(option, f"{value:g}", allowed="> 0, below 1e9")
 
 
 def _operating(data: xr.Dataset) -> list[dict[str, float]]:

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
     from thermogear.measured.reduction import Measurement
     from thermogear.study.comparison import Comparison
-
-RPM = math.pi / 30.0
 
 
 def _supplies(command: Any) -> Any:
@@ -56,6 +55,9 @@ def _measured(file: str, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.readers import read_record
     from thermogear.measured.reduction import measure as reduce
 
+    speed = options["speed"]
+    if speed is not None and not 0.0 < speed < math.inf:
+        raise InputError("--speed", f"{speed:g} rpm", allowed="> 0 rpm, finite")
     record = read_record(
         file,
         rate=options["rate"],
@@ -202,6 +204,8 @@ def _store(tree: Any, directory: Path, name: str, quiet: bool) -> None:
     """Store the tree and draw its page; the page's path goes to the error stream if ``quiet``."""
     from thermogear.views.measured_report import write_measured_report
 
+    if directory.exists() and not directory.is_dir():
+        raise InputError("output", str(directory), why="it is a file", fix="name a directory")
     directory.mkdir(parents=True, exist_ok=True)
     stored = directory / f"{name}.nc"
     tree.to_netcdf(stored, engine="h5netcdf")

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
-Report = Callable[[str, int, int], None]
-"""(stage, steps done, steps in all)."""
-
-
-def _silent(stage: str, done: int, total: int) -> None:
-    return None
+from thermogear.base.progress import Progress, silent
 
 
 @contextmanager
-def progress(wanted: bool = True) -> Iterator[Report]:
+def progress(wanted: bool = True) -> Iterator[Progress]:
     """A reporter that draws one bar for each stage; silent where stderr is no terminal."""
     if not (wanted and sys.stderr.isatty()):
-        yield _silent
+        yield silent
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
 
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True)) as bars:
+    with Bars(*columns, console=Console(stderr=True)) as bars:
         known: dict[str, TaskID] = {}
 
         def report(stage: str, done: int, total: int) -> None:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -206,15 +207,14 @@ def runup(
     **options: Any,
 ) -> None:
     """Run CASE up and down in speed, cold and hot: transmission error, mesh force, K_v, jumps."""
-    import math
-
+    from thermogear.study.case import gear_case
     from thermogear.study.runup import run_up_plan
 
-    read = _load(case, options["overrides"])
-    speeds = _grid("rpm", rpm) * math.pi / 30.0
-    states = (None, *(t + 273.15 for t in hot)) if hot else None
+    read = gear_case(_load(case, options["overrides"]))
+    speeds = _grid("rpm", rpm) * RPM
+    states = (None, *(_kelvin("hot", t) for t in hot)) if hot else None
     plan = run_up_plan(
-        _gear(read), speeds, temperatures=states, bundle=options["bundle"], torque=torque,
+        read, speeds, temperatures=states, bundle=options["bundle"], torque=torque,
         branch_period=branch_period,
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options, _run_up_summary)
@@ -227,11 +227,12 @@ def runup(
 def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
     """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
     from thermogear.study.analyses import parse_axis
+    from thermogear.study.case import gear_case
     from thermogear.study.sweep import sweep_plan
 
-    read = _load(case, options["overrides"])
+    read = gear_case(_load(case, options["overrides"]))
     axes = dict(parse_axis(read, text) for text in over)
-    plan = sweep_plan(_gear(read), axes, bundle=options["bundle"], state=_state(options["state"]))
+    plan = sweep_plan(read, axes, bundle=options["bundle"], state=_state(options["state"]))
     _carry(plan, Path(output), read.title, as_json, options, _label_summary)
 
 
@@ -248,21 +249,21 @@ def _load(case: str, overrides: tuple[str, ...]) -> GearCase | DimensionlessCase
     return load_case(Path(case), overrides)
 
 
-def _gear(case: GearCase | DimensionlessCase) -> GearCase:
-    from thermogear.study.case import GearCase
-
-    if not isinstance(case, GearCase):
-        raise InputError("case", f"kind = {case.kind!r}", allowed="kind = 'gear'")
-    return case
-
-
 def _state(text: str) -> str | float:
     if text in ("hot", "cold"):
         return text
     try:
-        return float(text) + 273.15
+        celsius = float(text)
     except ValueError:
         raise InputError("state", repr(text), allowed="hot | cold | degrees Celsius") from None
+    return _kelvin("state", celsius)
+
+
+def _kelvin(option: str, celsius: float) -> float:
+    """A gear temperature within the bounds of the case file's."""
+    if not -150.0 <= celsius <= 600.0:
+        raise InputError(option, f"{celsius:g} degC", allowed="-150..600 degC")
+    return celsius + ZERO_CELSIUS
 
 
 def _split(text: str) -> tuple[str, str]:
@@ -448,7 +449,9 @@ def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
         }
         if "bifurcation_state" in data:
             state = int(data["bifurcation_state"].values[i])
-            row["gears_degC"] = round(float(data["gear_temperature"].values[state]) - 273.15, 6)
+            row["gears_degC"] = round(
+                float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6
+            )
         rows.append(row)
     return rows
 
@@ -487,7 +490,9 @@ def _run_up_summary(data: xr.Dataset) -> dict[str, Any]:
         state = int(data["jump_state"].values[i])
         jumps.append(
             {
-                "gears_degC": round(float(data["gear_temperature"].values[state]) - 273.15, 6),
+                "gears_degC": round(
+                    float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6
+                ),
                 "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
                 "from_rpm": rpm(float(data["jump_from"].values[i])),
                 "to_rpm": rpm(float(data["jump_to"].values[i])),

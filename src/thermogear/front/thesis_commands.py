@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 
 import click
 
-RPM = math.pi / 30.0
+from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
 
 
 @click.command()
@@ -52,7 +52,10 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
 @click.argument("case", metavar="CASE")
 @click.option("-o", "--output", metavar="DIR", help="Store the study and its page in DIR.")
 @click.option(
-    "--samples", default=128, show_default=True, help="Base samples, a power of two; 128 or more."
+    "--samples",
+    default=128,
+    show_default=True,
+    help="Base samples, a power of two, 8 or more; 128 for figures.",
 )
 @click.option("--speed", type=float, metavar="RPM", help="Pinion speed; the case's middle one.")
 @click.option("--seed", default=1, show_default=True, help="Seed of sampling and bootstrap.")
@@ -71,18 +74,17 @@ def sensitivity(
     as_json: bool,
 ) -> None:
     """Which unstated inputs of CASE decide its results (extra [sensitivity])."""
-    from thermogear.base.errors import InputError
     from thermogear.front.progress import progress
-    from thermogear.study.case import GearCase, load_case
+    from thermogear.study.case import gear_case, load_case
     from thermogear.study.results import claim_directory
     from thermogear.study.sensitivity import Plan, as_rows, plain_words, require_salib, store
     from thermogear.study.sensitivity import sensitivity as study
 
     require_salib()
+    if speed is not None and not 0.0 < speed < 1e6:
+        raise InputError("--speed", f"{speed:g} rpm", allowed="> 0, below 1e6 rpm")
     plan = Plan(samples=samples, speed=None if speed is None else speed * RPM, seed=seed)
-    read = load_case(Path(case), overrides)
-    if not isinstance(read, GearCase):
-        raise InputError("case", "a dimensionless case", allowed="a gear case")
+    read = gear_case(load_case(Path(case), overrides))
     if output is not None:
         claim_directory(Path(output))
     with progress(wanted=not as_json) as told:

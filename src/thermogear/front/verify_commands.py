@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from thermogear.study.case import GearCase
@@ -135,8 +136,9 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
         if as_json:
             continue
         click.echo(
-            f"\n{name}: bore {at_bore - 273.15:.4g} degC, addendum {at_tip - 273.15:.4g} degC, "
-            f"drawn at {heat.reference - 273.15:.4g} degC"
+            f"\n{name}: bore {at_bore - ZERO_CELSIUS:.4g} degC, "
+            f"addendum {at_tip - ZERO_CELSIUS:.4g} degC, "
+            f"drawn at {heat.reference - ZERO_CELSIUS:.4g} degC"
         )
         click.echo(f"{'radius mm':>11}{'model um':>11}{'FE um':>11}{'model - FE um':>15}")
         for r, model, finite in zip(found.radius, found.model, found.finite, strict=True):
@@ -192,14 +194,9 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
 
 
 def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
-    from thermogear.study.case import GearCase, load_case
+    from thermogear.study.case import gear_case, load_case
 
-    read = load_case(Path(case), overrides)
-    if not isinstance(read, GearCase):
-        raise InputError(
-            "kind", repr(read.kind), allowed='"gear"', why="without gears there is no mesh to check"
-        )
-    return read
+    return gear_case(load_case(Path(case), overrides))
 
 
 def _print_notes(near: str) -> None:

@@ -41,7 +41,7 @@ def sainsot_compliance(
 ) -> Floats:
     """Deflection of the tooth's foundation per unit normal force, 1/k_f [m/N].
 
-    cos^2(beta)/(b E) {L* (u_f/S_f)^2 + M* (u_f/S_f) + P* (1 + Q* tan^2 beta)},
+    1/k_f = cos^2(beta)/(b E) {L* (u_f/S_f)^2 + M* (u_f/S_f) + P* (1 + Q* tan^2 beta)},
     u_f = r_b/cos(beta) - r_f, S_f = 2 r_f theta_f, beta = t - theta_b.
 
     t: tan of the pressure angle at the loaded point, any shape; modulus: E [Pa], default the

@@ -126,8 +126,8 @@ def pair_reduced_modulus(pair: GearPair) -> Floats:
 def hertz_half_width(line_load: ArrayLike, radius: ArrayLike, modulus: ArrayLike) -> Floats:
     """Half width of the Hertzian line contact, B = sqrt(4 w rho*/(pi E*)) [m].
 
-    line_load: w [N/m] >= 0, of this tooth pair; radius: rho* [m]; modulus: E* [Pa] with
-    1/E* = sum (1 - nu_i^2)/E_i. For equal materials B = sqrt(8 w rho* (1 - nu^2)/(pi E)).
+    line_load: w [N/m] >= 0, of this tooth pair; radius: rho* [m]; modulus: E* [Pa] of
+    :func:`reduced_modulus`. For equal materials B = sqrt(8 w rho* (1 - nu^2)/(pi E)).
     Zero load or radius gives 0. Source: Johnson, Contact Mechanics, eq. 4.43.
     """
     w, rho = np.asarray(line_load, dtype=float), np.asarray(radius, dtype=float)

@@ -241,7 +241,7 @@ class BasePitchDifference:
     """Two gears of different temperature: base pitches differ by strain x p_b.
 
     strain = lambda_1 t_1 - lambda_2 t_2, t_i the effective temperature rise u_b/(lambda r_b):
-    S = strain (s - s_C). A number or an array over operating points.
+    S = strain (s - s_C) [m], strain [-]. A number or an array over operating points.
     """
 
     strain: ArrayLike

@@ -79,7 +79,7 @@ def _require(name: str, value: float, positive: bool = True, unit: str = "mm") -
 
 @dataclass(frozen=True)
 class Rack:
-    """Basic rack profile in modules: addendum h_aP, dedendum h_fP, tip radius rho_fP (ISO 53)."""
+    """Basic rack profile [modules]: addendum h_aP, dedendum h_fP, tip radius rho_fP (ISO 53)."""
 
     addendum: float = 1.0
     dedendum: float = 1.25
@@ -191,6 +191,16 @@ class Gear:
                 allowed=f"> {_mm(self.form_radius)} (form circle)",
                 why="no involute flank is left",
             )
+        if self.profile_shift < needed - 1e-12:
+            # how much of the tooth the cutter leaves at the neck
+            neck = self.fillet.point(np.linspace(self.junction[0], 0.5 * math.pi, 200))[0]
+            if float(neck.min()) <= 0.0:
+                raise GeometryError(
+                    "profile_shift",
+                    f"{self.profile_shift:g} for {self.teeth} teeth",
+                    why="the undercut cuts the tooth off",
+                    fix=f"raise the profile shift (no undercut from {needed:.3f})",
+                )
         if self.tip_thickness <= 0.0:
             pointed = self.pointed_radius
             raise GeometryError(
@@ -343,7 +353,7 @@ class PathPoints(NamedTuple):
 
 @dataclass(frozen=True)
 class GearPair:
-    """A driving pinion and a driven wheel; ``centre_distance`` left out is free of backlash.
+    """A driving pinion and a driven wheel; ``centre_distance`` a [m] left out is free of backlash.
 
     A centre distance above that opens a normal backlash; one below it jams and is refused.
     One gear given twice means two equal ones.

@@ -80,9 +80,10 @@ def single_stiffness(
 ) -> Floats:
     """c' = c'_th C_M C_R C_B cos(beta) [N/m^2] for at least 100 N/mm.
 
-    C_M = 0.8, C_B = [1 + 0.5 (1.2 - h_fP/m)][1 - 0.02 (20 deg - alpha)]; dedendum: h_fP in
-    modules (the mean of both gears'); pressure_angle, helix_angle [rad]; blank_factor: C_R,
-    1 for solid discs. Source: ISO 6336-1:2006, eq. 81, 85, 88.
+    C_M = 0.8, C_B = [1 + 0.5 (1.2 - h_fP/m)][1 - 0.02 (20 deg - alpha)].
+
+    dedendum: h_fP in modules (the mean of both gears'); pressure_angle, helix_angle [rad];
+    blank_factor: C_R, 1 for solid discs. Source: ISO 6336-1:2006, eq. 81, 85, 88.
     """
     rack = 1.0 + 0.5 * (1.2 - dedendum)
     rack *= 1.0 - 0.02 * (20.0 - np.degrees(pressure_angle))

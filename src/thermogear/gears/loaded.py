@@ -313,8 +313,9 @@ def mesh_force(
 ) -> tuple[Floats, Floats]:
     """Load-shared force of one flank side at a given deflection: the inverse of the mesh.
 
-    F = sum_j F_j with sum_k C_jk F_k + delta_H(F_j) + e_j = delta where F_j > 0, >= delta
-    elsewhere: every tooth pair comes into and out of contact by itself, which the one spring
+    F = sum_j F_j,  sum_k C_jk F_k + delta_H(F_j) + e_j = delta  (F_j > 0),  >= delta  (else)
+
+    Every tooth pair comes into and out of contact by itself, which the one spring
     k(t) f(x) cannot show.
 
     deflection: delta [m], shape ``lead``; with half backlash b and displacement y of the

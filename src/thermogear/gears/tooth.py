@@ -53,7 +53,9 @@ def flank_point(gear: Gear, t: ArrayLike) -> FlankPoint:
     """Half thickness x_p, height y_p [m] and force angle beta [rad] at t = tan(alpha_k).
 
     r_k = r_b sqrt(1 + t^2), psi = theta_b - (t - arctan t), x = r_k sin psi, y = r_k cos psi,
-    beta = t - theta_b. Any shape.
+    beta = t - theta_b.
+
+    Any shape.
     """
     t_ = np.asarray(t, dtype=float)
     psi = gear.base_half_angle - (t_ - np.arctan(t_))
@@ -104,7 +106,9 @@ def tooth_compliances(
 
     1/k_b = int [cos(beta)(y_p - y) - x_p sin(beta)]^2/(E I) dy,
     1/k_s = int 1.2 cos^2(beta)/(G A) dy,   1/k_a = int sin^2(beta)/(E A) dy,
-    I = b (2x)^3/12, A = 2 x b, over fillet trochoid and involute up to the force.
+    I = b (2x)^3/12,   A = 2 x b
+
+    over fillet trochoid and involute up to the force.
 
     t: tan of the pressure angle at the loaded point, at or above the form circle, any shape;
     start: see :data:`STARTS`; modulus: E [Pa], default the material's, broadcasts with t;

@@ -123,8 +123,10 @@ def rotating_face_convection(
 ) -> Floats:
     """Heat transfer coefficient of a rotating face at ``radius`` [W/(m^2 K)].
 
-    Laminar (Re < 2.5e5): h = Nu_0(Pr, m) k sqrt(omega/nu), the similarity solution.
-    Turbulent: h = 0.0197 (m + 2.6)^0.2 Re^0.8 Pr^0.6 k/r.  Re = omega r^2/nu.
+    Laminar, Re = omega r^2/nu < 2.5e5, the similarity solution, and turbulent beyond:
+
+    h = Nu_0(Pr, m) k sqrt(omega/nu),
+    h = 0.0197 (m + 2.6)^0.2 Re^0.8 Pr^0.6 k/r.
 
     ``speed`` omega [rad/s], ``radius`` r [m], ``viscosity`` nu [m^2/s], ``conductivity`` k
     [W/(m K)], ``prandtl`` Pr [-], ``exponent`` m. Any shape; 0 at rest. The fluid is what

@@ -45,6 +45,8 @@ BORES: dict[str, str] = {
     "rigid": "bore held by a rigid cold shaft, u_a = 0",
     "shaft": "bore follows a shaft of the same material at its own temperature",
 }
+"""How the bore is held: name -> what it means."""
+
 PLANES = ("stress", "strain")
 
 
@@ -161,6 +163,13 @@ def _annulus_excess(
 
     ``expansion`` and ``poisson`` already those of the plane problem.
     """
+    if not outer_radius > field.bore_radius:
+        raise InputError(
+            "bore_radius",
+            f"{field.bore_radius} m with root radius {outer_radius} m",
+            allowed="0 < bore radius < root radius",
+            why="no ring would be left below the teeth",
+        )
     r = np.asarray(radius, dtype=float)
     rx, ro, g = field.bore_radius, outer_radius, field.gradient
 
@@ -193,10 +202,16 @@ def annulus_displacement(
 ) -> Floats:
     """Radial displacement u(r) of an annulus with the field's temperature [m].
 
-    Free bore (A1): u = (lambda/r) { (1+nu) J(r) + [(1-nu) r^2 + (1+nu) r_x^2] J(R)/(R^2 - r_x^2) },
-    J(r) = int_{r_x}^r tau s ds. Bore moved by u_a (A2): u = (1+nu) lambda J/r + C1 r + C2/r,
+    Free bore (A1):
+
+    u = (lambda/r) { (1+nu) J(r) + [(1-nu) r^2 + (1+nu) r_x^2] J(R)/(R^2 - r_x^2) },
+    J(r) = int_{r_x}^r tau s ds.
+
+    Bore moved by u_a (A2), which is 0 (``bore`` "rigid") or lambda t_x r_x ("shaft"):
+
+    u = (1+nu) lambda J/r + C1 r + C2/r,
     C1 = [(1-nu) r_x u_a + (1-nu^2) lambda J(R)]/[(1-nu) r_x^2 + (1+nu) R^2],
-    C2 = r_x u_a - C1 r_x^2; u_a = 0 (``bore`` "rigid") or lambda t_x r_x ("shaft").
+    C2 = r_x u_a - C1 r_x^2.
 
     ``field`` the temperature, ``radius`` r [m], ``outer_radius`` R [m] of the free edge (the
     root circle), ``expansion`` lambda [1/K], ``poisson`` nu, ``plane`` "stress" or "strain"
@@ -206,13 +221,6 @@ def annulus_displacement(
     with a boundary-value solver.
     """
     lam, nu = _support(bore, plane, expansion, poisson)
-    if not outer_radius > field.bore_radius:
-        raise InputError(
-            "bore_radius",
-            f"{field.bore_radius} m with root radius {outer_radius} m",
-            allowed="0 < bore radius < root radius",
-            why="no ring would be left below the teeth",
-        )
     r = np.asarray(radius, dtype=float)
     excess = _annulus_excess(field, r, outer_radius, lam, nu, bore)
     return np.asarray(lam * field.rise(r) * r + excess)
@@ -227,13 +235,6 @@ def _excess(
     bore: str,
 ) -> Floats:
     """w(r) in ring and tooth; above the root circle dw/dr = -lambda g."""
-    if not root_radius > field.bore_radius:
-        raise InputError(
-            "bore_radius",
-            f"{field.bore_radius} m with root radius {root_radius} m",
-            allowed="0 < bore radius < root radius",
-            why="no ring would be left below the teeth",
-        )
     r = np.asarray(radius, dtype=float)
     inside = np.minimum(r, root_radius)
     ring = _annulus_excess(field, inside, root_radius, expansion, poisson, bore)

@@ -1,7 +1,10 @@
 """Elastohydrodynamic film: pressure-viscosity, thickness formulas, film parameter, regime.
 
-E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2] throughout (twice the Hertz modulus E*), and the groups
-U = eta v_e/(E' R), G = alpha E', W = w/(E' R) with the entrainment speed v_e = (v1+v2)/2.
+Throughout, with E' twice the Hertz modulus E* and the entrainment speed v_e = (v1+v2)/2,
+
+E' = 2/[(1-nu1^2)/E1 + (1-nu2^2)/E2],
+U = eta v_e/(E' R), G = alpha E', W = w/(E' R).
+
 The published formulas spread by about 14 % among themselves and the pressure-viscosity by
 about 15 % in thickness: no film is known better than that.
 """
@@ -14,7 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.materials import ZERO_CELSIUS, Lubricant
+from thermogear.base.materials import Lubricant
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity
 
 Floats = NDArray[np.float64]

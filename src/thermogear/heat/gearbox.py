@@ -24,6 +24,7 @@ from thermogear.heat.network import Link, ThermalNetwork
 Floats = NDArray[np.float64]
 
 __all__ = [
+    "BodyLike",
     "Losses",
     "Surroundings",
     "body_conductances",

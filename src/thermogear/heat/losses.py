@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.units import RPM
 from thermogear.heat.convection import disc_torque
 
 Floats = NDArray[np.float64]
@@ -81,7 +82,7 @@ def seal_loss(diameter: ArrayLike, speed: ArrayLike) -> Floats:
     ``diameter`` [m], ``speed`` omega [rad/s]. Any shape. Source: ISO/TR 14179-2.
     """
     millimetres = np.asarray(diameter, dtype=float) * 1e3
-    rpm = np.asarray(speed, dtype=float) * 30.0 / np.pi
+    rpm = np.asarray(speed, dtype=float) / RPM
     return np.asarray(7.69e-6 * millimetres**2 * rpm)
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
-from thermogear.base.materials import ZERO_CELSIUS, Lubricant
+from thermogear.base.materials import Lubricant
+from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
 

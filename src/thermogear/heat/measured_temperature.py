@@ -36,8 +36,8 @@ _LEAST, _GREATEST = 150.0, 3000.0  # K, where the inversion looks
 def band_radiance(temperature: ArrayLike, band: Band = None) -> Floats:
     """Black-body radiance a detector collects, up to a constant factor [-].
 
-    ``band`` None: all wavelengths, T^4. (l1, l2) [m]: Planck's law integrated over the band;
-    l1 = l2: at one wavelength, 1/[exp(c2/(l T)) - 1].
+    ``band`` None: all wavelengths, T^4. (l1, l2) [m]: Planck's law integrated over the band; with
+    both ends alike, at one wavelength: 1/[exp(c2/(l T)) - 1].
 
     ``temperature`` [K] > 0, any shape. Only ratios matter in the correction.
     """

@@ -2,7 +2,9 @@
 
 Lengths in half widths, Peclet number Pe = v B/a. In the frame of the source the material
 moves in +x and the surface rise is
+
 T(x) = Q/(pi k) int phi(s) exp[Pe (x-s)/2] K_0[Pe |x-s|/2] ds,
+
 Q the heat per width and phi its shape with unit total. The reference that Blok's formula and
 its Peclet correction are checked against.
 """

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
 
@@ -255,7 +255,7 @@ def scuffing_integral_temperature(
 ) -> Floats:
     """Integral temperature at which the oil scuffs [K].
 
-    theta_MT + 1.5 X_WrelT theta_flaintT,  theta_MT = 80 C + 0.23 T1T X_L,
+    theta_intS = theta_MT + 1.5 X_WrelT theta_flaintT,  theta_MT = 80 C + 0.23 T1T X_L,
     theta_flaintT = 0.2 T1T (100/nu40)^0.02 X_L,  T1T = 3.726 S_FZG^2.
 
     ``load_stage`` S_FZG, ``viscosity_40`` nu [m^2/s] at 40 C, ``structure`` X_WrelT,

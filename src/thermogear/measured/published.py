@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.measured.layout import NUMBER, cells_of
 from thermogear.measured.traps import split_unit
-from thermogear.measured.units import STANDARD_GRAVITY, factor_of, kind_of
+from thermogear.measured.units import factor_of, kind_of
 from thermogear.signals.integration import trapezoid_factor
 from thermogear.signals.windows import Window
-
-RPM = 2.0 * np.pi / 60.0
 
 
 @dataclass(frozen=True)

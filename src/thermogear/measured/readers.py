@@ -90,6 +90,8 @@ def read_record(
     Raises InputError (one line) for a file that cannot be read.
     """
     path = Path(file)
+    if path.is_dir():
+        raise InputError("file", str(file), why="it is a directory", fix="name a file in it")
     if not path.is_file():
         raise InputError("file", str(file), why="there is no such file")
     options = ReadOptions(decimal, tuple(str(c) for c in channels), int(limit))

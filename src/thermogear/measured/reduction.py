@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import METHODS, Chain, Turning, reduced
 from thermogear.measured.gearing import Gearing, find_gearing, mesh_angle
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
-from thermogear.measured.units import STANDARD_GRAVITY, kind_of
+from thermogear.measured.units import kind_of
 from thermogear.signals.lines import LineSpectrum, line_spectrum
 from thermogear.signals.orders import tacho_angle, tacho_times
 from thermogear.signals.spectra import amplitude_spectrum
@@ -144,9 +145,12 @@ def measure(
     start, table = _stretch(chosen, notices)
     gearing = _gearing(table, notices, _expected(record, teeth, speed))
     teeth = _teeth(gearing, teeth, notices)
+    turning = _turning(record, chosen, table, gearing, teeth, harmonics, pulses_per_turn, start)
+    if gearing is not None and turning is not None:
+        # in the resampled record the lines stand at multiples of this mean and nowhere else
+        gearing = replace(gearing, mesh_frequency=turning[0].mean)
     if gearing is not None:
         _check_rate(record, gearing, teeth, speed, notices)
-    turning = _turning(record, chosen, table, gearing, teeth, harmonics, pulses_per_turn, start)
     if turning is not None:
         notices.append(Notice("info", turning[1]))
     rate = record.rate or 1.0

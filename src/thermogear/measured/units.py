@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 
 from thermogear.base.errors import InputError, nearest
-
-STANDARD_GRAVITY = 9.80665  # m/s^2, CGPM 1901
+from thermogear.base.units import STANDARD_GRAVITY
 
 _TABLE: dict[str, tuple[str, float]] = {
     "m/s^2": ("acceleration", 1.0),

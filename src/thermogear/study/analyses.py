@@ -89,8 +89,15 @@ def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
         ) from None
     if isinstance(case, GearCase):
         full = word(name)
+        if full == "gear_temperature" and not (values.min() >= -150.0 and values.max() <= 600.0):
+            got = f"{values.min():g} .. {values.max():g} degC"
+            raise InputError("temperature", got, allowed="-150..600 degC")
         return full, to_si(full, values)
-    return dimensionless_name(name), values
+    full = dimensionless_name(name)
+    for end in (values.min(), values.max()):
+        # refused here, before a store is begun with it; the other numbers do not matter
+        TorsionalModel(**(dict.fromkeys(PARAMETERS, 0.5) | {full: float(end)}))
+    return full, values
 
 
 def family_of_case(

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, status_attributes
 from thermogear.mesh.balance import HeatBalance, heat_balance
 from thermogear.mesh.elastic import elastic_pair

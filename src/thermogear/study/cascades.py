@@ -18,9 +18,11 @@ from thermogear.analysis.continuation import (
 )
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.study.case import DimensionlessCase, load_example
-from thermogear.study.engine import Found, Progress, complex_rows, found, orbit_of, silent
+from thermogear.study.engine import Found, complex_rows, found, orbit_of
 from thermogear.study.rows import Point
 from thermogear.study.schema import PARAMETERS
 from thermogear.study.subject import Family, Subject, family, of_numbers, shown_value
@@ -212,7 +214,7 @@ def heats() -> tuple[Heat, ...]:
             hottest[point.row] = point
     found_heats = [
         Heat(
-            f"{p.value - 273.15:.4g} °C, {row} (b' {p.half_backlash:.4g}, eps_T "
+            f"{p.value - ZERO_CELSIUS:.4g} °C, {row} (b' {p.half_backlash:.4g}, eps_T "
             f"{p.thermal_stiffness:+.4g})",
             {"half_backlash": p.half_backlash, "thermal_stiffness": p.thermal_stiffness},
         )

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -20,6 +20,7 @@ from thermogear.base.materials import MATERIALS, Material
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
+from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 from thermogear.study import parts
@@ -34,6 +35,9 @@ from thermogear.study.rows import Point, points_of
 from thermogear.study.schema import PICTURES, DimensionlessFile, GearFile
 from thermogear.study.source import case_text, overridden, pairs, tables
 from thermogear.study.surroundings import Reading, gearbox
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = [
     "PICTURES",
@@ -140,9 +144,21 @@ class GearCase(Case):
         """The hot state of every operating point under ``model``."""
         return self.balance(model).operating if self.computed else self.stated
 
-    def with_operating(self, operating: Operating) -> GearCase:
-        """The same case in the hot state ``operating``, whose temperatures are then given."""
-        return replace(self, stated=operating, computed=False)
+    def cycle(
+        self, operating: Operating, model: MeshModel, path_positions: int | None = None
+    ) -> xr.Dataset:
+        """The mesh cycle at ``operating`` under ``model``: the case's housing, flanks and grids.
+
+        ``path_positions`` replaces the case's number along the path of contact.
+        """
+        return mesh_cycle(
+            self.pair,
+            replace(operating, housing=self.housing),
+            model,
+            deviations=self.deviations,
+            path_positions=path_positions or self.path_positions,
+            mesh_positions=self.mesh_positions,
+        )
 
     def balance(self, model: MeshModel, gear_temperature: float | None = None) -> HeatBalance:
         """The heat balance of every operating point, computed once.
@@ -224,6 +240,18 @@ def load_case(
     if isinstance(read, DimensionlessFile):
         return DimensionlessCase(points=points_of(read), **common)
     return _gear_case(read, common)
+
+
+def gear_case(case: object) -> GearCase:
+    """``case`` itself if it has gears; InputError otherwise."""
+    if isinstance(case, GearCase):
+        return case
+    raise InputError(
+        "case",
+        f"kind = {getattr(case, 'kind', type(case).__name__)!r}",
+        allowed="kind = 'gear'",
+        why="there is no gear in it",
+    )
 
 
 def load_example(

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.base.vocabulary import label
 from thermogear.measured.published import (
     PUBLISHED,
-    RPM,
     LineTable,
     Printed,
     SpeedLine,
@@ -30,7 +30,6 @@ from thermogear.measured.published import (
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
-from thermogear.measured.units import STANDARD_GRAVITY
 from thermogear.study.simulated import CaseLines, case_lines, tree_lines
 
 if TYPE_CHECKING:
@@ -140,8 +139,12 @@ def compare(
     ``tolerances``: relative standard uncertainty per field of the case, as
     {"operating.torque": 0.05}, sampled ``samples`` times from ``seed``.
 
-    Raises InputError when no speed is common to both sides.
+    Raises InputError when no speed is common to both sides, or an uncertainty is impossible.
     """
+    if u_data is not None and not 0.0 <= u_data < np.inf:
+        raise InputError("u_data", f"{100 * u_data:g} %", allowed=">= 0 %, finite")
+    if tolerances and samples < 2:
+        raise InputError("samples", samples, allowed=">= 2", why="one run has no scatter")
     if measured is None:
         if isinstance(simulated, str) and simulated in PUBLISHED:
             published = PUBLISHED[simulated]
@@ -472,7 +475,7 @@ def tree_of(found: Comparison, version: str) -> xr.DataTree:
     tree.attrs = {
         "thermogear": version,
         "kind": "comparison",
-        "title": f"{' and '.join(found.models)} against {found.measured}",
+        "title": f"Models {' and '.join(found.models)} against {found.measured}",
         "summary": found.conclusion[:1].upper() + found.conclusion[1:] + ".",
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "notices": json.dumps([{"level": level, "text": text} for level, text in found.notices]),

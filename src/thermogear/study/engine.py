@@ -8,7 +8,6 @@ tree carries metres, seconds and hertz.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,13 +20,12 @@ from thermogear.analysis.labels import Label, label
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
 from thermogear.dynamics.integrate import simulate
 from thermogear.signals.spectra import amplitude_spectrum
-from thermogear.study.results import write_atomically
+from thermogear.study.results import write_results, write_summary
 from thermogear.study.subject import Subject
-
-Progress = Callable[[str, int, int], None]
 
 SAMPLES = 256
 """Samples a mesh period of a stored orbit."""
@@ -35,10 +33,6 @@ HIGHEST_ORDER = 20.0
 LEAST_LINE = 1e-12
 """Lines below this part of the greatest are rounding."""
 ROUNDS = 10
-
-
-def silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,15 +46,8 @@ class Found:
 
     def write(self, directory: Path) -> Path:
         """``KIND.nc`` and ``KIND.json`` in ``directory``; the path of the former."""
-        path = directory / f"{self.kind}.nc"
-        part = path.with_name(f".{path.name}.part")
-        try:
-            self.tree.to_netcdf(part, engine="h5netcdf")
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
-        text = json.dumps(self.summary, indent=2, ensure_ascii=False, allow_nan=False)
-        write_atomically(directory / f"{self.kind}.json", (text + "\n").encode())
+        path = write_results(self.tree, directory, f"{self.kind}.nc")
+        write_summary(self.summary, directory, f"{self.kind}.json")
         return path
 
 
@@ -104,13 +91,14 @@ def orbit_of(
 ) -> tuple[Orbit, Label | None]:
     """The closed orbit a motion settles on, or the one of ``period`` near where it ends.
 
-    Without ``transient`` Newton starts from the given state itself, which reaches unstable
+    An orbit that closes earlier already comes back with its least period. Without ``transient``
+    Newton starts from the given state itself, which reaches unstable
     orbits. Raises ConvergenceError where no orbit is reached.
     """
     model = subject.model if model is None else model
     start = subject.simulation.initial_state
     if not transient:
-        return periodic_orbit(model, 1 if period is None else period, start), None
+        return _least(periodic_orbit(model, 1 if period is None else period, start)), None
     proof = settled(subject, model)
     if proof.orbit is not None and period in (None, proof.orbit.period):
         return proof.orbit, proof
@@ -128,7 +116,14 @@ def orbit_of(
         method="exact",
     )
     guess = [float(end["section_x"][0, -1]), float(end["section_v"][0, -1])]
-    return periodic_orbit(model, period, guess), proof
+    return _least(periodic_orbit(model, period, guess)), proof
+
+
+def _least(orbit: Orbit) -> Orbit:
+    """The same motion, closed after its least period."""
+    if orbit.minimal_period == orbit.period:
+        return orbit
+    return periodic_orbit(orbit.model, orbit.minimal_period, orbit.state)
 
 
 def complex_rows(values: Any) -> list[dict[str, float]]:
@@ -224,7 +219,7 @@ def orbit_results(
         "mesh_frequency_hz": scale.mesh if scale.gear else None,
         "residual": orbit.residual,
         "lines": lines,
-        "notices": _orbit_notices(orbit, low, b),
+        "notices": _orbit_notices(orbit, low, b, period),
     }
     progress("orbit", 2, 2)
     return found("orbit", {"orbit": data}, summary)
@@ -238,8 +233,10 @@ def _without_units(data: xr.Dataset) -> None:
             data[name].attrs["units"] = "1"
 
 
-def _orbit_notices(orbit: Orbit, low: float, b: float) -> list[str]:
+def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> list[str]:
     notices = []
+    if asked is not None and asked != orbit.period:
+        notices.append(f"period {asked} was asked for; this motion closes after {orbit.period}")
     if orbit.minimal_period != orbit.period:
         notices.append(
             f"asked for {orbit.period} periods; this orbit closes after {orbit.minimal_period}"

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.heat.expansion import flank_growth
 from thermogear.heat.friction import benedict_kelley_as_printed
 from thermogear.heat.temperature import blok_as_printed
@@ -179,7 +180,7 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
             "measured displacement 10.4 um at 1000 rpm",
             "implies this acceleration of a housing, and a twice integrated housing signal is "
             "not x",
-            (2.0 * math.pi * 419.7) ** 2 * 10.4e-6 / 9.80665,
+            (2.0 * math.pi * 419.7) ** 2 * 10.4e-6 / STANDARD_GRAVITY,
             None,
             "g",
         ),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.gears.geometry import Gear
 from thermogear.study.case import Case, DimensionlessCase, GearCase
 from thermogear.study.schema import PARAMETERS
@@ -91,7 +91,7 @@ def _dynamics(case: GearCase) -> list[Fact]:
 def _operating(case: GearCase) -> list[Fact]:
     found = []
     for speed in case.speeds:
-        rpm = f"{speed * 30.0 / math.pi:.6g} rpm"
+        rpm = f"{speed / RPM:.6g} rpm"
         mesh = case.pair.pinion.teeth * speed / (2.0 * math.pi)
         found.append(Fact("mesh frequency", f"at {rpm}", mesh, "Hz"))
     for torque in case.torques:
@@ -122,7 +122,7 @@ def _held(case: GearCase) -> list[Fact]:
 def _rows(case: DimensionlessCase) -> tuple[Fact, ...]:
     found = []
     for point in case.points:
-        value = point.value - 273.15 if point.unit == "K" else point.value
+        value = point.value - ZERO_CELSIUS if point.unit == "K" else point.value
         unit = "degC" if point.unit == "K" else ""
         numbers = ", ".join(f"{name} {getattr(point, name):.7g}" for name in PARAMETERS)
         found.append(

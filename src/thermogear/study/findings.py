@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 
 import thermogear
-from thermogear.base.materials import ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import DIMENSIONLESS, STATUS
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
 from thermogear.study.balances import celsius
@@ -39,7 +39,7 @@ def _notice(level: str, text: str) -> Notice:
 
 
 def _rpm(speed: float) -> float:
-    return speed * 30.0 / math.pi
+    return speed / RPM
 
 
 # --- notices ------------------------------------------------------------------------------
@@ -71,8 +71,8 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
                 "The loaded contact takes plane-stress bodies; between plane stress and plane "
                 "strain the stiffness lies in a band of -2.6 to +4.3 %. Contact on tip corners and "
                 "relief stand without a finite-element check. For the vibration the body's wind-up "
-                "against its bore is left to the inertia (reading `rim`); both readings are among "
-                "the figures.",
+                "against its bore is left to the inertia (the reading named "
+                "rim); both readings are among the figures.",
             )
         )
     if any(model.thermal_stiffness == "thesis" for model in case.models):
@@ -456,12 +456,7 @@ FIGURES = (
     "cold_half_backlash",
     "jam_temperature",
     "natural_frequency",
-    "frequency_ratio",
-    "stiffness_amplitude",
-    "thermal_stiffness_ratio",
-    "mean_force",
-    "force_amplitude",
-    "half_backlash_ratio",
+    *DIMENSIONLESS[1:],
 )
 MOTION_FIGURES = ("peak_to_peak_displacement", "half_order_amplitude", "contact_loss_share")
 

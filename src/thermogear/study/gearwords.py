@@ -7,7 +7,6 @@ the dimensionless results back into micrometres, hertz and newtons.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -18,14 +17,13 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.models import TorsionalModel, from_excitation
 from thermogear.dynamics.tables import Lanes
-from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
-from thermogear.study.case import GearCase, load_case
+from thermogear.study.case import GearCase, gear_case, load_case
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +43,7 @@ class Word:
 
 
 WORDS: dict[str, Word] = {
-    "pinion_speed": Word("rad/s", "rpm", 30.0 / math.pi, 0.0, "pinion speed"),
+    "pinion_speed": Word("rad/s", "rpm", 1.0 / RPM, 0.0, "pinion speed"),
     "pinion_torque": Word("N m", "N m", 1.0, 0.0, "pinion torque"),
     "gear_temperature": Word("K", "degC", 1.0, ZERO_CELSIUS, "addendum temperature of both gears"),
     "cold_half_backlash": Word("m", "um", 1e6, 0.0, "cold half backlash on the line of action"),
@@ -121,7 +119,7 @@ class GearPoints:
 
 @dataclass(frozen=True)
 class GearFamily:
-    """Gear parameters -> lanes, for one ``case`` and one of its ``bundle``s.
+    """Gear parameters -> lanes, for one ``case`` and one bundle of it, ``bundle``.
 
     ``state`` "hot" (as the case says), "cold" (everything at the reference temperature) or the
     addendum temperature [K] of both gears; a parameter gear_temperature overrules it.
@@ -136,8 +134,7 @@ class GearFamily:
     state: str | float = "hot"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.case, GearCase):
-            raise InputError("case", type(self.case).__name__, allowed="a case of kind 'gear'")
+        gear_case(self.case)
         for name in self.names:
             word(name)
         known = [m.name for m in self.case.models]
@@ -199,7 +196,7 @@ class GearFamily:
         damping = column("damping_ratio", case.damping_ratio)
         if np.any(speed <= 0.0):
             raise InputError(
-                "pinion_speed", f"{speed.min() * 30.0 / math.pi:.6g} rpm", allowed="> 0 rpm",
+                "pinion_speed", f"{speed.min() / RPM:.6g} rpm", allowed="> 0 rpm",
                 why="nothing excites a pair that does not turn",
             )  # fmt: skip
         if np.any(damping < 0.0):
@@ -230,23 +227,14 @@ class GearFamily:
             operating = replace(stated, temperatures=stated.temperatures.cold())
         else:
             operating = here.operating_of(model)
-        return mesh_cycle(
-            case.pair,
-            replace(operating, housing=case.housing),
-            model,
-            deviations=case.deviations,
-            path_positions=case.path_positions,
-            mesh_positions=case.mesh_positions,
-        )
+        return case.cycle(operating, model)
 
 
 @lru_cache(maxsize=64)
 def _case_with(
     text: str, overrides: tuple[tuple[str, str], ...], fields: tuple[tuple[str, str], ...]
 ) -> GearCase:
-    case = load_case(text, dict(overrides) | dict(fields))
-    assert isinstance(case, GearCase)
-    return case
+    return gear_case(load_case(text, dict(overrides) | dict(fields)))
 
 
 def _points_of(case: GearCase, cycle: xr.Dataset, damping: Floats) -> GearPoints:

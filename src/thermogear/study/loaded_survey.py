@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.errors import InputError
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.gears.loaded import LoadedModel, loaded_contact
@@ -26,8 +27,6 @@ from thermogear.study.case import GearCase
 from thermogear.study.relief import one_point
 
 Floats = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
-
 KIND = "contact"
 PARTS = (0.1, 0.25, 0.5, 1.0, 2.0)
 """Loads, as parts of the case's greatest, where none are named."""
@@ -36,10 +35,6 @@ DIFFERENCES = (-40.0, -20.0, 0.0, 20.0, 40.0)
 LIGHT = tuple(np.geomspace(0.02, 2.0, 41))
 """Loads, as parts of the case's greatest, of the double-contact picture."""
 PHASES = 200
-
-
-def _silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +53,7 @@ def loaded_survey(
     torques: Sequence[float] = (),
     *,
     body: str = "bore_clamped",
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> xr.DataTree:
     """Stiffness, transmission error, shares, pressure and double contact of the case's pair.
 

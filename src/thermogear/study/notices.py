@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.units import RPM
 from thermogear.study.case import GearCase
 
 NO_BACK_IMPACT = (
@@ -41,7 +42,7 @@ def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
         turns = 60.0 / case.pair.pinion.teeth
         speeds = np.array(case.speeds)
         tests = case.pair.pinion.teeth * speeds / (2.0 * math.pi) / natural
-        shown = ", ".join(f"{s * 30.0 / math.pi:.4g}" for s in speeds)
+        shown = ", ".join(f"{s / RPM:.4g}" for s in speeds)
         found.append(
             f"the range covers omega_h {ratio.min():.3f} .. {ratio.max():.3f}; the mesh meets the "
             f"natural frequency {natural:.0f} Hz at {natural * turns:.0f} rpm; the case's own "

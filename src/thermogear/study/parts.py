@@ -14,12 +14,8 @@ from typing import TypeVar
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
-from thermogear.base.materials import (
-    LUBRICANTS,
-    ZERO_CELSIUS,
-    Lubricant,
-    Material,
-)
+from thermogear.base.materials import LUBRICANTS, Lubricant, Material
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.geometry import Gear, GearPair, Rack
 from thermogear.heat.friction import ROUGHNESS_LIMIT
 from thermogear.mesh.excite import disc_inertia

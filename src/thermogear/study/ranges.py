@@ -7,7 +7,8 @@ import warnings
 import numpy as np
 
 from thermogear.base.errors import ValidityWarning
-from thermogear.base.materials import ZERO_CELSIUS, Material
+from thermogear.base.materials import Material
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.geometry import GearPair
 from thermogear.mesh.operating import Operating
 

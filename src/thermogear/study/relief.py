@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress, silent
 from thermogear.gears.deviations import Contacts, Relief
 from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
 from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
@@ -24,16 +24,10 @@ from thermogear.study.case import GearCase
 from thermogear.study.flanks import relief_text
 
 Floats = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
-
 KIND = "relief"
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
 PHASES = 200
-
-
-def _silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
 
 
 def relief_survey(
@@ -44,7 +38,7 @@ def relief_survey(
     shape: str = "linear",
     symmetric: bool = False,
     largest: float | None = None,
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> xr.DataTree:
     """The tip relief of both gears with the least peak-to-peak static transmission error.
 

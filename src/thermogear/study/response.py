@@ -31,7 +31,7 @@ VALUES: dict[str, tuple[str, str]] = {
 
 
 @dataclass(frozen=True)
-class Record:
+class Recording:
     """How a settled motion is recorded: ``periods`` of ``samples`` points each.
 
     ``order_step`` and ``highest_order`` of the spectral lines kept.
@@ -49,7 +49,7 @@ class Record:
         return np.asarray(self.order_step * np.arange(1, count + 1, dtype=float))
 
 
-RECORD = Record()
+RECORD = Recording()
 
 
 def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Variable]:
@@ -71,7 +71,7 @@ def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Varia
 def respond(
     points: GearPoints,
     state: Floats,
-    record: Record,
+    record: Recording,
     *,
     lines: bool,
     alive: Alive = keep_going,
@@ -108,7 +108,7 @@ def respond(
 
 
 def _figures(
-    points: GearPoints, lane: int, x: Floats, phase: Floats, record: Record, lines: bool
+    points: GearPoints, lane: int, x: Floats, phase: Floats, record: Recording, lines: bool
 ) -> dict[str, Any]:
     length, scale = points.length[lane], points.stiffness[lane] * points.length[lane]
     ranks = np.arange(points.error.shape[1])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import beside, put
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"
@@ -18,47 +18,35 @@ MARK = ".thermogear"
 """Stands in every directory of ours from before the first result is written."""
 
 
-def write_atomically(path: Path, data: bytes) -> None:
-    """Write ``data`` beside ``path``, flush it to the disk, then put it in place."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with temporary.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
 def write_results(tree: xr.DataTree, directory: Path, name: str = RESULTS) -> Path:
     """Write ``tree`` as ``directory/name`` (netCDF-4); an older file stays until then."""
     path = directory / name
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    with beside(path) as temporary:
         tree.to_netcdf(temporary, engine="h5netcdf")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
     return path
 
 
-def write_summary(summary: Mapping[str, Any], directory: Path) -> Path:
-    """Write ``directory/summary.json``."""
-    path = directory / SUMMARY
-    text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-    write_atomically(path, (text + "\n").encode())
-    return path
+def write_summary(summary: Mapping[str, Any], directory: Path, name: str = SUMMARY) -> Path:
+    """Write ``directory/name`` as JSON."""
+    return put(directory / name, json_text(summary))
 
 
-def claim_directory(directory: Path) -> None:
+def json_text(summary: Mapping[str, Any]) -> str:
+    """A summary as a JSON text of lines."""
+    return json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def claim_directory(directory: Path, ours: Sequence[str] = ()) -> None:
     """Make ``directory`` ours: new, empty, or claimed earlier; else refuse it.
 
     The mark is written at once, so that what an interrupted run leaves is still ours.
     """
     if directory.exists() and not directory.is_dir():
         raise InputError("output", str(directory), why="it is a file", fix="name a directory")
-    if directory.is_dir() and any(directory.iterdir()) and not is_ours(directory):
+    foreign = directory.is_dir() and any(
+        not (ours and path.name.lstrip(".").startswith(tuple(ours))) for path in directory.iterdir()
+    )
+    if foreign and not is_ours(directory):
         raise InputError(
             "output",
             str(directory),
@@ -67,7 +55,7 @@ def claim_directory(directory: Path) -> None:
         )
     directory.mkdir(parents=True, exist_ok=True)
     if not (directory / MARK).exists():
-        write_atomically(directory / MARK, b"results of thermogear\n")
+        put(directory / MARK, "results of thermogear\n")
 
 
 def is_ours(directory: Path) -> bool:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import datetime
 import json
 import platform
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,12 +23,11 @@ from numpy.typing import NDArray
 import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
+from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, attributes, label
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating
 from thermogear.study import errata, findings
 from thermogear.study.balances import balances
 from thermogear.study.case import Case, DimensionlessCase, GearCase, load_example
@@ -36,17 +35,10 @@ from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
 from thermogear.study.results import claim_directory, write_results, write_summary
 
-Progress = Callable[[str, int, int], None]
-"""Called as ``progress(stage, done, total)``."""
-
 STATES = ("cold", "hot")
 
 
-def _silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
-
-
-def run(case: Case, *, progress: Progress = _silent) -> xr.DataTree:
+def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
     """Everything that ``case`` asks for, as one tree of datasets (SI, units as attributes).
 
     A jammed operating point, a motion that diverges or cannot be labelled is a status in the
@@ -91,7 +83,7 @@ def run_to_directory(
     directory: Path,
     *,
     case_text: str | None = None,
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> dict[str, Any]:
     """:func:`run`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
 
@@ -99,8 +91,24 @@ def run_to_directory(
     """
     claim_directory(directory)
     tree = run(case if case_text is None else replace(case, text=case_text), progress=progress)
-    summary = findings.summary(tree)
-    write_results(tree, directory)
+    return save_results(tree, directory)
+
+
+def save_results(results: xr.DataTree, directory: str | Path) -> dict[str, Any]:
+    """Write what :func:`run` returned as ``directory/results.nc``, with ``summary.json``.
+
+    Returns the summary. The directory is made if new; one that holds anything else than earlier
+    results is refused with an InputError.
+    """
+    directory = Path(directory)
+    if "thermogear" not in results.attrs or results.attrs.get("kind") not in (
+        "gear",
+        "dimensionless",
+    ):
+        raise InputError("results", "no tree of a run", fix="give what run(case) returns")
+    claim_directory(directory)
+    summary = findings.summary(results)
+    write_results(results, directory)
     write_summary(summary, directory)
     return summary
 
@@ -136,17 +144,6 @@ def _bundle_axis(case: GearCase) -> xr.DataArray:
     return xr.DataArray(names, dims="bundle", name="bundle")
 
 
-def _cycle(case: GearCase, operating: Operating, model: MeshModel) -> xr.Dataset:
-    return mesh_cycle(
-        case.pair,
-        replace(operating, housing=case.housing),
-        model,
-        deviations=case.deviations,
-        path_positions=case.path_positions,
-        mesh_positions=case.mesh_positions,
-    )
-
-
 def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     """Bundle -> the cycle cold and hot, with everything but the gears' temperatures alike."""
     found: dict[str, xr.Dataset] = {}
@@ -155,8 +152,8 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
         hot = case.operating_of(model)
         cold = replace(hot, temperatures=hot.temperatures.cold())
         states = [
-            _cycle(case, cold, model),
-            _with_status(case, model, _cycle(case, hot, model)),
+            case.cycle(cold, model),
+            _with_status(case, model, case.cycle(hot, model)),
         ]
         found[model.name] = _with_numbers(
             case, xr.concat(states, xr.DataArray(list(STATES), dims="state", name="state"))
@@ -335,12 +332,12 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
     temperatures = np.asarray(case.gear_temperatures)
     for model in case.models:
         row = [
-            _with_status(case, model, _cycle(case, case.operating_at(t, model), model), t)
+            _with_status(case, model, case.cycle(case.operating_at(t, model), model), t)
             for t in map(float, temperatures)
         ]
         hot = case.operating_of(model)
         cold = replace(hot, temperatures=hot.temperatures.cold())
-        reference = _cycle(case, cold, model)["mean_stiffness"].values
+        reference = case.cycle(cold, model)["mean_stiffness"].values
         axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")
         axis.attrs = attributes("gear_temperature")
         joined = xr.concat(row, axis).assign_attrs(cold_mean_stiffness=reference)

@@ -24,10 +24,10 @@ from thermogear.analysis.outcome import (
 from thermogear.analysis.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
-from thermogear.study.case import GearCase
+from thermogear.study.case import GearCase, gear_case
 from thermogear.study.gearwords import GearFamily, Tabulated
 from thermogear.study.notices import range_notices
-from thermogear.study.response import RECORD, Record, respond, response_variables
+from thermogear.study.response import RECORD, Recording, respond, response_variables
 from thermogear.study.work import Report, carry_out
 
 Floats = NDArray[np.float64]
@@ -52,7 +52,7 @@ class RunUpPlan:
     bundle: str
     torque: float
     rule: Rule = RUN_UP_RULE
-    record: Record = RECORD
+    record: Recording = RECORD
     block: int = BLOCK
     branch_period: int = 2
     kind: str = "run-up"
@@ -307,10 +307,7 @@ def run_up_plan(
     branch_period: int = 2,
 ) -> RunUpPlan:
     """The plan of :func:`run_up`."""
-    if not isinstance(case, GearCase):
-        raise InputError(
-            "case", getattr(case, "kind", type(case).__name__), allowed="kind = 'gear'"
-        )
+    case = gear_case(case)
     axis = np.sort(axis_values("speeds", speeds))
     if axis[0] <= 0.0:
         raise InputError("speeds", f"{axis[0]} rad/s", allowed="> 0")

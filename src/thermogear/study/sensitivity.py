@@ -23,7 +23,9 @@ from numpy.typing import NDArray
 from thermogear import __version__
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
 from thermogear.base.excitation import Excitation, Periodic
-from thermogear.base.materials import LUBRICANTS, ZERO_CELSIUS, Lubricant
+from thermogear.base.materials import LUBRICANTS, Lubricant
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import from_excitation
 from thermogear.gears.geometry import GearPair
@@ -36,8 +38,6 @@ from thermogear.study.case import GearCase
 from thermogear.study.results import write_results, write_summary
 
 Floats = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
-
 PATH, PHASES, HARMONICS = 41, 64, 16
 DISCARD, PERIODS, SAMPLES = 300, 8, 64
 LANES = 1024
@@ -144,6 +144,10 @@ class Plan:
     def __post_init__(self) -> None:
         if self.samples < 8 or self.samples & (self.samples - 1):
             raise InputError("samples", self.samples, allowed="a power of two, 8 or more")
+        if not 0 <= self.seed < 2**32:
+            raise InputError("seed", self.seed, allowed="0..4294967295, whole")
+        if self.speed is not None and not 0.0 < self.speed < 1e6:
+            raise InputError("speed", f"{self.speed:g} rad/s", allowed="> 0, below 1e6 rad/s")
         if not 0.0 < self.confidence < 1.0:
             raise InputError("confidence", self.confidence, allowed="0 < confidence < 1")
         known = [one.name for one in INPUTS]
@@ -190,12 +194,8 @@ def grade(viscosity_40: float) -> Lubricant:
     return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))
 
 
-def _silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
-
-
 def sensitivity(
-    case: GearCase, plan: Plan | None = None, *, progress: Progress = _silent
+    case: GearCase, plan: Plan | None = None, *, progress: Progress = silent
 ) -> xr.Dataset:
     """Sobol' indices of every output for every input, with confidence intervals.
 
@@ -291,7 +291,7 @@ def _speed(case: GearCase, plan: Plan) -> float:
 
 
 def evaluate(
-    case: GearCase, plan: Plan, places: Floats, progress: Progress = _silent
+    case: GearCase, plan: Plan, places: Floats, progress: Progress = silent
 ) -> tuple[dict[str, Floats], int]:
     """Every output at ``places`` (sample, input) of the unit cube, and how many pairs jam.
 

@@ -11,12 +11,13 @@ import xarray as xr
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.pair_springs import PairSprings
+from thermogear.base.progress import Progress, silent
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
-from thermogear.study.engine import Found, Progress, found, silent
+from thermogear.study.engine import Found, found
 from thermogear.study.subject import Gears, Subject
 
 POSITIONS = 240

@@ -86,6 +86,10 @@ def tables(name: str, text: str) -> dict[str, Any]:
         what, where = (match["what"], match["where"]) if match else (str(cause), "some line")
         unquoted = what.startswith(("Invalid value", "Expected newline"))
         fix = 'a value with its unit stands in quotes: "5 mm"' if unquoted else None
+        if text.lstrip().startswith(("{", "<")):
+            fix = "a case file is TOML; `thermogear example rig` shows one"
+        elif what.startswith("Illegal character '\\n'"):
+            fix = "a text ends with the quote it began with"
         raise InputError(name, f"invalid TOML at {where}", why=what, fix=fix) from cause
     except (ValueError, RecursionError) as cause:
         raise InputError(name, "a number or a nesting beyond reason", allowed="TOML") from cause

@@ -28,6 +28,7 @@ from zarr.storage import LocalStore, MemoryStore
 
 from thermogear.analysis.plan import Arrays, Key, Plan, dataset_of, empty_arrays, keys_of, region_of
 from thermogear.base.errors import InputError
+from thermogear.base.files import put
 from thermogear.study.fingerprint import code_version, environment
 
 RESULT = "result.zarr"
@@ -44,16 +45,7 @@ _OTHER = "name another directory, or repeat the command the store was begun with
 def put_bytes(path: Path, data: bytes) -> None:
     """Write ``data`` beside ``path``, flush it to the disk, put it in place."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.part")
-    try:
-        with temporary.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    put(path, data)
     _sync(path.parent)
 
 

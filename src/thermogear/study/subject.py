@@ -17,12 +17,12 @@ from numpy.typing import ArrayLike
 from thermogear.analysis.continuation import family_of
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Excitation
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
-from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.study.case import Case, DimensionlessCase, GearCase, Simulation
+from thermogear.study.case import Case, DimensionlessCase, GearCase, Simulation, gear_case
 from thermogear.study.rows import Point
 from thermogear.study.units import read_quantity
 
@@ -87,13 +87,7 @@ class Gears:
 
     def excitation(self) -> Excitation:
         """k(t), e(t), backlash and force there; InputError where the pair is jammed."""
-        cycle = mesh_cycle(
-            self.case.pair,
-            replace(self.operating, housing=self.case.housing),
-            self.bundle,
-            path_positions=3,
-            mesh_positions=self.case.mesh_positions,
-        )
+        cycle = self.case.cycle(self.operating, self.bundle, path_positions=3)
         (found,) = excitation(
             cycle,
             self.case.pair,
@@ -196,8 +190,7 @@ def of_case(
         model = TorsionalModel(**{**chosen.model_arguments(), **(numbers or {})})
         title = f"{case.title}: row {chosen.row}, point {point}"
         return Subject(title, model, simulation, Scale())
-    if not isinstance(case, GearCase):
-        raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
+    case = gear_case(case)
     if numbers:
         raise InputError(
             f"--{next(s for s, name in SHORT.items() if name in numbers)}",
@@ -219,7 +212,7 @@ def of_case(
 
 def _of_gears(gears: Gears, simulation: Simulation) -> Subject:
     found = gears.excitation()
-    rpm = gears.value("speed") * 30.0 / np.pi
+    rpm = gears.value("speed") / RPM
     title = (
         f"{gears.case.title}: {rpm:.6g} rpm, {gears.value('torque'):.6g} N m, "
         f"{gears.bundle.name}, {gears.state}"
@@ -330,5 +323,5 @@ def shown_value(parameter: str, value: float) -> tuple[float, str]:
     if parameter == "torque":
         return value, "N m"
     if parameter == "temperature":
-        return value - 273.15, "°C"
+        return value - ZERO_CELSIUS, "°C"
     return value, ""

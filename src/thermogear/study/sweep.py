@@ -23,15 +23,16 @@ from thermogear.analysis.plan import (
     Arrays,
     Key,
     Variable,
+    axis_coordinates,
     keep_going,
     ranges_of,
 )
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
-from thermogear.study.case import GearCase
+from thermogear.study.case import GearCase, gear_case
 from thermogear.study.gearwords import GearFamily, gear_axes
 from thermogear.study.notices import range_notices
-from thermogear.study.response import RECORD, Record, respond, response_variables
+from thermogear.study.response import RECORD, Recording, respond, response_variables
 from thermogear.study.work import Report, carry_out
 
 Floats = NDArray[np.float64]
@@ -48,7 +49,7 @@ class SweepPlan:
     axes: tuple[tuple[float, ...], ...]
     start: tuple[float, float]
     rule: Rule = SWEEP_RULE
-    record: Record = RECORD
+    record: Recording = RECORD
     kind: str = "sweep"
 
     @property
@@ -80,12 +81,7 @@ class SweepPlan:
         return outcome_variables(dims) | response_variables(dims, lines=True)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        found: dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]] = {
-            name: ((name,), np.array(values), {"units": unit})
-            for name, unit, values in zip(
-                self.family.names, self.family.units, self.axes, strict=True
-            )
-        }
+        found = axis_coordinates(self.family.names, self.family.units, self.axes)
         orders = {"units": "1", "long_name": "order of the mesh frequency"}
         return found | {"order": (("order",), self.record.orders, orders)}
 
@@ -132,13 +128,10 @@ def sweep_plan(
     bundle: str = "",
     state: str | float = "hot",
     rule: Rule = SWEEP_RULE,
-    record: Record = RECORD,
+    record: Recording = RECORD,
 ) -> SweepPlan:
     """The plan of :func:`sweep`."""
-    if not isinstance(case, GearCase):
-        raise InputError(
-            "case", getattr(case, "kind", type(case).__name__), allowed="kind = 'gear'"
-        )
+    case = gear_case(case)
     if not axes:
         raise InputError("axes", "none", allowed="at least one parameter")
     named = gear_axes(axes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.errors import ValidityWarning
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, status_attributes
 from thermogear.heat.film import REGIMES, regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
@@ -30,10 +31,8 @@ from thermogear.study.case import GearCase
 from thermogear.study.conclusion import QUANTITIES, conclusion, verdicts
 
 Floats = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
-
 KIND = "temperature"
-SPEEDS = tuple(np.pi / 30.0 * np.arange(500.0, 6001.0, 500.0))
+SPEEDS = tuple(RPM * np.arange(500.0, 6001.0, 500.0))
 TORQUES = tuple(np.arange(50.0, 501.0, 50.0))
 LUBRICATIONS = ("mixed", "dry")
 
@@ -46,17 +45,13 @@ WARM_UP = np.concatenate([[0.0], np.geomspace(2e-3, 0.2, 14), np.linspace(0.2, 8
 GRID = ("pinion_speed", "pinion_torque")
 
 
-def _silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
-
-
 def thermal_map(
     case: GearCase,
     speeds: Sequence[float] = SPEEDS,
     torques: Sequence[float] = TORQUES,
     *,
     warm_up_at: tuple[float, float] | None = None,
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> xr.DataTree:
     """Temperatures, films, flashes, backlash and scuffing margins over ``speeds`` x ``torques``.
 

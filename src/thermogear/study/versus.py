@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import attributes, status_attributes
 from thermogear.study.results import write_results
 from thermogear.study.source import overridden, pairs, tables
@@ -515,7 +516,7 @@ def _require_groups(case: Stored) -> None:
 def _point_name(kind: str, key: Sequence[Any]) -> str:
     again = "" if key[-1] == 1 else f" ({key[-1]})"
     if kind == "gear":
-        return f"{key[0] * 30.0 / math.pi:.6g} rpm, {key[1]:.6g} N m{again}"
+        return f"{key[0] / RPM:.6g} rpm, {key[1]:.6g} N m{again}"
     unit = "" if key[3] == "1" else f" {key[3]}"
     return f"{key[0]}: {key[1]} = {key[2]:.6g}{unit}{again}".replace("_", " ")
 

@@ -220,6 +220,10 @@ def _client(scheduler: str) -> Any:
             why="dask is not installed",
             fix="pip install thermogear[cluster]",
         ) from None
+    if not scheduler.startswith("inproc:") and not scheduler.rpartition(":")[2].isdecimal():
+        raise InputError(
+            "scheduler", scheduler, allowed="tcp://HOST:PORT", why="the port is missing"
+        )
     try:
         return distributed.Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:

@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import PairModel, from_excitation
 from thermogear.gears.contact import flank_radii, path_of_contact, rolling_velocities
@@ -28,7 +29,6 @@ PRINTED_MIDDLE, PRINTED_SWING = 4.875e8, 2.75e8
 """The two stiffness figures [N/m] that the document prints in section 3.2."""
 SPEEDS = (500.0, 3000.0)
 TORQUES = (50.0, 200.0)
-RPM = math.pi / 30.0
 
 
 def operating_grid(case: GearCase, speeds: int = 6, torques: int = 5) -> xr.Dataset:

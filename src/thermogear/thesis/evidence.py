@@ -8,7 +8,6 @@ table of the tests.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -17,18 +16,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.progress import Progress, silent
 from thermogear.mesh.model import MeshModel
-from thermogear.study.case import DimensionlessCase, GearCase, load_example
+from thermogear.study.case import DimensionlessCase, GearCase, gear_case, load_example
 from thermogear.study.comparison import Comparison, compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import chain, motions
 
 Floats = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
-
-RPM = 30.0 / np.pi
-"""Revolutions per minute in a radian per second."""
 
 STAGES = (
     "the rig, from friction to motion",
@@ -53,16 +49,12 @@ class Size:
     samples: int = 128
 
 
-def no_progress(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
-
-
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """Results by name, each computed when first asked for."""
 
     size: Size = field(default_factory=Size)
-    progress: Progress = no_progress
+    progress: Progress = silent
 
     def _tell(self, stage: str) -> None:
         self.progress(stage, STAGES.index(stage), len(STAGES))
@@ -70,10 +62,7 @@ class Evidence:
     @cached_property
     def case(self) -> GearCase:
         """The ready-made case of the thesis's rig."""
-        case = load_example("rig")
-        if not isinstance(case, GearCase):
-            raise InputError("example", "rig", why="it is no gear case")
-        return case
+        return gear_case(load_example("rig"))
 
     def rows(self, name: str) -> DimensionlessCase:
         """A ready-made case of the dimensionless equation."""

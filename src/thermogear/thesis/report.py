@@ -13,12 +13,14 @@ import numpy as np
 import xarray as xr
 
 import thermogear
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM
 from thermogear.study.results import claim_directory, write_results, write_summary
 from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section2, section3, section4, section5, section6
 from thermogear.thesis.claim import Claim, Finding, Verdict
 from thermogear.thesis.document import table
-from thermogear.thesis.evidence import RPM, STAGES, Evidence, Progress, Size, no_progress
+from thermogear.thesis.evidence import STAGES, Evidence, Size
 
 CLAIMS: tuple[Claim, ...] = (
     *section2.CLAIMS,
@@ -47,7 +49,7 @@ def counts(findings: list[Finding]) -> dict[str, int]:
     return {verdict.value: number[verdict] for verdict in Verdict}
 
 
-def build(size: Size | None = None, progress: Progress = no_progress) -> xr.DataTree:
+def build(size: Size | None = None, progress: Progress = silent) -> xr.DataTree:
     """All evidence and every verdict as one tree of datasets; see :mod:`thermogear.thesis`."""
     began = time.perf_counter()
     evidence = Evidence(Size() if size is None else size, progress)
@@ -78,7 +80,7 @@ def build(size: Size | None = None, progress: Progress = no_progress) -> xr.Data
 
 
 def build_to_directory(
-    directory: Path, size: Size | None = None, progress: Progress = no_progress
+    directory: Path, size: Size | None = None, progress: Progress = silent
 ) -> dict[str, Any]:
     """:func:`build`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary."""
     claim_directory(directory)
@@ -166,7 +168,7 @@ def _experiment(evidence: Evidence) -> xr.Dataset:
     for row in found.rows:
         scale = 1.0 if row.quantity == "frequency" else 1e6
         item = implied[row.speed]
-        shaft = float("nan") if item.shaft_speed is None else item.shaft_speed * RPM
+        shaft = float("nan") if item.shaft_speed is None else item.shaft_speed / RPM
         line: dict[str, Any] = {
             "speed": row.speed,
             "quantity": row.quantity,

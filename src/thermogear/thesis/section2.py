@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.contact import hertz_half_width
 from thermogear.heat.friction import benedict_kelley, benedict_kelley_as_printed
 from thermogear.heat.temperature import FLASH_FACTORS, blok_as_printed, blok_flash

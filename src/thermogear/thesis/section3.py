@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.dynamics.models import dead_zone
 from thermogear.thesis import chain
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
@@ -13,7 +13,15 @@ from thermogear.thesis.evidence import Evidence
 CYCLE = "thermogear.mesh.cycle.mesh_cycle"
 THERMAL, STIFFNESS = "thermogear.mesh.thermal", "thermogear.gears.stiffness"
 MODELS, EXCITE = "thermogear.dynamics.models", "thermogear.mesh.excite.excitation"
-RPM = 30.0 / np.pi
+
+
+def _by_heat(e: Evidence, name: str) -> list[float]:
+    """Hot over cold at the first operating point [%]: thesis, consistent."""
+    k = e.groups["mesh"][name].isel(operating=0)
+    return [
+        100.0 * float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state="cold") - 1.0)
+        for b in ("thesis", "consistent")
+    ]
 
 
 def _row(e: Evidence, name: str, bundle: str) -> np.ndarray:
@@ -146,9 +154,7 @@ def _series(e: Evidence) -> Finding:
 
 
 def _sum_of_stiffness(e: Evidence) -> Finding:
-    k = e.groups["mesh"]["mean_stiffness"].isel(operating=0)
-    parts = [100.0 * float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state="cold") - 1.0)
-             for b in ("thesis", "consistent")]  # fmt: skip
+    parts = _by_heat(e, "mean_stiffness")
     return Finding(
         f"mean stiffness {parts[0]:+.2f} % by the added spring",
         f"{parts[1]:+.2f} % by Young's modulus",
@@ -182,9 +188,7 @@ def _raises(e: Evidence) -> Finding:
 
 
 def _fluctuation(e: Evidence) -> Finding:
-    k = e.groups["mesh"]["peak_to_peak_stiffness"].isel(operating=0)
-    change = [100.0 * float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state="cold") - 1.0)
-              for b in ("thesis", "consistent")]  # fmt: skip
+    change = _by_heat(e, "peak_to_peak_stiffness")
     return Finding(
         f"peak to peak {change[0]:+.2f} %",
         f"peak to peak {change[1]:+.2f} %",
@@ -268,7 +272,7 @@ def _static_error(e: Evidence) -> Finding:
 def _dimensionless(e: Evidence) -> Finding:
     mesh = e.bundle("mesh", "consistent").isel()
     ratio, force = (mesh[n].values for n in ("frequency_ratio", "force_amplitude"))
-    rpm = mesh["pinion_speed"].values * RPM
+    rpm = mesh["pinion_speed"].values / RPM
     power = np.polyfit(np.log(ratio), np.log(force), 1)[0]
     return Finding(
         "F_h a free constant, B′ and the phases unscaled",
@@ -287,7 +291,7 @@ def _dimensionless_symbols(e: Evidence) -> Finding:
              "mean_force", "force_amplitude", "half_backlash_ratio")  # fmt: skip
     symbols = ("ζ", "ω_h", "ε", "ε_T", "F_m", "F_h", "b′/b")
     values = ", ".join(f"{s} {float(mesh[n]):.3g}" for s, n in zip(symbols, names, strict=True))
-    first = e.case.speeds[-1] * RPM
+    first = e.case.speeds[-1] / RPM
     return Finding(
         "the numbers' values are not given for the rig",
         f"at {first:.0f} rpm: {values}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.analysis.labels import label as settle
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.thesis import motions
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermogear.base.units import RPM
 from thermogear.measured.published import THESIS_5_2, SpeedLine, unstated_processing
 from thermogear.signals.integration import trapezoid_factor
 from thermogear.study.comparison import Row
@@ -12,7 +13,6 @@ from thermogear.thesis.evidence import Evidence
 
 PUBLISHED = "thermogear.measured.published.THESIS_5_2"
 COMPARE = "thermogear.study.comparison.compare"
-RPM = 30.0 / np.pi
 MODELS = ("with heat", "without heat")
 QUANTITIES = {"frequency": ("Hz", 1.0), "displacement": ("µm", 1e6)}
 
@@ -43,8 +43,8 @@ def _platform(e: Evidence) -> Finding:
 
 
 def _tested_speeds(e: Evidence) -> Finding:
-    speeds = [line.speed * RPM for line in _lines()]
-    implied = [line.shaft_speed(_teeth()) * RPM for line in _lines()]
+    speeds = [line.speed / RPM for line in _lines()]
+    implied = [line.shaft_speed(_teeth()) / RPM for line in _lines()]
     ratio = e.bundle("mesh", "consistent", "cold")["frequency_ratio"].values
     return Finding(
         f"nominal {listed(speeds, '.0f')} rpm",
@@ -86,7 +86,7 @@ def _measured_line(e: Evidence, number: int) -> Finding:
     line = _lines()[number]
     return Finding(
         f"{line.frequency:g} Hz",
-        f"implies {line.shaft_speed(_teeth()) * RPM:.1f} rpm instead of {line.speed * RPM:.0f}",
+        f"implies {line.shaft_speed(_teeth()) / RPM:.1f} rpm instead of {line.speed / RPM:.0f}",
         Verdict.ASSUMED,
         "Measured values are taken as printed, as the mesh line of a shaft near its nominal speed.",
     )
@@ -200,7 +200,7 @@ def _more_accurate(e: Evidence) -> Finding:
 def _entries() -> list[Claim]:
     found = []
     for number, line in enumerate(_lines()):
-        rpm = f"{line.speed * RPM:.0f} rpm"
+        rpm = f"{line.speed / RPM:.0f} rpm"
         for q, (quantity, (unit, scale)) in enumerate(QUANTITIES.items()):
             place = f"5.2, table, {rpm}, {quantity}"
             base = f"5.2.{100 * (number + 1) + 10 * q}"

@@ -138,7 +138,7 @@ class Patch:
         return out.ravel(), float(np.sum(force * np.hypot(*along)))
 
     def thermal_load(self, strain: Callable[[Floats, Floats], Floats]) -> Floats:
-        """Nodal forces of a free thermal ``strain``(x, y), unit modulus, plane stress."""
+        """Nodal forces of a free thermal strain, ``strain(x, y)``, unit modulus, plane stress."""
         fe, helpers = library(), library("skfem.helpers")
         stress = 1.0 / (1.0 - self.poisson)
 

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-import jinja2
 import numpy as np
 import xarray as xr
 from markupsafe import Markup
 
+from thermogear.base.files import put
+from thermogear.base.units import RPM
 from thermogear.views import gear_sections, row_sections
 from thermogear.views.closing import closing
-from thermogear.views.opening import Tile
-from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text
+from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text, Tile, render
 from thermogear.views.plots import claims as plots
-from thermogear.views.results import Results, put, read_results
-from thermogear.views.words import celsius, number, prose, raised
+from thermogear.views.results import Results, read_results
+from thermogear.views.words import celsius, html_symbol, number, prose
 
 REPORT = "report.html"
 KINDS = ("thesis", "sensitivity")
-RPM = 30.0 / np.pi
 PREFIX = "diagrams/"
 SECTIONS = {
     2: "Thermal deformation of the tooth",
@@ -48,20 +46,10 @@ def page(results: Results) -> str:
     sections = _thesis_sections(results, pictures) if whole else []
     sections.append(_sensitivity(results, pictures))
     sections += closing(results)
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
-    return environment.get_template("report.html").render(
+    return render(
         title=results.text("title"),
-        style=Markup(sheet),
         summary=_summary(results) if whole else _study_words(results),
         tiles=_tiles(results) if whole else [],
-        notices=[],
         sections=sections,
         version=results.text("thermogear"),
     )
@@ -155,27 +143,13 @@ def _claims_table(claims: xr.Dataset, place: int) -> Table:
             Markup("{}<br/><small>{}</small>{}").format(
                 prose(one["words"]), one["place"], picture),
             Markup("<b>as in the thesis:</b> {}<br/><b>consistent:</b> {}").format(
-                _prose(one["as_in_the_thesis"]), _prose(one["consistent"])),
+                prose(one["as_in_the_thesis"]), prose(one["consistent"])),
             Markup("<b>{}</b><br/>{}<br/><small>{}</small>").format(
-                one["verdict"], _prose(one["argument"]), _code(one["code"])),
+                one["verdict"], prose(one["argument"]), _code(one["code"])),
         ])  # fmt: skip
     head: list[Cell] = ["no.", "claim, in our words", "computed", "verdict, argument, code"]
     caption = f"Section {place}, claim by claim; contradicted ones are marked."
     return Table(caption, head, rows, names=4, marked=frozenset(marked), wordy=True)
-
-
-_POWER = re.compile(r"(\d(?:\.\d+)?)e([+-]\d+)\b")
-
-
-def _prose(text: str) -> Markup:
-    """Stored words with powers of ten as a reader writes them."""
-
-    def power(found: re.Match[str]) -> str:
-        if float(found[0]) == 0.0:
-            return "0"
-        return f"{found[1]}·10{raised(int(found[2]))}"
-
-    return prose(_POWER.sub(power, text))
 
 
 def _code(names: str) -> Markup:
@@ -255,7 +229,7 @@ def _flip_table(flips: xr.Dataset) -> Table:
             one = flips.sel(row=row, heat=heat)
             cells = [f"{v:.9g}" if np.isfinite(v) else "–" for v in one["value"].values]
             symbol = {"zeta": "ζ", "omega": "ω_h", "epsilon": "ε"}[str(row)]
-            rows.append([symbol, heats[str(heat)], *cells, str(one["note"].item())])
+            rows.append([html_symbol(symbol), heats[str(heat)], *cells, str(one["note"].item())])
     head = [
         "parameter", "heat", *(f"{2**k} → {2 ** (k + 1)}" for k in range(flips.sizes["flip"])),
         "why no more",
@@ -298,7 +272,7 @@ def _experiment_table(data: xr.Dataset) -> Table:
             marked.add(k)
         unit = "Hz" if one["quantity"].item() == "frequency" else "µm"
         rows.append([
-            f"{float(one['speed']) * RPM:.0f} rpm",
+            f"{float(one['speed']) / RPM:.0f} rpm",
             f"{one['quantity'].item()} [{unit}]",
             str(one["verdict"].item()).partition(":")[0],
             *(f"{float(one[f'{n}_value']):g}" for n in ("with", "without")),
@@ -322,7 +296,7 @@ def _study_words(results: Results) -> str:
     data = results.groups["sensitivity"]
     return (
         f"{int(data.attrs['evaluations'])} evaluations of the chain from friction to vibration at "
-        f"{float(data.attrs['speed']) * RPM:.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
+        f"{float(data.attrs['speed']) / RPM:.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
         f"intervals at {100 * float(data.attrs['confidence']):.0f} %. Every input runs through "
         "its whole range, independently of the others."
     )
@@ -363,13 +337,21 @@ def _indices(data: xr.Dataset) -> Table:
     rows: list[Sequence[Cell]] = []
     for o in range(data.sizes["output"]):
         one = data.isel(output=o)
-        for k in np.argsort(-one["total"].values, kind="stable")[:4]:
+        words = str(one["output_words"].item())
+        strongest = np.argsort(-one["total"].values, kind="stable")[:4]
+        told = [k for k in strongest if one["total"].values[k] >= 5e-4]
+        for k in told:
             pair = [
-                f"{float(one[n][k]):.3f} ± {float(one[f'{n}_conf'][k]):.3f}"
+                f"{float(one[n][k]) + 0.0:.3f} ± {float(one[f'{n}_conf'][k]):.3f}".replace("-", "−")
                 for n in ("first_order", "total")
             ]
-            rows.append(
-                [str(one["output_words"].item()), str(data["input_words"].values[k]), *pair]
-            )
+            rows.append([words, str(data["input_words"].values[k]), *pair])
+        if not told:
+            rows.append([words, "none changes it", "–", "–"])
     head = ["result", "input", "first order", "total"]
-    return Table("The four strongest inputs of every result.", head, rows, names=2)
+    return Table(
+        "The strongest inputs of every result, at most four, as indices between 0 and 1.",
+        head,
+        rows,
+        names=2,
+    )

@@ -19,7 +19,7 @@ def closing(results: Results) -> list[Section]:
     ours = results.rows("assumptions")
     if ours:
         rows = [
-            (field_name(r.get("field", "")), r.get("value", ""), prose(r.get("reason", "")))
+            (field_name(r.get("field", "")), prose(r.get("value", "")), prose(r.get("reason", "")))
             for r in ours
         ]
         table = tables.words(

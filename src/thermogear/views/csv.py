@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.views.results import put, read_results
+from thermogear.base.files import put
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.views.results import read_results
 
 CURVES = {
     "path_position": "path",
@@ -90,7 +92,7 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
         return f"{dimension}{place}"
     value = data[dimension].values[place]
     if dimension == "gear_temperature":
-        return f"{float(value) - 273.15:.4g}degC"
+        return f"{float(value) - ZERO_CELSIUS:.4g}degC"
     return str(value)
 
 
@@ -129,13 +131,18 @@ def _texts(values: NDArray[np.generic]) -> NDArray[np.object_]:
     if values.dtype.kind == "f":
         texts = [f"{v:.9g}" if v == v else "" for v in values.ravel().tolist()]
     else:
-        texts = [_quoted(str(v)) for v in values.ravel().tolist()]
+        texts = [quoted(str(v)) for v in values.ravel().tolist()]
     found = np.empty(values.size, dtype=object)
     found[:] = texts
     return found.reshape(values.shape)
 
 
-def _quoted(text: str) -> str:
+def table_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A CSV text: one header line, then a line for each row."""
+    return "".join(",".join(map(quoted, line)) + "\n" for line in (head, *rows))
+
+
+def quoted(text: str) -> str:
     """A field as a spreadsheet reads it safely: quoted where needed, never a formula."""
     flat = " ".join(text.split())
     if flat[:1] in {"=", "+", "@"} or re.match(r"-\D", flat):
@@ -145,7 +152,7 @@ def _quoted(text: str) -> str:
 
 def _text(columns: list[Column]) -> str:
     """One header line, then a line for each row."""
-    head = ",".join(_quoted(name) for name, _ in columns)
+    head = ",".join(quoted(name) for name, _ in columns)
     lines = map(",".join, zip(*(cells for _, cells in columns), strict=True))
     return "\n".join([head, *lines]) + "\n"
 

@@ -5,51 +5,42 @@ Everything is drawn from the one stored file; nothing is computed again.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import xarray as xr
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
-from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text
+from thermogear.base.files import put
+from thermogear.views.csv import quoted
+from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text, render
 from thermogear.views.plots import engine as plots
+from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
-from thermogear.views.results import put
+from thermogear.views.results import read_tree
 from thermogear.views.style import styled
 from thermogear.views.svg import draw
-from thermogear.views.words import number
+from thermogear.views.words import number, prose
 
 KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
 
-Groups = dict[str, xr.Dataset]
+Groups = Mapping[str, xr.Dataset]
 Summary = dict[str, Any]
 
 
 def read_engine(path: Path) -> tuple[str, Summary, Groups]:
     """Kind, summary and groups of a stored file; InputError where it is not ours."""
-    if not path.is_file():
-        raise InputError("results", str(path), why="there is no such file")
-    try:
-        with xr.open_datatree(path, engine="h5netcdf") as tree:
-            attributes = dict(tree.attrs)
-            groups = {
-                node.path.strip("/"): node.to_dataset(inherit=True).load()
-                for node in tree.subtree
-                if node.has_data
-            }
-        kind, summary = str(attributes["kind"]), json.loads(str(attributes["summary"]))
-    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
-        raise InputError("results", str(path), why="it is damaged or not ours") from error
-    if kind not in KINDS:
-        raise InputError("results", kind, allowed=" | ".join(KINDS))
-    summary["thermogear"] = str(attributes.get("thermogear", ""))
-    return kind, summary, groups
+    found = read_tree(path)
+    if found.text("kind") not in KINDS:
+        raise InputError("results", str(path), why="it was not written by thermogear")
+    return (
+        found.kind,
+        {**found.table("summary"), "thermogear": found.text("thermogear")},
+        found.groups,
+    )
 
 
 def write_pages(path: Path) -> list[Path]:
@@ -105,33 +96,20 @@ def write_tables(directory: Path, kind: str, groups: Groups) -> list[Path]:
 
 
 def _cell(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:.12g}"
-    text = str(value)
-    return f'"{text}"' if "," in text else text
+    return f"{value:.12g}" if isinstance(value, float) else quoted(str(value))
 
 
 def page(kind: str, summary: Summary, groups: Groups) -> str:
     """The self-contained page of one stored result."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
     drawn = draw(_picture(kind, groups), kind, f"{kind} of {summary['title']}")
     caption = CAPTIONS[kind]
     gallery = Gallery([Picture(kind, HEADINGS[kind], caption, drawn, wide=True)])
     blocks: list[Block] = [*_TABLES[kind](summary)]
     sections = [Section("numbers", "Numbers", blocks), Section("picture", "Picture", [gallery])]
-    return environment.get_template("report.html").render(
+    return render(
         title=str(summary["title"]),
-        style=Markup(sheet),
         summary=_headline(kind, summary),
-        tiles=[],
-        notices=[("info", "Note", notice) for notice in summary.get("notices", [])],
+        notices=[{"level": "info", "text": text} for text in summary.get("notices", [])],
         sections=sections,
         version=summary["thermogear"],
     )
@@ -181,7 +159,7 @@ def _headline(kind: str, summary: Summary) -> str:
 
 def _orbit_tables(summary: Summary) -> list[Block]:
     si = summary["units"] == "SI"
-    length = (1e6, "µm") if si else (1.0, "")
+    length = (1e6, "µm") if si else (1.0, "–")
     share = summary["time_share"]
     factor = summary["dynamic_load_factor"]
     rows = [
@@ -190,7 +168,11 @@ def _orbit_tables(summary: Summary) -> list[Block]:
             [f"multiplier {i}", _complex(mu), f"modulus {mu['modulus']:.9f}"]
             for i, mu in enumerate(summary["multipliers"], start=1)
         ),
-        ["state at phase 0", f"{summary['state'][0]:.12g}, {summary['state'][1]:.12g}", "X, X′"],
+        [
+            "state at phase 0",
+            prose(f"{summary['state'][0]:.12g}, {summary['state'][1]:.12g}"),
+            "X, X′",
+        ],
         ["losses of contact", str(summary["contact_losses"]), "per orbit"],
         ["back-side impacts", str(summary["back_impacts"]), "per orbit"],
         ["time in drive contact", f"{100 * share['drive']:.4g}", "%"],
@@ -216,7 +198,7 @@ def _orbit_tables(summary: Summary) -> list[Block]:
         for line in sorted(summary["lines"], key=lambda line: -float(line["amplitude"]))[:12]
     ]
     marked = frozenset(i for i, row in enumerate(lines) if row[1])
-    head = ["order", "", f"amplitude {length[1]}".strip(), "frequency [Hz]"]
+    head = ["order", "", f"amplitude [{length[1]}]", "frequency [Hz]"]
     return [
         Table("Orbit", ["quantity", "value", "unit"], rows, names=1),
         Table("Greatest lines", head, lines, names=2, marked=marked),
@@ -224,9 +206,10 @@ def _orbit_tables(summary: Summary) -> list[Block]:
 
 
 def _complex(mu: dict[str, float]) -> str:
-    if mu["imag"] == 0.0:
-        return f"{mu['real']:.9f}"
-    return f"{mu['real']:.9f} {'+' if mu['imag'] > 0 else '−'} {abs(mu['imag']):.9f} i"
+    text = f"{mu['real']:.9f}"
+    if mu["imag"] != 0.0:
+        text += f" {'+' if mu['imag'] > 0 else '−'} {abs(mu['imag']):.9f} i"
+    return text.replace("-", "−")
 
 
 def _lyapunov_tables(summary: Summary) -> list[Block]:
@@ -255,7 +238,7 @@ def _branch_tables(summary: Summary) -> list[Block]:
     ]
     found: list[Block] = []
     if rows:
-        head = ["kind", "orbit", plots.words(summary["parameter"]), "largest multiplier", "note"]
+        head = ["kind", "orbit", page_words(summary["parameter"]), "largest multiplier", "note"]
         found.append(Table("Bifurcations", head, rows, names=2))
     else:
         found.append(Text("No bifurcation was found on the way."))
@@ -275,7 +258,7 @@ def _cascade_tables(summary: Summary) -> list[Block]:
             rows.append(cells)
         rows.append(["branch then", *(c["ended"] for c in own)])
         head = ["period doubling", *(c["heat"] for c in own)]
-        words = plots.words(own[0]["parameter"])
+        words = page_words(own[0]["parameter"])
         found.append(Table(f"{words}, {own[0]['from']:g} to {own[0]['to']:g}", head, rows))
     return found
 

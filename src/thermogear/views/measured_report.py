@@ -5,38 +5,29 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import jinja2
 import numpy as np
 import xarray as xr
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import put
+from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.views import tables
-from thermogear.views.page import Block, Pictures, Section, Table, Text
-from thermogear.views.results import Results, put
+from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text, render
+from thermogear.views.results import Results, read_tree
 from thermogear.views.style import COLD, HOT, INK, WIDE, log_axis, picture
-from thermogear.views.words import number, prose
+from thermogear.views.words import html_symbol, number, prose
 
-RPM = 30.0 / np.pi
 _SHOWN = 60  # lines of the table: the most prominent
 
 
 def write_measured_report(file: Path, page: Path) -> Path:
     """Draw ``page`` from the stored ``file`` (netCDF) of a measurement or a comparison."""
-    try:
-        with xr.open_datatree(file, engine="h5netcdf") as tree:
-            texts = {str(name): str(value) for name, value in tree.attrs.items()}
-            groups = {
-                node.path.strip("/"): node.to_dataset(inherit=True).load()
-                for node in tree.subtree
-                if node.has_data
-            }
-    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
-        raise InputError("results", str(file), why="it cannot be read as netCDF") from error
-    if texts.get("kind") not in ("measured", "comparison"):
+    found = read_tree(file)
+    if found.text("kind") not in ("measured", "comparison"):
         raise InputError("results", str(file), why="it holds no measurement and no comparison")
-    return put(page, page_of(Results(texts, groups)))
+    return put(page, page_of(found))
 
 
 def page_of(results: Results) -> str:
@@ -46,22 +37,10 @@ def page_of(results: Results) -> str:
         section = make(results)
         if section is not None:
             sections.append(section)
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
-    levels = {"important": "Important", "warning": "Mind", "info": "Note"}
-    rows = sorted(results.rows("notices"), key=lambda row: list(levels).index(row["level"]))
-    return environment.get_template("report.html").render(
+    return render(
         title=results.text("title"),
-        style=Markup(sheet),
         summary=results.text("summary") or _summary(results),
-        tiles=[],
-        notices=[(row["level"], levels[row["level"]], prose(row["text"])) for row in rows],
+        notices=results.rows("notices"),
         sections=sections,
         version=results.text("thermogear"),
     )
@@ -152,8 +131,8 @@ def _lines(results: Results) -> Section | None:
         return None
     strongest = np.argsort(-data["line_prominence"].values)[:_SHOWN]
     unit = results.text("unit") or "file's"
-    head = ["channel", "line", "order", "cycles/sample", "f [Hz]", f"reading [{unit}]"]
-    head += ["a [g]", "x [µm]", "u_D [%]", "over floor", "off bin"]
+    head: list[Cell] = ["channel", "line", "order", "cycles/sample", "f [Hz]", f"reading [{unit}]"]
+    head += ["a [g]", "x [µm]", html_symbol("u_D [%]"), "over floor", "off bin"]
     rows: list[list[str | Markup]] = []
     for place in np.sort(strongest):
         one = data.isel(line=int(place))
@@ -170,14 +149,16 @@ def _lines(results: Results) -> Section | None:
                 f"{float(one['line_position']):.6f}",
                 value("line_frequency"),
                 value("line_reading"),
-                value("line_acceleration", 1 / 9.80665),
+                value("line_acceleration", 1 / STANDARD_GRAVITY),
                 value("line_displacement", 1e6),
                 value("line_uncertainty", 100.0),
                 value("line_prominence"),
                 value("line_bin_offset"),
             ]
         )
-    caption = "Peak amplitudes; u_D: relative standard uncertainty. – : the record does not tell."
+    caption = prose(
+        "Peak amplitudes; u_D: relative standard uncertainty. – : the record does not tell."
+    )
     return Section("lines", "Lines", [Table(caption, head, rows, names=2)])
 
 
@@ -201,9 +182,9 @@ def _comparison(results: Results) -> Section | None:
     if data is None:
         return None
     models = [str(name) for name in data["model"].values]
-    head = ["speed [rpm]", "quantity", "measured", *models]
+    head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
     head += [f"error {name} [%]" for name in models]
-    head += ["u_num [%]", "u_input [%]", "u_D [%]", "u_val [%]", "verdict"]
+    head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
     rows: list[list[str | Markup]] = []
     for place in range(data.sizes["row"]):
         one = data.isel(row=place)
@@ -211,32 +192,41 @@ def _comparison(results: Results) -> Section | None:
         factor = 1e6 if is_x else 1.0
         rows.append(
             [
-                number(float(one["pinion_speed"]) * RPM, 4),
+                number(float(one["pinion_speed"]) / RPM, 4),
                 "displacement [µm]" if is_x else "frequency [Hz]",
+                str(one["verdict"].values) or "–",
                 number(float(one["measured_value"]) * factor, 5),
                 *(number(float(v) * factor, 5) for v in one["simulated_value"].values),
-                *(f"{100 * float(v):+.2f}" for v in one["comparison_error"].values),
+                *(
+                    f"{100 * float(v):+.2f}".replace("-", "−")
+                    for v in one["comparison_error"].values
+                ),
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
-                str(one["verdict"].values),
             ]
         )
-    blocks: list[Block] = [Table("Error: (simulated − measured)/measured.", head, rows, names=2)]
+    blocks: list[Block] = [Table("Error: (simulated − measured)/measured.", head, rows, names=3)]
     implied = results.group("implied")
     if implied is not None:
         lines: list[list[str | Markup]] = [
             [
-                number(float(implied["pinion_speed"].values[i]) * RPM, 4),
-                f"{float(implied['implied_acceleration'].values[i]) / 9.80665:.1f}",
-                _maybe(float(implied["implied_shaft_speed"].values[i]) * RPM, 1),
+                number(float(implied["pinion_speed"].values[i]) / RPM, 4),
+                f"{float(implied['implied_acceleration'].values[i]) / STANDARD_GRAVITY:.1f}",
+                _maybe(float(implied["implied_shaft_speed"].values[i]) / RPM, 1),
                 _maybe(float(implied["mesh_line_offset"].values[i]), 2),
                 _maybe(float(implied["line_bin_offset"].values[i]), 2),
             ]
             for i in range(implied.sizes["speed"])
         ]
-        names = ["speed [rpm]", "implied a [g]", "implied speed [rpm]", "off mesh [Hz]", "in bins"]
+        names = [
+            "speed [rpm]",
+            "implied a [g]",
+            "implied speed [rpm]",
+            "off mesh [Hz]",
+            "off mesh [bins]",
+        ]
         blocks.append(Table("What the measured lines imply.", names, lines, names=0))
     return Section("comparison", "Comparison", blocks)
 
 
 def _maybe(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if np.isfinite(value) else "–"
+    return f"{value:.{digits}f}".replace("-", "−") if np.isfinite(value) else "–"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
+from thermogear.views.page import Tile
 from thermogear.views.results import Results
 from thermogear.views.style import names_of
 from thermogear.views.tables import JAMMED
@@ -16,15 +16,6 @@ from thermogear.views.words import celsius, display, jam_at, number, percent, sp
 
 STUDIED = "1.1 to 1.3"
 """Frequency ratios of the thesis's bifurcation study."""
-
-
-@dataclass(frozen=True)
-class Tile:
-    """One figure that matters: what it is, its value, what stands beside it."""
-
-    title: str
-    value: str
-    beside: str
 
 
 def summary(results: Results) -> str:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
+import jinja2
 import xarray as xr
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear.views.svg import draw
+from thermogear.views.words import prose
 
 Cell = str | Markup
 
@@ -125,3 +128,51 @@ class Pictures:
             blocks.append(Gallery(row))
         self.drawn = []
         return blocks
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One figure at the top of the page."""
+
+    title: str
+    value: str
+    beside: Cell
+
+
+LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
+
+
+def told(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, Markup]]:
+    """(level, its word, text) of every stored notice, most important first."""
+    order = list(LEVELS)
+    known = [(level if (level := str(row.get("level"))) in LEVELS else "info", row) for row in rows]
+    known.sort(key=lambda pair: order.index(pair[0]))
+    return [(level, LEVELS[level], prose(row.get("text", ""))) for level, row in known]
+
+
+def render(
+    title: str,
+    summary: Cell,
+    sections: Sequence[Section],
+    version: str,
+    tiles: Sequence[Tile] = (),
+    notices: Iterable[Mapping[str, Any]] = (),
+) -> str:
+    """The whole page as text: it needs no other file, no script and no network."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("thermogear.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    return environment.get_template("report.html").render(
+        title=" ".join(title.split()),
+        style=Markup(sheet),
+        summary=summary if isinstance(summary, Markup) else prose(summary),
+        tiles=tiles,
+        notices=told(notices),
+        sections=sections,
+        version=version,
+    )

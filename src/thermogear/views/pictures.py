@@ -1,20 +1,89 @@
-"""The pictures of a page as files of their own, for a paper or a slide."""
+"""The pictures of a page by themselves: as files, or in a notebook."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
+import xarray as xr
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
 from thermogear.views.page import Picture, Pictures
-from thermogear.views.report import ORDER
-from thermogear.views.results import read_results
+from thermogear.views.report import ORDER, with_hot_temperature
+from thermogear.views.results import KINDS as RUNS
+from thermogear.views.results import read_results, results_of
 from thermogear.views.style import styled
+from thermogear.views.survey_sections import SURVEYS
 
 KINDS = ("png", "svg", "pdf")
+RESOLUTION = 130
+"""Dots per inch of the PNG files."""
+
+
+@dataclass(frozen=True)
+class ReportPicture:
+    """A picture of a report; a notebook shows it where it stands last in a cell.
+
+    ``heading`` and ``caption`` say what one should see. It is drawn when first asked for.
+    """
+
+    name: str
+    heading: str
+    caption: str
+    make: Callable[[], Figure] = field(repr=False)
+
+    @cached_property
+    def image(self) -> bytes:
+        """Its PNG file, on white."""
+        stream = io.BytesIO()
+        with styled():
+            self.make().savefig(stream, format="png", dpi=RESOLUTION, facecolor="white")
+        return stream.getvalue()
+
+    def _repr_png_(self) -> bytes:
+        """For the notebook."""
+        return self.image
+
+
+@dataclass
+class _Shown(Pictures):
+    """Keeps every picture, to be drawn when it is asked for."""
+
+    found: dict[str, ReportPicture] = field(default_factory=dict)
+
+    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
+        caption = picture.caption
+        words = caption.striptags() if isinstance(caption, Markup) else caption
+        self.found[name] = ReportPicture(name, picture.heading, words, make)
+
+
+def pictures(results: xr.DataTree | str | Path) -> dict[str, ReportPicture]:
+    """Every picture of a report by its name, in page order.
+
+    ``results``: what :func:`~thermogear.run` or :func:`~thermogear.relief_survey` returns, or a
+    directory that holds a run's. The names are those of the files that the command line writes.
+    Raises InputError where they are neither.
+    """
+    held = results_of(results) if isinstance(results, xr.DataTree) else read_results(Path(results))
+    kind = held.texts.get("kind")
+    if kind in SURVEYS:
+        survey = SURVEYS[kind](held.texts, held.groups)
+        return {
+            one.name: ReportPicture(one.name, one.heading, one.caption, one.make)
+            for one in survey.pictures
+        }
+    if kind not in RUNS:
+        raise InputError("results", "no tree of a run", fix="give what run(case) returns")
+    shown = _Shown()
+    held = with_hot_temperature(held)
+    for make in ORDER:
+        make(held, shown)
+    return shown.found
 
 
 @dataclass
@@ -28,7 +97,7 @@ class _Files(Pictures):
     def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
         path = self.folder / f"{name}.{self.kind}"
         with styled():
-            make().savefig(path, dpi=130, facecolor="white")
+            make().savefig(path, dpi=RESOLUTION, facecolor="white")
         self.written.append(path)
 
 
@@ -40,7 +109,7 @@ def write_pictures(directory: Path, folder: Path, kind: str = "png") -> list[Pat
     """
     if kind not in KINDS:
         raise InputError("kind", repr(kind), allowed=" | ".join(KINDS))
-    results = read_results(Path(directory))
+    results = with_hot_temperature(read_results(Path(directory)))
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     files = _Files(folder=folder, kind=kind)

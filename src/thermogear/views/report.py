@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import jinja2
 import xarray as xr
-from markupsafe import Markup
 
+from thermogear.base.files import put
 from thermogear.views import gear_sections, opening, row_sections, tables
 from thermogear.views.closing import closing
-from thermogear.views.page import Pictures, Section
-from thermogear.views.results import Results, put, read_results
-from thermogear.views.words import prose
+from thermogear.views.page import Pictures, Section, render
+from thermogear.views.results import Results, read_results
 
 REPORT = "report.html"
 
@@ -28,10 +26,8 @@ ORDER = (
 )
 """The sections between key results and closing, in the order of the page."""
 
-LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
 
-
-def write_report(directory: Path) -> Path:
+def write_report(directory: str | Path) -> Path:
     """Draw ``directory/report.html`` from ``directory/results.nc`` alone; the page's path.
 
     The page needs no other file, no script and no network; the same results give the same
@@ -43,21 +39,12 @@ def write_report(directory: Path) -> Path:
 
 def page(results: Results) -> str:
     """The whole page as text."""
-    results = _with_hot_temperature(results)
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
-    return environment.get_template("report.html").render(
-        title=" ".join(results.text("title").split()) or "thermogear",
-        style=Markup(sheet),
+    results = with_hot_temperature(results)
+    return render(
+        title=results.text("title") or "thermogear",
         summary=opening.summary(results),
         tiles=opening.tiles(results),
-        notices=_notices(results),
+        notices=results.rows("notices"),
         sections=_sections(results),
         version=results.text("thermogear"),
     )
@@ -76,16 +63,7 @@ def _sections(results: Results) -> list[Section]:
     return found + closing(results)
 
 
-def _notices(results: Results) -> list[tuple[str, str, Markup]]:
-    """(level, its word, text) of every notice, most important first."""
-    rows = results.rows("notices")
-    order = list(LEVELS)
-    levels = [level if (level := str(row.get("level"))) in LEVELS else "info" for row in rows]
-    pairs = sorted(zip(levels, rows, strict=True), key=lambda pair: order.index(pair[0]))
-    return [(level, LEVELS[level], prose(row.get("text", ""))) for level, row in pairs]
-
-
-def _with_hot_temperature(results: Results) -> Results:
+def with_hot_temperature(results: Results) -> Results:
     """The mesh's figures with the pinion's tip temperature of the same points beside them."""
     path, mesh = results.group("path"), results.group("mesh")
     if path is None or mesh is None or "pinion_body_temperature" not in path:

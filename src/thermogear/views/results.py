@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from thermogear.base.errors import InputError
 RESULTS = "results.nc"
 KINDS = ("gear", "dimensionless")
 
-_FIX = "write results with `thermogear run CASE -o DIR`"
+_FIX = "name a directory that this command, or `thermogear run CASE -o DIR`, has written"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +67,19 @@ def read_results(directory: Path, kinds: Collection[str] = KINDS) -> Results:
     Raises InputError, in one line, where the file is missing, unreadable or not ours.
     """
     path = Path(directory) / RESULTS
+    found = read_tree(path, _FIX)
+    if "thermogear" not in found.texts or found.texts.get("kind") not in kinds:
+        raise InputError("results", str(path), why="it was not written by thermogear", fix=_FIX)
+    return found
+
+
+def read_tree(path: Path, fix: str = "") -> Results:
+    """All of a stored netCDF file in memory, whoever wrote it; the root's own group is "".
+
+    Raises InputError, in one line with ``fix``, where the file is missing or damaged.
+    """
     if not path.is_file():
-        raise InputError("results", str(path), why="there is no such file", fix=_FIX)
+        raise InputError("results", str(path), why="there is no such file", fix=fix)
     import h5py
 
     try:
@@ -77,30 +87,19 @@ def read_results(directory: Path, kinds: Collection[str] = KINDS) -> Results:
         with h5py.File(path, "r") as file:
             file.visititems(lambda name, item: None)
         with xr.open_datatree(path, engine="h5netcdf") as tree:
-            texts = {str(name): str(value) for name, value in tree.attrs.items()}
-            groups = {
-                node.path.strip("/"): node.to_dataset(inherit=True).load()
-                for node in tree.subtree
-                if node.has_data
-            }
+            return results_of(tree)
     except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
         raise InputError(
-            "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=_FIX
+            "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=fix
         ) from error
-    if "thermogear" not in texts or texts.get("kind") not in kinds:
-        raise InputError("results", str(path), why="it was not written by thermogear", fix=_FIX)
+
+
+def results_of(tree: xr.DataTree) -> Results:
+    """What ``tree`` holds, every group in memory."""
+    texts = {str(name): str(value) for name, value in tree.attrs.items()}
+    groups = {
+        node.path.strip("/"): node.to_dataset(inherit=True).load()
+        for node in tree.subtree
+        if node.has_data
+    }
     return Results(texts, groups)
-
-
-def put(path: Path, text: str) -> Path:
-    """Write ``text`` beside ``path``, then put it in place: a page is whole or not there."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with temporary.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path

@@ -90,6 +90,8 @@ LEFT, RIGHT, TOP, BOTTOM = 0.72, 0.14, 0.30, 0.48
 BETWEEN, ABOVE = 0.78, 0.86
 """Space [in] between the columns and between the rows of axes."""
 LEGEND_LINE = 0.20
+HANDLE, LETTER = 0.55, 0.066
+"""Width [in] of a legend's line with its gaps, and of a letter."""
 
 
 def picture(
@@ -128,7 +130,8 @@ def picture(
 def legend_below(figure: Figure, source: Axes | Sequence[Axes], columns: int = 3) -> None:
     """One legend under the picture, never over data; entries of the same name once.
 
-    The picture grows downwards by the legend's height, so that the axes keep theirs.
+    At most so many ``columns`` as fit beside each other. The picture grows downwards by the
+    legend's height, so that the axes keep theirs.
     """
     found: dict[str, Any] = {}
     for axes in [source] if isinstance(source, Axes) else source:
@@ -136,9 +139,11 @@ def legend_below(figure: Figure, source: Axes | Sequence[Axes], columns: int = 3
             found.setdefault(name, handle)
     if not found:
         return
-    columns = min(columns, len(found))
-    room = LEGEND_LINE * -(-len(found) // columns) + 0.08
     width, height = figure.get_size_inches()
+    columns = min(columns, len(found))
+    while columns > 1 and _legend_width(list(found), columns) > width:
+        columns -= 1
+    room = LEGEND_LINE * -(-len(found) // columns) + 0.08
     layout = figure.subplotpars
     grown = height + room
     figure.set_size_inches(width, grown)
@@ -155,6 +160,18 @@ def legend_below(figure: Figure, source: Axes | Sequence[Axes], columns: int = 3
         borderaxespad=0.25,
         labelspacing=0.3,
     )
+
+
+def _legend_width(names: Sequence[str], columns: int) -> float:
+    """About how wide [in] a legend is whose entries run down its columns."""
+    rows = -(-len(names) // columns)
+    longest = [max(map(_letters, names[i : i + rows])) for i in range(0, len(names), rows)]
+    return sum(HANDLE + LETTER * count for count in longest)
+
+
+def _letters(name: str) -> int:
+    """How many letters a label shows, its marks of mathematics aside."""
+    return len(name) - 2 * name.count("$") - name.count("{") - name.count("_")
 
 
 def log_axis(axes: Axes) -> None:

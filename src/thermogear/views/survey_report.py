@@ -7,13 +7,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import xarray as xr
-from markupsafe import Markup
 
 from thermogear.base.errors import InputError
-from thermogear.views.page import Block, Code, Gallery, Picture, Section
-from thermogear.views.results import put
+from thermogear.base.files import put
+from thermogear.views.page import Block, Code, Gallery, Picture, Section, render
+from thermogear.views.results import Results, read_tree
 from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS, Drawn, Survey
 from thermogear.views.svg import draw
@@ -21,8 +20,6 @@ from thermogear.views.words import prose
 
 RESOLUTION = 160
 """Dots per inch of the PNG files."""
-
-LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
 
 
 def write_survey(directory: Path, kind: str) -> list[Path]:
@@ -32,47 +29,26 @@ def write_survey(directory: Path, kind: str) -> list[Path]:
     table of numbers as CSV. Raises InputError where the file is missing, damaged or not ours.
     """
     directory = Path(directory)
-    texts, groups = read_survey(directory / f"{kind}.nc")
-    survey = SURVEYS[str(texts["kind"])](texts, groups)
-    written = [put(directory / f"{kind}.html", page(texts, survey))]
+    stored = read_survey(directory / f"{kind}.nc")
+    survey = SURVEYS[stored.kind](stored.texts, stored.groups)
+    written = [put(directory / f"{kind}.html", page(stored.texts, survey))]
     for one in survey.pictures:
         written += _files(directory, kind, one)
-    for name, data in groups.items():
+    for name, data in stored.groups.items():
         written += _tables(directory, f"{kind}_{name}", data)
     return written
 
 
-def read_survey(path: Path) -> tuple[dict[str, Any], dict[str, xr.Dataset]]:
-    """Attributes and groups of a stored survey, in memory."""
-    if not path.is_file():
-        raise InputError("results", str(path), why="there is no such file")
-    try:
-        with xr.open_datatree(path, engine="h5netcdf") as tree:
-            texts = {str(name): value for name, value in tree.attrs.items()}
-            groups = {
-                node.path.strip("/"): node.to_dataset(inherit=True).load()
-                for node in tree.subtree
-                if node.has_data
-            }
-    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
-        raise InputError(
-            "results", str(path), why="it cannot be read as netCDF; it is damaged"
-        ) from error
-    if "thermogear" not in texts or texts.get("kind") not in SURVEYS:
+def read_survey(path: Path) -> Results:
+    """A stored survey, in memory."""
+    found = read_tree(path)
+    if "thermogear" not in found.texts or found.texts.get("kind") not in SURVEYS:
         raise InputError("results", str(path), why="it was not written by thermogear")
-    return texts, groups
+    return found
 
 
 def page(texts: Mapping[str, Any], survey: Survey) -> str:
     """The whole page as text."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
     pictures: list[Block] = [Gallery([_picture(one)]) for one in survey.pictures if one.wide]
     small = [_picture(one) for one in survey.pictures if not one.wide]
     if small:
@@ -82,16 +58,10 @@ def page(texts: Mapping[str, Any], survey: Survey) -> str:
         sections.append(Section("paste", "For the case file", [Code(survey.code)]))
     sections.append(Section("numbers", "Numbers", list(survey.tables)))
     sections.append(Section("case", "The case", [Code(_case_text(texts))]))
-    notices = [
-        (row["level"], LEVELS[row["level"]], prose(row["text"]))
-        for row in json.loads(str(texts["notices"]))
-    ]
-    return environment.get_template("report.html").render(
-        title=" ".join(str(texts["title"]).split()),
-        style=Markup(sheet),
+    return render(
+        title=str(texts["title"]),
         summary=prose(survey.summary),
-        tiles=[],
-        notices=notices,
+        notices=json.loads(str(texts["notices"])),
         sections=sections,
         version=texts["thermogear"],
     )

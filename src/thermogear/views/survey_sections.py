@@ -12,11 +12,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.views.page import Table
 from thermogear.views.plots import laws, loaded, relief, thermal_map
-from thermogear.views.words import exactly, number, operating_names
+from thermogear.views.words import exactly, number, operating_names, prose
 
 Groups = Mapping[str, xr.Dataset]
 
@@ -137,7 +137,7 @@ def temperature(texts: Mapping[str, Any], groups: Groups) -> Survey:
             "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
             "torque are means over the lines of the grid.",
             ["claim", "found", "verdict"],
-            [[row["claim"], row["found"], row["verdict"]] for row in rows],
+            [[row["claim"], prose(row["found"]), row["verdict"]] for row in rows],
             names=3,
             marked=frozenset(i for i, row in enumerate(rows) if row["verdict"] != "holds"),
             wordy=True,
@@ -167,7 +167,7 @@ def _chosen(data: xr.Dataset) -> list[tuple[int, int]]:
 
 
 def _point_name(data: xr.Dataset, i: int, j: int) -> list[str]:
-    speed = float(data["pinion_speed"][i]) * 30.0 / np.pi
+    speed = float(data["pinion_speed"][i]) / RPM
     return [exactly(speed), exactly(float(data["pinion_torque"][j]))]
 
 
@@ -177,13 +177,15 @@ def _degrees(kelvin: float) -> str:
 
 def _corner_table(data: xr.Dataset) -> Table:
     head = [
-        "rpm", "N m", "status", "oil °C", "pinion teeth °C", "wheel teeth °C", "housing °C",
-        "flash K", "Λ least", "b′ least µm", "scuffing margin K", "iterations", "residual K",
+        "speed [rpm]", "torque [N m]", "status", "oil [°C]", "pinion teeth [°C]",
+        "wheel teeth [°C]", "housing [°C]", "flash [K]", "Λ least", "b′ least [µm]",
+        "scuffing margin [K]", "iterations", "residual [K]",
     ]  # fmt: skip
     rows = []
     for i, j in _chosen(data):
         here = data.isel(pinion_speed=i, pinion_torque=j)
         node = here["node_temperature"]
+        settled = int(here["status"]) != STATUS.index("not_converged")
         rows.append(
             [
                 *_point_name(data, i, j),
@@ -197,7 +199,7 @@ def _corner_table(data: xr.Dataset) -> Table:
                 number(1e6 * float(here["least_half_backlash"])),
                 number(float(here["scuffing_margin"])),
                 str(int(here["iterations"])),
-                f"{float(here['residual']):.1e}",
+                number(float(here["residual"]), 2) if settled else "–",
             ]
         )
     return Table("Corners and middle of the map.", head, rows, names=3)
@@ -217,7 +219,7 @@ def _estimate_table(data: xr.Dataset) -> Table:
     return Table(
         "Body temperature [°C]: mean of both gears' teeth by the heat balance, and the estimates "
         "of the ISO reports at the same oil temperature (difference to the heat balance in K).",
-        ["rpm", "N m", "heat balance", *names],
+        ["speed [rpm]", "torque [N m]", "heat balance", *names],
         rows,
         names=2,
     )
@@ -259,7 +261,7 @@ def tip_relief(texts: Mapping[str, Any], groups: Groups) -> Survey:
     ]
     table = Table(
         "Tip relief; lengths along the line of action.",
-        ["gear", "amount µm", "length mm", "shape"],
+        ["gear", "amount [µm]", "length [mm]", "shape"],
         [[row[0], row[1], row[2], row[3]] for row in rows],
     )
     return Survey(summary, pictures, [table], str(texts["paste"]))
@@ -320,7 +322,7 @@ def contact(texts: Mapping[str, Any], groups: Groups) -> Survey:
             rows.append(
                 [
                     exactly(float(here["load"])),
-                    state,
+                    prose(state),
                     number(1e-8 * float(here["mean_stiffness"])),
                     number(1e-8 * float(here["secant_stiffness"].mean())),
                     number(1e6 * float(error.mean())),
@@ -332,15 +334,16 @@ def contact(texts: Mapping[str, Any], groups: Groups) -> Survey:
     table = Table(
         "Loaded contact by load and temperature.",
         [
-            "N m", "temperature", "k tangent 10⁸ N/m", "k secant 10⁸ N/m", "δ mean µm",
-            "δ peak to peak µm", "double contact mm", "greatest pressure MPa",
+            "torque [N m]", "temperature", "k tangent [10⁸ N/m]", "k secant [10⁸ N/m]",
+            "δ mean [µm]", "δ peak to peak [µm]", "double contact [mm]",
+            "greatest pressure [MPa]",
         ],
         rows,
         names=2,
     )  # fmt: skip
     against = Table(
         "Mean mesh stiffness, cold [10⁸ N/m].",
-        ["N m", "loaded contact", "ISO 6336-1 method B", "difference %"],
+        ["torque [N m]", "loaded contact", "ISO 6336-1 method B", "difference [%]"],
         [
             [
                 exactly(float(torque)),

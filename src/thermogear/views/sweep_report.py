@@ -6,17 +6,17 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
-import jinja2
 import numpy as np
 import xarray as xr
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear import __version__
 from thermogear.base.errors import InputError
-from thermogear.views.page import Block, Pictures, Section, Table, Text
+from thermogear.base.files import put
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.views.page import Block, Pictures, Section, Table, Text, render
 from thermogear.views.plots import sweeps
-from thermogear.views.results import put
+from thermogear.views.plots.parameters import page_words, shown
 from thermogear.views.words import number
 
 RESULT = "result.zarr"
@@ -51,20 +51,12 @@ def write_sweep_report(directory: Path, title: str = "") -> Path:
 def page_of(data: xr.Dataset, title: str = "") -> str:
     """The whole page as text."""
     kind = str(data.attrs["kind"])
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
-    notices = [("info", "Note", text) for text in json.loads(data.attrs.get("notices", "[]"))]
-    return environment.get_template("report.html").render(
+    notices = [
+        {"level": "info", "text": text} for text in json.loads(data.attrs.get("notices", "[]"))
+    ]
+    return render(
         title=title or TITLES[kind],
-        style=Markup(sheet),
         summary=_summary(data),
-        tiles=[],
         notices=notices,
         sections=[s for s in (_pictures(data), _points(data), _settings(data)) if s.blocks],
         version=__version__,
@@ -139,12 +131,12 @@ def _points(data: xr.Dataset) -> Section:
             (
                 sweeps.KINDS[int(kind)],
                 str(int(period)),
-                number(float(sweeps.shown(parameter, value)), 8),
-                "" if state is None else number(float(state) - 273.15, 4),
+                number(float(shown(parameter, value)), 8),
+                "" if state is None else number(float(state) - ZERO_CELSIUS, 4),
             )
             for kind, period, value, state in _bifurcations(data)
         ]
-        head = ["kind", "period", sweeps.words(parameter), "gears [°C]"]
+        head = ["kind", "period", page_words(parameter), "gears [°C]"]
         if not any(row[3] for row in rows):
             head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
         blocks.append(Table("Located bifurcations", head, rows))
@@ -157,12 +149,12 @@ def _points(data: xr.Dataset) -> Section:
                     "up" if int(data["jump_direction"].values[i]) > 0 else "down",
                     number(
                         float(data["gear_temperature"].values[int(data["jump_state"].values[i])])
-                        - 273.15,
+                        - ZERO_CELSIUS,
                         4,
                     ),
-                    number(float(sweeps.shown("pinion_speed", data["jump_from"].values[i])), 6),
-                    number(float(sweeps.shown("pinion_speed", data["jump_to"].values[i])), 6),
-                    number(float(sweeps.shown("pinion_speed", fold)), 8),
+                    number(float(shown("pinion_speed", data["jump_from"].values[i])), 6),
+                    number(float(shown("pinion_speed", data["jump_to"].values[i])), 6),
+                    number(float(shown("pinion_speed", fold)), 8),
                     number(1e6 * float(data["jump_before"].values[i])),
                     number(1e6 * float(data["jump_after"].values[i])),
                 )

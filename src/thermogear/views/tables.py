@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from markupsafe import Markup
 
-from thermogear.base.vocabulary import QUANTITIES, STATUS
+from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS
 from thermogear.views.page import Cell, Table
 from thermogear.views.plots.rows import of_row, row_names, value_parts
 from thermogear.views.words import (
@@ -27,15 +27,6 @@ from thermogear.views.words import (
 )
 
 JAMMED = STATUS.index("jammed")
-NUMBERS = (
-    "damping_ratio",
-    "frequency_ratio",
-    "stiffness_amplitude",
-    "thermal_stiffness_ratio",
-    "mean_force",
-    "force_amplitude",
-    "half_backlash_ratio",
-)
 _UNITS = {"um": "µm", "1": "", "deg": "°", "degC": "°C", "N m": "N m", "kg m2": "kg m²",
           "kg m^2": "kg m²", "N/m^2": "N/m²", "N/m^2 | N/m": "N/m², N/m"}  # fmt: skip
 
@@ -214,18 +205,18 @@ def row_table(points: xr.Dataset, row: str) -> Table:
 
 def numbers_beside(points: xr.Dataset | None, mesh: xr.Dataset | None, name: str) -> Table:
     """The dimensionless numbers of a base set, and those of the rig beside them."""
-    head: list[Cell] = ["set", *(symbol(n) for n in NUMBERS)]
+    head: list[Cell] = ["set", *(symbol(n) for n in DIMENSIONLESS)]
     rows: list[list[Cell]] = []
     if points is not None:
         for row in row_names(points):
             data = of_row(points, row)
-            cells = [span(data[n].values, 4) if n in data else "–" for n in NUMBERS]
+            cells = [span(data[n].values, 4) if n in data else "–" for n in DIMENSIONLESS]
             rows.append([f"{name}, row {row}", *cells])
     if mesh is not None:
         for b, bundle in enumerate(mesh["bundle"].values):
             for s, state in enumerate(mesh["state"].values):
                 here = mesh.isel(bundle=b, state=s)
-                cells = [span(here[n].values, 3) if n in here else "–" for n in NUMBERS]
+                cells = [span(here[n].values, 3) if n in here else "–" for n in DIMENSIONLESS]
                 rows.append([f"this rig, {bundle}, {state}", *cells])
     return Table("Dimensionless numbers side by side.", head, rows)
 

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
 
-import jinja2
 import numpy as np
 import xarray as xr
-from markupsafe import Markup
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import put
 from thermogear.base.vocabulary import STATUS
-from thermogear.views.page import Block, Cell, Code, Pictures, Section, Table, Text
+from thermogear.views.csv import table_text
+from thermogear.views.page import Block, Cell, Code, Pictures, Section, Table, Text, render
 from thermogear.views.plots import versus as plots
-from thermogear.views.results import put
+from thermogear.views.results import read_tree
 from thermogear.views.style import chosen
 from thermogear.views.words import (
     Display,
@@ -34,7 +32,6 @@ VERSUS = "versus.nc"
 REPORT = "versus.html"
 MOST_POINTS = 3
 """At most so many operating points are drawn."""
-LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
 JAMMED = STATUS.index("jammed")
 
 FIGURES = {
@@ -72,7 +69,7 @@ def write_versus(directory: Path) -> list[Path]:
     data = read_versus(directory)
     written = [put(directory / REPORT, page(data))]
     for name, (head, rows) in _csv_tables(data).items():
-        written.append(put(directory / f"versus_{name}.csv", _csv(head, rows)))
+        written.append(put(directory / f"versus_{name}.csv", table_text(head, rows)))
     return written
 
 
@@ -80,43 +77,18 @@ def read_versus(directory: Path) -> xr.Dataset:
     """The stored comparison, in memory."""
     path = Path(directory) / VERSUS
     fix = "`thermogear versus RESULTS RESULTS -o DIR` writes it"
-    if not path.is_file():
-        raise InputError("results", str(path), why="there is no such file", fix=fix)
-    import h5py
-
-    try:
-        # h5py first: it refuses a damaged file without a second complaint on stderr
-        with h5py.File(path, "r") as file:
-            file.visititems(lambda name, item: None)
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            data = opened.load()
-    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
-        raise InputError(
-            "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=fix
-        ) from error
-    if "thermogear" not in data.attrs or data.attrs.get("kind") != "versus":
+    data = read_tree(path, fix).group("")
+    if data is None or "thermogear" not in data.attrs or data.attrs.get("kind") != "versus":
         raise InputError("results", str(path), why="it was not written by thermogear", fix=fix)
     return data
 
 
 def page(data: xr.Dataset) -> str:
     """The whole page as text."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("thermogear.views"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
-    order = list(LEVELS)
-    notices = sorted(json.loads(data.attrs["notices"]), key=lambda row: order.index(row["level"]))
-    return environment.get_template("report.html").render(
+    return render(
         title=str(data.attrs["title"]),
-        style=Markup(sheet),
         summary=_summary(data),
-        tiles=[],
-        notices=[(row["level"], LEVELS[row["level"]], prose(row["text"])) for row in notices],
+        notices=json.loads(data.attrs["notices"]),
         sections=[_differences(data), _figures(data), *_pictures(data), _cases(data)],
         version=data.attrs["thermogear"],
     )
@@ -329,17 +301,3 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
         "choices": (["bundle", "choice", *titles], made),
         "figures": (["case", "bundle", "point", "state", "label", *units], rows),
     }
-
-
-def _csv(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([_safe(cell) for cell in head])
-    writer.writerows([[_safe(cell) for cell in row] for row in rows])
-    return stream.getvalue()
-
-
-def _safe(cell: str) -> str:
-    """Words that a spreadsheet would take for a formula, made plain text."""
-    formula = cell[:1] in {"=", "+", "@"} or (cell[:1] == "-" and not cell[1:2].isdigit())
-    return f"'{cell}" if formula else cell

@@ -11,7 +11,7 @@ import xarray as xr
 from markupsafe import Markup, escape
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES, STATUS
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ _BY_UNIT = {
     "N/m": Display("10⁸ N/m", 1e-8),
     "Pa": Display("MPa", 1e-6),
     "K": CELSIUS,
-    "rad/s": Display("rpm", 30.0 / math.pi),
+    "rad/s": Display("rpm", 1.0 / RPM),
     "m/s": Display("m/s"),
     "s": Display("ms", 1e3),
 }
@@ -168,24 +168,41 @@ def exactly(value: float, digits: int = 6) -> str:
     return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
 
 
+_GREEK = {"omega": "ω", "lambda": "λ", "delta": "δ", "Delta ": "Δ", "theta": "θ", "eta": "η"}
 _PRETTY = (
     (re.compile(r"\bum\b"), "µm"),
     (re.compile(r"\+-"), "±"),
-    (re.compile(r"\bN/m\^2"), "N/m²"),
-    (re.compile(r"(?<=\d) ?deg ?C\b"), " °C"),
-    (re.compile(r"(?<![\w.)])-(?=\d)"), "−"),
+    (re.compile(r"(?<=\d) ?(?:deg ?)?C\b"), " °C"),
+    (
+        re.compile(
+            r"\b(omega|lambda)(?=_)|\b(delta)(?= -)|\b(Delta )(?=f\b)|\b(theta)(?=')|\b(eta)\b"
+        ),
+        lambda m: _GREEK[m[0]],
+    ),
+    (re.compile(r"\bsqrt\((\w+)\)"), "√\\1"),
+    (re.compile(r"(?<![\w.)])-(?=\d)|(?<= )-(?= )"), "−"),
     (re.compile(r"\b([bB])'"), "\\1′"),
 )
-_NAMED = re.compile(r"(?<![\w.])([A-Za-zωεζδ])_([A-Za-z0-9]{1,3})\b")
+_NAMED = re.compile(r"(?<![\w.])([A-Za-zωεζδλ])_([A-Za-z0-9]{1,5})\b")
+_POWER = re.compile(r"\b(\d(?:\.\d+)?)e([+-]\d+)\b")
+_RAISED = (("^2", "²"), ("^3", "³"))
+_UNIT = re.compile(r"(?<=\d) (?=(?:%|°C|K|µm|mm|rpm|N m|kHz|Hz|MPa|g)(?!\w))")
 
 
 def prose(text: object) -> Markup:
     """Stored words for a page: escaped, with proper units, minus signs and indices."""
     plain_text = str(escape(str(text)))
-    plain_text = plain_text.replace("&#39;", "'")
+    plain_text = _POWER.sub(_power, plain_text.replace("&#39;", "'"))
     for pattern, better in _PRETTY:
         plain_text = pattern.sub(better, plain_text)
-    return Markup(_NAMED.sub(r"\1<sub>\2</sub>", plain_text))
+    plain_text = _NAMED.sub(r"\1<sub>\2</sub>", plain_text)
+    for plain_power, better in _RAISED:
+        plain_text = plain_text.replace(plain_power, better)
+    return Markup(_UNIT.sub("\u00a0", plain_text))
+
+
+def _power(found: re.Match[str]) -> str:
+    return "0" if float(found[0]) == 0.0 else f"{found[1]}·10{raised(int(found[2]))}"
 
 
 def field_name(text: object) -> Markup:

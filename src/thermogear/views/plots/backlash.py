@@ -73,8 +73,11 @@ def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Figure:
                       label=plain(f"{bundle}, housing stays"))  # fmt: skip
             axis.plot(way[0][1:], [0.0], marker="X", color=INK, markersize=7, linestyle="none")
             right = way[0][1] > float(x.mean())
+            words = f"jams at {way[0][1]:.0f} °C"
+            if words in (text.get_text() for text in axis.texts):
+                continue
             axis.annotate(
-                f"jams at {way[0][1]:.0f} °C", (way[0][1], 0.0),
+                words, (way[0][1], 0.0),
                 xytext=(-9 if right else 9, -5), textcoords="offset points",
                 ha="right" if right else "left", va="top", fontsize=8.5,
             )  # fmt: skip

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.views.style import (
     COLD,
     FAINT,
@@ -38,7 +38,6 @@ HEATS = {
     "thesis": ("heat as in the thesis", HOT),
     "consistent": ("heat by E(T)", MIXED),
 }
-RPM = 30.0 / np.pi
 _CELLS = 700.0
 
 
@@ -59,7 +58,7 @@ def diagram(diagrams: Mapping[str, xr.Dataset], flips: xr.Dataset, row: str) -> 
                 axis.axvline(value, color=QUIET, linewidth=0.7, linestyle=(0, (4, 3)), zorder=0.5)
         axis.set_title(words)
         axis.set_xlabel(AXES[row])
-        axis.xaxis.set_major_locator(MaxNLocator(5))
+        axis.xaxis.set_major_locator(MaxNLocator(5, prune="both"))
         axis.grid(visible=False)
     axes[0, 0].set_ylabel("X on the section [half backlashes]")
     return figure
@@ -80,7 +79,7 @@ def _points(data: xr.Dataset, parameter: str) -> tuple[Floats, Floats]:
 def over_grid(data: xr.Dataset, name: str, unit: str, scale: float = 1.0) -> Figure:
     """One quantity over speed, a curve per torque: temperatures given beside the heat balance."""
     figure, axes = picture(1, 2, (WIDE, 3.3), sharey=True, between=0.3)
-    rpm = data["speed"].values * RPM
+    rpm = data["speed"].values / RPM
     torques = data["torque"].values
     titles = {"given": "gear temperature given", "balance": "gear temperature from the balance"}
     for axis, thermal in zip(axes[0], titles, strict=True):
@@ -135,7 +134,7 @@ def experiment(data: xr.Dataset) -> Figure:
     figure, axes = picture(size=(SINGLE[0] + 0.6, SINGLE[1]))
     axis = axes[0, 0]
     here = data.isel(entry=np.flatnonzero(data["quantity"].values == "displacement"))
-    rpm = here["speed"].values * RPM
+    rpm = here["speed"].values / RPM
     place = np.arange(rpm.size)
     uncertainty = here["u_val"].values
     axis.bar(
@@ -181,5 +180,5 @@ def _cell(axis: Axes, row: int, column: int, value: float, spread: float) -> Non
     colour = "#ffffff" if value > 0.6 else INK
     axis.text(
         column, row, f"{100 * value:.0f}±{100 * spread:.0f}", ha="center", va="center",
-        fontsize=7.0, color=colour,
+        fontsize=7.4, color=colour,
     )  # fmt: skip

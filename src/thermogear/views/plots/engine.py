@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from thermogear.views.plots.orbits import refined
+from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
 from thermogear.views.style import (
     COLD,
@@ -25,7 +26,7 @@ from thermogear.views.style import (
     log_axis,
     picture,
 )
-from thermogear.views.words import math_symbol, plain
+from thermogear.views.words import plain
 
 Floats = NDArray[np.float64]
 
@@ -38,30 +39,6 @@ MARKS = {
     "grazing": ("^", "#009E73"),
     "period halving": ("v", "#CC79A7"),
 }
-PARAMETERS = {
-    "damping_ratio": ("damping ratio ζ", 1.0, 0.0),
-    "frequency": ("frequency ratio ω", 1.0, 0.0),
-    "stiffness_amplitude": ("stiffness amplitude ε", 1.0, 0.0),
-    "mean_force": (f"mean force {math_symbol('F_m')}", 1.0, 0.0),
-    "force_amplitude": (f"force amplitude {math_symbol('F_h')}", 1.0, 0.0),
-    "half_backlash": ("half backlash b′", 1.0, 0.0),
-    "thermal_stiffness": (f"thermal stiffness {math_symbol('ε_T')}", 1.0, 0.0),
-    "speed": ("pinion speed [rpm]", 30.0 / np.pi, 0.0),
-    "torque": ("pinion torque [N m]", 1.0, 0.0),
-    "temperature": ("addendum temperature [°C]", 1.0, -273.15),
-}
-"""Words of a parameter's axis, and how its SI value is shown: scale, then shift."""
-
-
-def shown(parameter: str, values: Floats) -> Floats:
-    """Values of ``parameter`` as its axis shows them."""
-    _, scale, shift = PARAMETERS.get(parameter, (parameter, 1.0, 0.0))
-    return np.asarray(values * scale + shift)
-
-
-def words(parameter: str) -> str:
-    """The axis of ``parameter``."""
-    return PARAMETERS.get(parameter, (parameter.replace("_", " "), 1.0, 0.0))[0]
 
 
 def orbit_picture(data: xr.Dataset) -> Figure:
@@ -69,7 +46,9 @@ def orbit_picture(data: xr.Dataset) -> Figure:
     si = data["displacement"].attrs.get("units") == "m"
     length, speed = (1e6, 1e3) if si else (1.0, 1.0)
     x_words, v_words = (
-        ("displacement x [µm]", "velocity [mm/s]") if si else ("displacement X", "velocity X′")
+        ("displacement x [µm]", "velocity [mm/s]")
+        if si
+        else ("displacement X [–]", "velocity X′ [–]")
     )
     # the orbit closed, and smooth between its samples
     t, x, v = (
@@ -88,7 +67,7 @@ def orbit_picture(data: xr.Dataset) -> Figure:
     history, phase, unit, spectrum = axes.ravel()
 
     history.plot(turns, x, color=COLD, linewidth=1.3)
-    history.set(title="One orbit", xlabel="time in mesh periods t/T", ylabel=x_words)
+    history.set(title="One orbit", xlabel="time in mesh periods t/T [–]", ylabel=x_words)
     phase.plot(x, v, color=COLD, linewidth=1.3)
     phase.plot(
         data["section_displacement"].values * length,
@@ -113,7 +92,7 @@ def _multipliers(axes: Axes, real: Floats, imag: Floats) -> None:
     outside = np.hypot(real, imag) > 1.0
     for keep, colour in ((~outside, COLD), (outside, HOT)):
         axes.plot(real[keep], imag[keep], linestyle="none", marker="o", markersize=7, color=colour)
-    axes.set(title="Floquet multipliers", xlabel="real part", ylabel="imaginary part")
+    axes.set(title="Floquet multipliers", xlabel="real part [–]", ylabel="imaginary part [–]")
     axes.set_aspect("equal", adjustable="datalim")
 
 
@@ -126,8 +105,8 @@ def _spectrum(axes: Axes, data: xr.Dataset, length: float, unit: str) -> None:
     mark_half_orders(axes, HIGHEST_ORDER)
     axes.set(
         title="Spectrum, half orders dotted",
-        xlabel="order of the mesh frequency",
-        ylabel=f"amplitude [{unit}]" if unit else "amplitude",
+        xlabel="order of the mesh frequency [–]",
+        ylabel=f"amplitude [{unit}]" if unit else "amplitude [–]",
     )
     if "line_frequency" in data:
         mesh = float(data["line_frequency"].values[-1] / order[-1])
@@ -167,7 +146,9 @@ def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Figure:
         colour = OKABE_ITO[min(int(np.log2(period)), len(OKABE_ITO) - 1)]
         draw_branch(only, data, parameter, colour, f"period {period}")
     _marks(only, branches, parameter)
-    only.set(xlabel=words(parameter), ylabel="displacement X at phase 0", title=plain(title))
+    only.set(
+        xlabel=axis_words(parameter), ylabel="displacement X at phase 0 [–]", title=plain(title)
+    )
     legend_below(figure, only, 4)
     return figure
 
@@ -241,7 +222,7 @@ def cascade_picture(branches: Sequence[xr.Dataset]) -> Figure:
                 linestyle="none", marker="o", markersize=4.5, color=colour,
                 markeredgecolor="white", markeredgewidth=0.5,
             )  # fmt: skip
-        axis.set_xlabel(words(parameter))
-    axes.ravel()[0].set_ylabel("displacement X at phase 0")
+        axis.set_xlabel(axis_words(parameter))
+    axes.ravel()[0].set_ylabel("displacement X at phase 0 [–]")
     legend_below(figure, list(axes.ravel()), 3)
     return figure

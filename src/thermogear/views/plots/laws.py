@@ -11,6 +11,7 @@ from thermogear.views.style import (
     INK,
     OKABE_ITO,
     QUIET,
+    WIDE,
     legend_below,
     mark_path,
     picture,
@@ -33,7 +34,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> F
     Laws in ``means`` give one value for the mesh and are drawn dashed; where the contact leaves a
     law's range its curve is thin and dotted.
     """
-    figure, axes = picture(size=(7.4, 4.6), top=0.55)
+    figure, axes = picture(size=(WIDE, 4.6), top=0.55)
     axis = axes[0, 0]
     here = data.isel(operating=place)
     x = 1e3 * here["path_position"].values
@@ -73,7 +74,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> F
     axis.set_ylabel("friction coefficient |μ| [–]")
     mark_path(axis, data)
     axis.set_title(plain(operating_names(data)[place]), pad=18.0)
-    legend_below(figure, axis, 3)
+    legend_below(figure, axis, 4)
     return figure
 
 

@@ -7,14 +7,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, legend_below, picture, ramp
+from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, legend_below, picture, ramp
 
 STATES = {"cold": (COLD, (0, (5, 2))), "hot": (HOT, "-")}
 
 
 def over_phase(data: xr.Dataset) -> Figure:
     """Tangent and secant stiffness and transmission error over a mesh period, hot, by load."""
-    figure, axes = picture(1, 3, size=(10.0, 3.3))
+    figure, axes = picture(1, 3, size=(WIDE, 3.3))
     here = data.sel(temperature="hot")
     x = here["mesh_phase"].values
     panels = (
@@ -36,7 +36,7 @@ def over_phase(data: xr.Dataset) -> Figure:
 
 def along_path(data: xr.Dataset, points: dict[str, float]) -> Figure:
     """Load share and pressure of a tooth pair along the path, cold and hot, at the last load."""
-    figure, axes = picture(1, 2, size=(8.2, 3.3))
+    figure, axes = picture(1, 2, size=(WIDE, 3.3))
     for name, (colour, line) in STATES.items():
         if name not in data["temperature"].values:
             continue

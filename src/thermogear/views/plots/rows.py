@@ -92,7 +92,7 @@ def panels(points: xr.Dataset, row: str) -> Figure:
         log_axis(lower)
         lower.set_ylim(floor, top)
         mark_half_orders(lower, HIGHEST_ORDER)
-        lower.set_xlabel("order of the mesh frequency [–]", fontsize=8.5, labelpad=1.5)
+        lower.set_xlabel("mesh order [–]", fontsize=8.5, labelpad=1.5)
         lower.set_ylabel(
             ("amplitude " if column == 0 else "") + "|X| [–]", fontsize=8.5, labelpad=1.0
         )

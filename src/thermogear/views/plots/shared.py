@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from thermogear.base.units import RPM
 from thermogear.views.style import COLD, HOT, INK, QUIET, WIDE, legend_below, picture
 
 FORMS = {
@@ -32,7 +33,7 @@ def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Figure:
     swing.set_yscale("log")
     stiffness.set(title="At rest: stiffness", ylabel="mean stiffness [10⁸ N/m]")
     swing.set(title="At rest: deflection", ylabel="peak to peak [µm]")
-    rpm = motion["speed"].values * 30.0 / np.pi
+    rpm = motion["speed"].values / RPM
     for place, axis in enumerate(below):
         part = float(motion["part"].values[place])
         for form in ("shared", "one_spring"):

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
@@ -13,6 +10,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.style import (
     COLD,
     FAINT,
@@ -41,32 +40,8 @@ CLASSES = (
     ("diverged", "#22303c"),
     ("jammed", "#ffffff"),
 )
-_SHOWN = {
-    "pinion_speed": ("pinion speed [rpm]", 30.0 / math.pi, 0.0),
-    "pinion_torque": ("pinion torque [N m]", 1.0, 0.0),
-    "gear_temperature": ("gear temperature [°C]", 1.0, 273.15),
-    "cold_half_backlash": ("cold half backlash [µm]", 1e6, 0.0),
-    "damping_ratio": ("damping ratio ζ", 1.0, 0.0),
-    "frequency": ("frequency ω_h", 1.0, 0.0),
-    "stiffness_amplitude": ("stiffness amplitude ε", 1.0, 0.0),
-    "mean_force": ("mean force F_m", 1.0, 0.0),
-    "force_amplitude": ("force amplitude F_h", 1.0, 0.0),
-    "half_backlash": ("half backlash b′", 1.0, 0.0),
-    "thermal_stiffness": ("thermal stiffness ε_T", 1.0, 0.0),
-}
 KINDS = ("fold", "period doubling", "grazing", "period halving")
 MARKS = ("s", "D", "|", "d")
-
-
-def shown(name: str, values: Any) -> Floats:
-    """Values of a parameter in the unit its axis shows."""
-    _, factor, zero = _SHOWN.get(name, ("", 1.0, 0.0))
-    return np.asarray(factor * (np.asarray(values, dtype=float) - zero))
-
-
-def words(name: str) -> str:
-    """The label of a parameter's axis."""
-    return _SHOWN[name][0] if name in _SHOWN else name.replace("_", " ")
 
 
 def classes_of(data: xr.Dataset) -> NDArray[np.int64]:
@@ -110,16 +85,27 @@ def orbit_diagram_picture(data: xr.Dataset) -> Figure:
     for direction, (colour, word) in enumerate(zip(colours, ("up", "down"), strict=True)):
         x = data["section_x"].values[direction]
         places = np.broadcast_to(p[None, :, None], x.shape)
-        top.plot(places.ravel(), x.ravel(), ",", color=colour, alpha=0.8, rasterized=True, zorder=2)
+        top.plot(
+            places.ravel(),
+            x.ravel(),
+            linestyle="none",
+            marker=".",
+            markersize=1.6,
+            markeredgewidth=0.0,
+            color=colour,
+            alpha=0.8,
+            rasterized=True,
+            zorder=2,
+        )
         top.plot([], [], ".", color=colour, label=word)
         exponent = data["lyapunov"].values[direction]
         for row in exponent:
             low.plot(p, row, color=colour, linewidth=0.8)
     _branches(top, data, name)
     low.axhline(0.0, color=INK, linewidth=0.8)
-    top.set_ylabel("x at phase 0")
-    low.set_ylabel("λ₁")
-    low.set_xlabel(words(name))
+    top.set_ylabel("X at phase 0 [–]")
+    low.set_ylabel("exponent λ₁ [–]")
+    low.set_xlabel(axis_words(name))
     legend_below(figure, top, 6)
     return figure
 
@@ -179,8 +165,8 @@ def _regimes(axes: Axes, data: xr.Dataset, one: str, two: str, figure: Figure) -
         rasterized=True,
     )
     axes.grid(visible=False)
-    axes.set_xlabel(words(one))
-    axes.set_ylabel(words(two))
+    axes.set_xlabel(axis_words(one))
+    axes.set_ylabel(axis_words(two))
     present = np.unique(code)
     for n in present:
         axes.plot([], [], "s", color=CLASSES[n][1], markeredgecolor=QUIET, label=CLASSES[n][0])
@@ -211,8 +197,8 @@ def basins_picture(data: xr.Dataset) -> Figure:
         share = 100.0 * float(data["fraction"].values[n])
         axes[0, 0].plot([], [], "o", color=colours[n], label=f"{kind}: {share:.3g} %")
     axes[0, 0].grid(visible=False)
-    axes[0, 0].set_xlabel("x at phase 0")
-    axes[0, 0].set_ylabel("x′ at phase 0")
+    axes[0, 0].set_xlabel("displacement X at phase 0 [–]")
+    axes[0, 0].set_ylabel("velocity X′ at phase 0 [–]")
     axes[0, 0].set_xlim(_edges(data["x"].values)[[0, -1]])
     axes[0, 0].set_ylim(_edges(data["v"].values)[[0, -1]])
     legend_below(figure, axes[0, 0], 4)
@@ -220,7 +206,7 @@ def basins_picture(data: xr.Dataset) -> Figure:
 
 
 def _state_words(data: xr.Dataset, state: int) -> str:
-    return f"{float(data['gear_temperature'].values[state]) - 273.15:.4g} °C"
+    return f"{float(data['gear_temperature'].values[state]) - ZERO_CELSIUS:.4g} °C"
 
 
 def run_up_picture(data: xr.Dataset) -> Figure:
@@ -228,7 +214,7 @@ def run_up_picture(data: xr.Dataset) -> Figure:
     rows = (
         ("dte_peak_to_peak", "transmission error, p-p [µm]", 1e6),
         ("mesh_force_max", "greatest mesh force [kN]", 1e-3),
-        ("dynamic_factor", "dynamic factor K_v", 1.0),
+        ("dynamic_factor", "dynamic factor $K_{v}$ [–]", 1.0),
     )
     figure, axes = picture(3, 1, (WIDE, 8.0), above=0.15, sharex=True)
     n = shown("pinion_speed", data["pinion_speed"].values)
@@ -253,7 +239,7 @@ def run_up_picture(data: xr.Dataset) -> Figure:
                 for value in shown("pinion_speed", data["bifurcation_value"].values[fold]):
                     ax.axvline(value, color=colours[state % len(colours)], linewidth=0.7, alpha=0.6)
         ax.set_ylabel(label)
-    axes[2, 0].set_xlabel(words("pinion_speed"))
+    axes[2, 0].set_xlabel(axis_words("pinion_speed"))
     legend_below(figure, axes[0, 0], 4)
     return figure
 
@@ -279,8 +265,8 @@ def waterfall_picture(data: xr.Dataset) -> Figure:
         )
         ax.grid(visible=False)
         ax.set_title(_state_words(data, state))
-        ax.set_xlabel(words("pinion_speed"))
-    axes[0, 0].set_ylabel("order of the mesh frequency")
+        ax.set_xlabel(axis_words("pinion_speed"))
+    axes[0, 0].set_ylabel("order of the mesh frequency [–]")
     if mesh is not None:
         figure.colorbar(mesh, ax=list(axes[0]), label="line of the transmission error [µm]")
     return figure
@@ -296,8 +282,8 @@ def sweep_picture(data: xr.Dataset) -> Figure:
         axes[0, 0].plot(p, 1e6 * here["dte_peak_to_peak"].values, color=COLD)
         axes[0, 0].set_ylabel("transmission error, p-p [µm]")
         axes[1, 0].plot(p, here["dynamic_factor"].values, color=COLD)
-        axes[1, 0].set_ylabel("dynamic factor K_v")
-        axes[1, 0].set_xlabel(words(dims[0]))
+        axes[1, 0].set_ylabel("dynamic factor $K_{v}$ [–]")
+        axes[1, 0].set_xlabel(axis_words(dims[0]))
         return figure
     figure, axes = picture(1, 2, (WIDE, 4.6))
     _regimes(axes[0, 0], here, dims[0], dims[1], figure)
@@ -310,6 +296,6 @@ def sweep_picture(data: xr.Dataset) -> Figure:
     )
     axes[0, 1].set_facecolor(FAINT)
     axes[0, 1].grid(visible=False)
-    axes[0, 1].set_xlabel(words(dims[0]))
-    figure.colorbar(mesh, ax=axes[0, 1], label="dynamic factor K_v")
+    axes[0, 1].set_xlabel(axis_words(dims[0]))
+    figure.colorbar(mesh, ax=axes[0, 1], label="dynamic factor $K_{v}$ [–]")
     return figure

@@ -7,9 +7,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.views.style import INK, OKABE_ITO, QUIET, WIDE, legend_below, note, picture
 from thermogear.views.words import CELSIUS, plain
@@ -47,7 +48,7 @@ def thermal_map(data: xr.Dataset) -> Figure:
     boundary = 100.0 * data["regime_share"].isel(regime_name=0).values
     film = kept(data["least_film_parameter"].values)
     _panel(axes[0, 0], data, kept(boundary), "boundary lubrication [% of path]", "Reds", (0, 100))
-    _lines(axes[0, 0], data, film, _nice(film, 4), "Λ = %.2g")
+    _lines(axes[0, 0], data, film, _nice(film, 3), "Λ = %.2g")
     flash = kept(data["greatest_flash"].values)
     _panel(axes[0, 1], data, flash, "greatest flash temperature [K]", "YlOrRd")
     teeth = data["node_temperature"].sel(node="pinion_tooth").values
@@ -77,7 +78,7 @@ def thermal_map(data: xr.Dataset) -> Figure:
 
 
 def _grid(data: xr.Dataset) -> tuple[Floats, Floats]:
-    return data["pinion_speed"].values * 30.0 / np.pi, data["pinion_torque"].values
+    return data["pinion_speed"].values / RPM, data["pinion_torque"].values
 
 
 def _panel(
@@ -106,7 +107,7 @@ def _panel(
         speed, torque, values.T, levels=levels, cmap=mpl.colormaps[colours], extend="both"
     )
     bar = axis.figure.colorbar(drawn, ax=axis, pad=0.02, aspect=24, format="%.3g")
-    bar.set_ticks([float(v) for v in levels[::3]])
+    bar.set_ticks([t for t in MaxNLocator(5).tick_values(low, high) if low <= t <= high])
     bar.ax.tick_params(labelsize=7.5)
     bar.outline.set_visible(False)
     axis.grid(visible=False)
@@ -117,7 +118,7 @@ def _nice(values: Floats, count: int) -> list[float]:
     known = values[np.isfinite(values) & (values > 0.0)]
     if not known.size or known.max() <= 1.02 * known.min():
         return []
-    steps = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0)
+    steps = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
     inside = [s for s in steps if known.min() < s < known.max()]
     return inside[-count:]
 
@@ -131,7 +132,8 @@ def _lines(axis: Axes, data: xr.Dataset, values: Floats, levels: list[float], wo
         return
     lines = axis.contour(speed, torque, values.T, levels=inside, colors=INK, linewidths=1.1)
     text = (lambda v: words % v) if "%" in words else (lambda _: words)
-    axis.clabel(lines, fmt=text, fontsize=7.5)
+    for label in axis.clabel(lines, fmt=text, fontsize=7.5):
+        label.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
 
 
 def _jam(axis: Axes, data: xr.Dataset, left: Floats) -> None:
@@ -176,7 +178,7 @@ def _hatch(axis: Axes, data: xr.Dataset, settled: NDArray[np.bool_]) -> None:
 
 def warm_up(data: xr.Dataset) -> Figure:
     """Node temperatures over time from the ambient."""
-    figure, axes = picture(size=(6.4, 3.6))
+    figure, axes = picture(size=(WIDE, 3.8))
     axis = axes[0, 0]
     minutes = data["time"].values / 60.0
     for name in (str(n) for n in data["node"].values):
@@ -190,10 +192,10 @@ def warm_up(data: xr.Dataset) -> Figure:
             linestyle=line,
             label=name.replace("_", " "),
         )
-    speed = float(data.attrs["pinion_speed"]) * 30.0 / np.pi
+    speed = float(data.attrs["pinion_speed"]) / RPM
     axis.set_title(f"{speed:.0f} rpm, {float(data.attrs['pinion_torque']):.0f} N m")
     axis.set_xlabel("time from the start [min]")
     axis.set_ylabel("temperature T [°C]")
     axis.set_xlim(0.0, float(minutes[-1]))
-    legend_below(figure, axis, 4)
+    legend_below(figure, axis, 8)
     return figure

@@ -134,10 +134,7 @@ def _legend(
             )  # fmt: skip
         else:
             axis.plot([], [], color=INK, linestyle=STYLES.get(state, "-"), label=plain(state))
-    longest = max(map(len, titles))
-    wide = float(figure.get_size_inches()[0])
-    fits = int(wide / (0.6 + 0.075 * longest))
-    legend_below(figure, axis, max(1, min(fits, 4)))
+    legend_below(figure, axis, 4)
 
 
 def _mark_path(axis: Axes, data: xr.Dataset) -> None:
