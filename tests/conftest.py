@@ -1,12 +1,88 @@
-"""Shared fixtures: the rig of the thesis, where more than one floor needs it."""
+"""Shared fixtures: the rig of the thesis, and the notes of the validation page."""
 
 from __future__ import annotations
 
+import json
+import platform
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
-from thermogear import Gear, GearPair, Operating, Temperatures
+from thermogear import Gear, GearPair, Operating, Temperatures, __version__
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
+
+COMPARED = "compared"
+Compared = Callable[..., None]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--validation",
+        metavar="FILE",
+        help="run the tests that compare with something known, and write what they saw to FILE",
+    )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--validation"):
+        others = [item for item in items if COMPARED not in getattr(item, "fixturenames", ())]
+        config.hook.pytest_deselected(items=others)
+        items[:] = [item for item in items if item not in others]
+
+
+class _Notes:
+    """Gathers what the tests compared; in the process that holds the terminal alone."""
+
+    def __init__(self, target: Path) -> None:
+        self.target, self.entries = target, list[dict[str, Any]]()
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "call" and report.passed:
+            test = report.nodeid
+            self.entries += [
+                {"test": test, **note} for name, note in report.user_properties if name == COMPARED
+            ]
+
+    def pytest_sessionfinish(self, exitstatus: int) -> None:
+        if exitstatus == 0:
+            stored = {
+                "thermogear": __version__,
+                "python": platform.python_version(),
+                **{name: version(name) for name in ("numpy", "scipy", "numba")},
+                "entries": sorted(self.entries, key=lambda one: one["test"]),
+            }
+            text = json.dumps(stored, indent=1, ensure_ascii=False) + "\n"
+            self.target.write_text(text, "utf-8")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    target = config.getoption("--validation")
+    if target and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(_Notes(Path(target)), "validation-notes")
+
+
+@pytest.fixture
+def compared(record_property: Callable[[str, object], None]) -> Compared:
+    """``compared(what, against, differences, within, unit)``: assert, and note for the page.
+
+    ``differences`` of any shape are taken by magnitude; the largest must stay ``within``. The
+    unit is that of the difference, "1" for a relative or dimensionless one.
+    """
+
+    def compare(
+        quantity: str, against: str, differences: ArrayLike, within: float, unit: str = "1"
+    ) -> None:
+        worst = float(np.max(np.abs(np.asarray(differences))))
+        note = {"quantity": quantity, "against": against, "worst": worst}
+        record_property(COMPARED, note | {"tolerance": float(within), "unit": unit})
+        assert worst <= within, f"{quantity}: {worst:.3g} from {against}, allowed {within:.3g}"
+
+    return compare
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.base.materials import (
     LUBRICANTS,
@@ -81,12 +82,13 @@ def test_an_oil_refuses_the_impossible(field: str) -> None:
         dataclasses.replace(lubricant("M100"), **{field: -1.0})
 
 
-def test_modulus_of_carbon_steel_meets_roarks_table_within_its_fit() -> None:
+def test_modulus_of_carbon_steel_meets_roarks_table_within_its_fit(compared: Compared) -> None:
     """E(T)/E(21 C) against 202.0, 197.2, 193.7, 189.6 GPa at 21, 93, 149, 204 C."""
     steel = MATERIALS["steel"]
     kelvin = ZERO_CELSIUS + np.array([21.0, 93.0, 149.0, 204.0])
     ratio = steel.youngs_modulus_at(kelvin) / steel.youngs_modulus_at(kelvin[0])
-    assert ratio == pytest.approx(np.array([202.0, 197.2, 193.7, 189.6]) / 202.0, abs=0.0015)
+    table = np.array([202.0, 197.2, 193.7, 189.6]) / 202.0
+    compared("E(T) over E(21 °C), 21 to 204 °C", "Roark's table", ratio - table, 0.0015)
 
 
 def test_thermal_contact_coefficient() -> None:

@@ -377,7 +377,8 @@ BAD_FILES: dict[str, tuple[bytes, str]] = {
     ),
     "half a string": (
         b'title = "x\n',
-        "case.toml: got invalid TOML at line 1, column 11; Illegal character '\\n'",
+        "case.toml: got invalid TOML at line 1, column 11; Illegal character '\\n'; "
+        "a text ends with the quote it began with",
     ),
     "twice": (
         b'title = "x"\ntitle = "y"\n',

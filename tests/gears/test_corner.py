@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from conftest import Compared
 from thermogear.gears.corner import contact_point
 from thermogear.gears.geometry import Gear, GearPair
 
@@ -20,7 +21,7 @@ SHIFTED = GearPair(
 @pytest.mark.parametrize("pair", [RIG, SHIFTED])
 @pytest.mark.parametrize("part", [0.02, 0.1])
 def test_late_gap_is_the_turn_that_brings_the_flank_to_the_corner(
-    pair: GearPair, part: float
+    pair: GearPair, part: float, compared: Compared
 ) -> None:
     """Both flanks drawn as point sets; the wheel is turned until its flank meets the corner."""
     s = pair.path.e + part * pair.base_pitch
@@ -42,7 +43,13 @@ def test_late_gap_is_the_turn_that_brings_the_flank_to_the_corner(
 
     gap = brentq(flank_angle, -1e-3, 1e-2, xtol=1e-16)
     got = contact_point(pair, s)
-    assert float(got.gap) == pytest.approx(gap, abs=1e-13)
+    compared(
+        "gap of a tip corner",
+        "turning the drawn flank until it meets the corner",
+        float(got.gap) - gap,
+        1e-13,
+        "m",
+    )
     assert float(got.gap) > 0.0
     assert float(got.pinion) == pair.path.e
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from conftest import Compared
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.gears.geometry import Gear, GearPair, Rack, inverse_involute, involute
 
@@ -44,9 +45,14 @@ def random_pairs(count: int, seed: int = 1) -> list[GearPair]:
 
 
 class TestInvolute:
-    def test_inverse_undoes_the_involute_to_machine_precision(self) -> None:
+    def test_inverse_undoes_the_involute_to_machine_precision(self, compared: Compared) -> None:
         alpha = np.linspace(-1.55, 1.55, 3001)
-        assert np.abs(inverse_involute(involute(alpha)) - alpha).max() < 5e-15
+        compared(
+            "inverse of the involute function [rad]",
+            "the angle it began with",
+            inverse_involute(involute(alpha)) - alpha,
+            5e-15,
+        )
 
     def test_involute_of_the_inverse(self) -> None:
         value = np.concatenate([np.logspace(-18, 3, 400)])
@@ -71,7 +77,7 @@ class TestInvolute:
 
 
 class TestRig:
-    def test_radii_and_path_of_contact(self) -> None:
+    def test_radii_and_path_of_contact(self, compared: Compared) -> None:
         figures = [
             RIG.pinion.base_radius,
             RIG.wheel.base_radius,
@@ -81,9 +87,14 @@ class TestRig:
         ]
         expected = [58.731, 176.192, 250.0, 14.760657, 7.9647, 18.5101, 21.3763, 22.7254, 33.2708]
         printed = [1e-3, 1e-3, 1e-9, 1e-6, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4]
-        for got, want, digit in zip(figures, expected, printed, strict=True):
-            assert 1e3 * got == pytest.approx(want, abs=0.51 * digit)
-        assert RIG.contact_ratio == pytest.approx(1.714426, abs=1e-6)
+        digits = (1e3 * np.array(figures) - expected) / printed
+        compared(
+            "radii, distances A to E of the rig, in units of the printed digit",
+            "computed apart",
+            digits,
+            0.51,
+        )
+        compared("contact ratio of the rig", "computed apart", RIG.contact_ratio - 1.714426, 1e-6)
         assert RIG.normal_backlash == pytest.approx(0.0, abs=1e-15)
         assert RIG.ratio == 3.0
 
@@ -121,8 +132,11 @@ class TestRandomGears:
             warnings.simplefilter("ignore", ValidityWarning)
             return random_pairs(1000)
 
-    def test_contact_ratio_is_the_line_cut_by_the_tip_circles(self, pairs: list[GearPair]) -> None:
+    def test_contact_ratio_is_the_line_cut_by_the_tip_circles(
+        self, pairs: list[GearPair], compared: Compared
+    ) -> None:
         assert sum(2 for _ in pairs) == 2000
+        differences = []
         for pair in pairs:
             p, w, a = pair.pinion, pair.wheel, pair.centre_distance
             # inner common tangent of the base circles, by plane vectors
@@ -138,7 +152,13 @@ class TestRandomGears:
 
             end = cut(np.zeros(2), p.tip_radius, 1.0)
             start = cut(np.array([a, 0.0]), w.tip_radius, -1.0)
-            assert (end - start) / p.base_pitch == pytest.approx(pair.contact_ratio, abs=1e-9)
+            differences.append((end - start) / p.base_pitch - pair.contact_ratio)
+        compared(
+            "contact ratio of 2000 random pairs",
+            "line of action cut by the tip circles, by plane vectors",
+            differences,
+            1e-9,
+        )
 
     def test_swapping_the_gears_mirrors_the_path(self, pairs: list[GearPair]) -> None:
         with warnings.catch_warnings():
@@ -368,3 +388,12 @@ class TestRefusals:
         assert message(lambda: short(2.0e-3)).startswith("contact_ratio: got 0.7")
         with pytest.warns(ValidityWarning, match=r"contact_ratio: got 1\.\d+; recommended >= 1\.2"):
             short(3.1e-3)
+
+
+def test_an_undercut_that_cuts_the_tooth_off_is_refused():
+    deep = Gear(8, 5e-3, math.radians(20.0), -0.8, allow_undercut=True)
+    gamma = np.linspace(deep.junction[0], 0.5 * math.pi, 400)
+    assert deep.fillet.point(gamma)[0].min() > 0.0  # a thin neck, but one
+    text = message(lambda: Gear(8, 5e-3, math.radians(30.0), -1.11, allow_undercut=True))
+    assert "the undercut cuts the tooth off" in text
+    assert "raise the profile shift (no undercut from 0.195)" in text

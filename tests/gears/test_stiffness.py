@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from conftest import Compared
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.gears.body import sainsot_compliance
 from thermogear.gears.contact_compliance import yang_sun_stiffness
@@ -38,14 +39,29 @@ THESIS = rig(23.54e-3, (30e-3, 100e-3))
     ],
 )
 def test_elements_at_the_pitch_point(
-    start: str, pinion: tuple[float, ...], wheel: tuple[float, ...]
+    start: str, pinion: tuple[float, ...], wheel: tuple[float, ...], compared: Compared
 ) -> None:
     parts = pair_compliances(REFERENCE, REFERENCE.path.c, start)
-    assert 1.0 / np.array(parts.pinion.tooth) == pytest.approx(pinion, rel=1e-4)
-    assert 1.0 / np.array(parts.wheel.tooth) == pytest.approx(wheel, rel=1e-4)
-    assert 1.0 / float(parts.pinion.foundation) == pytest.approx(8.67547e8, rel=1e-4)
-    assert 1.0 / float(parts.wheel.foundation) == pytest.approx(7.79007e8, rel=1e-4)
-    assert 1.0 / float(parts.contact) == pytest.approx(3.55587e9, rel=1e-4)
+    got = 1.0 / np.array([*parts.pinion.tooth, *parts.wheel.tooth], dtype=float)
+    compared(
+        "bending, shear and axial stiffness of both teeth",
+        "computed apart, m 5, 25:75",
+        got / (*pinion, *wheel) - 1.0,
+        1e-4,
+    )
+    body = 1.0 / np.array([parts.pinion.foundation, parts.wheel.foundation], dtype=float)
+    compared(
+        "foundation by Sainsot's polynomial",
+        "computed apart, m 5, 25:75",
+        body / (8.67547e8, 7.79007e8) - 1.0,
+        1e-4,
+    )
+    compared(
+        "contact by Yang and Sun",
+        "computed apart",
+        1.0 / float(parts.contact) / 3.55587e9 - 1.0,
+        1e-4,
+    )
 
 
 def test_contact_of_equal_materials() -> None:
@@ -54,13 +70,29 @@ def test_contact_of_equal_materials() -> None:
     assert float(got) == pytest.approx(np.pi * young * width / (4 * (1 - nu**2)), rel=1e-14)
 
 
-def test_the_curve_of_the_thesis() -> None:
+def test_the_curve_of_the_thesis(compared: Compared) -> None:
     figures = mesh_figures(THESIS)
-    assert figures.minimum == pytest.approx(3.494e8, rel=5e-3)
-    assert figures.maximum == pytest.approx(6.255e8, rel=5e-3)
-    assert figures.mean == pytest.approx(5.41e8, rel=5e-3)
-    assert 0.5 * (figures.minimum + figures.maximum) == pytest.approx(4.875e8, rel=4e-3)
-    assert figures.maximum - figures.minimum == pytest.approx(2.75e8, rel=5e-3)
+    got = np.array([figures.minimum, figures.maximum, figures.mean])
+    compared(
+        "least, greatest and mean of the textbook sum",
+        "computed apart",
+        got / (3.494e8, 6.255e8, 5.41e8) - 1.0,
+        5e-3,
+    )
+    middle = 0.5 * (figures.minimum + figures.maximum)
+    compared(
+        "middle of the textbook stiffness",
+        "4.875e8 N/m, printed in the thesis",
+        middle / 4.875e8 - 1.0,
+        4e-3,
+    )
+    swing = figures.maximum - figures.minimum
+    compared(
+        "swing of the textbook stiffness",
+        "2.75e8 N/m, printed in the thesis",
+        swing / 2.75e8 - 1.0,
+        5e-3,
+    )
 
 
 def test_figures_are_those_of_the_sampled_curve() -> None:

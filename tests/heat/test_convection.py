@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson, simpson, solve_ivp
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.convection import (
     TRANSITION,
@@ -15,10 +16,14 @@ from thermogear.heat.convection import (
 )
 
 
-def test_von_karman_flow_meets_its_known_wall_values() -> None:
+def test_von_karman_flow_meets_its_known_wall_values(compared: Compared) -> None:
     radial, swirl, inflow = rotating_disc_flow()
-    assert radial == pytest.approx(0.51023, abs=5e-6)
-    assert swirl == pytest.approx(-0.61592, abs=5e-6)
+    compared(
+        "flow over a rotating disc, wall values",
+        "known values of von Kármán's flow",
+        [radial - 0.51023, swirl + 0.61592],
+        5e-6,
+    )
     assert inflow == pytest.approx(0.88447, abs=1e-5)
 
 
@@ -32,15 +37,26 @@ def test_von_karman_flow_meets_its_known_wall_values() -> None:
         (1000.0, 6.0161, 8.2972),
     ],
 )
-def test_published_gradients_to_four_digits(prandtl: float, uniform: float, growing: float) -> None:
-    assert rotating_disc_gradient(prandtl, 0.0) == pytest.approx(uniform, abs=6e-5)
-    assert rotating_disc_gradient(prandtl, 2.0) == pytest.approx(growing, abs=6e-5)
+def test_published_gradients_to_four_digits(
+    prandtl: float, uniform: float, growing: float, compared: Compared
+) -> None:
+    found = [
+        rotating_disc_gradient(prandtl, 0.0) - uniform,
+        rotating_disc_gradient(prandtl, 2.0) - growing,
+    ]
+    compared("heat transfer of a rotating disc, Pr 0.71 to 1000", "computed apart", found, 6e-5)
     assert disc_nusselt(prandtl, 0.0) == pytest.approx(uniform, abs=6e-5)
 
 
-def test_reynolds_analogy() -> None:
+def test_reynolds_analogy(compared: Compared) -> None:
     """T ~ r^2 at Pr = 1 obeys the equation of the swirl: -theta'(0) = -G'(0)."""
-    assert rotating_disc_gradient(1.0, 2.0) == pytest.approx(-rotating_disc_flow()[1], rel=1e-7)
+    heat = rotating_disc_gradient(1.0, 2.0)
+    compared(
+        "heat transfer at Pr = 1, wall growing with the square",
+        "Reynolds analogy with the drag",
+        heat / -rotating_disc_flow()[1] - 1.0,
+        1e-7,
+    )
 
 
 def test_uniform_disc_against_its_closed_integral() -> None:

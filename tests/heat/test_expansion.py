@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.gears.geometry import Gear
@@ -35,7 +36,7 @@ def field_of(gear: Gear, addendum: float, drop: float = 20.0) -> RadialField:
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
 @pytest.mark.parametrize("bore", ["free", "rigid", "shaft"])
-def test_annulus_against_a_boundary_value_solver(bore: str, plane: str) -> None:
+def test_annulus_against_a_boundary_value_solver(bore: str, plane: str, compared: Compared) -> None:
     """u'' + u'/r - u/r^2 = (1+nu) lambda tau', stress-free outside, bore free or given."""
     lam, nu = (LAM, NU) if plane == "stress" else (LAM * (1 + NU), NU / (1 - NU))
     field, outer = field_of(PINION, 120.0), PINION.root_radius
@@ -62,7 +63,12 @@ def test_annulus_against_a_boundary_value_solver(bore: str, plane: str) -> None:
     assert solved.success
     probe = np.linspace(edge, 1.0, 17)
     ours = annulus_displacement(field, probe * outer, outer, LAM, NU, bore, plane)
-    assert ours / (lam * 100.0 * outer) == pytest.approx(solved.sol(probe)[0], abs=1e-10)
+    compared(
+        "displacement of the ring, three bores, both plane states",
+        "boundary-value solver",
+        ours / (lam * 100.0 * outer) - solved.sol(probe)[0],
+        1e-10,
+    )
 
 
 def literal(field: RadialField, r: np.ndarray, outer: float, bore: str) -> np.ndarray:
@@ -138,22 +144,40 @@ def test_published_flank_growth(
     radii: tuple[float, ...],
     growth: tuple[float, ...],
     base: float,
+    compared: Compared,
 ) -> None:
     """delta_n within 0.1 um, u_b too (bores 25/40 mm free, 20 K gradient)."""
     field = field_of(gear, addendum)
     ours = flank_growth(gear, field, np.array(radii) * 1e-3) * 1e6
-    assert np.all(np.abs(ours - growth) < 0.1)
-    assert abs(base_circle_growth(gear, field) * 1e6 - base) < 0.1
+    compared(
+        "growth of the flank, 25 and 75 teeth, 100 and 140 °C",
+        "computed apart",
+        ours - growth,
+        0.1,
+        "µm",
+    )
+    compared(
+        "growth of the base circle",
+        "computed apart",
+        base_circle_growth(gear, field) * 1e6 - base,
+        0.1,
+        "µm",
+    )
 
 
 @pytest.mark.parametrize("bore", ["free", "shaft"])
 @pytest.mark.parametrize("gear", [PINION, WHEEL])
-def test_uniform_rise_keeps_an_involute(gear: Gear, bore: str) -> None:
+def test_uniform_rise_keeps_an_involute(gear: Gear, bore: str, compared: Compared) -> None:
     """delta_n = lambda tau rho_k to 1e-12: an involute of the larger base circle."""
     field = field_of(gear, 120.0, 0.0)
     r = np.linspace(gear.form_radius, gear.tip_radius, 33)
     rho = np.sqrt(r**2 - gear.base_radius**2)
-    assert flank_growth(gear, field, r, bore) == pytest.approx(LAM * 100.0 * rho, rel=1e-12)
+    compared(
+        "growth under a uniform rise",
+        "involute of a larger base circle",
+        flank_growth(gear, field, r, bore) / (LAM * 100.0 * rho) - 1.0,
+        1e-12,
+    )
     assert base_circle_growth(gear, field, bore) == pytest.approx(
         LAM * 100.0 * gear.base_radius, rel=1e-14
     )
@@ -199,7 +223,9 @@ def test_unequal_gears_differ_by_a_base_pitch_error() -> None:
 
 @pytest.mark.parametrize("rise", [7.3, 80.0, 140.0])
 @pytest.mark.parametrize("bore", ["free", "shaft"])
-def test_everything_uniform_keeps_the_backlash_exactly(rise: float, bore: str) -> None:
+def test_everything_uniform_keeps_the_backlash_exactly(
+    rise: float, bore: str, compared: Compared
+) -> None:
     r1, r2 = path_radii()
     hot = COLD + rise
     strain = PINION.material.thermal_expansion * (hot - COLD)
@@ -213,7 +239,13 @@ def test_everything_uniform_keeps_the_backlash_exactly(rise: float, bore: str) -
         )
         for gear, r in ((PINION, r1), (WHEEL, r2))
     ]
-    assert np.all(hot_half_backlash(125e-6, *beyond) == 125e-6)
+    compared(
+        "hot half backlash, everything equally warm",
+        "the cold one, exactly",
+        hot_half_backlash(125e-6, *beyond) - 125e-6,
+        0.0,
+        "m",
+    )
     # the plain form says the same to rounding
     plain = [
         flank_growth(g, RadialField.uniform(g.bore_radius, g.tip_radius, hot, COLD), r, bore)
@@ -247,7 +279,7 @@ def test_both_ways_of_the_housing_agree_for_any_field() -> None:
     ],
 )
 def test_published_backlash_losses(
-    addendum: float, below: float | None, lost: float, tolerance: float
+    addendum: float, below: float | None, lost: float, tolerance: float, compared: Compared
 ) -> None:
     """Half backlash lost [um], bores 25/40 free, 20 K gradient, housing none or below T_a."""
     r1, r2 = path_radii()
@@ -258,7 +290,13 @@ def test_published_backlash_losses(
         hot = ZERO_CELSIUS + addendum - below
         opening = float(centre_distance_growth(CENTRE, LAM, hot, COLD)) * BASE_SUM / CENTRE
     change = -hot_half_backlash(0.0, total, 0.0, opening) * 1e6
-    assert abs(float(np.mean(change)) - lost) < tolerance
+    compared(
+        "half backlash lost",
+        "computed apart, four states",
+        float(np.mean(change)) - lost,
+        tolerance,
+        "µm",
+    )
 
 
 def least_backlash(temperature: float) -> float:
@@ -271,10 +309,16 @@ def least_backlash(temperature: float) -> float:
     return float(np.min(hot_half_backlash(47e-6, *growth)))
 
 
-def test_uniformly_hot_gears_jam_over_a_cold_housing() -> None:
+def test_uniformly_hot_gears_jam_over_a_cold_housing(compared: Compared) -> None:
     """1.967 um/K of total normal backlash, so 94 um are gone near +48 K."""
     jam = jam_temperature(least_backlash, COLD, COLD + 120.0)
-    assert jam - COLD == pytest.approx(94e-6 / (2.0 * BASE_SUM * LAM), rel=1e-6)
+    closed = 94e-6 / (2.0 * BASE_SUM * LAM)
+    compared(
+        "temperature at which a pair jams",
+        "closed form for uniform heat",
+        (jam - COLD) / closed - 1.0,
+        1e-6,
+    )
     assert jam - COLD == pytest.approx(48.0, abs=0.3)
     lost = least_backlash(COLD) - least_backlash(COLD + 1.0)
     assert 2e6 * lost == pytest.approx(1.967, abs=5e-4)

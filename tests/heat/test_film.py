@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS, Lubricant, lubricant
 from thermogear.heat.film import (
@@ -33,14 +34,17 @@ FZG = {  # FZG C pitch point, VG 100 mineral at 60 C: U 3.92e-11, G 3740, W 2.23
 }
 
 
-def test_published_groups_and_films_of_fzg_c() -> None:
+def test_published_groups_and_films_of_fzg_c(compared: Compared) -> None:
     """h_min 0.292 um by Dowson and Higginson, h_c 0.376 um by Grubin."""
     speed = FZG["viscosity"] * FZG["entrainment"] / (EP * FZG["reduced_radius"])
     load = FZG["line_load"] / (EP * FZG["reduced_radius"])
     assert speed == pytest.approx(3.92e-11, rel=2e-3)
     assert load == pytest.approx(2.23e-4, rel=3e-3)
-    assert dowson_higginson_minimum(**FZG) == pytest.approx(0.292e-6, rel=2e-3)
-    assert grubin_central(**FZG) == pytest.approx(0.376e-6, rel=2e-3)
+    films = [
+        dowson_higginson_minimum(**FZG) / 0.292e-6 - 1.0,
+        grubin_central(**FZG) / 0.376e-6 - 1.0,
+    ]
+    compared("film thickness of the FZG C gears, two laws", "computed apart", films, 2e-3)
 
 
 @pytest.mark.parametrize(

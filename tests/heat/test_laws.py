@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.contact_state import ContactState, PitchPoint
 from thermogear.heat.friction import (
@@ -36,24 +37,26 @@ MEAN = {  # FZG C, 200 Nm, 1500 rpm, b 14: F_bt/b, sum speed and radius at the p
 }
 
 
-def test_published_schlenk_value() -> None:
+def test_published_schlenk_value(compared: Compared) -> None:
     """0.0449 for M32 at 60 C."""
-    assert schlenk(**MEAN) == pytest.approx(0.0449, abs=5e-5)
+    compared(
+        "friction by Schlenk, FZG C", "GEARpie's result, 0.0449", schlenk(**MEAN) - 0.0449, 5e-5
+    )
     by_hand = 0.048 * (422.293 / (4.38893 * 8.38224)) ** 0.2 * 13.28**-0.05 * 0.355**0.25 * 0.846
     assert schlenk(**MEAN) == pytest.approx(by_hand, rel=1e-6)
 
 
-def test_published_fernandes_value() -> None:
+def test_published_fernandes_value(compared: Compared) -> None:
     """0.0494 with the pressure-viscosity the publisher's own code uses, 20.47e-9 1/Pa."""
     given = fernandes(**MEAN, pressure_viscosity=20.472e-9, face_width=0.014)
-    assert given == pytest.approx(0.0494, abs=5e-5)
+    compared("friction by Fernandes, FZG C", "GEARpie's result, 0.0494", given - 0.0494, 5e-5)
 
 
-def test_published_iso_values_on_fzg_c() -> None:
+def test_published_iso_values_on_fzg_c(compared: Compared) -> None:
     """0.0623 by part 1 and 0.0604 by part 2 for VG 100 at 60 C: within 3 % of each other."""
     given = {**MEAN, "viscosity": 33.9e-3, "line_load": 200.0 / 36.6e-3 / 0.014}
-    assert iso_13989_1(**given) == pytest.approx(0.0623, abs=5e-5)
-    assert iso_13989_2(**given) == pytest.approx(0.0604, abs=5e-5)
+    found = [iso_13989_1(**given) - 0.0623, iso_13989_2(**given) - 0.0604]
+    compared("friction by ISO/TR 13989, parts 1 and 2, FZG C", "computed apart", found, 5e-5)
 
 
 def test_michaelis_floor_of_the_load() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
+from conftest import Compared
 from thermogear.gears.geometry import Gear, GearPair
 from thermogear.heat.laws import schlenk
 from thermogear.heat.losses import (
@@ -30,14 +31,14 @@ def factor_of(pair: GearPair) -> float:
     return float(gear_loss_factor(pair.pinion.teeth, pair.ratio, approach, recess))
 
 
-def test_published_loss_factor_and_loss_of_fzg_c() -> None:
+def test_published_loss_factor_and_loss_of_fzg_c(compared: Compared) -> None:
     """H_V 0.1986; 200 Nm at 1500 1/min with mu 0.0449: 280.0 W."""
     pair = fzg_c()
     factor = factor_of(pair)
-    assert factor == pytest.approx(0.1986, abs=1e-4)
+    compared("loss factor of the FZG C gears", "GEARpie's result, 0.1986", factor - 0.1986, 1e-4)
     mu = schlenk(5912.1 / 0.014, 4.38893, 8.38224e-3, 13.28e-3, 0.355e-6)
     loss = mesh_loss(200.0 * 1500.0 * np.pi / 30.0, mu, factor)
-    assert loss == pytest.approx(280.0, rel=1e-3)
+    compared("mesh loss of the FZG C gears", "280.0 W, computed apart", loss / 280.0 - 1.0, 1e-3)
 
 
 def test_published_loss_factor_of_a_30_30_pair() -> None:
@@ -49,7 +50,7 @@ def test_published_loss_factor_of_a_30_30_pair() -> None:
 
 
 @pytest.mark.parametrize("pair", [fzg_c(), GearPair(Gear(25, 5e-3), Gear(75, 5e-3))])
-def test_loss_factor_is_its_own_integral(pair: GearPair) -> None:
+def test_loss_factor_is_its_own_integral(pair: GearPair, compared: Compared) -> None:
     """Mean of |v_s| times the halved load over the transmitted power, piece by piece."""
     path, pitch = pair.path, pair.base_pitch
     lost = 0.0
@@ -62,7 +63,12 @@ def test_loss_factor_is_its_own_integral(pair: GearPair) -> None:
         s = np.linspace(start, end, 201)
         lost += simpson(share * np.abs(s - path.c), x=s)
     slip = (1.0 + 1.0 / pair.ratio) / pair.pinion.base_radius
-    assert slip * lost / pitch == pytest.approx(factor_of(pair), rel=1e-9)
+    compared(
+        "loss factor",
+        "its integral over the path",
+        slip * lost / pitch / factor_of(pair) - 1.0,
+        1e-9,
+    )
 
 
 def test_churning_is_torque_times_speed_and_grows_with_both() -> None:

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import k0e
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS
 from thermogear.heat.moving_source import (
@@ -39,9 +40,14 @@ TABLE = {
 
 
 @pytest.mark.parametrize("distribution", TABLE)
-def test_published_factors(distribution: str) -> None:
+def test_published_factors(distribution: str, compared: Compared) -> None:
     """C(Pe) over Pe 0.1 .. 1000, to the table's last digit."""
-    assert peclet_factor(PECLET, distribution) == pytest.approx(TABLE[distribution], abs=6e-6)
+    compared(
+        "flash factor C(Pe), Pe 0.1 to 1000",
+        "computed apart",
+        peclet_factor(PECLET, distribution) - np.array(TABLE[distribution]),
+        6e-6,
+    )
 
 
 @pytest.mark.parametrize("distribution", TABLE)
@@ -59,7 +65,7 @@ def test_limits_of_the_factor(distribution: str) -> None:
 
 @pytest.mark.parametrize("peclet", [0.3, 4.0, 60.0])
 @pytest.mark.parametrize("x", [-0.7, 0.1, 0.95, 1.0])
-def test_rise_against_adaptive_quadrature(x: float, peclet: float) -> None:
+def test_rise_against_adaptive_quadrature(x: float, peclet: float, compared: Compared) -> None:
     """The ellipse with each side's singularities taken out by substitution."""
 
     def profile(s: float) -> float:
@@ -75,7 +81,12 @@ def test_rise_against_adaptive_quadrature(x: float, peclet: float) -> None:
     total = quad(behind, 0.0, np.sqrt(1.0 + x), epsabs=1e-12)[0]
     total += quad(ahead, 0.0, np.sqrt(1.0 - x), epsabs=1e-12)[0] if x < 1.0 else 0.0
     expected = np.sqrt(peclet) / np.pi * total
-    assert moving_source_rise(x, peclet) == pytest.approx(expected, rel=1e-7)
+    compared(
+        "rise under a moving source",
+        "adaptive quadrature",
+        float(moving_source_rise(x, peclet)) / expected - 1.0,
+        1e-7,
+    )
 
 
 def test_rise_of_a_fast_source_is_bloks_integral() -> None:
@@ -97,10 +108,17 @@ TWO = [  # Pe of both flanks, Blok's error in percent (published)
 
 
 @pytest.mark.parametrize(("one", "two", "error"), TWO)
-def test_blok_against_pointwise_equal_temperatures(one: float, two: float, error: float) -> None:
+def test_blok_against_pointwise_equal_temperatures(
+    one: float, two: float, error: float, compared: Compared
+) -> None:
     peak, share = exact_two_body(one, two)
     blok = FLASH_FACTORS["ellipse"] / (np.sqrt(one) + np.sqrt(two))
-    assert blok / peak - 1.0 == pytest.approx(0.01 * error, abs=2e-3)
+    compared(
+        "error of Blok's formula for two bodies",
+        "boundary elements computed apart",
+        blok / peak - 1.0 - 0.01 * error,
+        2e-3,
+    )
     if min(one, two) >= 5:
         simple = np.sqrt(one) / (np.sqrt(one) + np.sqrt(two))
         assert share == pytest.approx(simple, abs=1e-3)

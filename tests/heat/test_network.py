@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.network import Link, ThermalNetwork
 
@@ -17,11 +18,11 @@ def two_nodes(power: object = 50.0) -> ThermalNetwork:
     )
 
 
-def test_two_nodes_against_their_closed_form() -> None:
+def test_two_nodes_against_their_closed_form(compared: Compared) -> None:
     state = two_nodes().steady()
     oil = 293.15 + 70.0 / 10.0
-    assert state["oil"] == pytest.approx(oil, rel=1e-14)
-    assert state["body"] == pytest.approx(oil + 50.0 / 4.0, rel=1e-14)
+    found = [float(state["oil"]) / oil - 1.0, float(state["body"]) / (oil + 50.0 / 4.0) - 1.0]
+    compared("steady temperatures of two nodes", "closed form", found, 1e-14)
     assert state.heat_out["ambient"] == pytest.approx(70.0, rel=1e-12)
 
 
@@ -40,13 +41,18 @@ def random_network(rng: np.random.Generator, shape: tuple[int, ...]) -> ThermalN
     )
 
 
-def test_energy_balance() -> None:
+def test_energy_balance(compared: Compared) -> None:
     """What the sources give leaves through the given nodes, to 1e-10."""
     network = random_network(np.random.default_rng(7), (40,))
     state = network.steady()
     given = sum(np.asarray(v) for v in network.sources.values())
     left = sum(state.heat_out.values())
-    assert np.max(np.abs(left - given) / given) < 1e-10
+    compared(
+        "heat that leaves a network of random links",
+        "heat of its sources",
+        (left - given) / given,
+        1e-10,
+    )
     assert np.max(state.residual / given) < 1e-10
 
 
@@ -72,13 +78,16 @@ def test_batch_is_one_by_one() -> None:
         assert batch["body"][at] == pytest.approx(float(single["body"]), rel=1e-14)
 
 
-def test_single_node_warms_up_exponentially() -> None:
+def test_single_node_warms_up_exponentially(compared: Compared) -> None:
     network = ThermalNetwork(
         (Link("body", "ambient", 5.0),), {"body": 100.0}, {"ambient": 300.0}, {"body": 1000.0}
     )
     times = np.array([0.0, 50.0, 200.0, 1e5])
     curve = network.transient(times, {"body": 300.0})
-    assert curve["body"] == pytest.approx(300.0 + 20.0 * -np.expm1(-times / 200.0), rel=1e-13)
+    exact = 300.0 + 20.0 * -np.expm1(-times / 200.0)
+    compared(
+        "warm-up of one node", "exponential in closed form", curve["body"] / exact - 1.0, 1e-13
+    )
     assert np.all(curve["ambient"] == 300.0)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from conftest import Compared
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS
@@ -42,11 +43,18 @@ def test_cold_gears_have_no_deformation_no_thermal_spring_and_all_their_backlash
 
 
 def test_everything_uniformly_hot_changes_no_backlash_at_all(
-    rig: GearPair, hot_rig: Operating
+    rig: GearPair, hot_rig: Operating, compared: Compared
 ) -> None:
     warm = at(hot_rig, Temperatures.uniform(ZERO_CELSIUS + 130.0, T0))
     cycle = mesh_cycle(rig, warm, mesh_positions=240)
-    assert np.all(cycle["half_backlash_curve"].values == hot_rig.half_backlash)
+    change = cycle["half_backlash_curve"].values - hot_rig.half_backlash
+    compared(
+        "half backlash over the mesh, everything at 130 °C",
+        "the cold one, exactly",
+        change,
+        0.0,
+        "m",
+    )
     assert np.all(cycle["half_backlash"].values == hot_rig.half_backlash)
     assert np.all(cycle["thermal_error"].values == 0.0)
     # the flanks did grow: an involute of the larger base circle, lambda tau rho
@@ -130,14 +138,19 @@ def test_backlash_lost_with_and_without_the_housing(hot_rig: Operating) -> None:
 
 
 def test_a_pair_with_94_um_of_backlash_jams_48_kelvin_over_a_cold_steel_housing(
-    rig: GearPair, hot_rig: Operating
+    rig: GearPair, hot_rig: Operating, compared: Compared
 ) -> None:
     tight = replace(hot_rig, half_backlash=47e-6)
     warm = mesh_cycle(rig, at(tight, gears_at(21.0, 0.0, 20.0)))
     jam = float(warm["jam_temperature"][0])
     # 2 a_w sin(alpha) lambda = 1.967 um/K of total normal backlash
     slope = 2.0 * rig.centre_distance * np.sin(np.radians(20.0)) * 11.5e-6
-    assert jam - T0 == pytest.approx(94e-6 / slope, rel=1e-9)
+    compared(
+        "jam temperature of the mesh cycle",
+        "2 a sin α λ = 1.967 µm/K",
+        (jam - T0) * slope / 94e-6 - 1.0,
+        1e-9,
+    )
     assert jam - T0 == pytest.approx(48.0, abs=0.5)
     for offset, status in ((-0.01, "ok"), (0.01, "jammed")):
         state = at(tight, gears_at(jam - ZERO_CELSIUS + offset, 0.0, 20.0))

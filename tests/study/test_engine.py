@@ -21,6 +21,7 @@ from thermogear.study.cascades import (
 )
 from thermogear.study.case import DimensionlessCase, GearCase, load_example
 from thermogear.study.engine import lyapunov_results, orbit_results
+from thermogear.study.gearwords import GearFamily
 from thermogear.study.subject import (
     SHORT,
     Subject,
@@ -76,6 +77,15 @@ def test_orbit_of_plain_numbers_is_the_published_one() -> None:
     assert np.sqrt(square) == pytest.approx(truth["x_rms"], rel=1e-8)
     assert {line["order"] for line in summary["lines"] if line["half_order"]} >= {0.5, 1.5, 2.5}
     assert "down to 0.706922" in summary["notices"][0]
+
+
+def test_a_motion_that_closes_sooner_has_its_least_period() -> None:
+    asked, least = orbit_results(plain(), 4), orbit_results(plain(), 2)
+    assert asked.summary["period"] == 2
+    assert asked.summary["multipliers"][0]["real"] == pytest.approx(
+        least.summary["multipliers"][0]["real"], abs=1e-9
+    )
+    assert asked.summary["notices"][0] == ("period 4 was asked for; this motion closes after 2")
 
 
 def test_direct_newton_reaches_an_unstable_orbit() -> None:
@@ -203,6 +213,20 @@ def test_a_gear_pair_speaks_in_micrometres_and_hertz(rig_case: GearCase) -> None
     assert summary["state_si"][0] == pytest.approx(summary["state"][0] * b)
     # the mean mesh force is T1/r_b1, so the load factor is 1 plus the fluctuation
     assert summary["dynamic_load_factor"] > 1.0
+
+
+def test_the_flanks_of_a_gear_case_reach_its_orbits() -> None:
+    """The excitation behind orbits and branches is that of a sweep, tip relief included."""
+    relieved = ['gears.pinion.tip_relief={amount="20 um", length="4 mm"}']
+    case = load_example("rig", relieved)
+    assert isinstance(case, GearCase)
+    phase = np.arange(64) / 64
+    ours, without = (
+        of_case(one).model.lanes().values("stiffness", phase) for one in (case, load_example("rig"))
+    )
+    swept = GearFamily(case, ("pinion_speed",))(np.array([[case.speeds[0]]]))
+    np.testing.assert_allclose(ours, swept.flat.values("stiffness", phase), rtol=1e-12)
+    assert np.max(np.abs(ours / without - 1.0)) > 0.01
 
 
 def test_speed_moves_the_frequency_alone(rig_case: GearCase) -> None:

@@ -80,11 +80,12 @@ def test_samples_computed_together_are_those_computed_alone(case: GearCase) -> N
 
 
 def test_one_input_alone_brings_all_the_variance(case: GearCase) -> None:
-    plan = Plan(samples=8, inputs=(BY_NAME["gear"],))
+    plan = Plan(samples=64, inputs=(BY_NAME["gear"],))
     data = study.sensitivity(case, plan)
-    assert data.attrs["evaluations"] == 24
+    assert data.attrs["evaluations"] == 192
     growth = data.sel(output="growth")
-    assert float(growth["total"][0]) == pytest.approx(1.0, abs=0.35)
+    # as far from 1 as the estimate itself says it may be, at 95 %
+    assert abs(float(growth["total"][0]) - 1.0) < float(growth["total_conf"][0]) < 0.3
     # what it cannot move has no index at all
     assert float(data["total"].sel(output="out_of_contact")[0]) == 0.0
 

@@ -5,7 +5,7 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.study.case import load_example
-from thermogear.study.response import Record, respond
+from thermogear.study.response import Recording, respond
 from thermogear.study.runup import notices_of, run_up
 from thermogear.study.sweep import sweep
 
@@ -113,8 +113,8 @@ def test_response_of_a_motion_in_lasting_contact_is_linear(rig):
 
     points = GearFamily(rig, ("pinion_speed",))(np.array([[1000.0 * RPM]]))
     state = settle(points.flat, np.zeros((1, 2)), Rule(settled=1e-9)).state
-    one = respond(points, state, Record(periods=8), lines=True)
-    two = respond(points, state, Record(periods=16), lines=True)
+    one = respond(points, state, Recording(periods=8), lines=True)
+    two = respond(points, state, Recording(periods=16), lines=True)
     for name in ("dte_rms", "dte_peak_to_peak", "dynamic_factor", "mesh_force_max"):
         assert one[name] == pytest.approx(two[name], rel=1e-7), name
 

@@ -77,4 +77,4 @@ def test_refusals(case: str, tmp_path: Path) -> None:
     points.write_text(example_text("table-4.2"), encoding="utf-8")
     done = call("growth", str(points))
     assert isinstance(done.exception, InputError)
-    assert str(done.exception).startswith("kind: got 'dimensionless'; allowed \"gear\"")
+    assert str(done.exception).startswith("case: got kind = 'dimensionless'; allowed kind = 'gear'")

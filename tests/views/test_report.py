@@ -244,7 +244,7 @@ def test_missing_results_are_an_error_in_one_line(tmp_path: Path) -> None:
         write_report(tmp_path)
     assert str(caught.value) == (
         f"results: got {tmp_path / 'results.nc'}; there is no such file; "
-        "write results with `thermogear run CASE -o DIR`"
+        "name a directory that this command, or `thermogear run CASE -o DIR`, has written"
     )
 
 

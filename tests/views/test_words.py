@@ -65,7 +65,10 @@ def test_display_units_follow_the_stored_unit() -> None:
 
 
 def test_prose_is_escaped_before_it_is_polished() -> None:
-    assert words.prose("<b>k_T</b> -3 um") == "&lt;b&gt;k<sub>T</sub>&lt;/b&gt; −3 µm"
+    assert words.prose("<b>k_T</b> -3 um") == "&lt;b&gt;k<sub>T</sub>&lt;/b&gt; −3\u00a0µm"
+    assert words.prose("2.5e-07 m^2 at 20 C") == "2.5·10⁻⁷ m² at 20\u00a0°C"
+    assert words.prose("lambda_h, omega_h^2") == "λ<sub>h</sub>, ω<sub>h</sub>²"
+    assert words.prose("k_T = F_n/Delta f, sqrt(B)") == ("k<sub>T</sub> = F<sub>n</sub>/Δf, √B")
     assert words.field_name("a.b_<c>") == "a.<wbr/>b_<wbr/>&lt;c&gt;"
     assert words.html_symbol("δ_n1 + δ_n2") == "δ<sub>n1</sub> + δ<sub>n2</sub>"
 
