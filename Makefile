@@ -3,10 +3,14 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
 
+DOCS_STAMP := .venv/.docs-installed
+
 BENCH_BIN := .bench-venv/bin
 BENCH_STAMP := .bench-venv/.installed
+AUDIT_BIN := .audit-venv/bin
+AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench demo test check lint unit lock warmup clean
+.PHONY: audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -35,6 +39,20 @@ $(STAMP): pyproject.toml requirements/boot.txt requirements/dev.txt
 	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/uv pip install --quiet --no-deps --no-build-isolation -e .
 	@touch $@
 
+.PHONY: docs validation
+docs: $(DOCS_STAMP)  ## the documentation site; a warning or a dead link is an error
+	rm -rf docs/_build/html
+	$(BIN)/python -m sphinx -E -b html -j auto -n -W --keep-going -q docs docs/_build/html
+	$(BIN)/python docs/_site/check_html.py docs/_build/html
+
+validation: $(STAMP)  ## measure the numbers of the site's validation and thesis pages anew
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --validation=docs/validation.json tests
+	$(BIN)/python docs/_site/collect.py docs/thesis.json
+
+$(DOCS_STAMP): $(STAMP) requirements/docs.txt
+	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/docs.txt
+	@touch $@
+
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
 
@@ -46,6 +64,33 @@ $(BENCH_STAMP): $(STAMP) requirements/bench.txt requirements/bench-fortran.txt
 	  echo "numbalsoda could not be installed (.bench-venv/fortran.log); the table says so"
 	@touch $@
 
+licences: $(STAMP)  ## licence of every locked package; fails on GPL, AGPL or unknown
+	$(BIN)/python checks/supply.py licences
+
+sbom: $(AUDIT_STAMP)  ## CycloneDX bill of materials: dist/sbom.json
+	$(BIN)/python checks/supply.py sbom
+
+audit: $(AUDIT_STAMP)  ## known vulnerabilities of the lock; needs the network
+	@$(BIN)/python checks/supply.py audit
+
+mutate: $(AUDIT_STAMP)  ## does a changed formula fail a test? MUTATE="--per-module 8 --seed 2" for another sample
+	@$(AUDIT_BIN)/python checks/mutate.py $(MUTATE)
+
+$(AUDIT_STAMP): $(STAMP) requirements/audit.txt
+	test -x $(AUDIT_BIN)/python || $(BIN)/python -m venv .audit-venv
+	VIRTUAL_ENV=$(CURDIR)/.audit-venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/audit.txt
+	@touch $@
+
+house: $(STAMP)  ## docs/house.md anew: sizes, imports between floors, public names
+	$(BIN)/python checks/house.py > docs/house.md
+
+look: $(STAMP)  ## pages as a reader sees them, checked and as PNG in .look (package chromium)
+	@$(BIN)/python tests/views/look.py > /dev/null || $(BIN)/python tests/views/look.py
+	test -e .demo/report.html || $(MAKE) demo
+	test -e .look/pages/thesis/report.html || $(BIN)/thermogear thesis -o .look/pages/thesis
+	$(BIN)/python tests/views/look.py .look .demo/report.html .look/pages/thesis/report.html \
+	  docs/_build/html
+
 lock: $(STAMP)  ## refresh the hashed locks (no addresses are written)
 	echo "uv" | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	  --no-header --no-emit-index-url --no-emit-find-links - -o requirements/boot.txt
@@ -55,6 +100,10 @@ lock: $(STAMP)  ## refresh the hashed locks (no addresses are written)
 	  --no-header --no-emit-index-url --no-emit-find-links bench/requirements.in -o requirements/bench.txt
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-deps \
 	  --no-header --no-emit-index-url --no-emit-find-links bench/fortran.in -o requirements/bench-fortran.txt
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes -c requirements/dev.txt \
+	  --no-header --no-emit-index-url --no-emit-find-links docs/requirements.in -o requirements/docs.txt
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	  --no-header --no-emit-index-url --no-emit-find-links requirements/audit.in -o requirements/audit.txt
 
 clean:
-	rm -rf .venv .bench-venv .demo
+	rm -rf .venv .bench-venv .audit-venv .mutate .demo .look
