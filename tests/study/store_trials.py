@@ -137,8 +137,11 @@ def full(directory: Path, _: int) -> dict:
 
 
 def cluster(directory: Path, _: int) -> dict:
-    """Two worker processes, one of them killed in the middle; against threads."""
+    """Two worker processes, against threads; the one that holds the plan is killed twice."""
+    import dask
     from distributed import Client, LocalCluster
+
+    dask.config.set({"distributed.scheduler.active-memory-manager.interval": "50ms"})
 
     plan = small_plan(60, 6)
     plan.pilot(16)
@@ -153,12 +156,13 @@ def cluster(directory: Path, _: int) -> dict:
         begun = time.perf_counter()
         calm = carry_out(plan, directory / "calm", scheduler=address)
         on_cluster = time.perf_counter() - begun
-        pids = client.run(os.getpid)
         killed: list[int] = []
 
         def watch(step) -> None:
-            if step.done == 10 and not killed:
-                victim = next(iter(pids.values()))
+            if step.done in (10, 50) and len(killed) < 2:
+                time.sleep(0.5)  # the scheduler drops what it holds twice
+                held = client.run(lambda dask_worker: (os.getpid(), list(dask_worker.data)))
+                victim = next(p for p, keys in held.values() if any("chunk" not in k for k in keys))
                 os.kill(victim, signal.SIGKILL)
                 killed.append(victim)
 

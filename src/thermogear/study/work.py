@@ -196,6 +196,11 @@ def compute_chunk(plan: Plan, key: Key, before: Arrays | None) -> Arrays:
     return checked(plan, key, plan.compute(key, before, keep_going))
 
 
+def itself(plan: Plan) -> Plan:
+    """The plan, as a task of the cluster that all chunks share."""
+    return plan
+
+
 def computed_on(
     scheduler: str, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
 ) -> Generator[tuple[Key, Arrays], None, None]:
@@ -236,7 +241,9 @@ def _on_client(
     client: Any, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
 ) -> Generator[tuple[Key, Arrays], None, None]:
     distributed: Any = importlib.import_module("distributed")
-    there = client.scatter(plan, broadcast=True, hash=False)
+    # a task's result is made again when its worker dies; scattered data would be lost, for the
+    # scheduler keeps one copy of it however many were sent out
+    there = client.submit(itself, plan, pure=False, retries=5)
     running: dict[Any, Key] = {}
     waiting = list(wanted)
     missing = set(wanted)
