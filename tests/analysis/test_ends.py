@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.basins import _spread, basin_plan
-from thermogear.analysis.diagram import orbit_diagram
-from thermogear.analysis.maps import parameter_map
+from thermogear.analysis.diagram import DIAGRAM_RULE, diagram_plan, orbit_diagram
+from thermogear.analysis.family import ModelFamily
+from thermogear.analysis.maps import map_plan, parameter_map
 from thermogear.analysis.plan import bytes_of, empty_arrays
 from thermogear.dynamics.models import TorsionalModel
 
@@ -66,3 +67,51 @@ def test_the_announced_size_is_that_of_the_arrays():
     axis = np.linspace(-1.0, 1.0, 7)
     plan = basin_plan(BISTABLE, axis, axis[:3])
     assert bytes_of(plan) == sum(values.nbytes for values in empty_arrays(plan).values())
+
+
+class Asked:
+    """A family that notes the parameter points it is asked for."""
+
+    def __init__(self, *names):
+        self.family = ModelFamily(BISTABLE, names)
+        self.names, self.units, self.points = names, self.family.units, []
+
+    def inputs(self):
+        return self.family.inputs()
+
+    def __call__(self, points):
+        self.points += [tuple(row) for row in points.tolist()]
+        return self.family(points)
+
+
+@pytest.mark.parametrize(
+    ("points", "sides"), [(1, (2, 2)), (9, (3, 3)), (16, (4, 3)), (99, (5, 3))]
+)
+def test_a_pilot_of_a_map_spreads_over_its_axes_ends_included(points, sides):
+    family = Asked("frequency", "mean_force")
+    axes = {"frequency": [0.5, 0.52, 0.54, 0.56, 0.6], "mean_force": [0.3, 0.35, 0.5]}
+    assert map_plan(family, axes).pilot(points) == sides[0] * sides[1] == len(family.points)
+    for place, (side, values) in enumerate(zip(sides, axes.values(), strict=True)):
+        seen = {point[place] for point in family.points}
+        assert len(seen) == side
+        assert {values[0], values[-1]} <= seen <= set(values)
+    assert len(set(family.points)) == len(family.points)
+
+
+def test_a_pilot_of_a_diagram_spreads_over_its_range_ends_included():
+    values = [0.5, 0.52, 0.54, 0.58, 0.6]
+    for points, count in ((1, 1), (2, 2), (3, 3), (50, 5)):
+        family = Asked("frequency")
+        plan = diagram_plan(family, "frequency", values, starts=[(1.1, 0.0), (0.0, 0.0)])
+        assert plan.pilot(points) == 2 * count
+        seen = [value for (value,) in family.points]
+        assert len(set(seen)) == len(seen) == count
+        assert set(seen) <= set(values)
+        if count > 1:
+            assert {0.5, 0.6} <= set(seen)
+    assert plan.rule == DIAGRAM_RULE
+
+
+def test_a_pilot_of_basins_follows_a_square_of_starts():
+    plan = basin_plan(BISTABLE, np.linspace(-1.0, 1.0, 5), [0.0, 0.5, 1.0], survey=2)
+    assert [plan.pilot(n) for n in (1, 9, 16, 100)] == [4, 9, 12, 15]
