@@ -273,6 +273,22 @@ class TestRefusals:
             Gear(12, 5e-3)
         assert str(caught.value.under("pinion")).startswith("pinion.profile_shift: got 0 for 12")
 
+    def test_shifts_that_leave_a_pressure_angle_of_zero_leave_no_mesh(self) -> None:
+        """inv(alpha) + 2 tan(alpha)(x1 + x2)/(z1 + z2) = 0, also where it is exactly 0."""
+        alpha = math.radians(20.0)
+        inv, exact = float(involute(alpha)), 0
+        for z in range(40, 60):
+            shift = -inv * z / (2.0 * math.tan(alpha))
+            for other in (math.nextafter(shift, -2.0), shift, math.nextafter(shift, 0.0)):
+                left = inv + 2.0 * math.tan(alpha) * (shift + other) / (2 * z)
+                if left <= 0.0:
+                    exact += left == 0.0
+                    gears = (Gear(z, 5e-3, profile_shift=x) for x in (shift, other))
+                    text = message(lambda gears=gears: GearPair(*gears))
+                    assert text.startswith("wheel.profile_shift: got")
+                    assert "leaves no meshing position; raise a profile shift" in text
+        assert exact > 0
+
     def test_pointed_tooth_names_the_radius_of_its_point(self) -> None:
         text = message(lambda: Gear(20, 5e-3, profile_shift=1.5))
         assert text.startswith("tip_radius: got 62.5 mm; allowed < 61.848 mm; the tooth is pointed")

@@ -330,6 +330,10 @@ def test_a_pair_that_never_jams_gives_nan_and_a_jammed_one_its_start() -> None:
     assert jam_temperature(least_backlash, COLD + 90.0, COLD + 120.0) == COLD + 90.0
     with pytest.raises(InputError, match=r"^temperature range: got 300.0 .. 290.0 K"):
         jam_temperature(least_backlash, 300.0, 290.0)
+    # any range above 0 K will do, and 0 K itself is none
+    assert jam_temperature(lambda t: 0.75 - t, 0.5, 2.0) == pytest.approx(0.75, abs=1e-9)
+    with pytest.raises(InputError, match=r"^temperature range: got 0.0 .. 2.0 K"):
+        jam_temperature(lambda t: 0.75 - t, 0.0, 2.0)
 
 
 def test_batch_over_operating_points_is_one_by_one() -> None:

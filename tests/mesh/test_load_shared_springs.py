@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import GearPair
 from thermogear.gears.loaded import LoadedModel, mesh_force, solve_mesh
-from thermogear.mesh.load_shared import pair_springs
+from thermogear.mesh.load_shared import LADDER, OUT_OF_REACH, _springs, pair_springs
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
@@ -110,3 +111,58 @@ def test_no_load_no_springs(hot: HotPair) -> None:
         pair_springs(idle)
     with pytest.raises(InputError, match="flank: got 'front'"):
         pair_springs(hot, flank="front")
+
+
+def shared(k: np.ndarray, s: np.ndarray, loads: np.ndarray) -> SimpleNamespace:
+    """Straight springs k <delta + s> (position, pair) side by side under each load."""
+    low, high = -s.max(axis=-1), np.full(len(s), 1.0)
+    delta = np.empty((loads.size, len(s)))
+    for n, load in enumerate(loads):
+        a, b = low.copy(), high.copy()
+        for _ in range(200):
+            middle = 0.5 * (a + b)
+            over = (k * np.maximum(middle[:, None] + s, 0.0)).sum(axis=-1) > load
+            a, b = np.where(over, a, middle), np.where(over, middle, b)
+        delta[n] = b
+    return SimpleNamespace(deflection=delta, force=k * np.maximum(delta[..., None] + s, 0.0))
+
+
+@pytest.mark.parametrize("steps", [1, 2, 12])
+def test_straight_springs_are_read_back_whichever_load_first_reaches_them(steps: int) -> None:
+    mean = 2000.0
+    loads = mean * np.concatenate([[0.99, 1.0, 1.01], LADDER[:steps]])
+    # the first pair carries; the second touches at a share of the mean load, or never
+    reach = np.array([0.5, 0.995, 1.005, 1.1, 1.3, 1.5, 1.9, 8.0, 1e6])
+    k = np.tile([3e8, 2e8], (reach.size, 1))
+    s = np.stack([np.zeros_like(reach), -reach * mean / 3e8], axis=1)
+    stiffness, added = _springs(shared(k, s, loads))  # type: ignore[arg-type]
+    assert stiffness[:, 0] == pytest.approx(k[:, 0], rel=1e-6)
+    assert added[:, 0] == pytest.approx(np.zeros(reach.size), abs=1e-11)
+    # two loads of the ladder, or of 1.01 and the first, must feel it
+    seen = reach * mean < loads[-2]
+    assert stiffness[:, 1] == pytest.approx(np.where(seen, k[:, 1], 0.0), rel=1e-6)
+    assert added[:, 1] == pytest.approx(np.where(seen, s[:, 1], OUT_OF_REACH), abs=1e-11)
+
+
+def test_a_pair_that_two_loads_leave_free_has_one_spring(cold: HotPair) -> None:
+    """The ladder is geometric: a load a rung up seeks free pairs at the same loads."""
+    point = cold.operating
+    one, up = (
+        pair_springs(
+            replace(cold, operating=replace(point, torque=factor * point.torque)), positions=24
+        )
+        for factor in (1.0, LADDER[0])
+    )
+    force = 100.0 / cold.pair.pinion.base_radius
+    phase = np.arange(24) / 24
+    # free under both loads, and touched by the last load that both ladders hold
+    free = [
+        springs.deflection(1.01 * load, phase) + springs.at(phase)[1] < -1e-8
+        for springs, load in ((one, force), (up, LADDER[0] * force))
+    ]
+    (k, s), (k_up, s_up) = one.at(phase), up.at(phase)
+    both = free[0] & free[1] & (k > 0.0) & (k_up > 0.0)
+    assert both.sum() >= 3
+    assert k[both] == pytest.approx(k_up[both], rel=1e-6)
+    assert s[both] == pytest.approx(s_up[both], abs=1e-12)
+    assert LADDER[-1] == pytest.approx(14.55, abs=0.01)
