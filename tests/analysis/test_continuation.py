@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from thermogear.analysis.bifurcations import LONGEST_STEP
 from thermogear.analysis.continuation import (
     BIRTH,
     FLIP,
@@ -207,3 +208,45 @@ def test_the_branch_as_a_dataset():
     assert data.event_kind.values.tolist() == [GRAZING, FOLD]
     assert data.attrs["parameter"] == "frequency"
     assert data.sizes["point"] == data.value.size
+
+
+@pytest.mark.parametrize(("parameter", "to"), [("mean_force", 0.5), ("force_amplitude", 0.0)])
+def test_a_straight_branch_is_walked_in_longest_steps_and_stays_straight(parameter, to):
+    """Constant stiffness in lasting contact: the orbit is affine in the force."""
+    model = TorsionalModel(0.05, 0.7, 0.0, 1.0, 0.2)
+    branch = continuation(periodic_orbit(model, 1, (2.0, 0.0)), parameter, to)
+    assert (branch.bifurcations, branch.ended) == ((), "reached the end")
+    start, end = branch.values[0], branch.values[-1]
+    assert end == pytest.approx(to, abs=1e-14)
+    part = (branch.values - start)[:, None] / (end - start)
+    straight = branch.states[0] + part * (branch.states[-1] - branch.states[0])
+    assert branch.states == pytest.approx(straight, abs=1e-12)
+    # at rest without a periodic force, else moved by the mean force alone
+    rest = np.array([2.0, 0.0]) if to == 0.0 else branch.states[0] - [0.5, 0.0]
+    assert branch.states[-1] == pytest.approx(rest, abs=1e-10)
+    mu = np.exp(2.0 * np.pi / 0.7 * (-0.05 + 1j * np.sqrt(1.0 - 0.05**2)))
+    assert np.allclose(branch.multipliers, [complex(mu.real, abs(mu.imag)), mu.conjugate()]) or (
+        np.allclose(branch.multipliers, [mu, mu.conjugate()])
+    )
+    assert branch.stable.all()
+    # scaled by half backlash, its rate and the range: a hundredth first, then half as much more
+    scaled = np.column_stack([branch.states / [1.0, 0.7], branch.values / abs(to - start)])
+    steps = np.linalg.norm(np.diff(scaled, axis=0), axis=1)
+    grown = np.minimum(0.01 * 1.5 ** np.arange(steps.size - 1), LONGEST_STEP)
+    assert steps[:-1] == pytest.approx(grown, rel=1e-6)
+    assert steps[-1] <= LONGEST_STEP * (1.0 + 1e-9)
+
+
+def test_the_last_step_lands_on_the_end_from_either_side():
+    model = TorsionalModel(0.05, 0.7, 0.1, 1.0, 0.2)
+    orbit = periodic_orbit(model, 1, (2.0, 0.0))
+    for to in (0.6, 0.8):
+        branch = continuation(orbit, "frequency", to)
+        assert branch.values[-1] == pytest.approx(to, abs=1e-14)
+        there = periodic_orbit(model.replace(frequency=to), 1, branch.states[-1])
+        assert branch.states[-1] == pytest.approx(there.state, abs=1e-11)
+        assert np.all(np.diff(branch.values) * (to - 0.7) > 0.0)
+        # and a branch may be cut short
+        some = continuation(orbit, "frequency", to, most_points=3)
+        assert some.ended == "3 points"
+        assert np.array_equal(some.values, branch.values[:4])

@@ -15,7 +15,7 @@ from thermogear.analysis.continuation import Branch, continuation
 from thermogear.analysis.family import Family
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import ReturnMap, lanes_of
-from thermogear.analysis.settle import PERIODIC
+from thermogear.analysis.settle import PERIODIC, units_of
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.tables import Lanes
 
@@ -68,28 +68,23 @@ def _seeds(
 ) -> Iterator[tuple[int, float, Floats]]:
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
-    unit = lanes_of(family(values[:, None])).half_backlash
+    unit = units_of(lanes_of(family(values[:, None])))
     for n in range(1, most_period + 1):
         for direction in range(data.sizes["direction"]):
             for start in range(data.sizes["start"]):
                 here = data.isel(direction=direction, start=start)
                 mine = (here["label"].values == PERIODIC) & (here["period"].values == n)
-                x = here["section_x"].values
-                v = here["section_v"].values
+                state = np.stack([here["section_x"].values, here["section_v"].values], axis=-1)
                 run: list[int] = []
                 for i in range(values.size + 1):
                     joined = i < values.size and bool(mine[i])
                     if joined and run:
                         # the same orbit may be stored from another of its points on
-                        gaps = [
-                            max(abs(x[i, -1] - x[run[-1], -1 - k]),
-                                abs(v[i, -1] - v[run[-1], -1 - k]))
-                            for k in range(min(n, x.shape[1]))
-                        ]  # fmt: skip
-                        joined = min(gaps) < JUMP * unit[i]
+                        gaps = np.max(np.abs(state[run[-1], -n:] - state[i, -1]) / unit[i], axis=1)
+                        joined = bool(gaps.min() < JUMP)
                     if run and not joined:
                         middle = run[len(run) // 2]
-                        yield n, float(values[middle]), np.array([x[middle, -1], v[middle, -1]])
+                        yield n, float(values[middle]), state[middle, -1]
                         run = []
                     if i < values.size and bool(mine[i]):
                         run.append(i)

@@ -53,15 +53,13 @@ VALUES: dict[str, tuple[str, float | int, dict[str, Any]]] = {
     ),
     "point_v": ("float64", _NAN, {"long_name": "velocity of the orbit at phase 0", "units": "1"}),
     "used_periods": ("int32", 0, {"long_name": "mesh periods run for this point", "units": "1"}),
-    "status": ("int8", 0, {}),
+    "status": ("int8", 0, status_attributes()),
 }  # fmt: skip
 
 
 def outcome_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
     """The stored variables of settled motions over ``dims``."""
-    found = {n: Variable(dims, t, f, a) for n, (t, f, a) in VALUES.items()}
-    found["status"] = Variable(dims, "int8", 0, status_attributes())
-    return found
+    return {n: Variable(dims, t, f, a) for n, (t, f, a) in VALUES.items()}
 
 
 def outcome_arrays(settled: Settled, status: NDArray[np.int8]) -> Arrays:
