@@ -186,6 +186,16 @@ def test_folds_beside_a_grazing_are_found():
     kinds = [b.kind for b in found.branches[1].bifurcations]
     assert kinds == [GRAZING, FOLD, GRAZING, FOLD, BIRTH]
     assert all(flip.note == "" for flip in found.branches[1].of_kind(FOLD))
+    # walked back, the branch passes the same places in reverse, to its other birth
+    there = found.branches[1]
+    back = continuation(there.orbit(-1), "frequency", 1.35)
+    assert [b.kind for b in back.bifurcations] == [FOLD, GRAZING, FOLD, GRAZING, BIRTH]
+    assert [b.value for b in back.bifurcations[:4]] == pytest.approx(
+        [b.value for b in there.bifurcations[3::-1]], abs=1e-12
+    )
+    assert back.bifurcations[-1].value == pytest.approx(found.flips[0].value, abs=1e-11)
+    assert back.bifurcations[1].note == "back-side impacts per orbit 2 -> 1"
+    assert there.bifurcations[2].note == "back-side impacts per orbit 1 -> 2"
 
 
 def test_ctrl_c_keeps_what_is_done_when_asked():

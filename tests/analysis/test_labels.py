@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.continuation import continuation
-from thermogear.analysis.labels import counts, label, labels
+from thermogear.analysis.labels import (
+    Label,
+    _agreed,
+    _periodic,
+    _positive,
+    counts,
+    label,
+    labels,
+)
+from thermogear.analysis.lyapunov import Lyapunov
+from thermogear.analysis.orbits import periodic_orbit
+from thermogear.analysis.section import ReturnMap, scales
 from thermogear.base.errors import InputError
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
@@ -131,3 +142,106 @@ def test_the_orbit_of_a_label_can_be_continued():
     branch = continuation(orbit, "damping_ratio", 0.16)
     (flip,) = branch.of_kind("period doubling")
     assert flip.value == pytest.approx(0.170043027, abs=1e-9)
+
+
+def test_a_label_stands_when_both_runs_agree_and_the_less_sure_one_else():
+    one, two = Label("period-1", 1, "a", 500), Label("period-2", 2, "b", 1500)
+    chaos, open_ = Label("chaotic", 0, "c", 700), Label("undecided", 0, "d", 900)
+    for known in (one, two, chaos, open_):
+        assert _agreed(known, Label(known.name, known.period, "other", 1)) is known
+    for known in (one, two, chaos):
+        assert _agreed(known, open_) is open_
+        assert _agreed(open_, known) is open_
+    for first, second in ((one, two), (two, chaos), (chaos, one)):
+        found = _agreed(first, second)
+        assert (found.name, found.period) == ("undecided", 0)
+        assert found.discarded == max(first.discarded, second.discarded)
+        assert f"{first} or {second}" in found.reason
+    assert list(counts([two, one, two, chaos, two, chaos]).items()) == [
+        ("period-2", 3),
+        ("chaotic", 2),
+        ("period-1", 1),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("batches", "positive"),
+    [
+        ([1.0, 1.1, 0.9, 1.0], True),
+        ([-1.0, -1.1, -0.9, -1.0], False),
+        ([0.01, 0.01, 2.0, 2.0], False),  # the mean within four standard errors
+        ([3.0, 3.0, 3.0, 3.0, -0.1, -0.1, -0.1, -0.1], False),
+        ([-0.1, -0.1, -0.1, -0.1, 3.0, 3.0, 3.0, 3.0], False),
+        ([1.0, 1.1, np.nan, 1.0], False),
+        ([1.0, 1.1, np.inf, 1.0], False),
+    ],
+)
+def test_chaos_wants_a_finite_record_positive_in_both_halves(batches, positive):
+    values = np.array(batches)
+    with np.errstate(invalid="ignore"):
+        error = float(values.std(ddof=1) / np.sqrt(values.size))
+    assert _positive(Lyapunov(float(values.mean()), error, -0.1, values, np.zeros(2))) == positive
+    # both halves count even where the mean stands far above its error
+    assert _positive(Lyapunov(float(values.mean()), 1e-9, -0.1, values, np.zeros(2))) == (
+        positive or batches == [0.01, 0.01, 2.0, 2.0]
+    )
+
+
+def test_a_window_is_on_the_orbit_when_it_is_near_and_comes_nearer():
+    model = TorsionalModel(0.168, 1.245, 0.335, 0.017, -1.16)
+    lane, unit = model.lanes(), scales(model.lanes())
+    orbit = periodic_orbit(model, 2, (1.13, -0.28))
+    assert orbit.stable
+    steps = np.arange(-31, 1)
+    on = orbit.points[steps % 2]
+
+    def verdict(size, most=16, border=0.998):
+        """Sections that far away: ``size`` of every period, the last 0."""
+        window = on + size[:, None] * unit
+        return _periodic(lane, window, most, 500, border)
+
+    near = 1e-9 * 0.8 ** (steps + 31)
+    found, silent = verdict(near)
+    assert (found.name, found.period, found.discarded, silent) == ("period-2", 2, 500, False)
+    assert found.orbit.points == pytest.approx(orbit.points, abs=1e-9)
+    assert "over 2 periods" in found.reason
+    # away and not nearer; too far yet; nothing closes
+    assert verdict(near[::-1]) == (None, False)
+    assert verdict(3e-6 * 0.99 ** (steps + 31)) == (None, False)
+    assert verdict(1e-2 * (-1.0) ** steps * np.arange(32)) == (None, True)
+    assert verdict(near, most=1) == (None, True)
+    # so near that only rounding is left needs not come nearer
+    assert verdict(0.5e-10 * np.ones(32))[0].name == "period-2"
+    # within the border of a bifurcation, and lost
+    size = abs(orbit.multipliers[0])
+    assert verdict(near, border=size + 1e-9)[0].name == "period-2"
+    inside = verdict(near, border=size - 1e-9)[0]
+    assert (inside.name, inside.period) == ("undecided", 2)
+    assert "of a bifurcation" in inside.reason
+    lost = on.copy()
+    lost[3, 0] = np.inf
+    assert _periodic(lane, lost, 16, 500, 0.998)[0].name == "diverged"
+
+
+def test_the_transient_told_is_the_one_that_ran():
+    """Rounds of discard + 2 max_period periods, doubling; the orbit found closes by the map."""
+    found = label(BASE.replace(damping_ratio=0.18), discard=100, max_period=8)
+    lengths = np.cumsum([100 * 2**n + 16 for n in range(12)])
+    assert found.discarded in lengths
+    visit = ReturnMap(BASE.replace(damping_ratio=0.18).lanes()).visit(found.orbit.state, 1)
+    assert visit.points[-1] == pytest.approx(found.orbit.state, abs=1e-12)
+    slow = label(BASE.replace(damping_ratio=0.1705), discard=20, max_period=4, cap=60)
+    assert (slow.name, slow.period) == ("undecided", 0)
+    assert slow.discarded == 28 + 48
+    for wrong in ({"max_period": 0}, {"discard": 0}, {"discard": 1.5}):
+        with pytest.raises(InputError, match=f"{next(iter(wrong))}: got"):
+            labels(BASE, **wrong)
+
+
+def test_progress_counts_both_runs_of_every_lane():
+    told = []
+    model = BASE.replace(damping_ratio=[0.18, 0.19, 0.2])
+    labels(model, discard=50, max_period=4, progress=lambda done, of: told.append((done, of)))
+    assert told[-1] == (6, 6)
+    assert (3, 6) in told
+    assert [done for done, _ in told] == sorted(done for done, _ in told)

@@ -1,12 +1,14 @@
 """Largest Lyapunov exponents against independent values and against multipliers."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from thermogear.analysis.lyapunov import lyapunov_exponent, lyapunov_exponents
+from thermogear.analysis.section import ReturnMap
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
 
@@ -66,5 +68,38 @@ def test_several_lanes_are_the_same_as_one_by_one():
 
 
 def test_requests_out_of_range_are_refused():
-    with pytest.raises(InputError, match="batches: got 1; allowed a whole number >= 2"):
-        lyapunov_exponent(TorsionalModel(0.1, 1, 0.1, 0.1, 0.1), batches=1)
+    model = TorsionalModel(0.1, 1, 0.1, 0.1, 0.1)
+    for name, wrong, least in (("batches", 1, 2), ("discard", -1, 0), ("batch_periods", 0, 1)):
+        with pytest.raises(
+            InputError, match=f"{name}: got {wrong}; allowed a whole number >= {least}"
+        ):
+            lyapunov_exponent(model, **{name: wrong})
+    least = lyapunov_exponent(model, discard=0, batches=2, batch_periods=1)
+    assert least.batches.shape == (2,)
+    with pytest.raises(InputError, match="one lane; use the plural form"):
+        lyapunov_exponent(model.replace(frequency=[1.0, 1.1]))
+
+
+def test_batches_are_the_growth_of_a_tangent_period_by_period():
+    """Jacobians of single periods multiplied by hand; the tangent turns for a while first."""
+    model = TorsionalModel(0.1, 1.245, 0.335, 0.017, -1.16)
+    found = lyapunov_exponent(
+        model, initial_state=(0.2, -0.1), discard=30, batches=3, batch_periods=20
+    )
+    section = ReturnMap(model.lanes())
+    state = section.visit(np.array([0.2, -0.1]), 30).points[-1]
+    tangent, grown = np.array([1.0, 1.245]), []
+    for _ in range(20 + 60):  # as long as a batch, at most 50
+        visit = section.visit(state, 1)
+        state, tangent = visit.points[-1], visit.jacobian @ tangent
+        grown.append(np.log(np.linalg.norm(tangent)))
+        tangent /= np.linalg.norm(tangent)
+    means = np.array(grown[20:]).reshape(3, 20).mean(axis=1) * 1.245 / (2.0 * np.pi)
+    assert found.batches == pytest.approx(means, abs=1e-8)
+    assert found.value == pytest.approx(means.mean(), abs=1e-8)
+    assert found.error == pytest.approx(means.std(ddof=1) / np.sqrt(3.0), abs=1e-8)
+    assert found.state == pytest.approx(state, abs=1e-8)
+    assert found.sum == pytest.approx(-0.2, abs=1e-15)
+    assert found.value + found.second == found.sum
+    assert found.kaplan_yorke == pytest.approx(1.0 + found.value / (found.value + 0.2), rel=1e-12)
+    assert replace(found, value=-0.01).kaplan_yorke == 0.0

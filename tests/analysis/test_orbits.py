@@ -188,3 +188,31 @@ def test_requests_that_lead_nowhere_are_refused():
         periodic_orbit(model, 1, (0.0, np.nan))
     with pytest.raises(ConvergenceError, match="Newton did not settle"):
         periodic_orbit(TorsionalModel(0.0, 2.0, 0.9, 0.1, 0.1), 1, (1e5, 0.0))
+
+
+def test_an_orbit_in_lasting_contact_is_the_forced_oscillation_in_closed_form():
+    """x = b + F_m + Re X e^{i w t}, X = F_h/(1 - w^2 + 2 i zeta w): constant stiffness."""
+    zeta, w, mean, force = 0.05, 0.7, 1.0, 0.2
+    orbit = periodic_orbit(TorsionalModel(zeta, w, 0.0, mean, force), 1, (2.0, 0.0))
+    response = force / (1.0 - w**2 + 2j * zeta * w)
+    phase, x, v = orbit.samples(64)
+    turn = np.exp(2j * np.pi * phase)
+    assert x == pytest.approx(2.0 + (response * turn).real, abs=1e-12)
+    assert v == pytest.approx((1j * w * response * turn).real, abs=1e-12)
+    low, high = orbit.extremes(256)
+    assert (low, high) == pytest.approx((2.0 - abs(response), 2.0 + abs(response)), abs=1e-9)
+    assert orbit.dynamic_load_factor() == pytest.approx(1.0 + abs(response), abs=1e-5)
+    assert (orbit.contact_losses, orbit.back_impacts) == (0, 0)
+    assert orbit.shares.tolist() == pytest.approx([0.0, 0.0, 1.0])
+    mu = np.exp(2.0 * np.pi / w * (-zeta + 1j * np.sqrt(1.0 - zeta**2)))
+    assert np.sort_complex(orbit.multipliers) == pytest.approx(
+        np.sort_complex(np.array([mu, mu.conjugate()])), abs=1e-11
+    )
+    assert np.sort_complex(contact_multipliers(orbit.model)) == pytest.approx(
+        np.sort_complex(orbit.multipliers), abs=1e-11
+    )
+    # twice round it is still the orbit of one period; where the map is affine Newton steps once
+    twice = periodic_orbit(orbit.model, 2, (2.0, 0.0))
+    assert (twice.period, twice.minimal_period) == (2, 1)
+    assert twice.points == pytest.approx(np.tile(orbit.state, (2, 1)), abs=1e-11)
+    assert orbit.iterations <= 4

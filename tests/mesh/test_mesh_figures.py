@@ -11,7 +11,7 @@ from thermogear import GearPair, MeshModel, Operating, mesh_cycle
 from thermogear.base.materials import lubricant
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.loaded import LoadedModel, solve_mesh
-from thermogear.heat.friction import LAWS, friction_law
+from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT, friction_law
 from thermogear.heat.losses import churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.mesh.balance import Gearbox, _aitken, heat_balance
@@ -115,3 +115,92 @@ def test_relaxation_is_exact_for_one_straight_unknown_and_keeps_its_factor_on_no
     assert _aitken(np.array([0.7, 1.2]), same, same).tolist() == [0.7, 1.2]
     unknown = np.full((2, 2), np.nan)
     assert _aitken(np.array([0.7, 1.2]), unknown, same).tolist() == [0.7, 1.2]
+
+
+@pytest.mark.parametrize("flank", ["growth", "thesis"])
+def test_a_warm_housing_takes_what_it_opens_off_the_added_material(
+    rig: GearPair, hot_rig: Operating, flank: str
+) -> None:
+    """Da sin(alpha_w), whether as a distance or as a strain of both flanks: 80 K on steel."""
+    s = path_of_contact(rig, 11)
+    rigid, warm = (
+        HotPair(rig, hot_rig, MeshModel.consistent().override(flank=flank, housing=housing))
+        for housing in ("rigid", "expands")
+    )
+    opening = 11.5e-6 * 80.0 * rig.centre_distance * np.sin(rig.operating_pressure_angle)
+    assert warm.axis_opening() == pytest.approx(np.full(3, opening), rel=1e-12)
+    assert rigid.axis_opening().tolist() == [0.0, 0.0, 0.0]
+    gone = rigid.added_material(s) - warm.added_material(s)
+    assert gone == pytest.approx(np.full((3, 11), opening), rel=1e-9)
+    # the thesis counts half of each flank
+    part = 0.5 if flank == "thesis" else 1.0
+    assert rigid.added_material(s) == pytest.approx(part * np.add(*rigid.growth(s)), rel=1e-12)
+    # both gears a kelvin hotter add the same everywhere, what they were before
+    steps = [rigid.warmed(rise).added_material(s) - rigid.added_material(s) for rise in (1.0, 3.0)]
+    assert steps[1] == pytest.approx(3.0 * steps[0], rel=1e-9)
+    assert rigid.warmed(2.0).temperatures.housing == rigid.temperatures.housing
+
+
+def test_mixed_friction_has_no_value_from_its_roughness_limit_on(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    s = path_of_contact(rig, 11)
+    for roughness, known in ((0.999, True), (1.0, False), (1.5, False)):
+        gears = (replace(g, roughness=roughness * ROUGHNESS_LIMIT) for g in (rig.pinion, rig.wheel))
+        path = FrictionPath(elastic_pair(HotPair(GearPair(*gears), hot_rig, TEXTBOOK)), s)
+        assert np.isfinite(path.mixed).all() == known
+        assert np.isnan(path.mixed).all() != known
+        assert np.all(np.isfinite(path.flash(path.dry)))
+        assert np.isnan(path.flash(path.mixed)).all() != known
+
+
+def test_path_of_friction_by_hand(rig: GearPair, hot_rig: Operating) -> None:
+    """Line load, Hertz, flash and power from the definitions; the mean over pairs by summing."""
+    model = TEXTBOOK.override(friction="dry", sharing="equal")
+    s = path_of_contact(rig, 2001)
+    path = FrictionPath(elastic_pair(HotPair(rig, hot_rig, model)), s)
+    force = 100.0 / rig.pinion.base_radius
+    assert path.line_load == pytest.approx(path.share * force / rig.face_width, rel=1e-14)
+    # Hertz: p B pi/2 is the line load, B = 4 p R/(2 E*)
+    carried = path.line_load > 0.0
+    assert (0.5 * np.pi * path.pressure * path.half_width) == pytest.approx(
+        path.line_load, rel=1e-12
+    )
+    assert path.half_width[carried] == pytest.approx(
+        (2.0 * path.pressure * path.radius / path.elastic.contact_modulus)[carried], rel=1e-12
+    )
+    omega = hot_rig.speed[:, None]
+    sliding = np.abs(omega * s - omega / rig.ratio * (rig.line_of_action - s))
+    mu = model.dry_coefficient
+    assert path.heat == pytest.approx(mu * path.line_load * sliding, rel=1e-10)
+    assert path.flash(2.0 * path.friction) == pytest.approx(2.0 * path.flash(path.friction))
+    # the pairs in contact at a phase stand a base pitch apart: their mean heat is the power
+    power, share = path.power()
+    phases = np.arange(4000) / 4000 * rig.base_pitch + rig.path.a
+    at = phases[:, None] + rig.base_pitch * np.arange(2)
+    for point in range(3):
+        heat = np.interp(at, s, path.heat[point], right=0.0)
+        assert power[point] == pytest.approx(heat.sum(axis=1).mean() * rig.face_width, rel=2e-3)
+        into = np.interp(at, s, (path.heat * path.heat_share)[point], right=0.0)
+        assert share[point] == pytest.approx(into.sum() / heat.sum(), rel=2e-3)
+    assert np.all((path.heat_share > 0.0) & (path.heat_share < 1.0))
+    still = FrictionPath(
+        elastic_pair(HotPair(rig, replace(hot_rig, speed=np.zeros(3)), model)), s
+    ).power()
+    assert (still[0].tolist(), still[1].tolist()) == ([0.0] * 3, [0.5] * 3)
+
+
+def test_the_inlet_is_as_warm_as_its_choice_says(rig: GearPair, hot_rig: Operating) -> None:
+    heat = replace(
+        hot_rig.temperatures, pinion_addendum=np.array([400.0, 410.0, 420.0]), wheel_addendum=380.0
+    )
+    point = replace(hot_rig, temperatures=heat)
+    s = path_of_contact(rig, 5)
+    for inlet, expected in (
+        ("body", [[390.0], [395.0], [400.0]]),
+        ("oil", [[float(point.oil_temperature)]] * 3),  # type: ignore[arg-type]
+    ):
+        path = FrictionPath(elastic_pair(HotPair(rig, point, TEXTBOOK.override(inlet=inlet))), s)
+        assert path.inlet_temperature.tolist() == expected
+        rough = 1.25 * np.hypot(rig.pinion.roughness, rig.wheel.roughness)
+        assert path.film_parameter == pytest.approx(path.film / rough, rel=1e-12)

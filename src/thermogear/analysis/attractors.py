@@ -13,7 +13,6 @@ from thermogear.analysis.plan import Alive, keep_going
 from thermogear.analysis.settle import (
     CHAOTIC,
     DIVERGED,
-    UNDECIDED,
     Rule,
     close_orbits,
     part_of,
@@ -108,8 +107,6 @@ def attractors_from(
             if where[i] < 0:
                 where[i] = len(found)
                 found.append(_orbit(field, settled.point[i], period, settled.multiplier[i, 0]))
-        elif code == UNDECIDED:
-            where[i] = -1
     return found, where
 
 

@@ -115,9 +115,9 @@ class BasinPlan:
         lanes = lanes_of(self.model)
         field = Field(lanes)
         where, used, _ = trapped(field, starts, self.attractors, alive=alive)
-        kinds = np.array([0 if a.chaotic else a.period for a in self.attractors] or [0])
-        period = np.where(where >= 0, kinds[np.maximum(where, 0)], 0)
-        label = np.where(where >= 0, PERIODIC, np.where(where == -2, DIVERGED, UNDECIDED))
+        periods = np.array([a.period for a in self.attractors] or [0])
+        period = np.where(where >= 0, periods[np.maximum(where, 0)], 0)
+        label = np.where(where == -2, DIVERGED, PERIODIC)
         point = np.full((len(starts), 2), np.nan)
         rest = np.flatnonzero(where == -1)
         if rest.size:
