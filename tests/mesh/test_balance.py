@@ -57,6 +57,8 @@ def test_the_loop_is_closed(rig: GearPair) -> None:
 def test_a_pair_at_rest_takes_the_temperature_of_the_ambient(rig: GearPair) -> None:
     found = settle(rig, [0.0], 100.0)
     np.testing.assert_allclose(found.operating.oil_temperature, 293.15, atol=1e-5)
+    # the drawing holds at 20 C where nothing else is said
+    assert found.operating.temperatures.reference == 293.15
 
 
 def test_measured_nodes_stay_as_measured(rig: GearPair) -> None:

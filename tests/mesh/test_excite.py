@@ -78,3 +78,40 @@ def test_motion_without_speed_is_refused(rig: GearPair, hot_rig: Operating) -> N
     cycle = mesh_cycle(rig, replace(hot_rig, speed=np.zeros(3)))
     with pytest.raises(InputError, match=r"operating.speed: got 0 rpm; allowed > 0 rpm"):
         excitation(cycle, rig, damping_ratio=0.07)
+    # the slowest creep is a motion, and one point at rest among others is none
+    creep = mesh_cycle(rig, replace(hot_rig, speed=np.array([1e-3, 0.5, 2.0])))
+    found = excitation(creep, rig, damping_ratio=0.07)
+    assert [one.mesh_frequency for one in found if one is not None] == pytest.approx(
+        [0.025, 12.5, 50.0], rel=1e-14
+    )
+    mixed = mesh_cycle(rig, replace(hot_rig, speed=np.array([100.0, 0.0, 100.0])))
+    with pytest.raises(InputError, match=r"operating.speed: got 0 rpm"):
+        excitation(mixed, rig, damping_ratio=0.07)
+
+
+def test_error_and_stiffness_are_the_curves_of_their_own_point(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    """Of three points the jammed one alone is left out; all harmonics give the samples back."""
+    cycle = mesh_cycle(
+        rig, replace(hot_rig, torque=np.array([50.0, 100.0, 200.0])), mesh_positions=65
+    )
+    cycle["status"][1] = 1
+    given = Periodic(1e-6, (2e-6 + 1e-6j,))
+    found = excitation(
+        cycle, rig, damping_ratio=0.05, transmission_error=given, harmonics=32, inertias=(1.0, 2.0)
+    )
+    assert [one is None for one in found] == [False, True, False]
+    for point in (0, 2):
+        one = found[point]
+        assert one is not None
+        assert one.stiffness.samples(65) == pytest.approx(
+            cycle["mesh_stiffness"].values[point], rel=1e-12
+        )
+        assert one.error.samples(65) == pytest.approx(
+            given.samples(65) + cycle["spring_error"].values[point], abs=1e-15
+        )
+        assert (one.inertias, one.damping_ratio) == ((1.0, 2.0), 0.05)
+        assert one.half_backlash == float(cycle["half_backlash"][point])
+        assert one.reference_half_backlash == hot_rig.half_backlash
+        assert one.torques == pytest.approx((50.0 * 2**point, 150.0 * 2**point), rel=1e-14)

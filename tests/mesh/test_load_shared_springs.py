@@ -166,3 +166,31 @@ def test_a_pair_that_two_loads_leave_free_has_one_spring(cold: HotPair) -> None:
     assert k[both] == pytest.approx(k_up[both], rel=1e-6)
     assert s[both] == pytest.approx(s_up[both], abs=1e-12)
     assert LADDER[-1] == pytest.approx(14.55, abs=0.01)
+
+
+def test_springs_of_one_point_are_its_own_among_others(rig: GearPair, hot_rig: Operating) -> None:
+    """Two points that differ in everything, one common temperature among them."""
+    heat = replace(
+        hot_rig.temperatures,
+        pinion_addendum=np.array([400.0, 430.0]),
+        pinion_bore=np.array([380.0, 420.0]),
+        wheel_addendum=np.array([390.0, 410.0]),
+        wheel_bore=375.0,
+        housing=np.array([350.0, 370.0]),
+    )
+    both = replace(
+        hot_rig, speed=np.array([100.0, 200.0]), torque=np.array([80.0, 160.0]), temperatures=heat
+    )
+    for point in (0, 1):
+        names = ("pinion_addendum", "pinion_bore", "wheel_addendum", "housing")
+        alone = replace(
+            both,
+            speed=both.speed[point : point + 1],
+            torque=both.torque[point : point + 1],
+            temperatures=replace(heat, **{n: getattr(heat, n)[point] for n in names}),
+        )
+        model = MeshModel.consistent()
+        among = pair_springs(HotPair(rig, both, model), point, positions=8)
+        own = pair_springs(HotPair(rig, alone, model), positions=8)
+        assert np.array_equal(among.stiffness, own.stiffness)
+        assert np.array_equal(among.added, own.added)

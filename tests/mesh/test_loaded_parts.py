@@ -9,8 +9,12 @@ import pytest
 
 from thermogear import GearPair, MeshModel, Operating
 from thermogear.gears.contact import path_of_contact
+from thermogear.gears.deviations import Relief
+from thermogear.gears.loaded import LoadedModel, solve_mesh
+from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair, TextbookPair, elastic_pair
-from thermogear.mesh.thermal import HotPair
+from thermogear.mesh.operating import Temperatures
+from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 
 def test_springs_of_the_loaded_pair(rig: GearPair, hot_rig: Operating) -> None:
@@ -32,3 +36,53 @@ def test_springs_of_the_loaded_pair(rig: GearPair, hot_rig: Operating) -> None:
     assert alone.size >= 3
     secant = loaded.solve((s[alone] - rig.path.a) / rig.base_pitch).secant
     assert series[:, alone] == pytest.approx(secant, rel=1e-6)
+
+
+def test_each_gear_carries_its_own_modulus_and_deviations_into_the_loaded_contact(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    """A hot wheel on a cold pinion: the loaded contact asked directly says the same."""
+    warm = Temperatures(293.15, 293.15, 293.15, 413.15, 393.15, 333.15)
+    hot = HotPair(rig, replace(hot_rig, temperatures=warm), MeshModel.consistent())
+    crest = Relief("wheel", 20e-6, 3e-3)
+    loaded = LoadedPair(hot, (crest,))
+    phase = np.array([0.1, 0.4, 0.8])
+    cold, soft = (hot.moduli(gear) for gear in (rig.pinion, rig.wheel))
+    assert np.all(cold[0] == rig.pinion.material.youngs_modulus)
+    assert np.all(soft[0] < soft[1])  # the teeth are hotter than the body
+    assert np.all(soft[1] < cold[1])
+    exact = solve_mesh(
+        rig,
+        np.full(3, 100.0 / rig.pinion.base_radius),
+        phase,
+        pinion=Moduli(*cold),
+        wheel=Moduli(*soft),
+        deviations=(crest, ThermalDeviation(hot)),
+        model=LoadedModel(body="rim"),
+    )
+    found = loaded.solve(phase)
+    assert np.array_equal(found.deflection, exact.deflection)
+    assert np.array_equal(found.share, exact.share)
+    curves = loaded.over(phase)
+    force = 100.0 / rig.pinion.base_radius
+    # tangent: F = k (delta - e); the mean of e is the backlash's
+    error = exact.deflection - force / exact.tangent
+    assert curves.stiffness == pytest.approx(exact.tangent, rel=1e-12)
+    assert curves.spring_error == pytest.approx(
+        error - error.mean(axis=1, keepdims=True), abs=1e-15
+    )
+    shift = exact.unloaded.mean(axis=1, keepdims=True)
+    assert curves.transmission_error == pytest.approx(exact.deflection - shift, abs=1e-15)
+
+
+def test_the_share_goes_on_where_one_pair_enters_and_another_leaves(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    """Exactly at A, and a base pitch on, it is what it is a hair before and after."""
+    cold = replace(hot_rig, temperatures=hot_rig.temperatures.cold())
+    loaded = elastic_pair(HotPair(rig, cold, MeshModel.consistent()))
+    a, pitch = rig.path.a, rig.base_pitch
+    for place in (a, a + pitch):
+        near = loaded.share(place + pitch * np.array([-1e-7, -1e-11, 0.0, 1e-11, 1e-7]))
+        assert near == pytest.approx(np.broadcast_to(near[:, :1], near.shape), abs=1e-5)
+        assert np.all(near > 0.1)

@@ -184,6 +184,16 @@ def test_path_of_friction_by_hand(rig: GearPair, hot_rig: Operating) -> None:
         into = np.interp(at, s, (path.heat * path.heat_share)[point], right=0.0)
         assert share[point] == pytest.approx(into.sum() / heat.sum(), rel=2e-3)
     assert np.all((path.heat_share > 0.0) & (path.heat_share < 1.0))
+    # at the pitch point one pair carries all, both flanks roll at v_t sin(alpha_w)
+    pitch = path.state.pitch_point
+    assert pitch.line_load == pytest.approx(np.full((3, 1), force / rig.face_width), rel=1e-14)
+    rolling = omega * rig.pinion.pitch_radius * np.sin(rig.operating_pressure_angle)
+    assert pitch.sum_speed == pytest.approx(2.0 * rolling, rel=1e-12)
+    c = rig.path.c
+    assert pitch.reduced_radius == pytest.approx(
+        c * (rig.line_of_action - c) / rig.line_of_action, rel=1e-12
+    )
+    assert pitch.face_width == rig.face_width
     still = FrictionPath(
         elastic_pair(HotPair(rig, replace(hot_rig, speed=np.zeros(3)), model)), s
     ).power()

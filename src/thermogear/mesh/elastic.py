@@ -204,7 +204,8 @@ def loaded_share(elastic: ElasticPair, s: Floats) -> Floats:
     pair = elastic.pair
     steps = (s - pair.path.a) / pair.base_pitch
     rank = np.floor(steps + 1e-9).astype(int)
-    solved = LoadedPair(elastic.hot, elastic.deviations).solve(steps - rank)
+    # rounding below a whole step would be the phase's other end
+    solved = LoadedPair(elastic.hot, elastic.deviations).solve(np.maximum(steps - rank, 0.0))
     # the candidates begin one pair before the one that entered last
     places = np.broadcast_to((rank + 1)[:, None], (elastic.hot.count, s.size, 1))
     return np.take_along_axis(solved.share, places, axis=-1)[..., 0]
