@@ -1,11 +1,16 @@
-"""Plans: every place once, what a chunk needs is there first, no more threads than asked for."""
+"""Families, ensembles and plans.
 
+Every place once, what a chunk needs is there first, no more threads than asked for.
+"""
+
+import json
 import threading
 from itertools import accumulate
 
 import numpy as np
 import pytest
 
+from thermogear.analysis.family import ModelFamily, axis_values, family_for, lanes_and_status
 from thermogear.analysis.plan import (
     Stopped,
     Variable,
@@ -16,6 +21,10 @@ from thermogear.analysis.plan import (
     keys_of,
     region_of,
 )
+from thermogear.analysis.section import Ensemble, ReturnMap, starts_of
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Periodic
+from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 
 ROWS, LENGTH, CUT = 3, 11, 4
 
@@ -118,8 +127,9 @@ def test_work_goes_on_from_what_is_there_and_asks_for_nothing_else():
 def test_closing_ends_what_runs():
     class Endless(Sums):
         def compute(self, key, before, alive):
+            self.meeting.wait()  # both run before the first may end
             if key[0] == 0:
-                return super().compute(key, before, alive)
+                return {name: np.zeros((1, CUT, 2)[: 2 + (name == "digits")]) for name in arrays}
             try:
                 while True:
                     alive()
@@ -127,7 +137,8 @@ def test_closing_ends_what_runs():
                 self.ended = True
                 raise
 
-    plan = Endless()
+    arrays = ("total", "digits")
+    plan = Endless(meet=2)
     work = computed(plan, [(0, 0), (1, 0)], load=lambda key: {}, threads=2)
     assert next(work)[0] == (0, 0)
     work.close()
@@ -139,3 +150,63 @@ def test_a_chunk_of_the_wrong_shape_is_an_error():
     arrays = {"total": np.zeros((1, CUT - 1)), "digits": np.zeros((1, CUT, 2))}
     with pytest.raises(ValueError, match=r"total of chunk \(0, 0\): shape \(1, 3\), expected"):
         checked(plan, (0, 0), arrays)
+
+
+def test_a_family_says_what_defines_it_and_lets_the_rest_vary():
+    model = DeadZoneModel(0.05, 0.7, Periodic(1.0, (0.1 - 0.2j,)), Periodic(0.3, ()), 2.0)
+    family = ModelFamily(model, ("frequency", "half_backlash"))
+    assert family.units == ("1", "1")
+    told = family.inputs()
+    assert "frequency" not in told
+    assert "half_backlash" not in told
+    assert told["type"] == "DeadZoneModel"
+    assert told["damping_ratio"] == 0.05
+    assert told["stiffness"] == {"mean": 1.0, "harmonics": [[0.1, -0.2]]}
+    assert json.loads(json.dumps(told)) == told
+    lanes, status = lanes_and_status(family, np.array([[0.5, 1.0], [2.0, 3.0]]))
+    assert lanes.period == pytest.approx([4.0 * np.pi, np.pi], rel=1e-15)
+    assert lanes.half_backlash.tolist() == [1.0, 3.0]
+    assert status.tolist() == [0, 0]
+    # a family of no parameter gives its one lane as often as asked
+    same, _ = lanes_and_status(ModelFamily(model, ()), np.empty((3, 0)))
+    assert same.half_backlash.tolist() == [2.0] * 3
+    assert family_for(family, ("frequency", "half_backlash")) is family
+    with pytest.raises(InputError, match="parameter: got"):
+        family_for(family, ("frequency",))
+    with pytest.raises(InputError, match="allowed different parameters"):
+        ModelFamily(model, ("frequency", "frequency"))
+    for wrong, name in ((lanes, "model"), (DeadZoneModel, "model")):
+        with pytest.raises(InputError, match=rf"{name}: got"):
+            ModelFamily(wrong, ())
+
+
+@pytest.mark.parametrize("values", [[], [[1.0, 2.0]], [1.0, np.nan], [1.0, 2.0, 1.0]])
+def test_an_axis_is_finite_and_never_twice_the_same(values):
+    with pytest.raises(InputError, match="speed: got"):
+        axis_values("speed", values)
+    assert axis_values("speed", 3.0).tolist() == [3.0]
+    assert axis_values("speed", [2.0, 1.0]).tolist() == [2.0, 1.0]
+
+
+def test_an_ensemble_is_its_lanes_one_by_one_and_keeps_the_last_sections():
+    model = TorsionalModel([0.1, 0.18, 0.15], 1.245, 0.335, 0.017, -1.16)
+    start = np.array([[0.0, 0.0], [1.0, 0.2], [-1.0, 0.1]])
+    group = Ensemble(model.lanes(), start, threads=2)
+    first = group.run(7)
+    kept = group.run(9, 4)
+    assert (first.shape, kept.shape, group.elapsed) == ((3, 0, 2), (3, 4, 2), 16)
+    for lane in range(3):
+        path = ReturnMap(model.lanes().take(lane)).visit(start[lane], 16)
+        assert np.array_equal(kept[lane], path.points[-4:])
+        assert np.array_equal(group.state[lane], path.points[-1])
+        assert path.shares.sum() == pytest.approx(1.0, abs=1e-12)
+    assert starts_of((1.0, 2.0), 2).tolist() == starts_of([[1.0, 2.0]], 2).tolist()
+    assert starts_of(start, 3).tolist() == start.tolist()
+    for wrong in (start[:2], np.zeros(3), [np.inf, 0.0]):
+        with pytest.raises(InputError, match="initial_state: got"):
+            starts_of(wrong, 3)
+    section = ReturnMap(model.lanes().take(1))
+    assert section.distance(start[0], start[1]) == pytest.approx(1.0)
+    assert section.distance(np.zeros(2), np.array([0.1, 1.245])) == pytest.approx(1.0)
+    with pytest.raises(InputError, match="3 lanes"):
+        ReturnMap(model.lanes())
