@@ -133,7 +133,7 @@ QUANTITIES: dict[str, Quantity] = {
     "peak_to_peak_stiffness": Quantity("N/m", "mesh stiffness, peak to peak", "Δk"),
     "mid_range_stiffness": Quantity("N/m", "mesh stiffness, mid-range (max + min)/2", "k_mid"),
     # dimensionless numbers of the equation of motion
-    "natural_frequency": Quantity("Hz", "natural frequency", "f_n"),
+    "natural_frequency": Quantity("Hz", "natural frequency of the mean stiffness", "f_n"),
     "mesh_frequency": Quantity("Hz", "mesh frequency", "f_mesh"),
     "damping_ratio": Quantity("1", "damping ratio", "ζ"),
     "frequency_ratio": Quantity("1", "mesh frequency over natural frequency", "ω_h"),

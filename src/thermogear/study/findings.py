@@ -198,8 +198,9 @@ def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
             "important",
             f"Two regimes: the speeds of this case lie at frequency ratios "
             f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
-            f"({f_n:.0f} Hz), while the thesis's bifurcation study at {low} to {high} would mean "
-            f"{studied[0]:.0f} to {studied[1]:.0f} rpm. Nothing found in one speaks for the other.",
+            f"of the cold mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation study at "
+            f"{low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
+            "Nothing found in one speaks for the other.",
         )
     ]
 
@@ -285,7 +286,9 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
     for place, bundle in enumerate(mesh["bundle"].values):
         natural = float(mesh["natural_frequency"].isel(bundle=place, state=0, operating=0))
         resonance = 60.0 * natural / case.pair.pinion.teeth
-        table.append(Fact("natural frequency, cold", str(bundle), natural, "Hz"))
+        table.append(
+            Fact("natural frequency of the cold mean stiffness", str(bundle), natural, "Hz")
+        )
         table.append(Fact("pinion speed of the mesh resonance", str(bundle), resonance, "rpm"))
     cold = mesh.isel(bundle=0, state=0, operating=0)
     for body, words in (("rim", "rim"), ("bore_clamped", "bore clamped")):

@@ -45,8 +45,9 @@ def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
         shown = ", ".join(f"{s / RPM:.4g}" for s in speeds)
         found.append(
             f"the range covers omega_h {ratio.min():.3f} .. {ratio.max():.3f}; the mesh meets the "
-            f"natural frequency {natural:.0f} Hz at {natural * turns:.0f} rpm; the case's own "
-            f"speeds ({shown} rpm) lie at omega_h {tests.min():.3f} .. {tests.max():.3f}"
+            f"natural frequency of the mean stiffness, {natural:.0f} Hz, at "
+            f"{natural * turns:.0f} rpm; the case's own speeds ({shown} rpm) lie at omega_h "
+            f"{tests.min():.3f} .. {tests.max():.3f}"
         )
     jammed = int(np.count_nonzero(data["status"].values == 1))
     if jammed:

@@ -78,7 +78,8 @@ def _regime(mesh: xr.Dataset) -> str:
     frequency = span(mesh["natural_frequency"].isel(bundle=0, state=0).values, 4)
     place = "below" if ratio.max() < 0.9 else "above" if ratio.min() > 1.1 else "around"
     return (
-        f"The mesh frequency lies at {span(ratio)} of the natural frequency ({frequency} Hz), "
+        f"The mesh frequency lies at {span(ratio)} of the natural frequency of the "
+        f"cold mean stiffness ({frequency} Hz), "
         f"{place} the resonance; the thesis's bifurcation study speaks of {STUDIED}."
     )
 
@@ -136,7 +137,13 @@ def tiles(results: Results) -> list[Tile]:
                 Tile("highest flash temperature", text[0], names[0] + _beside(names, text))
             )
     ratio = mesh["frequency_ratio"].isel(bundle=0, state=0).values
-    found.append(Tile("mesh over natural frequency", span(ratio, 2), f"thesis's study {STUDIED}"))
+    found.append(
+        Tile(
+            "mesh over natural frequency of the cold mean stiffness",
+            span(ratio, 2),
+            f"thesis's study {STUDIED}",
+        )
+    )
     motion = results.group("motion")
     if motion is not None:
         labels = motion["label"].isel(bundle=0, state=-1).values

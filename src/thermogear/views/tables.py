@@ -70,7 +70,8 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
         "bundle", "operating point",
         Markup("b′ cold → hot [µm]"), "jams at",
         Markup("mean k cold → hot [10⁸ N/m]"), "change",
-        "Δk hot [10⁸ N/m]", Markup("f<sub>n</sub> [Hz]"), Markup("ω<sub>h</sub>"),
+        "Δk hot [10⁸ N/m]", Markup("f<sub>n</sub> of cold mean k [Hz]"),
+        Markup("ω<sub>h</sub> cold"),
         "flash, mixed [K]", Markup("motion cold → hot"), "swing of x, hot [µm]",
     ]  # fmt: skip
     rows: list[list[Cell]] = []

@@ -40,7 +40,7 @@ FIGURES = {
     "mean_stiffness": "mean mesh stiffness",
     "thermal_stiffness_ratio": "its change by heat",
     "greatest_flash_temperature": "greatest flash",
-    "natural_frequency": "natural frequency",
+    "natural_frequency": "natural frequency of the mean stiffness",
     "frequency_ratio": "frequency ratio",
     "label": "motion",
     "peak_to_peak_displacement": "swing of x",
