@@ -57,6 +57,8 @@ def test_slips_are_told_in_one_line(
     assert "no such directory or case file; did you mean 'rows'?" in refused(
         capsys, rows, rows.with_name("rwos"), "-o", out
     )
+    line = refused(capsys, rows, "rig", "-o", out)  # the ready-made case, which is read
+    assert "(gear)" in line
     assert "`thermogear run CASE -o DIR`" in refused(capsys, rows, tmp_path / "zzz", "-o", out)
     (tmp_path / "empty").mkdir()
     assert "there is no such file" in refused(capsys, rows, tmp_path / "empty", "-o", out)

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     """Set two to six cases side by side: what differs, key figures, curves over each other.
 
-    Each of RESULTS is a directory of `thermogear run`, or a case file, which is run first into
-    a directory of its own below DIR. Writes versus.html, versus.nc and CSV tables.
+    Each of RESULTS is a directory of `thermogear run`, or a case (its file, or the name of a
+    ready-made one), which is run first into a directory of its own below DIR. Writes versus.html,
+    versus.nc and CSV tables.
     """
     from thermogear.study import versus as study
 
@@ -75,10 +76,11 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
 
 
 def _existing(path: Path) -> Path:
-    """``path`` where it is there; else the nearest name beside it."""
+    """``path`` where it is there or names a ready-made case; else the nearest name beside it."""
     from thermogear.base.errors import InputError
+    from thermogear.study.ready import EXAMPLES
 
-    if path.exists():
+    if path.exists() or str(path) in EXAMPLES:
         return path
     try:
         beside = [one.name for one in path.parent.iterdir()]
@@ -100,10 +102,11 @@ def _homes(directory: Path, paths: list[Path]) -> list[Path]:
     for path in paths:
         home, number = path, 1
         if not path.is_dir():
-            home = directory / path.stem
+            name = path.name.removesuffix(".toml")
+            home = directory / name
             while home.resolve() in taken:
                 number += 1
-                home = directory / f"{path.stem}-{number}"
+                home = directory / f"{name}-{number}"
             taken.add(home.resolve())
         homes.append(home)
     return homes
