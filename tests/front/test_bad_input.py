@@ -189,12 +189,12 @@ BAD_VALUES: list[tuple[str, str]] = [
     # temperatures
     (
         "temperatures.reference=-300 degC",
-        "temperatures.reference: got '-300 degC'; allowed -150..600 degC; "
+        "temperatures.reference: got '-300 degC'; allowed -70..600 degC; "
         'nothing is colder than 0 K (-273.15 degC); write for instance "100 degC"',
     ),
     (
         "temperatures.pinion_addendum=100 C",
-        "temperatures.pinion_addendum: got '100 C'; allowed -150..600 degC; "
+        "temperatures.pinion_addendum: got '100 C'; allowed -70..600 degC; "
         "'C' is no unit of temperature; did you mean \"100 degC\"?",
     ),
     (
@@ -209,12 +209,25 @@ BAD_VALUES: list[tuple[str, str]] = [
     ),
     (
         "temperatures.housing_below_addendum=390 K",
-        "temperatures.housing_below_addendum: got 390 K; "
-        "allowed < 373.15 K, the addendum's temperature; nothing is colder than 0 K",
+        "temperatures.housing_below_addendum: got 390 K below 140 degC = -250 degC; "
+        "allowed -70..600 degC",
     ),
     (
         "temperatures.row=['100 degC', '100 degC']",
         "temperatures.row: got '100 degC' twice; allowed each value once",
+    ),
+    *(
+        (
+            f"{field}=140 K",
+            f"{field}: got '140 K'; allowed -70..600 degC; that is -133.15 degC; "
+            'did you mean "140 degC"?',
+        )
+        for field in ("temperatures.pinion_addendum", "temperatures.row", "oil.temperature")
+    ),
+    (
+        "temperatures.pinion_addendum=140",
+        "temperatures.pinion_addendum: got 140; allowed -70..600 degC; "
+        f'{NO_UNIT}; write for instance "140 degC"',
     ),
     # oil, inertia, backlash
     (

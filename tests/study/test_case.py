@@ -258,9 +258,9 @@ def test_materials_of_the_users_own() -> None:
             r"^temperatures.row\[1\].pinion_addendum: got 195 degC; valid -60..180 degC",
         ),
         (
-            "temperatures.wheel_bore_below_addendum=210 K",
-            r"^temperatures.wheel_bore: got -70 degC; valid -60..180 degC; below the data of "
-            r"steel$",
+            "temperatures.wheel_bore_below_addendum=165 K",
+            r"^temperatures.row\[0\].wheel_bore: got -65 degC; valid -60..180 degC; below "
+            r"the data of steel$",
         ),
         (
             "oil.temperature_below_addendum=-20 K",

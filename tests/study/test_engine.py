@@ -273,4 +273,4 @@ def test_what_does_not_fit_a_gear_case(rig_case: GearCase) -> None:
     with pytest.raises(InputError, match=r"--parameter: got 'sped'.*did you mean 'speed'"):
         parameter_name(of_case(rig_case), "sped")
     with pytest.raises(InputError, match="--to: got '4000 Hz'"):
-        parameter_value("--to", "speed", "4000 Hz")
+        parameter_value("--to", of_case(rig_case), "speed", "4000 Hz")

@@ -7,8 +7,9 @@ from thermogear.base.errors import InputError
 from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
+from thermogear.study.analyses import parse_axis
 from thermogear.study.case import load_example
-from thermogear.study.gearwords import GearFamily, Tabulated, to_si, word
+from thermogear.study.gearwords import GearFamily, Tabulated, read_word, word
 
 RPM = np.pi / 30.0
 
@@ -89,13 +90,43 @@ def test_table_between_speeds_is_exact_where_nothing_depends_on_speed(rig):
 
 def test_words_and_units():
     assert word("rpm") == "pinion_speed"
-    assert to_si("pinion_speed", [3000.0])[0] == pytest.approx(100.0 * np.pi, rel=1e-15)
-    assert to_si("gear_temperature", [20.0])[0] == 293.15
-    assert to_si("cold_half_backlash", [125.0])[0] == pytest.approx(125e-6, rel=1e-15)
+    assert read_word("pinion_speed", "3000") == pytest.approx(100.0 * np.pi, rel=1e-15)
+    assert read_word("gear_temperature", "20") == 293.15
+    assert read_word("cold_half_backlash", "125") == pytest.approx(125e-6, rel=1e-15)
     with pytest.raises(InputError, match=r"parameter: got 'torqe'; did you mean 'torque'\?"):
         word("torqe")
 
 
+def test_an_axis_of_lengths_is_the_case_with_that_length(rig):
+    """A field of the file over its values gives, point by point, the case so written."""
+    name, widths = parse_axis(rig, "gears.pinion.face_width=20 mm:30 mm:3")
+    assert name == "gears.pinion.face_width"
+    assert widths == pytest.approx([0.020, 0.025, 0.030], rel=1e-15)
+    family = GearFamily(rig, (name,))
+    assert family.units == ("m",)
+    swept = family(widths[:, None])
+    for place, text in enumerate(("20 mm", "25 mm", "30 mm")):
+        written = load_example("rig", {name: text})
+        one = GearFamily(written, ("pinion_speed",))(np.array([[written.speeds[0]]]))
+        assert swept.rate[place] == pytest.approx(one.rate[0], rel=1e-12)
+        assert swept.stiffness[place] == pytest.approx(one.stiffness[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("bare", "written"),
+    [
+        ("rpm=600:1200:3", "speed=10 turn/s:20 turn/s:3"),
+        ("torque=50,100", "torque=50 N m,1e5 N mm"),
+        ("temperature=20:140:4", "temperature=293.15 K:413.15 K:4"),
+        ("backlash=100:200:2", "backlash=0.1 mm:0.2 mm:2"),
+    ],
+)
+def test_a_unit_may_stand_at_every_value(rig, bare, written):
+    one, other = parse_axis(rig, bare), parse_axis(rig, written)
+    assert one[0] == other[0]
+    assert one[1] == pytest.approx(other[1], rel=1e-14)
+
+
 def test_standstill_is_refused(rig):
-    with pytest.raises(InputError, match="pinion_speed: got 0 rpm; allowed > 0 rpm"):
+    with pytest.raises(InputError, match=r"operating\.speed: got 0 rpm; allowed > 0 rpm"):
         GearFamily(rig, ("pinion_speed",))(np.array([[0.0]]))

@@ -40,15 +40,13 @@ class InputError(ThermogearError, ValueError):
             parts.append(fix)
         super().__init__("; ".join(parts).replace("\n", " "))
 
+    def named(self, field: str) -> InputError:
+        """The same error about ``field``, which whoever asked knows it by."""
+        return type(self)(field, self.got, allowed=self.allowed, why=self.why, fix=self.fix)
+
     def under(self, prefix: str) -> InputError:
         """The same error with ``prefix.`` before its field: a part speaks for its whole."""
-        return type(self)(
-            f"{prefix}.{self.field}",
-            self.got,
-            allowed=self.allowed,
-            why=self.why,
-            fix=self.fix,
-        )
+        return self.named(f"{prefix}.{self.field}")
 
 
 class GeometryError(InputError):

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from thermogear.base.errors import InputError
+
 
 @contextmanager
 def beside(path: Path) -> Iterator[Path]:
@@ -20,6 +22,14 @@ def beside(path: Path) -> Iterator[Path]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def require_directory(path: Path, field: str = "output") -> None:
+    """Refuse a ``path`` that cannot be a directory: a file stands there, or above it."""
+    for place in (path, *path.parents):
+        if place.exists() and not place.is_dir():
+            why = "it is a file" if place == path else f"{place} is a file"
+            raise InputError(field, str(path), why=why, fix="name a directory")
 
 
 def put(path: Path, data: bytes | str) -> Path:

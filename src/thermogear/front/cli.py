@@ -122,12 +122,13 @@ def run(
 @click.option("--kind", default="png", metavar="KIND", help="Of the pictures: png, svg or pdf.")
 def report(directory: str, pictures: str | None, kind: str) -> None:
     """Draw report.html anew from the results stored in DIR."""
-    click.echo(_report(Path(directory)))
+    written: list[Path] = []
     if pictures is not None:
         from thermogear.views.pictures import write_pictures
 
-        for path in write_pictures(Path(directory), Path(pictures), kind):
-            click.echo(path)
+        written = write_pictures(Path(directory), Path(pictures), kind)
+    for path in (_report(Path(directory)), *written):
+        click.echo(path)
 
 
 @cli.command()

@@ -34,10 +34,6 @@ MOST_BATCHES = 100_000
 MOST_SPEEDS = 10_000
 
 
-class Stopped(KeyboardInterrupt):
-    """Ctrl+C after what was finished had been kept."""
-
-
 def _subject_options(command: _Command) -> _Command:
     """CASE and the options that pick one motion out of it, or plain numbers."""
     options = [
@@ -139,6 +135,8 @@ def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, A
         if page is not None:
             click.echo(page)
     if result.interrupted:
+        from thermogear.front.progress import Stopped
+
         raise Stopped
 
 
@@ -309,8 +307,8 @@ def continue_(
         raise InputError(missing, "nothing", fix="for instance --parameter zeta --to 0.1")
     subject = _subject(options, case)
     name = parameter_name(subject, parameter)
-    end = parameter_value("--to", name, to)
-    first = None if begin is None else parameter_value("--from", name, begin)
+    end = parameter_value("--to", subject, name, to)
+    first = None if begin is None else parameter_value("--from", subject, name, begin)
     _claim_early(options)
     with progress(wanted=not options["as_json"]) as report:
         result = branch_results(
@@ -335,8 +333,8 @@ def _sweeps(
             raise InputError("--to", "nothing", fix="for instance --to 0.1")
         first = subject.parameters.get(name, 0.0)
         if begin is not None:
-            first = parameter_value("--from", name, begin)
-        last = parameter_value("--to", name, to)
+            first = parameter_value("--from", subject, name, begin)
+        last = parameter_value("--to", subject, name, to)
         return (sweep_of_subject(subject, name, first, last),), subject.title
     if begin is not None or to is not None:
         raise InputError("--parameter", "nothing", fix="name what runs from --from to --to")

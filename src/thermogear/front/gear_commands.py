@@ -13,7 +13,7 @@ import click
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -206,13 +206,13 @@ def relief(
     Least peak-to-peak static transmission error, drawn against the unrelieved pair; prints the
     lines for the case file. Writes relief.nc, relief.html, pictures and CSV to DIR.
     """
+    from thermogear.study.allowed import kelvin
+
     read = _gear_case(case, overrides)
     for name, value in (("--torque", torque), ("--largest", largest)):
         if value is not None:
             _positive(name, [value])
-    kelvin = None if celsius is None else celsius + ZERO_CELSIUS
-    if celsius is not None and not -150.0 <= celsius <= 600.0:
-        raise InputError("--temperature", f"{celsius:g} degC", allowed="-150..600 degC")
+    held = None if celsius is None else kelvin("--temperature", celsius)
 
     def make(report: Progress) -> xr.DataTree:
         from thermogear.study.relief import relief_survey
@@ -220,7 +220,7 @@ def relief(
         return relief_survey(
             read,
             torque=torque,
-            gear_temperature=kelvin,
+            gear_temperature=held,
             shape=shape,
             symmetric=symmetric,
             largest=None if largest is None else 1e-6 * largest,

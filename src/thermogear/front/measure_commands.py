@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import require_directory
 from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
@@ -204,8 +205,7 @@ def _store(tree: Any, directory: Path, name: str, quiet: bool) -> None:
     """Store the tree and draw its page; the page's path goes to the error stream if ``quiet``."""
     from thermogear.views.measured_report import write_measured_report
 
-    if directory.exists() and not directory.is_dir():
-        raise InputError("output", str(directory), why="it is a file", fix="name a directory")
+    require_directory(directory)
     directory.mkdir(parents=True, exist_ok=True)
     stored = directory / f"{name}.nc"
     tree.to_netcdf(stored, engine="h5netcdf")

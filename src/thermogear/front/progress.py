@@ -9,6 +9,10 @@ from contextlib import contextmanager
 from thermogear.base.progress import Progress, silent
 
 
+class Stopped(KeyboardInterrupt):
+    """Ctrl+C after what was finished had been kept."""
+
+
 @contextmanager
 def progress(wanted: bool = True) -> Iterator[Progress]:
     """A reporter that draws one bar for each stage; silent where stderr is no terminal."""

@@ -57,7 +57,8 @@ _over = click.option(
     required=True,
     metavar="NAME=FROM:TO:COUNT",
     help="A parameter and its values: rpm, torque, temperature, backlash, damping or a dotted "
-    "field of a gear case; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.",
+    "field (gears.pinion.face_width=20 mm:30 mm:3) of a gear case; zeta, omega, epsilon, F_m, "
+    "F_h, b, eps_T of a dimensionless one.",
 )
 _but = click.option(
     "--but",
@@ -154,12 +155,12 @@ def map_(
     **options: Any,
 ) -> None:
     """Map of the regimes of CASE over two parameters (--over twice)."""
-    from thermogear.study.analyses import case_map, parse_axis
+    from thermogear.study.analyses import case_map, parse_axes
 
     read = _load(case, options["overrides"])
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
-    axes = dict(parse_axis(read, text) for text in over)
+    axes = parse_axes(read, over)
     plan = case_map(
         read, axes, bundle=options["bundle"], state=_state(options["state"]),
         changes=_numbers(but), refine=not full,
@@ -207,12 +208,13 @@ def runup(
     **options: Any,
 ) -> None:
     """Run CASE up and down in speed, cold and hot: transmission error, mesh force, K_v, jumps."""
+    from thermogear.study.allowed import kelvin
     from thermogear.study.case import gear_case
     from thermogear.study.runup import run_up_plan
 
     read = gear_case(_load(case, options["overrides"]))
     speeds = _grid("rpm", rpm) * RPM
-    states = (None, *(_kelvin("hot", t) for t in hot)) if hot else None
+    states = (None, *(kelvin("hot", t) for t in hot)) if hot else None
     plan = run_up_plan(
         read, speeds, temperatures=states, bundle=options["bundle"], torque=torque,
         branch_period=branch_period,
@@ -226,12 +228,12 @@ def runup(
 @_common
 def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
     """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
-    from thermogear.study.analyses import parse_axis
+    from thermogear.study.analyses import parse_axes
     from thermogear.study.case import gear_case
     from thermogear.study.sweep import sweep_plan
 
     read = gear_case(_load(case, options["overrides"]))
-    axes = dict(parse_axis(read, text) for text in over)
+    axes = parse_axes(read, over)
     plan = sweep_plan(read, axes, bundle=options["bundle"], state=_state(options["state"]))
     _carry(plan, Path(output), read.title, as_json, options, _label_summary)
 
@@ -250,20 +252,15 @@ def _load(case: str, overrides: tuple[str, ...]) -> GearCase | DimensionlessCase
 
 
 def _state(text: str) -> str | float:
+    from thermogear.study.allowed import kelvin
+
     if text in ("hot", "cold"):
         return text
     try:
         celsius = float(text)
     except ValueError:
         raise InputError("state", repr(text), allowed="hot | cold | degrees Celsius") from None
-    return _kelvin("state", celsius)
-
-
-def _kelvin(option: str, celsius: float) -> float:
-    """A gear temperature within the bounds of the case file's."""
-    if not -150.0 <= celsius <= 600.0:
-        raise InputError(option, f"{celsius:g} degC", allowed="-150..600 degC")
-    return celsius + ZERO_CELSIUS
+    return kelvin("state", celsius)
 
 
 def _split(text: str) -> tuple[str, str]:
@@ -274,17 +271,16 @@ def _split(text: str) -> tuple[str, str]:
 
 
 def _numbers(texts: tuple[str, ...]) -> dict[str, float]:
+    from thermogear.study.allowed import dimensionless_reader, read_value
     from thermogear.study.analyses import dimensionless_name
 
-    found = {}
+    found: dict[str, float] = {}
     for text in texts:
         name, value = _split(text)
-        try:
-            found[dimensionless_name(name)] = float(value)
-        except ValueError as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError(name, repr(value), allowed="a number") from None
+        full = dimensionless_name(name)
+        if full in found:
+            raise InputError("change", f"{full} twice", allowed="each number once")
+        found[full] = read_value(name, dimensionless_reader(full), value)
     return found
 
 

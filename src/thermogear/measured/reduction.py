@@ -140,6 +140,8 @@ def measure(
         raise InputError("harmonics, sidebands", f"{harmonics}, {sidebands}", allowed=">= 1, >= 0")
     if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
         raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
+    if pulses_per_turn is not None and not 0 < pulses_per_turn < np.inf:
+        raise InputError("pulses_per_turn", pulses_per_turn, allowed="> 0, finite")
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
     start, table = _stretch(chosen, notices)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,9 @@ from thermogear.analysis.maps import MapPlan, map_plan
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
+from thermogear.study.allowed import dimensionless_reader, read_value, require_numbers
 from thermogear.study.case import Case, DimensionlessCase, GearCase
-from thermogear.study.gearwords import GearFamily, GearPoints, Tabulated, to_si, word
+from thermogear.study.gearwords import GearFamily, GearPoints, Tabulated, read_word, word
 from thermogear.study.schema import PARAMETERS, DimensionlessFile
 from thermogear.study.source import overridden, tables
 
@@ -57,7 +58,9 @@ def base_model(
                 why="a base set is one point",
             )
         values[name] = float(given[0])
-    return TorsionalModel(**(values | dict(changes or {})))
+    values |= changes or {}
+    require_numbers(values)
+    return TorsionalModel(**values)
 
 
 def dimensionless_name(name: str) -> str:
@@ -69,50 +72,60 @@ def dimensionless_name(name: str) -> str:
 
 
 def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
-    """NAME=FROM:TO:COUNT or NAME=A,B,C in the units a person writes, as name and SI values."""
+    """NAME=FROM:TO:COUNT or NAME=A,B,C in the units a person writes, as name and SI values.
+
+    Gear values carry their unit as in a case file (``20 mm:30 mm:3``); those that have a name of
+    their own may leave it out.
+    """
     name, sign, rest = text.partition("=")
-    example = "rpm=200:12000:120" if isinstance(case, GearCase) else "zeta=0.10:0.18:200"
-    try:
-        if ":" in rest:
-            low, high, count = rest.split(":")
-            number = int(count)
-            if number < 1:
-                raise ValueError
-            values = np.linspace(float(low), float(high), number)
-        else:
-            values = np.array([float(v) for v in rest.split(",")])
-        if not sign or not np.all(np.isfinite(values)):
-            raise ValueError
-    except ValueError:
+    gears = isinstance(case, GearCase)
+    example = "rpm=200:12000:120" if gears else "zeta=0.10:0.18:200"
+    parts = rest.split(":") if ":" in rest else rest.split(",")
+    number = parts.pop() if ":" in rest else ""
+    # nine digits count more points than any machine computes
+    counted = len(parts) == 2 and number.isdecimal() and len(number) < 9 and int(number) > 0
+    if not sign or (":" in rest and not counted):
         raise InputError(
             "over", repr(text), allowed="NAME=FROM:TO:COUNT or NAME=A,B,C", fix=f"as {example}"
-        ) from None
-    if isinstance(case, GearCase):
+        )
+    if gears:
         full = word(name)
-        if full == "gear_temperature" and not (values.min() >= -150.0 and values.max() <= 600.0):
-            got = f"{values.min():g} .. {values.max():g} degC"
-            raise InputError("temperature", got, allowed="-150..600 degC")
-        return full, to_si(full, values)
-    full = dimensionless_name(name)
-    for end in (values.min(), values.max()):
-        # refused here, before a store is begun with it; the other numbers do not matter
-        TorsionalModel(**(dict.fromkeys(PARAMETERS, 0.5) | {full: float(end)}))
-    return full, values
+        ends = [read_word(full, part) for part in parts]
+    else:
+        full = dimensionless_name(name)
+        ends = [read_value(full, dimensionless_reader(full), part) for part in parts]
+    return full, np.linspace(ends[0], ends[1], int(number)) if counted else np.array(ends)
+
+
+def parse_axes(case: Case, texts: Sequence[str]) -> dict[str, Floats]:
+    """Every axis of the command line, as :func:`parse_axis`; each parameter once."""
+    found: dict[str, Floats] = {}
+    for text in texts:
+        name, values = parse_axis(case, text)
+        if name in found:
+            raise InputError("over", f"{name} twice", allowed="each parameter once")
+        found[name] = values
+    return found
 
 
 def family_of_case(
     case: Case,
-    names: tuple[str, ...],
+    axes: Mapping[str, Floats],
     *,
     bundle: str = "",
     state: str | float = "hot",
     changes: Mapping[str, float] | None = None,
 ) -> Family:
-    """The family of models behind a case of either kind."""
+    """The family of models behind a case of either kind, over ``axes`` that it can have."""
+    names = tuple(axes)
     if isinstance(case, GearCase):
-        return GearFamily(case, names, bundle, state)
+        gears = GearFamily(case, names, bundle, state)
+        gears.require(axes)
+        return gears
     if isinstance(case, DimensionlessCase):
-        return ModelFamily(base_model(case, changes), names)
+        model = base_model(case, changes)
+        require_numbers({n: getattr(model, n) for n in PARAMETERS} | dict(axes))
+        return ModelFamily(model, names)
     raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
 
 
@@ -132,7 +145,7 @@ def case_diagram(
     Over a gear parameter the tables are computed at ``values`` and run straight between them,
     which is where bifurcations are located.
     """
-    family: Family = family_of_case(case, (name,), bundle=bundle, state=state, changes=changes)
+    family = family_of_case(case, {name: values}, bundle=bundle, state=state, changes=changes)
     axis = np.sort(values)
     if isinstance(family, GearFamily) and axis.size > 1:
         family = Tabulated.of(family, axis)
@@ -150,7 +163,7 @@ def case_map(
     refine: bool = True,
 ) -> MapPlan:
     """The map of regimes of a case over two parameters."""
-    family = family_of_case(case, tuple(axes), bundle=bundle, state=state, changes=changes)
+    family = family_of_case(case, axes, bundle=bundle, state=state, changes=changes)
     return map_plan(family, axes, initial_state=case.simulation.initial_state, refine=refine)
 
 

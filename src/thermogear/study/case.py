@@ -29,7 +29,7 @@ from thermogear.study.backlash import Backlash
 from thermogear.study.complaints import first_complaint
 from thermogear.study.flanks import deviations
 from thermogear.study.parts import TemperatureRule
-from thermogear.study.ranges import warn_of_temperatures
+from thermogear.study.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.study.ready import example_text
 from thermogear.study.rows import Point, points_of
 from thermogear.study.schema import PICTURES, DimensionlessFile, GearFile
@@ -318,6 +318,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         computed=rule is None,
         **common,
     )
+    warn_of_torque(pair, torques)
     if case.computed:
         return case
     row = {

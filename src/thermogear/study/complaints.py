@@ -56,17 +56,11 @@ def _said(complaint: dict[str, Any], file: type[BaseModel]) -> InputError:
     cause = complaint.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         joint = "" if not field or not cause.field or cause.field.startswith("[") else "."
-        return InputError(
-            field + joint + cause.field or "case",
-            cause.got,
-            allowed=cause.allowed,
-            why=cause.why,
-            fix=cause.fix,
-        )
+        return cause.named(field + joint + cause.field or "case")
     if kind == "extra_forbidden":
         return _unknown_key(location, field, file)
     if kind == "missing":
-        reader = _reader(file, location)
+        reader = reader_at(file, location)
         key = location[-1]
         fix = f"write {key} = {reader.example}" if reader else f"add the table [{field}]"
         return InputError(field, "nothing", why="needed", fix=fix)
@@ -120,7 +114,8 @@ def _models_of(annotation: Any) -> tuple[type[BaseModel] | None, type[BaseModel]
     return (None, inner[0]) if collection else (inner[0], None)
 
 
-def _reader(file: type[BaseModel], location: tuple[int | str, ...]) -> Reader | None:
+def reader_at(file: type[BaseModel], location: tuple[int | str, ...]) -> Reader | None:
+    """What reads the field at ``location``, or None where there is no such field."""
     table = table_at(file, location[:-1])
     if table is None or str(location[-1]) not in table.model_fields:
         return None

@@ -15,7 +15,8 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.study.units import KINDS, read_quantity, short
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.study.units import KINDS, read_quantity, short, shown
 
 MOST = 100_000
 """No list in a case file is longer than this."""
@@ -29,6 +30,14 @@ class Reader:
     def read(self, raw: object) -> Any:
         """The value that leaves the file."""
         raise InputError("", short(raw))
+
+    def written(self, value: float) -> object:
+        """The SI ``value`` as a file holds it, to the last bit."""
+        return value
+
+    def within(self, value: float) -> float:
+        """``value`` [SI] where the field allows it, for what comes another way than by a file."""
+        return float(self.read(self.written(value)))
 
     def schema(self) -> dict[str, Any]:
         """The JSON schema of what may be written."""
@@ -84,16 +93,27 @@ class Measure(Reader):
                 why="nothing is colder than 0 K (-273.15 degC)",
                 fix=f"write for instance {self.example}",
             )
-        below = self.low is not None and value < read_quantity(self.low, self.kind) * (1 - 1e-12)
-        above = self.high is not None and value > read_quantity(self.high, self.kind) * (1 + 1e-12)
-        if below or above:
-            raise InputError(
-                "",
-                short(raw),
-                allowed=self.allowed,
-                why=self.why,
-                fix=f"write for instance {self.example}",
-            )
+        self._bounded(value, short(raw))
+        return value
+
+    def _bounded(self, value: float, got: str) -> None:
+        low = -math.inf if self.low is None else read_quantity(self.low, self.kind)
+        high = math.inf if self.high is None else read_quantity(self.high, self.kind)
+        if low - 1e-12 * abs(low) <= value <= high + 1e-12 * abs(high):
+            return
+        fix = f"write for instance {self.example}"
+        kelvins = self.kind == "temperature" and got.endswith(("K'", "kelvin'"))
+        if kelvins and low <= value + ZERO_CELSIUS <= high:
+            fix = f'that is {value - ZERO_CELSIUS:g} degC; did you mean "{value:g} degC"?'
+        raise InputError("", got, allowed=self.allowed, why=self.why, fix=fix)
+
+    def written(self, value: float) -> str:
+        return f"{value!r} {KINDS[self.kind].si}"
+
+    def within(self, value: float) -> float:
+        if not math.isfinite(value):
+            raise InputError("", f"{value:g}", allowed=self.allowed)
+        self._bounded(value, shown(value, self.kind))
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -167,6 +187,9 @@ class Count(Reader):
         if not self.low <= raw <= self.high:
             raise InputError("", short(raw), allowed=allowed, why=self.why, fix=fix)
         return raw
+
+    def written(self, value: float) -> object:
+        return int(value) if float(value).is_integer() else value
 
     def schema(self) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.low, "maximum": self.high}
@@ -248,9 +271,7 @@ class Several(Reader):
             except InputError as error:
                 if len(raw) == 1:
                     raise
-                raise InputError(
-                    f"[{place}]", error.got, allowed=error.allowed, why=error.why, fix=error.fix
-                ) from error
+                raise error.named(f"[{place}]") from error
         if self.distinct and len(set(values)) < len(values):
             twice = next(raw[i] for i, v in enumerate(values) if v in values[:i])
             raise InputError("", f"{short(twice)} twice", allowed="each value once")
@@ -262,6 +283,10 @@ class Several(Reader):
         return {"anyOf": [item, many]} if self.single else many
 
 
+BODY = Measure("temperature", "-70 degC", "600 degC")
+"""The temperature of gears, oil or housing: no gearbox runs colder, no gear steel hotter."""
+
+
 @dataclass(frozen=True)
 class NumberOrTemperature(Reader):
     """The value of a swept parameter: a pure number, or a temperature with its unit."""
@@ -270,8 +295,8 @@ class NumberOrTemperature(Reader):
 
     def read(self, raw: object) -> tuple[float, str]:
         if isinstance(raw, str):
-            return Measure("temperature").read(raw), "K"
+            return BODY.read(raw), "K"
         return Number().read(raw), "1"
 
     def schema(self) -> dict[str, Any]:
-        return {"anyOf": [Number().schema(), Measure("temperature").schema()]}
+        return {"anyOf": [Number().schema(), BODY.schema()]}

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,11 @@ from thermogear.dynamics.models import TorsionalModel, from_excitation
 from thermogear.dynamics.tables import Lanes
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
+from thermogear.study.allowed import gear_reader, read_value, within
 from thermogear.study.case import GearCase, gear_case, load_case
+from thermogear.study.fields import Measure
+from thermogear.study.ranges import warn_of_torque
+from thermogear.study.units import KINDS
 
 Floats = NDArray[np.float64]
 
@@ -71,11 +76,36 @@ def word(name: str) -> str:
     return full
 
 
-def to_si(name: str, values: ArrayLike) -> Floats:
-    """Values in the unit a person writes (rpm, degC, um) as SI."""
-    one = WORDS.get(name)
-    found = np.asarray(values, dtype=float)
-    return found if one is None else np.asarray(found / one.factor + one.zero)
+def unit_of(name: str) -> str:
+    """The SI unit of a gear parameter or a dotted field."""
+    if name in WORDS:
+        return WORDS[name].unit
+    reader = gear_reader(name)
+    return KINDS[reader.kind].si if isinstance(reader, Measure) else "1"
+
+
+def read_word(name: str, text: str) -> float:
+    """A value of a gear parameter as a person writes it, as SI.
+
+    With its unit as in a case file; a bare number of one of :data:`WORDS` is in its shown unit.
+    """
+    one, reader = WORDS.get(name), gear_reader(name)
+    try:
+        number = float(text)
+    except ValueError:
+        return read_value(name, reader, text)
+    if one is None and isinstance(reader, Measure):
+        unit = KINDS[reader.kind].shown
+        raise InputError(
+            name,
+            text,
+            allowed=reader.allowed,
+            why="the unit is missing",
+            fix=f"write it at every value: {name}={text} {unit}:TO {unit}:COUNT",
+        )
+    value = number if one is None else number / one.factor + one.zero
+    within(name, reader, value)
+    return value
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +177,7 @@ class GearFamily:
 
     @property
     def units(self) -> tuple[str, ...]:
-        return tuple(WORDS[n].unit if n in WORDS else "1" for n in self.names)
+        return tuple(unit_of(name) for name in self.names)
 
     @property
     def model(self) -> MeshModel:
@@ -174,12 +204,31 @@ class GearFamily:
         parts: list[tuple[NDArray[np.int64], GearPoints]] = []
         for values in np.unique(rows[:, dotted], axis=0):
             chosen = np.flatnonzero((rows[:, dotted] == values).all(axis=1))
-            fields = tuple(
-                (self.names[i], repr(float(v))) for i, v in zip(dotted, values, strict=True)
-            )
-            case = _case_with(self.case.text, self.case.overrides, fields)
+            case = self._case_with(dict(zip((self.names[i] for i in dotted), values, strict=True)))
             parts.append((chosen, bare._points(case, rows[chosen][:, plain])))
         return _joined(parts, len(rows))
+
+    def require(self, axes: Mapping[str, ArrayLike]) -> None:
+        """Refuse ``axes`` (SI) that no case file could hold, before anything is computed.
+
+        Of fields of the case file every corner of the grid is read as a case. Warns as a case
+        with these values does.
+        """
+        for name, values in axes.items():
+            within(name, gear_reader(name), values)
+        if "pinion_torque" in axes:
+            warn_of_torque(self.case.pair, axes["pinion_torque"])
+        dotted = {name: np.asarray(values) for name, values in axes.items() if "." in name}
+        ends = ({float(v.min()), float(v.max())} for v in dotted.values())
+        for corner in product(*ends):
+            self._case_with(dict(zip(dotted, corner, strict=True)))
+
+    def _case_with(self, values: Mapping[str, float]) -> GearCase:
+        """The case with fields of its file put to other ``values`` (SI)."""
+        fields = tuple(
+            (name, str(gear_reader(name).written(float(value)))) for name, value in values.items()
+        )
+        return _case_with(self.case.text, self.case.overrides, fields) if fields else self.case
 
     def _points(self, case: GearCase, rows: Floats) -> GearPoints:
         columns = dict(zip(self.names, rows.T, strict=True))
@@ -194,13 +243,6 @@ class GearFamily:
         torque = column("pinion_torque", case.torques[0])
         backlash = column("cold_half_backlash", case.stated.half_backlash)
         damping = column("damping_ratio", case.damping_ratio)
-        if np.any(speed <= 0.0):
-            raise InputError(
-                "pinion_speed", f"{speed.min() / RPM:.6g} rpm", allowed="> 0 rpm",
-                why="nothing excites a pair that does not turn",
-            )  # fmt: skip
-        if np.any(damping < 0.0):
-            raise InputError("damping_ratio", float(damping.min()), allowed=">= 0")
         state: Floats | None = columns.get("gear_temperature")
         if state is None and not isinstance(self.state, str):
             state = np.full(count, self.state)

@@ -22,8 +22,9 @@ from thermogear.mesh.excite import disc_inertia
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.study.backlash import Backlash, from_tolerances, from_value
+from thermogear.study.fields import BODY
 from thermogear.study.schema import GearFile, GearTable
-from thermogear.study.units import short
+from thermogear.study.units import short, shown
 
 _Made = TypeVar("_Made")
 
@@ -40,16 +41,18 @@ class Follows:
         return addendum - self.value if self.below else self.value
 
     def checked(self, addendum: float, field: str) -> float:
-        """The same, refused under the name of its ``field`` where it falls to 0 K."""
+        """The same, refused under the name of its ``field`` where no such body may be."""
         temperature = self.at(addendum)
-        if temperature <= 0.0:
+        if not self.below:
+            return temperature
+        try:
+            return BODY.within(temperature)
+        except InputError as error:
             raise InputError(
                 f"{field}_below_addendum",
-                f"{self.value:.6g} K",
-                allowed=f"< {addendum:.6g} K, the addendum's temperature",
-                why="nothing is colder than 0 K",
-            )
-        return temperature
+                f"{self.value:.6g} K below {shown(addendum, 'temperature')} = {error.got}",
+                allowed=error.allowed,
+            ) from error
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,26 @@
-"""Warnings where a case leaves the range of its material and oil data."""
+"""Warnings where a case leaves the range of its material, load and oil data."""
 
 from __future__ import annotations
 
 import warnings
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
 from thermogear.gears.geometry import GearPair
 from thermogear.mesh.operating import Operating
 
 COLDEST = ZERO_CELSIUS - 60.0
 """Below it [K] the material data are an extrapolation."""
+
+
+CRUSHING = 4e9
+"""Hertzian pressure [Pa] of a line contact that dents the hardest bearing steel for good: the
+static limit of roller bearings (ISO 76)."""
 
 
 def warn_of_temperatures(pair: GearPair, states: dict[str, Operating]) -> None:
@@ -31,6 +38,26 @@ def warn_of_temperatures(pair: GearPair, states: dict[str, Operating]) -> None:
                 field = "oil.temperature" if where == "temperatures" else f"{where}, oil"
                 why = f"outside the viscosity fit of {state.lubricant.name}"
                 _say(field, float(oil), low, high, why)
+
+
+def warn_of_torque(pair: GearPair, torques: ArrayLike) -> None:
+    """Warn of a greatest pinion torque [N m] that would crush the flanks of any steel.
+
+    p_0 at the pitch point, cold, the whole load on one tooth pair; p_0 grows as sqrt(torque).
+    """
+    torque = float(np.max(np.asarray(torques, dtype=float)))
+    line_load = torque / pair.pinion.base_radius / pair.face_width
+    radius = reduced_radius(pair, pair.path.c)
+    pressure = float(hertz_pressure(line_load, radius, pair_reduced_modulus(pair)))
+    if pressure > CRUSHING:
+        most = torque * (CRUSHING / pressure) ** 2
+        warnings.warn(
+            f"pinion torque: got {torque:g} N m; valid 0..{most:.4g} N m; "
+            f"{1e-9 * pressure:.3g} GPa between the flanks at the pitch point, and above "
+            f"{1e-9 * CRUSHING:g} GPa no steel stays elastic",
+            ValidityWarning,
+            stacklevel=3,
+        )
 
 
 def _warn(where: str, value: float, material: Material) -> None:

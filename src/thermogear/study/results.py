@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import beside, put
+from thermogear.base.files import beside, put, require_directory
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"
@@ -41,8 +41,7 @@ def claim_directory(directory: Path, ours: Sequence[str] = ()) -> None:
 
     The mark is written at once, so that what an interrupted run leaves is still ours.
     """
-    if directory.exists() and not directory.is_dir():
-        raise InputError("output", str(directory), why="it is a file", fix="name a directory")
+    require_directory(directory)
     foreign = directory.is_dir() and any(
         not (ours and path.name.lstrip(".").startswith(tuple(ours))) for path in directory.iterdir()
     )

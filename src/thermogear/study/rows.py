@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from thermogear.base.errors import InputError
-from thermogear.study.schema import PARAMETERS, BaseTable, DimensionlessFile, RowTable
+from thermogear.study.allowed import dimensionless_reader, positive_stiffness, within
+from thermogear.study.schema import PARAMETERS, DimensionlessFile, RowTable
 
 
 @dataclass(frozen=True)
@@ -69,9 +70,15 @@ def _row(name: str, row: RowTable, file: DimensionlessFile) -> list[Point]:
                 fix='write for instance "100 degC"' if unit == "K" else "write for instance 0.18",
             )
     if row.parameter in columns:
-        columns[row.parameter] = tuple(
-            _swept(value, row.parameter, f"{where}.values[{place}]")
-            for place, (value, _) in enumerate(row.values)
+        reader = dimensionless_reader(row.parameter)
+        for place, (value, _) in enumerate(row.values):
+            within(f"{where}.values[{place}]", reader, value)
+        columns[row.parameter] = tuple(value for value, _ in row.values)
+    for place in range(count):
+        positive_stiffness(
+            f"{where}, point {place + 1}, stiffness_amplitude",
+            columns["stiffness_amplitude"][place],
+            columns["thermal_stiffness"][place],
         )
     expected: tuple[str, ...] = ("",) * count
     if row.expected:
@@ -100,14 +107,3 @@ def _stretched(given: tuple[_Entry, ...], count: int, where: str) -> tuple[_Entr
             where, f"{len(given)} entries", allowed=f"one, or {count} as the row has values"
         )
     return given
-
-
-def _swept(value: float, parameter: str, where: str) -> float:
-    """The value of a swept parameter, held to the range its field in [base] has."""
-    several = BaseTable.model_fields[parameter].metadata[0]
-    try:
-        return float(several.one.read(value))
-    except InputError as error:
-        raise InputError(
-            where, error.got, allowed=error.allowed, why=error.why, fix=error.fix
-        ) from error

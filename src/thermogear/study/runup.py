@@ -309,21 +309,22 @@ def run_up_plan(
     """The plan of :func:`run_up`."""
     case = gear_case(case)
     axis = np.sort(axis_values("speeds", speeds))
-    if axis[0] <= 0.0:
-        raise InputError("speeds", f"{axis[0]} rad/s", allowed="> 0")
     if temperatures is None:
         hot = np.asarray(case.operating.temperatures.pinion_addendum, dtype=float)
         temperatures = (None, float(hot.ravel()[0]))
     states = tuple(None if t is None else float(t) for t in temperatures)
     if not states:
         raise InputError("temperatures", "none", allowed="at least one state")
+    load = float(case.torques[0] if torque is None else torque)
     family = GearFamily(case, ("pinion_speed",), bundle)
+    hot_states = [t for t in states if t is not None]
+    family.require({"pinion_speed": axis, "pinion_torque": load, "gear_temperature": hot_states})
     return RunUpPlan(
         case,
         tuple(axis.tolist()),
         states,
         family.bundle,
-        float(case.torques[0] if torque is None else torque),
+        load,
         rule,
         branch_period=branch_period,
     )

@@ -14,6 +14,7 @@ from pydantic.json_schema import models_json_schema
 from thermogear.base.errors import InputError
 from thermogear.mesh.model import CHOICES
 from thermogear.study.fields import (
+    BODY,
     Choice,
     Count,
     Measure,
@@ -116,7 +117,7 @@ class MaterialTable(Table):
         float, Measure("thermal expansion", "-0.01 1/K", "0.01 1/K", example="3.3e-4 1/K")
     ] = Field(default=0.0, description="Young's modulus taken as independent of temperature")
     tempering_temperature: Annotated[
-        float | None, Measure("temperature", "-150 degC", "3000 degC", example="180 degC")
+        float | None, Measure("temperature", "-70 degC", "3000 degC", example="180 degC")
     ] = Field(default=None, description="no limit known")
 
 
@@ -231,7 +232,7 @@ class TemperaturesTable(Table):
     housing_below_addendum: Below | None = None
     row: Annotated[
         tuple[float, ...],
-        Several(Measure("temperature", "-150 degC", "600 degC"), 0, 1000, distinct=True),
+        Several(BODY, 0, 1000, distinct=True),
     ] = Field(default=(), description="no row of gear temperatures")
 
     @property
@@ -500,6 +501,10 @@ class GearFile(Table):
 _Plain = Annotated[tuple[float, ...], Several(Number(-1e6, 1e6))]
 _Positive = Annotated[tuple[float, ...], Several(Number(1e-9, 1e6))]
 _NotNegative = Annotated[tuple[float, ...], Several(Number(0.0, 1e3, "0.15"))]
+_Amplitude = Annotated[
+    tuple[float, ...],
+    Several(Number(0.0, 0.999, "0.335", "the mesh stiffness 1 + eps cos would reach zero")),
+]
 _Stiffening = Annotated[tuple[float, ...], Several(Number(-0.999, 1e3, "0.02"))]
 
 
@@ -508,7 +513,7 @@ class BaseTable(Table):
 
     damping_ratio: _NotNegative
     frequency: _Positive
-    stiffness_amplitude: _NotNegative
+    stiffness_amplitude: _Amplitude
     mean_force: _Plain
     force_amplitude: _Plain
     half_backlash: _Positive = Field(
@@ -527,7 +532,7 @@ class RowTable(Table):
     )
     damping_ratio: _NotNegative | None = None
     frequency: _Positive | None = None
-    stiffness_amplitude: _NotNegative | None = None
+    stiffness_amplitude: _Amplitude | None = None
     mean_force: _Plain | None = None
     force_amplitude: _Plain | None = None
     half_backlash: _Positive | None = None

@@ -28,7 +28,7 @@ from zarr.storage import LocalStore, MemoryStore
 
 from thermogear.analysis.plan import Arrays, Key, Plan, dataset_of, empty_arrays, keys_of, region_of
 from thermogear.base.errors import InputError
-from thermogear.base.files import put
+from thermogear.base.files import put, require_directory
 from thermogear.study.fingerprint import code_version, environment
 
 RESULT = "result.zarr"
@@ -151,8 +151,7 @@ class Store:
     # --- opening and closing ---------------------------------------------------------------
 
     def __enter__(self) -> Self:
-        if self.directory.exists() and not self.directory.is_dir():
-            raise InputError("store", str(self.directory), why="it is a file")
+        require_directory(self.directory, "store")
         known = (self.directory / MANIFEST).exists() or (self.directory / COPY).exists()
         inside = [p.name for p in self.directory.iterdir()] if self.directory.is_dir() else []
         if not known and set(inside) - {LOCK, f".{MANIFEST}.part", f".{COPY}.part"}:

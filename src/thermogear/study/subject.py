@@ -22,9 +22,15 @@ from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excit
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.study.allowed import (
+    dimensionless_reader,
+    gear_reader,
+    positive_stiffness,
+    read_value,
+    require_numbers,
+)
 from thermogear.study.case import Case, DimensionlessCase, GearCase, Simulation, gear_case
 from thermogear.study.rows import Point
-from thermogear.study.units import read_quantity
 
 Model = TorsionalModel | DeadZoneModel
 Family = Callable[[float], object]
@@ -40,12 +46,8 @@ SHORT = {
 }
 """The symbols of the dimensionless equation as a command line writes them."""
 
-GEAR_PARAMETERS = {
-    "speed": "rotational speed",
-    "torque": "torque",
-    "temperature": "temperature",
-}
-"""What can be varied on a gear pair, and its kind of unit; temperature is both addenda's."""
+GEAR_PARAMETERS = ("speed", "torque", "temperature")
+"""What can be varied on a gear pair; temperature is both addenda's."""
 
 MOTION = Simulation(
     periods=256,
@@ -163,6 +165,7 @@ def of_numbers(numbers: Mapping[str, float], start: tuple[float, float] | None =
             why="neither a case nor this option gives it",
             fix="name a case, or give --zeta --w --eps --fm --fh",
         )
+    require_numbers(given)
     simulation = MOTION if start is None else replace(MOTION, initial_state=start)
     return Subject("Plain numbers", TorsionalModel(**given), simulation, Scale())
 
@@ -187,7 +190,9 @@ def of_case(
     if isinstance(case, DimensionlessCase):
         points = rows_of(case)[named("--row", row, list(rows_of(case)))]
         chosen = points[counted("--point", point, len(points))]
-        model = TorsionalModel(**{**chosen.model_arguments(), **(numbers or {})})
+        given = {**chosen.model_arguments(), **(numbers or {})}
+        require_numbers(given)
+        model = TorsionalModel(**given)
         title = f"{case.title}: row {chosen.row}, point {point}"
         return Subject(title, model, simulation, Scale())
     case = gear_case(case)
@@ -276,17 +281,19 @@ def parameter_name(subject: Subject, name: str) -> str:
     return full
 
 
-def parameter_value(option: str, parameter: str, text: str) -> float:
-    """A value of ``parameter`` as SI; gear parameters are written with their unit."""
-    kind = GEAR_PARAMETERS.get(parameter)
-    try:
-        value = read_quantity(text, kind) if kind else float(text)
-    except InputError as error:
-        raise InputError(option, error.got, why=error.why, fix=error.fix) from error
-    except ValueError:
-        raise InputError(option, repr(text), allowed="a number") from None
-    if not np.isfinite(value):
-        raise InputError(option, text, allowed="a finite number")
+def parameter_value(option: str, subject: Subject, parameter: str, text: str) -> float:
+    """A value of ``parameter`` as SI; gear parameters are written with their unit.
+
+    Refused, under the name of ``option``, where no case file could hold it.
+    """
+    gears = parameter in GEAR_PARAMETERS
+    reader = gear_reader(parameter) if gears else dimensionless_reader(parameter)
+    value = read_value(option, reader, text)
+    numbers = subject.parameters | {parameter: value}
+    if "stiffness_amplitude" in numbers:
+        positive_stiffness(
+            "stiffness_amplitude", numbers["stiffness_amplitude"], numbers["thermal_stiffness"]
+        )
     return value
 
 

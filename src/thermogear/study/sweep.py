@@ -137,6 +137,7 @@ def sweep_plan(
     named = gear_axes(axes)
     values = tuple(tuple(axis_values(n, v).tolist()) for n, v in named.items())
     family = GearFamily(case, tuple(named), bundle, state)
+    family.require(named)
     return SweepPlan(family, values, case.simulation.initial_state, rule, record)
 
 
@@ -155,11 +156,10 @@ def sweep(
     """Settled motion and its gear figures over any grid of gear parameters.
 
     ``axes`` map names to SI values: pinion_speed [rad/s], pinion_torque [N m], gear_temperature
-    [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file in its own
-    unit. Every point starts from the case's initial state. ``bundle`` one of the case's (the
-    first by default), ``state`` "hot" or "cold" where the temperature is no axis. With a
-    ``store`` directory the same call resumes; ``scheduler`` is a dask address. Jammed and
-    diverged points are a status.
+    [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file. Every point
+    starts from the case's initial state. ``bundle`` one of the case's (the first by default),
+    ``state`` "hot" or "cold" where the temperature is no axis. With a ``store`` directory the
+    same call resumes; ``scheduler`` is a dask address. Jammed and diverged points are a status.
     """
     plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
     return carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)

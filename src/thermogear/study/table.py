@@ -7,10 +7,10 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict
 
 from thermogear.base.errors import InputError
-from thermogear.study.fields import Measure
+from thermogear.study.fields import BODY, Measure
 
 Length = Annotated[float, Measure("length", "0.1 mm", "10000 mm")]
-Body = Annotated[float, Measure("temperature", "-150 degC", "600 degC")]
+Body = Annotated[float, BODY]
 Below = Annotated[float, Measure("temperature difference", "-400 K", "400 K")]
 
 

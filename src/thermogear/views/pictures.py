@@ -13,6 +13,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import require_directory
 from thermogear.views.page import Picture, Pictures
 from thermogear.views.report import ORDER, with_hot_temperature
 from thermogear.views.results import KINDS as RUNS
@@ -111,6 +112,7 @@ def write_pictures(directory: Path, folder: Path, kind: str = "png") -> list[Pat
         raise InputError("kind", repr(kind), allowed=" | ".join(KINDS))
     results = with_hot_temperature(read_results(Path(directory)))
     folder = Path(folder)
+    require_directory(folder, "pictures")
     folder.mkdir(parents=True, exist_ok=True)
     files = _Files(folder=folder, kind=kind)
     for make in ORDER:
