@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thermogear.thesis import motions, section5
+from thermogear.front.cli import main
+from thermogear.thesis import chain, motions, section5
 from thermogear.thesis.claim import Verdict, rising, verdict_of
 from thermogear.thesis.evidence import Evidence, Size
 from thermogear.thesis.report import CLAIMS, build_to_directory
@@ -79,10 +80,32 @@ def test_words_for_trends() -> None:
     assert verdict_of(False, assumption=True) is Verdict.CONTRADICTED
 
 
+def test_ctrl_c_keeps_what_is_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(motions, "diagrams", stop)
+    monkeypatch.setattr(motions, "flips", stop)
+    monkeypatch.setattr(chain, "operating_grid", stop)
+    assert main(["thesis", "-o", str(tmp_path)]) == 130
+    told = capsys.readouterr()
+    assert told.err.splitlines()[-1].startswith("interrupted: ")
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert 0 < summary["claims"] < summary["claims_in_all"] == len(CLAIMS)
+    assert f"{summary['claims']} of {len(CLAIMS)} claims" in told.out
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f"{len(CLAIMS) - summary['claims']} of {len(CLAIMS)} claims are not judged" in page
+    ids = set(re.findall(r'\bid="([^"]+)"', page))
+    assert set(re.findall(r'href="#([^"]+)"', page)) <= ids
+
+
 @pytest.mark.slow
 def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path) -> None:
     summary = build_to_directory(tmp_path, SMALL)
-    assert summary["claims"] == len(CLAIMS) == sum(summary["verdicts"].values())
+    assert summary["claims"] == summary["claims_in_all"] == len(CLAIMS)
+    assert summary["claims"] == sum(summary["verdicts"].values())
     assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8")) == summary
     verdicts = {row["number"]: row["verdict"] for row in summary["rows"]}
     # misprints and impossibilities that no grid decides
@@ -95,6 +118,8 @@ def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path)
         assert verdicts[number] == "cannot be decided", number
     with xr.open_datatree(tmp_path / "results.nc", engine="h5netcdf") as tree:
         assert tree.attrs["kind"] == "thesis"
+        parts = {"grid", "flips", "warming", "experiment", "sensitivity", "diagrams", "path"}
+        assert parts <= set(tree.children)
     page = write_claims_report(tmp_path).read_text(encoding="utf-8")
     ids = set(re.findall(r'\bid="([^"]+)"', page))
     assert set(re.findall(r'href="#([^"]+)"', page)) <= ids

@@ -21,7 +21,7 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
     """Judge every claim of the thesis and write the report to DIR.
 
     Sections 2 to 6: what is said, what is computed as in the thesis and consistently, a verdict,
-    its argument and the code behind it.
+    its argument and the code behind it. Ctrl+C keeps the claims judged so far.
     """
     from thermogear.views.claims_report import write_claims_report
 
@@ -29,7 +29,7 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
     if redraw:
         click.echo(write_claims_report(directory))
         return
-    from thermogear.front.progress import progress
+    from thermogear.front.progress import Stopped, progress
     from thermogear.study.sensitivity import require_salib
     from thermogear.thesis.report import build_to_directory
 
@@ -39,13 +39,17 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
             directory, progress=lambda stage, done, total: told("thesis", done, total)
         )
     path = write_claims_report(directory)
+    cut = summary["claims"] < summary["claims_in_all"]
     if as_json:
         click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
-        return
-    click.echo(f"{summary['claims']} claims in {summary['seconds']:.0f} s")
-    for verdict, count in summary["verdicts"].items():
-        click.echo(f"{count:6d}  {verdict}")
-    click.echo(path)
+    else:
+        of = f" of {summary['claims_in_all']}" if cut else ""
+        click.echo(f"{summary['claims']}{of} claims in {summary['seconds']:.0f} s")
+        for verdict, count in summary["verdicts"].items():
+            click.echo(f"{count:6d}  {verdict}")
+        click.echo(path)
+    if cut:
+        raise Stopped
 
 
 @click.command()

@@ -56,6 +56,10 @@ class Evidence:
     size: Size = field(default_factory=Size)
     progress: Progress = silent
 
+    def finished(self, name: str) -> bool:
+        """Whether the result ``name`` is there already."""
+        return name in vars(self)
+
     def _tell(self, stage: str) -> None:
         self.progress(stage, STAGES.index(stage), len(STAGES))
 

@@ -35,10 +35,18 @@ TITLE = "The thesis, claim by claim"
 
 
 def judge(evidence: Evidence) -> list[Finding]:
-    """What the computation says of every claim, in order."""
-    found = []
-    for claim in CLAIMS:
-        found.append(claim.judge(evidence))
+    """What the computation says of every claim, in order; of those before Ctrl+C if it comes.
+
+    Ctrl+C is passed on where there is nothing yet that a page could show.
+    """
+    found: list[Finding] = []
+    try:
+        for claim in CLAIMS:
+            found.append(claim.judge(evidence))
+    except KeyboardInterrupt:
+        if not (found and evidence.finished("tree")):
+            raise
+        return found
     evidence.progress(STAGES[-1], len(STAGES), len(STAGES))
     return found
 
@@ -50,21 +58,26 @@ def counts(findings: list[Finding]) -> dict[str, int]:
 
 
 def build(size: Size | None = None, progress: Progress = silent) -> xr.DataTree:
-    """All evidence and every verdict as one tree of datasets; see :mod:`thermogear.thesis`."""
+    """All evidence and every verdict as one tree of datasets; see :mod:`thermogear.thesis`.
+
+    After Ctrl+C what was finished: fewer claims than ``claims_in_all`` in the attributes.
+    """
     began = time.perf_counter()
     evidence = Evidence(Size() if size is None else size, progress)
     findings = judge(evidence)
     groups = dict(evidence.groups)
     groups["claims"] = _claims(findings)
-    groups["grid"] = evidence.grid
-    groups["flips"] = evidence.flips
-    groups["warming"] = evidence.warming
-    groups["experiment"] = _experiment(evidence)
-    groups["sensitivity"] = evidence.sensitivity.assign(
-        sentence=(("output",), plain_words(evidence.sensitivity))
-    )
-    for name, data in evidence.diagrams.items():
-        groups[f"diagrams/{name}"] = _plain(data)
+    for name in filter(evidence.finished, ("grid", "flips", "warming")):
+        groups[name] = getattr(evidence, name)
+    if evidence.finished("comparison"):
+        groups["experiment"] = _experiment(evidence)
+    if evidence.finished("sensitivity"):
+        groups["sensitivity"] = evidence.sensitivity.assign(
+            sentence=(("output",), plain_words(evidence.sensitivity))
+        )
+    if evidence.finished("diagrams"):
+        for name, data in evidence.diagrams.items():
+            groups[f"diagrams/{name}"] = _plain(data)
     tree = xr.DataTree.from_dict(groups)
     tree.attrs = {
         **evidence.tree.attrs,
@@ -73,6 +86,7 @@ def build(size: Size | None = None, progress: Progress = silent) -> xr.DataTree:
         "kind": "thesis",
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "counts": json.dumps(counts(findings)),
+        "claims_in_all": len(CLAIMS),
         "sentences": json.dumps(_sentences()),
         "seconds": time.perf_counter() - began,
     }
@@ -97,22 +111,25 @@ def summary(tree: xr.DataTree) -> dict[str, Any]:
     rows = [
         {name: str(claims[name].values[k]) for name in TEXTS} for k in range(claims.sizes["claim"])
     ]
-    ranked = tree["sensitivity"].to_dataset()
-    return {
+    found = {
         "thermogear": tree.attrs["thermogear"],
         "title": tree.attrs["title"],
         "kind": "thesis",
         "claims": len(rows),
+        "claims_in_all": int(tree.attrs["claims_in_all"]),
         "verdicts": json.loads(tree.attrs["counts"]),
         "sentences": json.loads(tree.attrs["sentences"]),
         "seconds": round(float(tree.attrs["seconds"]), 1),
-        "sensitivity": {
+        "rows": rows,
+    }
+    if "sensitivity" in tree:
+        ranked = tree["sensitivity"].to_dataset()
+        found["sensitivity"] = {
             "evaluations": int(ranked.attrs["evaluations"]),
             "seconds": round(float(ranked.attrs["seconds"]), 1),
             "results": [str(text) for text in ranked["sentence"].values],
-        },
-        "rows": rows,
-    }
+        }
+    return found
 
 
 TEXTS = (
@@ -131,7 +148,7 @@ TEXTS = (
 
 def _claims(findings: list[Finding]) -> xr.Dataset:
     columns: dict[str, list[str]] = {name: [] for name in TEXTS}
-    for claim, finding in zip(CLAIMS, findings, strict=True):
+    for claim, finding in zip(CLAIMS, findings, strict=False):
         row = (
             claim.number,
             claim.place,

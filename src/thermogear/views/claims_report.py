@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from thermogear.base.files import put
 from thermogear.base.units import RPM
 from thermogear.views import gear_sections, row_sections
 from thermogear.views.closing import closing
-from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text, Tile, render
+from thermogear.views.page import Block, Cell, Gallery, Pictures, Section, Table, Text, Tile, render
 from thermogear.views.plots import claims as plots
 from thermogear.views.results import Results, read_results
 from thermogear.views.words import celsius, html_symbol, number, prose
@@ -44,7 +44,8 @@ def page(results: Results) -> str:
     whole = results.kind == "thesis"
     pictures = Pictures()
     sections = _thesis_sections(results, pictures) if whole else []
-    sections.append(_sensitivity(results, pictures))
+    if "sensitivity" in results.groups:
+        sections.append(_sensitivity(results, pictures))
     sections += closing(results)
     return render(
         title=results.text("title"),
@@ -58,7 +59,12 @@ def page(results: Results) -> str:
 def _summary(results: Results) -> str:
     sentences = results.table("sentences")
     count = sum(results.table("counts").values())
-    return (
+    total = int(results.text("claims_in_all") or count)
+    cut = (
+        f"Stopped on request before the end: {total - count} of {total} claims are not judged "
+        "here, and what only they need is missing; the same command computes all of it. "
+    )
+    return (cut if count < total else "") + (
         f"{count} statements, formulas, figures and table entries of sections 2 to 6, each with "
         "what the package computes as in the thesis and consistently, a verdict, its argument and "
         f"the code behind it. {sentences.get('claimed', 0)} of the document's "
@@ -89,9 +95,13 @@ def _thesis_sections(results: Results, pictures: Pictures) -> list[Section]:
         5: _tests(results, pictures),
         6: [],
     }
+    galleries = [b for blocks in drawn.values() for b in blocks if isinstance(b, Gallery)]
+    shown = {picture.name for gallery in galleries for picture in gallery.pictures}
     for place, title in SECTIONS.items():
         here = claims.isel(claim=np.flatnonzero([_section(n) == place for n in _names(claims)]))
-        blocks: list[Block] = [_claims_table(here, place), *drawn[place]]
+        if not here.sizes["claim"]:
+            continue  # stopped before it
+        blocks: list[Block] = [_claims_table(here, place, shown), *drawn[place]]
         found.append(Section(f"section-{place}", f"{place} {title}", blocks))
     return found
 
@@ -125,7 +135,7 @@ def _counted(results: Results, claims: xr.Dataset) -> Section:
     return Section("verdicts", "Verdicts", [intro, table])
 
 
-def _claims_table(claims: xr.Dataset, place: int) -> Table:
+def _claims_table(claims: xr.Dataset, place: int, shown: Collection[str]) -> Table:
     rows: list[list[Cell]] = []
     marked: set[int] = set()
     for k in range(claims.sizes["claim"]):
@@ -134,7 +144,7 @@ def _claims_table(claims: xr.Dataset, place: int) -> Table:
             marked.add(k)
         picture = (
             Markup('<br/><small><a href="#fig-{}">picture</a></small>').format(one["picture"])
-            if one["picture"]
+            if f"fig-{one['picture']}" in shown
             else Markup("")
         )
         rows.append([
@@ -204,7 +214,8 @@ def _simulation(results: Results, pictures: Pictures) -> list[Block]:
     }
     if flips is None:
         return found + pictures.take()
-    for row, words in (("zeta", "damping"), ("omega", "frequency"), ("epsilon", "stiffness")):
+    rows = (("zeta", "damping"), ("omega", "frequency"), ("epsilon", "stiffness"))
+    for row, words in rows if diagrams else ():
         pictures.add(
             f"diagram-{row}", f"Bifurcation diagram over {words}",
             "Sections of the settled motion, swept up and down; dashed lines are located period "
