@@ -153,6 +153,8 @@ def carry_out(
         return gather(plan, threads=threads, progress=lambda done, _: clock.step(done))
     if directory is None:
         raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
+    if scheduler is not None:
+        _distributed(scheduler)
     with Store(directory, plan) as kept:
         there = kept.finished()
         clock.found = len(there)
@@ -215,7 +217,8 @@ def computed_on(
         client.close()
 
 
-def _client(scheduler: str) -> Any:
+def _distributed(scheduler: str) -> Any:
+    """The cluster's package; refused where it or the port of ``scheduler`` is missing."""
     try:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
@@ -229,6 +232,11 @@ def _client(scheduler: str) -> Any:
         raise InputError(
             "scheduler", scheduler, allowed="tcp://HOST:PORT", why="the port is missing"
         )
+    return distributed
+
+
+def _client(scheduler: str) -> Any:
+    distributed = _distributed(scheduler)
     try:
         return distributed.Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
