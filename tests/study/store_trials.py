@@ -141,7 +141,13 @@ def cluster(directory: Path, _: int) -> dict:
     import dask
     from distributed import Client, LocalCluster
 
-    dask.config.set({"distributed.scheduler.active-memory-manager.interval": "50ms"})
+    dask.config.set(
+        {
+            "distributed.scheduler.active-memory-manager.interval": "50ms",
+            # a loaded machine may take longer than the default 15 s to start a worker again
+            "distributed.deploy.lost-worker-timeout": "10 minutes",
+        }
+    )
 
     plan = small_plan(60, 6)
     plan.pilot(16)

@@ -19,6 +19,7 @@ from thermogear.analysis.plan import gather, keys_of
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.study import work
 from thermogear.study.store import COPY, JOURNAL, MANIFEST, QUARANTINE, RESULT, Store, read_store
 from thermogear.study.work import carry_out, duration, estimate, require_space
 
@@ -296,6 +297,22 @@ def test_full_disk_is_an_error_and_costs_nothing_else(tmp_path):
     found = trial("full", tmp_path)
     assert found["refused"]
     assert found["same"]
+
+
+@pytest.mark.slow
+def test_cluster_without_workers_is_one_line_and_keeps_what_is_done(tmp_path, monkeypatch):
+    from distributed import LocalCluster
+
+    plan = plan_of()
+    whole = carry_out(plan, tmp_path / "s", threads=1)
+    monkeypatch.setattr(work, "PAUSE", 0.05)
+    monkeypatch.setattr(work, "PATIENCE", 0.2)
+    with LocalCluster(n_workers=0, dashboard_address=None) as empty:
+        address = empty.scheduler_address
+        with pytest.raises(InputError, match=r"scheduler: .*no worker for .*; start workers"):
+            carry_out(plan, tmp_path / "t", scheduler=address)
+        again = carry_out(plan, tmp_path / "s", scheduler=address)
+    same_numbers(again, whole)
 
 
 @pytest.mark.slow

@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import math
 import os
+import queue
 import shutil
 import time
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +33,12 @@ from thermogear.study.store import Store
 
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
+
+PAUSE = 5.0
+"""Seconds after which a cluster that sends nothing is asked for its workers."""
+
+PATIENCE = 300.0
+"""Seconds that a cluster may be without workers."""
 
 
 @dataclass(frozen=True)
@@ -248,7 +256,6 @@ def _client(scheduler: str) -> Any:
 def _on_client(
     client: Any, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
 ) -> Generator[tuple[Key, Arrays], None, None]:
-    distributed: Any = importlib.import_module("distributed")
     # a task's result is made again when its worker dies; scattered data would be lost, for the
     # scheduler keeps one copy of it however many were sent out
     there = client.submit(itself, plan, pure=False, retries=5)
@@ -257,7 +264,7 @@ def _on_client(
     missing = set(wanted)
     # a few chunks ahead of the workers: enough to keep them busy, few enough to hold
     room = 3 * max(1, sum(client.nthreads().values()))
-    ready = distributed.as_completed(loop=client.loop)
+    ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
     def send() -> None:
         for key in list(waiting):
@@ -278,14 +285,35 @@ def _on_client(
             )
             running[future] = key
             waiting.remove(key)
-            ready.add(future)
+            future.add_done_callback(ready.put)
 
     send()
     while running:
-        future = next(ready)
+        future = _answer(client, lambda pause: ready.get(timeout=pause))
         key = running.pop(future)
-        arrays = future.result()
+        arrays = _answer(client, partial(_result, future))
         # whoever takes the chunk stores it before a chunk that needs it is sent
         yield key, arrays
         missing.discard(key)
         send()
+
+
+def _result(future: Any, pause: float) -> Any:
+    return future.result(timeout=pause)
+
+
+def _answer(client: Any, ask: Callable[[float], Any]) -> Any:
+    """``ask(seconds)`` until it does not time out, as long as the cluster has workers."""
+    alone = 0.0
+    while True:
+        try:
+            return ask(PAUSE)
+        except (queue.Empty, TimeoutError):
+            alone = 0.0 if client.nthreads() else alone + PAUSE
+            if alone >= PATIENCE:
+                raise InputError(
+                    "scheduler",
+                    client.scheduler.address,
+                    why=f"it has had no worker for {duration(alone)}; what is done is stored",
+                    fix="start workers and give the same command",
+                ) from None
