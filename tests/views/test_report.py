@@ -106,6 +106,12 @@ def test_key_results_say_what_heat_does(text: str) -> None:
     assert words.index("two regimes") < words.index("quiet")
 
 
+def test_a_natural_frequency_is_said_to_be_that_of_the_cold_mean_stiffness(text: str) -> None:
+    assert "mesh over natural frequency of the cold mean stiffness" in text
+    assert "f<sub>n</sub> of cold mean k [Hz]" in text
+    assert "of the natural frequency of the cold mean stiffness (" in words_of(text)
+
+
 def test_base_sets_are_said_to_be_none_of_the_rig(text: str) -> None:
     words = words_of(text)
     assert "not derived from the rig" in words
