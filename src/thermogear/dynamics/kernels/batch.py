@@ -29,12 +29,13 @@ def place(frame: Real, i: int, region: int, backlash: float) -> None:
 def runs_on(y0: float, y1: float, h: float, reach: float) -> bool:
     """Whether the velocity keeps its sign between ``y0`` and ``y1``, a sub-step or less apart.
 
-    It leaves the chord by half of |x'''| h**2 at most: half of ``reach`` from the force, 0.045 of
-    the speed from the stiffness (h sqrt(k) <= 0.3) and less than a tenth of that from the rest.
+    It leaves the chord by half of |x'''| h**2 at most: half of ``reach`` / h from the force and,
+    beside an edge, 0.045 of the speed from the stiffness (h sqrt(k) <= 0.3), less from its change
+    and from the damping: an eighth of the speed bounds them together.
     """
     slow = abs(y0) if abs(y0) < abs(y1) else abs(y1)
     fast = abs(y1) if abs(y0) < abs(y1) else abs(y0)
-    return y0 * y1 > 0.0 and h * (slow - 0.0625 * fast) > reach
+    return y0 * y1 > 0.0 and h * (slow - 0.125 * fast) > reach
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
