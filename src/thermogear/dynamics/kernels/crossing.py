@@ -1,7 +1,7 @@
 """One lane through one sub-step with everything that can happen: turns, grazing, many edges.
 
 A contact change is a root of the sub-step's polynomial, where the state is handed to the
-polynomials of the next region. No fastmath, see ``rk4``.
+polynomials of the next region. No fastmath: a lane gives the same bits in any company.
 """
 
 from __future__ import annotations
