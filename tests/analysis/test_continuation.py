@@ -260,3 +260,21 @@ def test_the_last_step_lands_on_the_end_from_either_side():
         some = continuation(orbit, "frequency", to, most_points=3)
         assert some.ended == "3 points"
         assert np.array_equal(some.values, branch.values[:4])
+
+
+def test_the_stored_branch_is_its_orbits():
+    """Of x'' + 2 zeta x' + x - 1 = F_m + F_h cos(w t), always in contact, in closed form:
+    x = 1 + F_m + Re X and v = -w Im X at t = 0, with X = F_h/(1 - w^2 + 2i zeta w)."""
+    model = TorsionalModel(0.05, 0.4, 0.0, 0.5, 0.1)
+    branch = continuation(periodic_orbit(model, 1, (1.5, 0.0)), "frequency", 0.6)
+    data = branch.dataset()
+    w = data.value.values
+    swing = 0.1 / (1.0 - w**2 + 0.1j * w)
+    assert w[[0, -1]] == pytest.approx([0.4, 0.6], abs=1e-12)
+    np.testing.assert_allclose(data.section_x, 1.5 + swing.real, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(data.section_v, -w * swing.imag, rtol=0, atol=1e-11)
+    # mu = exp((-zeta +- i sqrt(1 - zeta^2)) 2 pi/w)
+    size = np.hypot(data.multiplier_real, data.multiplier_imag)
+    np.testing.assert_allclose(size[:, 0], np.exp(-0.05 * 2 * np.pi / w), rtol=1e-10)
+    assert np.all(data.stable)
+    assert not data.contact_losses.any()

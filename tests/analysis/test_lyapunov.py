@@ -103,3 +103,17 @@ def test_batches_are_the_growth_of_a_tangent_period_by_period():
     assert found.value + found.second == found.sum
     assert found.kaplan_yorke == pytest.approx(1.0 + found.value / (found.value + 0.2), rel=1e-12)
     assert replace(found, value=-0.01).kaplan_yorke == 0.0
+
+
+def test_progress_ends_at_all_periods_of_all_lanes():
+    told = []
+    lyapunov_exponents(
+        TorsionalModel([0.1, 0.12], 1.0, 0.1, 0.1, 0.05),
+        discard=30,
+        batches=4,
+        batch_periods=7,
+        progress=lambda done, total: told.append((done, total)),
+    )
+    whole = 2 * (30 + 4 * 7)
+    assert told[-1] == (whole, whole)
+    assert {total for _, total in told} == {whole}

@@ -75,3 +75,21 @@ def test_a_start_has_the_identity_as_tangent_and_nothing_counted() -> None:
     state.tangent[:] = 7.0
     state.fresh_tangent()
     assert state.tangent[:, 0].tolist() == [1.0, 0.0, 0.0, 1.0]
+
+
+def test_no_more_blocks_run_at_once_than_threads_asked_for() -> None:
+    running, most = [0], [0]
+    lock = threading.Lock()
+
+    def block(_pace: Pace) -> None:
+        with lock:
+            running[0] += 1
+            most[0] = max(most[0], running[0])
+        time.sleep(0.02)
+        with lock:
+            running[0] -= 1
+
+    run_blocks([block] * 5, 5, threads=1)
+    assert most[0] == 1
+    run_blocks([block] * 6, 6, threads=3)
+    assert 1 < most[0] <= 3

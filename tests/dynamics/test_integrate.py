@@ -9,6 +9,7 @@ import pytest
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.vocabulary import STATUS
+from thermogear.dynamics.adaptive import Gap, follow
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import DeadZoneModel, PairModel, TorsionalModel, from_excitation
 from thermogear.dynamics.tables import Pieces
@@ -338,3 +339,24 @@ def test_progress_reaches_the_total_and_an_error_in_it_stops_the_run():
 
     with pytest.raises(KeyboardInterrupt):
         simulate(BASE, periods=50, progress=stop)
+
+
+def test_a_start_at_rest_finds_the_graze_between_two_steps():
+    """x = x_0 + a (1 - cos t): an edge 1e-9 below the top is crossed at pi -+ sqrt(2e-9/a)."""
+    a, low = 0.3, 0.2
+
+    def push(t, y, _region):
+        return np.array([y[1], a * np.cos(t)])
+
+    for way in (1.0, -1.0):
+        gap = Gap(lambda _t, y: y[0], lambda _t, y: y[1], low + 2 * a - 1e-9)
+        _, _, crossings = follow(
+            lambda t, y, r, way=way: way * push(t, way * y, r),
+            gap,
+            2 * np.pi,
+            np.array([way * low, 0.0]),
+            1,
+            0,
+        )
+        near = np.sqrt(2e-9 / a)
+        assert crossings == pytest.approx([np.pi - near, np.pi + near], abs=1e-8)

@@ -7,6 +7,7 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.signals.filters import BandPass, taps_for
+from thermogear.signals.integration import integrate_twice
 from thermogear.signals.lines import floor_around
 from thermogear.signals.orders import line_angle
 
@@ -55,3 +56,15 @@ def test_taps_give_the_transition_of_a_hamming_window(rate: float, width: float)
         assert float(np.abs(band.gain(edge))) == pytest.approx(0.5, abs=2e-3)
         assert float(np.abs(band.gain(edge + outwards * 0.6 * width))) < 10 ** (-45 / 20)
         assert float(band.gain(edge - outwards * 0.6 * width)) == pytest.approx(1.0, abs=5e-3)
+
+
+def test_floor_beside_the_mean_takes_bin_one_and_leaves_the_mean_out() -> None:
+    assert floor_around(np.array([9.0, 1.0, 100.0, 3.0, 50.0]), 2, 0, 1) == 2.0
+
+
+def test_channels_are_integrated_each_for_itself() -> None:
+    """x = -a/omega^2 of one line; three channels of many samples, not many of three."""
+    turn = 2.0 * np.pi * 8.0 * np.arange(400) / 400.0
+    sizes = np.array([[1.0], [-2.0], [0.5]])
+    found = integrate_twice(sizes * np.cos(turn), 400.0, 2.0)
+    np.testing.assert_allclose(found, -sizes * np.cos(turn) / (16.0 * np.pi) ** 2, atol=1e-15)
