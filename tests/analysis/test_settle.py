@@ -5,7 +5,7 @@ import pytest
 
 from thermogear.analysis.labels import labels
 from thermogear.analysis.orbits import periodic_orbit
-from thermogear.analysis.outcome import outcome_arrays, settle_with_status
+from thermogear.analysis.outcome import outcome_arrays, settle_with_status, start_of
 from thermogear.analysis.section import ReturnMap
 from thermogear.analysis.settle import (
     CHAOTIC,
@@ -239,3 +239,10 @@ def test_points_without_motion_keep_their_start_and_their_status():
     assert [STATUS[n] for n in stored["status"]] == ["not_converged", "jammed", "diverged"]
     assert np.array_equal(stored["drive_share"], found.shares[:, 2], equal_nan=True)
     assert np.array_equal(stored["point_v"], found.point[:, 1], equal_nan=True)
+
+
+@pytest.mark.parametrize("state", [(), (1.0,), (1.0, 0.0, 0.0), ((1.0, 0.0),), (np.nan, 0.0)])
+def test_one_start_is_two_finite_numbers(state):
+    assert start_of((1, -2)) == (1.0, -2.0)
+    with pytest.raises(InputError, match="^initial_state: got .*; allowed two finite numbers"):
+        start_of(state)
