@@ -244,5 +244,5 @@ def test_points_without_motion_keep_their_start_and_their_status():
 @pytest.mark.parametrize("state", [(), (1.0,), (1.0, 0.0, 0.0), ((1.0, 0.0),), (np.nan, 0.0)])
 def test_one_start_is_two_finite_numbers(state):
     assert start_of((1, -2)) == (1.0, -2.0)
-    with pytest.raises(InputError, match="^initial_state: got .*; allowed two finite numbers"):
+    with pytest.raises(InputError, match=r"^initial_state: got .*; allowed two finite numbers"):
         start_of(state)
