@@ -13,8 +13,9 @@ from thermogear.analysis.diagram import orbit_diagram
 from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponent
 from thermogear.analysis.orbits import periodic_orbit
+from thermogear.analysis.section import scales
 from thermogear.base.excitation import Periodic
-from thermogear.dynamics.models import DeadZoneModel
+from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 
 SCALES = [2.0**-13, 2.0**9]
 
@@ -98,3 +99,8 @@ def test_a_diagram_scales_with_its_branches(scale):
     assert other["bifurcation_value"].values == pytest.approx(
         one["bifurcation_value"].values, abs=1e-10
     )
+
+
+def test_a_family_is_measured_by_the_scales_of_its_first_lane():
+    lanes = TorsionalModel(0.1, [0.5, 2.0], 0.1, 0.1, 0.1).lanes()
+    assert scales(lanes).tolist() == pytest.approx([1.0, 0.5], rel=1e-15)
