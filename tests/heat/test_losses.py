@@ -93,4 +93,5 @@ def test_seal_in_the_units_of_its_source() -> None:
 def test_bearing_and_efficiency() -> None:
     assert bearing_loss(2000.0, 0.03, 100.0) == pytest.approx(0.0015 * 2000.0 * 0.015 * 100.0)
     assert efficiency(1000.0, 20.0) == pytest.approx(0.98)
+    assert efficiency(0.5, 0.1) == pytest.approx(0.8)
     assert np.isnan(efficiency(0.0, 20.0))

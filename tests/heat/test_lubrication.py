@@ -84,3 +84,5 @@ def test_outside_the_fit_warns_with_the_range() -> None:
 def test_negative_kelvin_is_refused(function) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(InputError, match=r"^oil temperature: got -10.0 K; allowed > 0 K, finite$"):
         function(lubricant("M100"), -10.0)
+    with pytest.raises(InputError, match=r"^oil temperature: got 0.0 K"):
+        function(lubricant("M100"), 0.0)
