@@ -535,7 +535,8 @@ def main() -> None:
         f"Other work ran beside it (load average {busy:.1f} on {cores} cores): rates are lower "
         "than on a machine of its own, and two threads had no second core to themselves."
         if busy > 1.7
-        else "The machine had nothing else to do."
+        else "No other work of ours ran beside it; what neighbours on one host took stands in the "
+        "spread."
     )
     said("written")
     arguments.output.write_text(page(found), encoding="utf-8")

@@ -20,7 +20,7 @@ COLDEST = ZERO_CELSIUS - 60.0
 
 CRUSHING = 4e9
 """Hertzian pressure [Pa] of a line contact that dents the hardest bearing steel for good: the
-static limit of roller bearings (ISO 76)."""
+4000 MPa of a roller bearing's static rating (ISO 76:2006, a dent of 1e-4 roller diameters)."""
 
 
 def warn_of_temperatures(pair: GearPair, states: dict[str, Operating]) -> None:
