@@ -153,7 +153,7 @@ def cluster(directory: Path, _: int) -> dict:
     plan.pilot(16)
     with (
         LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as local,
         Client(local) as client,
     ):

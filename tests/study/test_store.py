@@ -300,6 +300,13 @@ def test_full_disk_is_an_error_and_costs_nothing_else(tmp_path):
 
 
 @pytest.mark.slow
+def test_cluster_that_is_not_there_is_refused_before_a_store_is_begun(tmp_path):
+    with pytest.raises(InputError, match=r"scheduler: .*no dask scheduler answers there"):
+        carry_out(plan_of(), tmp_path / "s", scheduler="tcp://127.0.0.1:1")
+    assert not (tmp_path / "s").exists()
+
+
+@pytest.mark.slow
 def test_cluster_without_workers_is_one_line_and_keeps_what_is_done(tmp_path, monkeypatch):
     from distributed import LocalCluster
 
@@ -307,7 +314,7 @@ def test_cluster_without_workers_is_one_line_and_keeps_what_is_done(tmp_path, mo
     whole = carry_out(plan, tmp_path / "s", threads=1)
     monkeypatch.setattr(work, "PAUSE", 0.05)
     monkeypatch.setattr(work, "PATIENCE", 0.2)
-    with LocalCluster(n_workers=0, dashboard_address=None) as empty:
+    with LocalCluster(n_workers=0, dashboard_address=":0") as empty:
         address = empty.scheduler_address
         with pytest.raises(InputError, match=r"scheduler: .*no worker for .*; start workers"):
             carry_out(plan, tmp_path / "t", scheduler=address)

@@ -9,6 +9,7 @@ import queue
 import shutil
 import time
 from collections.abc import Callable, Generator
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -161,17 +162,16 @@ def carry_out(
         return gather(plan, threads=threads, progress=lambda done, _: clock.step(done))
     if directory is None:
         raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
-    if scheduler is not None:
-        _distributed(scheduler)
-    with Store(directory, plan) as kept:
+    cluster = nullcontext() if scheduler is None else _client(scheduler)
+    with cluster as client, Store(directory, plan) as kept:
         there = kept.finished()
         clock.found = len(there)
         wanted = [key for key in keys_of(plan) if key not in there]
         clock.step(len(there))
-        if scheduler is None:
+        if client is None:
             source = computed(plan, wanted, kept.load, threads=threads)
         else:
-            source = computed_on(scheduler, plan, wanted, kept.load)
+            source = computed_on(client, plan, wanted, kept.load)
         done = len(there)
         try:
             for key, arrays in source:
@@ -211,22 +211,8 @@ def itself(plan: Plan) -> Plan:
     return plan
 
 
-def computed_on(
-    scheduler: str, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
-) -> Generator[tuple[Key, Arrays], None, None]:
-    """:func:`thermogear.analysis.plan.computed` on a dask cluster at ``scheduler``.
-
-    Chunks of a worker that dies are computed by another one.
-    """
-    client = _client(scheduler)
-    try:
-        yield from _on_client(client, plan, wanted, load)
-    finally:
-        client.close()
-
-
-def _distributed(scheduler: str) -> Any:
-    """The cluster's package; refused where it or the port of ``scheduler`` is missing."""
+def _client(scheduler: str) -> Any:
+    """A client of the cluster at ``scheduler``; refused where none answers."""
     try:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
@@ -240,11 +226,6 @@ def _distributed(scheduler: str) -> Any:
         raise InputError(
             "scheduler", scheduler, allowed="tcp://HOST:PORT", why="the port is missing"
         )
-    return distributed
-
-
-def _client(scheduler: str) -> Any:
-    distributed = _distributed(scheduler)
     try:
         return distributed.Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
@@ -253,9 +234,13 @@ def _client(scheduler: str) -> Any:
         ) from None
 
 
-def _on_client(
+def computed_on(
     client: Any, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
 ) -> Generator[tuple[Key, Arrays], None, None]:
+    """:func:`thermogear.analysis.plan.computed` on the dask cluster of ``client``.
+
+    Chunks of a worker that dies are computed by another one.
+    """
     # a task's result is made again when its worker dies; scattered data would be lost, for the
     # scheduler keeps one copy of it however many were sent out
     there = client.submit(itself, plan, pure=False, retries=5)
