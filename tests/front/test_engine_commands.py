@@ -80,6 +80,14 @@ def test_continue_marks_fold_and_grazing(
     assert (out / "branch.html").is_file()
 
 
+def test_symbols_of_a_cascade_are_drawn_not_spelt_as_tags(tmp_path: Path) -> None:
+    out = tmp_path / "cascade"
+    assert main(["continue", "table-4.2", "--row", "omega", "--cascade", "1", "-o", str(out)]) == 0
+    page = (out / "cascade.html").read_text(encoding="utf-8")
+    assert "frequency ratio ω<sub>h</sub>, 1.3 to 1.1" in page
+    assert "&lt;" not in page
+
+
 def test_ctrl_c_keeps_what_is_done(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -347,7 +347,7 @@ def _entry(
 def _backlash_notice(legs: Sequence[Leg]) -> list[str]:
     if any(leg.branch.back_impacts.max() > 0 for leg in legs):
         return []
-    return ["no back flank is hit on any of these branches: b' has no effect, heat acts by eps_T"]
+    return ["no back flank is hit on any of these branches: b' has no effect, heat acts by ε_T"]
 
 
 def _cascade(

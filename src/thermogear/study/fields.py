@@ -284,7 +284,8 @@ class Several(Reader):
 
 
 BODY = Measure("temperature", "-70 degC", "600 degC")
-"""The temperature of gears, oil or housing: no gearbox runs colder, no gear steel hotter."""
+"""The temperature of gears, oil or housing. The bounds are ours: wide enough for any gearbox,
+narrow enough to notice degrees Celsius written as kelvins."""
 
 
 @dataclass(frozen=True)

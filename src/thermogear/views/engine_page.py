@@ -258,8 +258,8 @@ def _cascade_tables(summary: Summary) -> list[Block]:
             rows.append(cells)
         rows.append(["branch then", *(c["ended"] for c in own)])
         head = ["period doubling", *(c["heat"] for c in own)]
-        words = page_words(own[0]["parameter"])
-        found.append(Table(f"{words}, {own[0]['from']:g} to {own[0]['to']:g}", head, rows))
+        span = f", {own[0]['from']:g} to {own[0]['to']:g}"
+        found.append(Table(page_words(own[0]["parameter"]) + span, head, rows))
     return found
 
 
