@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
+.PHONY: trial-pairs audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -80,6 +80,9 @@ $(AUDIT_STAMP): $(STAMP) requirements/audit.txt
 	test -x $(AUDIT_BIN)/python || $(BIN)/python -m venv .audit-venv
 	VIRTUAL_ENV=$(CURDIR)/.audit-venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/audit.txt
 	@touch $@
+
+trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an hour; docs/trial_pairs.md
+	@$(BIN)/python checks/trial_pairs.py
 
 house: $(STAMP)  ## docs/house.md anew: sizes, imports between floors, public names
 	$(BIN)/python checks/house.py > docs/house.md

@@ -27,7 +27,13 @@ class Points:
         return self.zeta.size
 
     def model(self) -> TorsionalModel:
-        return TorsionalModel(self.zeta, self.w, self.eps, self.mean, self.force)
+        return TorsionalModel(
+            damping_ratio=self.zeta,
+            frequency=self.w,
+            stiffness_amplitude=self.eps,
+            mean_force=self.mean,
+            force_amplitude=self.force,
+        )
 
     def take(self, count: int) -> Points:
         """``count`` points spread evenly."""

@@ -59,7 +59,7 @@ def sensitivity(points: Any, periods: int) -> np.ndarray:
         mine = lanes.take(index)
         maps = exact.prepare_maps(mine, borders, marks)
         state = exact.State.start(
-            points.start[index, 0], points.start[index, 1], mine.half_backlash
+            x=points.start[index, 0], y=points.start[index, 1], backlash=mine.half_backlash
         )
         exact.advance(maps, state, periods, columns=2)
         matrices = state.tangent.T.reshape(-1, 2, 2)
@@ -178,7 +178,7 @@ def lyapunov_cost(points: Any, rounds: int, periods: int) -> list[float]:
         mine = lanes.take(index)
         maps = exact.prepare_maps(mine, borders, marks)
         state = exact.State.start(
-            points.start[index, 0], points.start[index, 1], mine.half_backlash
+            x=points.start[index, 0], y=points.start[index, 1], backlash=mine.half_backlash
         )
         exact.advance(maps, state, 20)
         exact.advance(maps, state, 2, columns=1, normalise=True)

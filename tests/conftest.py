@@ -108,7 +108,12 @@ def hot_rig() -> Operating:
         lubricant=lubricant("M100"),
         oil_temperature=celsius(100.0),
         temperatures=Temperatures(
-            celsius(20), celsius(140), celsius(120), celsius(140), celsius(120), celsius(100)
+            reference=celsius(20),
+            pinion_addendum=celsius(140),
+            pinion_bore=celsius(120),
+            wheel_addendum=celsius(140),
+            wheel_bore=celsius(120),
+            housing=celsius(100),
         ),
         half_backlash=125e-6,
     )

@@ -97,7 +97,8 @@ def case_file() -> dict[str, str]:
     text = "# The case file\n\n"
     text += (
         'A case is a TOML file. A number with a unit is a text, `"5 mm"`; a pure number stands '
-        "alone, `0.07`. The commented examples of `thermogear example NAME` are the best start; "
+        "alone, `0.07`. Units stand as catalogues write them: `1/min`, `Nmm`, `µm`, `mm²/s`, `°C`. "
+        "The commented examples of `thermogear example NAME` are the best start; "
         "this page lists every field, from the schema that `thermogear schema` prints. A field "
         "under `[gears.pinion]` is put in place on the command line by "
         "`--set gears.pinion.teeth=30`.\n\n"

@@ -42,8 +42,16 @@ SEVEN = {
     (6, 0.8884625719648779, 0.04020210704681767): 158,
     (3, 1.2450510440239528, -0.08588016974955277): 231,
 }
-MODEL_TWO = TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05)
-MODEL_SEVEN = TorsionalModel(0.03, 1.3, 0.3, 0.1, -0.05)
+MODEL_TWO = TorsionalModel(
+    damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1, mean_force=0.1, force_amplitude=0.05
+)
+MODEL_SEVEN = TorsionalModel(
+    damping_ratio=0.03,
+    frequency=1.3,
+    stiffness_amplitude=0.3,
+    mean_force=0.1,
+    force_amplitude=-0.05,
+)
 
 
 @pytest.mark.parametrize(
@@ -53,7 +61,7 @@ MODEL_SEVEN = TorsionalModel(0.03, 1.3, 0.3, 0.1, -0.05)
 )
 def test_published_counts(model, count, truth, compared):
     axis = np.linspace(-2.0, 2.0, count)
-    data = basins(model, axis, axis)
+    data = basins(model, x=axis, v=axis)
     assert data.sizes["attractor_number"] == len(truth)
     for (period, x, v), starts in truth.items():
         away = np.hypot(data.attractor_x - x, data.attractor_v - v).min("attractor_point")
@@ -72,22 +80,22 @@ def test_published_counts(model, count, truth, compared):
 
 def test_threads_change_no_bit():
     axis = np.linspace(-2.0, 2.0, 31)
-    assert basins(MODEL_SEVEN, axis, axis, threads=1).identical(
-        basins(MODEL_SEVEN, axis, axis, threads=3)
+    assert basins(MODEL_SEVEN, x=axis, v=axis, threads=1).identical(
+        basins(MODEL_SEVEN, x=axis, v=axis, threads=3)
     )
 
 
 def test_mirrored_forces_mirror_the_basins():
     axis = np.linspace(-2.0, 2.0, 21)
-    one = basins(MODEL_TWO, axis, axis)
-    other = basins(MODEL_TWO.replace(mean_force=-0.1, force_amplitude=-0.05), axis, axis)
+    one = basins(MODEL_TWO, x=axis, v=axis)
+    other = basins(MODEL_TWO.replace(mean_force=-0.1, force_amplitude=-0.05), x=axis, v=axis)
     assert np.array_equal(one.attractor.values, other.attractor.values[::-1, ::-1])
 
 
 def test_starts_that_the_survey_misses_find_their_attractor():
     axis = np.linspace(-2.0, 2.0, 51)
-    whole = basins(MODEL_SEVEN, axis, axis)
-    late = basins(MODEL_SEVEN, axis, axis, survey=2)
+    whole = basins(MODEL_SEVEN, x=axis, v=axis)
+    late = basins(MODEL_SEVEN, x=axis, v=axis, survey=2)
     assert np.array_equal(np.sort(whole["count"].values), np.sort(late["count"].values))
 
 
@@ -102,7 +110,9 @@ def test_entropy_in_closed_form():
 def test_attractors_keep_their_number_over_a_parameter():
     """The small orbit dies at the fold w = 0.79174; the large one keeps its number."""
     axis = np.linspace(-2.0, 2.0, 21)
-    data = basins_along(MODEL_TWO, "frequency", [0.70, 0.74, 0.78, 0.80], axis, axis, survey=8)
+    data = basins_along(
+        MODEL_TWO, "frequency", values=[0.70, 0.74, 0.78, 0.80], x=axis, v=axis, survey=8
+    )
     assert data.sizes["attractor_number"] == 2
     small = 1
     assert np.all(data.fraction.values[:3, small] > 0.0)
@@ -113,7 +123,13 @@ def test_attractors_keep_their_number_over_a_parameter():
 def rattling(scale, damping=0.1):
     """The base set of table 4.2 in another unit of length: chaotic at 0.10, period 1 at 0.18."""
     force = Periodic(0.017 * scale, (-1.16 * scale,))
-    return DeadZoneModel(damping, 1.245, Periodic(1.0, (0.335,)), force, scale)
+    return DeadZoneModel(
+        damping_ratio=damping,
+        frequency=1.245,
+        stiffness=Periodic(1.0, (0.335,)),
+        force=force,
+        half_backlash=scale,
+    )
 
 
 @pytest.mark.parametrize("scale", [2.0**-13, 1.0, 2.0**9])
@@ -122,7 +138,7 @@ def test_a_chaotic_set_is_known_by_its_own_points_and_by_no_others(scale):
     start = scale * np.array([0.0, 0.0])
     settled = close_orbits(field.one, start[None], 300).points[0, -1]
     cloud = close_orbits(field.one, settled[None], 2048).points[0]
-    own = Attractor(0, cloud, complex("nan"), 0.05, 0.0)
+    own = Attractor(period=0, points=cloud, multiplier=complex("nan"), lyapunov=0.05, trap=0.0)
     mirror = replace(own, points=-cloud)
     periodic = replace(own, period=1)
     later = close_orbits(field.one, cloud[-1][None], 777).points[0, -1]
@@ -135,8 +151,20 @@ def test_a_chaotic_set_is_known_by_its_own_points_and_by_no_others(scale):
 
 def test_a_trap_holds_what_falls_into_it_however_slowly_the_orbit_draws():
     """In lasting contact the map is affine: the widest trap; a saddle beside it narrows it."""
-    calm = TorsionalModel(0.05, 0.7, 0.1, 0.5, 0.05)
-    slow = TorsionalModel(0.1705, 1.245, 0.335, 0.017, -1.16)  # just before its flip
+    calm = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.1,
+        mean_force=0.5,
+        force_amplitude=0.05,
+    )
+    slow = TorsionalModel(
+        damping_ratio=0.1705,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )  # just before its flip
     folding = MODEL_TWO.replace(frequency=0.79)
     for model, start in ((calm, (1.5, 0.0)), (folding, (1.208, 0.021)), (slow, (1.08, -0.25))):
         (found,), (place,) = attractors_from(model.lanes(), np.array([start]), BASIN_RULE)
@@ -201,16 +229,24 @@ def test_company_and_stride_change_no_trapped_start():
 
 
 def test_a_start_that_leaves_for_infinity_is_no_basin():
-    model = TorsionalModel(0.001, 2.0, 0.9, 500.0, 0.0)
+    model = TorsionalModel(
+        damping_ratio=0.001,
+        frequency=2.0,
+        stiffness_amplitude=0.9,
+        mean_force=500.0,
+        force_amplitude=0.0,
+    )
     starts = np.array([[501.0, 0.1], [502.0, -3.0]])
-    known = [Attractor(1, np.zeros((1, 2)), 0.5 + 0j, -0.1, 0.01)]
+    known = [
+        Attractor(period=1, points=np.zeros((1, 2)), multiplier=0.5 + 0j, lyapunov=-0.1, trap=0.01)
+    ]
     where, _, _ = trapped(Field(model.lanes(), width=1), starts, known)
     assert where.tolist() == [-2, -2]
     found, places = attractors_from(model.lanes(), starts, BASIN_RULE)
     assert found == []
     assert places.tolist() == [-2, -2]
     axis = np.array([500.0, 501.0])
-    data = basins(model, axis, axis - 500.0)
+    data = basins(model, x=axis, v=axis - 500.0)
     assert np.all(data.attractor == -2)
     assert data.attrs["unassigned"] == 1.0
     assert data.sizes["attractor_number"] == 0
@@ -218,7 +254,7 @@ def test_a_start_that_leaves_for_infinity_is_no_basin():
 
 def test_what_the_survey_says_of_an_attractor_is_what_its_orbit_says():
     axis = np.linspace(-2.0, 2.0, 21)
-    data = basins(MODEL_SEVEN, axis, axis)
+    data = basins(MODEL_SEVEN, x=axis, v=axis)
     counts = data["count"].values
     assert counts.tolist() == sorted(counts, reverse=True)
     for n in range(data.sizes["attractor_number"]):
@@ -267,30 +303,41 @@ def test_entropy_and_border_distance_counted_start_by_start():
 
     home, second = (x[6], v[8]), (x[2] + 0.1, v[3] - 0.1)
     known = [orbit(home), orbit(home, (9.0, 0.0)), orbit((9.0, 0.0)), orbit(home)]
-    found = border_distances(x, v, where, known, unit)
+    found = border_distances(x=x, v=v, where=where, known=known, unit=unit)
     least = np.linalg.norm((grid - np.array(home) / unit)[where != 0], axis=1).min()
     assert found[0] == pytest.approx(least, rel=1e-12)
     assert found[1] == 0.0  # stands on another's start
     assert np.isnan(found[2:]).all()  # outside the grid; no start of its own
-    both = border_distances(x, v, where, [orbit(home, second)], unit)
+    both = border_distances(x=x, v=v, where=where, known=[orbit(home, second)], unit=unit)
     near = np.linalg.norm((grid - np.array([x[2], v[3]]) / unit)[where != 0], axis=1).min()
     assert both[0] == pytest.approx(min(least, near) if where[2, 3] == 0 else 0.0, rel=1e-12)
-    assert np.isnan(border_distances(x, v, np.zeros_like(where), [orbit(home)], unit)[0])
-    for few in ((x[:1], v, where[:1]), (x, v[:1], where[:, :1])):
-        assert np.isnan(border_distances(*few, [orbit(home)], unit)).all()
+    assert np.isnan(
+        border_distances(x=x, v=v, where=np.zeros_like(where), known=[orbit(home)], unit=unit)[0]
+    )
+    for few in (
+        {"x": x[:1], "v": v, "where": where[:1]},
+        {"x": x, "v": v[:1], "where": where[:, :1]},
+    ):
+        assert np.isnan(border_distances(**few, known=[orbit(home)], unit=unit)).all()
 
 
 def test_of_two_old_attractors_that_end_on_one_the_nearer_keeps_its_number():
     unit = np.array([0.5, 2.0])
 
     def at(*points):
-        return Attractor(len(points), np.array(points), 0.5 + 0j, -0.1, 0.01)
+        return Attractor(
+            period=len(points),
+            points=np.array(points),
+            multiplier=0.5 + 0j,
+            lyapunov=-0.1,
+            trap=0.01,
+        )
 
     old = [at((0.0, 0.0)), at((1.0, 0.0)), at((5.0, 5.0))]
     new = [at((0.4, 0.0)), at((0.9, 0.0)), at((7.0, 7.0))]
-    assert matched(old, new, [1, 1, -1], unit) == [-1, 1, -1]
-    assert matched(old[::-1], new, [-1, 1, 1], unit) == [-1, 1, -1]
-    assert matched(old, new, [0, 1, 2], unit) == [0, 1, 2]
+    assert matched(old, new, landed=[1, 1, -1], unit=unit) == [-1, 1, -1]
+    assert matched(old[::-1], new, landed=[-1, 1, 1], unit=unit) == [-1, 1, -1]
+    assert matched(old, new, landed=[0, 1, 2], unit=unit) == [0, 1, 2]
     pair = at((0.0, 0.0), (0.0, 3.0))
     # Hausdorff in half backlashes: the farthest of all nearest points, whoever asks
     assert pair.distance(old[0], unit) == old[0].distance(pair, unit) == 1.5
@@ -299,7 +346,7 @@ def test_of_two_old_attractors_that_end_on_one_the_nearer_keeps_its_number():
 
 @pytest.mark.parametrize(("rows", "columns"), [(7, 3), (5000, 3), (300, 100), (4, 20_000)])
 def test_a_chunk_of_a_basin_holds_as_many_whole_rows_as_it_may(rows, columns):
-    plan = BasinPlan(MODEL_TWO, tuple(range(rows)), tuple(range(columns)), ())
+    plan = BasinPlan(model=MODEL_TWO, x=tuple(range(rows)), v=tuple(range(columns)), attractors=())
     cut = plan.cuts["x"]
     assert plan.sizes == {"x": rows, "v": columns}
     assert cut == 1 or cut * columns <= CHUNK_POINTS

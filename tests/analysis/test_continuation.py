@@ -22,7 +22,13 @@ from thermogear.dynamics.models import TorsionalModel
 
 TRUTH = json.loads((Path(__file__).parents[1] / "dynamics" / "truth.json").read_text())
 BIFURCATIONS = {case["id"]: case for case in TRUTH["bifurcations"]}
-BASE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+BASE = TorsionalModel(
+    damping_ratio=0.1535,
+    frequency=1.245,
+    stiffness_amplitude=0.335,
+    mean_force=0.017,
+    force_amplitude=-1.16,
+)
 ROWS = {
     "damping_ratio": (0.18, 0.10, "SEED_z"),
     "frequency": (1.3, 1.1, "SEED_w"),
@@ -68,7 +74,17 @@ def test_cascade_of_table_4_2(parameter, compared):
 
 
 def test_grazing_and_fold_of_the_lower_branch():
-    orbit = periodic_orbit(TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05), 1, (1.1776, 0.0074))
+    orbit = periodic_orbit(
+        TorsionalModel(
+            damping_ratio=0.05,
+            frequency=0.7,
+            stiffness_amplitude=0.1,
+            mean_force=0.1,
+            force_amplitude=0.05,
+        ),
+        1,
+        (1.1776, 0.0074),
+    )
     branch = continuation(orbit, "frequency", 0.9)
     assert [b.kind for b in branch.bifurcations] == [GRAZING, FOLD]
     grazing, fold = branch.bifurcations
@@ -81,7 +97,17 @@ def test_grazing_and_fold_of_the_lower_branch():
 
 
 def test_flip_of_the_small_family_with_falling_frequency():
-    orbit = periodic_orbit(TorsionalModel(0.05, 1.4, 0.2, 0.1, 0.2), 1, (0.9, 0.03))
+    orbit = periodic_orbit(
+        TorsionalModel(
+            damping_ratio=0.05,
+            frequency=1.4,
+            stiffness_amplitude=0.2,
+            mean_force=0.1,
+            force_amplitude=0.2,
+        ),
+        1,
+        (0.9, 0.03),
+    )
     branch = continuation(orbit, "frequency", 1.1)
     (flip,) = branch.bifurcations
     assert flip.kind == FLIP
@@ -117,7 +143,15 @@ def test_a_family_may_be_any_function_of_a_number():
 
     def heated(celsius):
         rise = (celsius - 20.0) / 140.0
-        return TorsionalModel(0.1535, 1.300551, 0.335, 0.0136, -0.928, 1 - 0.2 * rise, 0.02 * rise)
+        return TorsionalModel(
+            damping_ratio=0.1535,
+            frequency=1.300551,
+            stiffness_amplitude=0.335,
+            mean_force=0.0136,
+            force_amplitude=-0.928,
+            half_backlash=1 - 0.2 * rise,
+            thermal_stiffness=0.02 * rise,
+        )
 
     orbit = periodic_orbit(heated(20.0), 1, (1.08, -0.2))
     branch = continuation(orbit, "temperature", 160.0, family=heated, start=20.0)
@@ -199,7 +233,17 @@ def test_folds_beside_a_grazing_are_found():
 
 
 def test_ctrl_c_keeps_what_is_done_when_asked():
-    orbit = periodic_orbit(TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05), 1, (1.1776, 0.0074))
+    orbit = periodic_orbit(
+        TorsionalModel(
+            damping_ratio=0.05,
+            frequency=0.7,
+            stiffness_amplitude=0.1,
+            mean_force=0.1,
+            force_amplitude=0.05,
+        ),
+        1,
+        (1.1776, 0.0074),
+    )
 
     def stop(points, _value):
         if points == 4:
@@ -213,7 +257,17 @@ def test_ctrl_c_keeps_what_is_done_when_asked():
 
 
 def test_the_branch_as_a_dataset():
-    orbit = periodic_orbit(TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05), 1, (1.1776, 0.0074))
+    orbit = periodic_orbit(
+        TorsionalModel(
+            damping_ratio=0.05,
+            frequency=0.7,
+            stiffness_amplitude=0.1,
+            mean_force=0.1,
+            force_amplitude=0.05,
+        ),
+        1,
+        (1.1776, 0.0074),
+    )
     data = continuation(orbit, "frequency", 0.9).dataset()
     assert data.event_kind.values.tolist() == [GRAZING, FOLD]
     assert data.attrs["parameter"] == "frequency"
@@ -223,7 +277,13 @@ def test_the_branch_as_a_dataset():
 @pytest.mark.parametrize(("parameter", "to"), [("mean_force", 0.5), ("force_amplitude", 0.0)])
 def test_a_straight_branch_is_walked_in_longest_steps_and_stays_straight(parameter, to):
     """Constant stiffness in lasting contact: the orbit is affine in the force."""
-    model = TorsionalModel(0.05, 0.7, 0.0, 1.0, 0.2)
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.0,
+        mean_force=1.0,
+        force_amplitude=0.2,
+    )
     branch = continuation(periodic_orbit(model, 1, (2.0, 0.0)), parameter, to)
     assert (branch.bifurcations, branch.ended) == ((), "reached the end")
     start, end = branch.values[0], branch.values[-1]
@@ -248,7 +308,13 @@ def test_a_straight_branch_is_walked_in_longest_steps_and_stays_straight(paramet
 
 
 def test_the_last_step_lands_on_the_end_from_either_side():
-    model = TorsionalModel(0.05, 0.7, 0.1, 1.0, 0.2)
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.1,
+        mean_force=1.0,
+        force_amplitude=0.2,
+    )
     orbit = periodic_orbit(model, 1, (2.0, 0.0))
     for to in (0.6, 0.8):
         branch = continuation(orbit, "frequency", to)
@@ -265,7 +331,13 @@ def test_the_last_step_lands_on_the_end_from_either_side():
 def test_the_stored_branch_is_its_orbits():
     """Of x'' + 2 zeta x' + x - 1 = F_m + F_h cos(w t), always in contact, in closed form:
     x = 1 + F_m + Re X and v = -w Im X at t = 0, with X = F_h/(1 - w^2 + 2i zeta w)."""
-    model = TorsionalModel(0.05, 0.4, 0.0, 0.5, 0.1)
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.4,
+        stiffness_amplitude=0.0,
+        mean_force=0.5,
+        force_amplitude=0.1,
+    )
     branch = continuation(periodic_orbit(model, 1, (1.5, 0.0)), "frequency", 0.6)
     data = branch.dataset()
     w = data.value.values

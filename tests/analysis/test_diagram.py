@@ -18,8 +18,16 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 
-TABLE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
-BISTABLE = TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05)
+TABLE = TorsionalModel(
+    damping_ratio=0.1535,
+    frequency=1.245,
+    stiffness_amplitude=0.335,
+    mean_force=0.017,
+    force_amplitude=-1.16,
+)
+BISTABLE = TorsionalModel(
+    damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1, mean_force=0.1, force_amplitude=0.05
+)
 
 
 def located(data, kind, period):
@@ -98,7 +106,13 @@ def test_bad_starts_and_parameters_are_refused():
 def test_every_stretch_on_which_an_orbit_runs_on_gives_its_middle(scale, axis):
     """Stretches of 7, 3 and 1 values; the orbit is stored from either of its points on."""
     force = Periodic(0.1 * scale, (0.05 * scale,))
-    model = DeadZoneModel(0.05, 0.7, Periodic(1.0, (0.1,)), force, scale)
+    model = DeadZoneModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness=Periodic(1.0, (0.1,)),
+        force=force,
+        half_backlash=scale,
+    )
     values = np.linspace(0.60, 0.71, 12)
     unit = units_of(replace(model, frequency=float(values[7])).lanes())[0]
     drift = 0.01 * np.arange(12)[:, None] * unit

@@ -10,7 +10,9 @@ from thermogear.analysis.maps import map_plan, parameter_map
 from thermogear.analysis.plan import bytes_of, empty_arrays
 from thermogear.dynamics.models import TorsionalModel
 
-BISTABLE = TorsionalModel(0.05, 0.7, 0.1, 0.1, 0.05)
+BISTABLE = TorsionalModel(
+    damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1, mean_force=0.1, force_amplitude=0.05
+)
 
 
 @pytest.mark.parametrize("values", [[0.60, 0.62], [0.62, 0.60], [0.60, 0.61, 0.62]])
@@ -39,7 +41,13 @@ def test_a_survey_of_a_grid_stands_on_its_corners(side):
 @pytest.mark.slow
 def test_a_point_without_an_orbit_has_no_numbers_of_one():
     """Table 4.2: period 1 at zeta = 0.18, chaos at 0.10; unknown counts are -1, not 0 or 1."""
-    model = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.1535,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     told: list[tuple[int, int]] = []
     data = parameter_map(
         model,
@@ -65,7 +73,7 @@ def test_a_point_without_an_orbit_has_no_numbers_of_one():
 
 def test_the_announced_size_is_that_of_the_arrays():
     axis = np.linspace(-1.0, 1.0, 7)
-    plan = basin_plan(BISTABLE, axis, axis[:3])
+    plan = basin_plan(BISTABLE, x=axis, v=axis[:3])
     assert bytes_of(plan) == sum(values.nbytes for values in empty_arrays(plan).values())
 
 
@@ -113,5 +121,5 @@ def test_a_pilot_of_a_diagram_spreads_over_its_range_ends_included():
 
 
 def test_a_pilot_of_basins_follows_a_square_of_starts():
-    plan = basin_plan(BISTABLE, np.linspace(-1.0, 1.0, 5), [0.0, 0.5, 1.0], survey=2)
+    plan = basin_plan(BISTABLE, x=np.linspace(-1.0, 1.0, 5), v=[0.0, 0.5, 1.0], survey=2)
     assert [plan.pilot(n) for n in (1, 9, 16, 100)] == [4, 9, 12, 15]

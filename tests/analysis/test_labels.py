@@ -20,13 +20,27 @@ from thermogear.base.errors import InputError
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 
-BASE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+BASE = TorsionalModel(
+    damping_ratio=0.1535,
+    frequency=1.245,
+    stiffness_amplitude=0.335,
+    mean_force=0.017,
+    force_amplitude=-1.16,
+)
 ROW = ["period-1", "period-2", "period-4", "chaotic"]
 
 
 def heated(celsius):
     rise = (np.asarray(celsius, dtype=float) - 20.0) / 140.0
-    return TorsionalModel(0.1535, 1.300551, 0.335, 0.0136, -0.928, 1 - 0.2 * rise, 0.02 * rise)
+    return TorsionalModel(
+        damping_ratio=0.1535,
+        frequency=1.300551,
+        stiffness_amplitude=0.335,
+        mean_force=0.0136,
+        force_amplitude=-0.928,
+        half_backlash=1 - 0.2 * rise,
+        thermal_stiffness=0.02 * rise,
+    )
 
 
 @pytest.mark.parametrize(
@@ -64,7 +78,15 @@ def test_half_order_amplitudes_of_section_4_1(compared):
 
 def test_a_long_transient_does_not_fool_the_label():
     """121 damping ratios where 50 discarded periods mislabel 49 points."""
-    model = TorsionalModel(np.linspace(0.02, 0.14, 121), 1.268, 0.6, 0.056, 0.314, 1.0, 0.03)
+    model = TorsionalModel(
+        damping_ratio=np.linspace(0.02, 0.14, 121),
+        frequency=1.268,
+        stiffness_amplitude=0.6,
+        mean_force=0.056,
+        force_amplitude=0.314,
+        half_backlash=1.0,
+        thermal_stiffness=0.03,
+    )
     first = labels(model)
     longer = labels(model, discard=4000)
     clear = [
@@ -79,7 +101,13 @@ def test_a_long_transient_does_not_fool_the_label():
 
 def test_a_spiral_is_not_taken_for_a_longer_period():
     """Complex multipliers near a third of a turn return close after three periods."""
-    model = TorsionalModel(0.01, 0.7, 0.1, 0.1, 0.05)
+    model = TorsionalModel(
+        damping_ratio=0.01,
+        frequency=0.7,
+        stiffness_amplitude=0.1,
+        mean_force=0.1,
+        force_amplitude=0.05,
+    )
     assert str(label(model, initial_state=(1.1, 0.0))) == "period-1"
 
 
@@ -90,7 +118,17 @@ def test_at_the_border_itself_nothing_is_decided():
 
 def test_a_diverging_motion_is_named_so():
     assert (
-        label(TorsionalModel(0.0, 2.0, 0.9, 0.1, 0.05), initial_state=(1.5, 0.3)).name == "diverged"
+        label(
+            TorsionalModel(
+                damping_ratio=0.0,
+                frequency=2.0,
+                stiffness_amplitude=0.9,
+                mean_force=0.1,
+                force_amplitude=0.05,
+            ),
+            initial_state=(1.5, 0.3),
+        ).name
+        == "diverged"
     )
 
 
@@ -105,7 +143,15 @@ def test_no_label_where_rounding_chooses_the_attractor():
     fields = [rng.uniform(*span, 500) for span in ((0.02, 0.2), (0.3, 2.2), (0, 0.9), (0.01, 0.3))]
     force, heat = rng.uniform(-1.2, 1.2, 500), rng.uniform(-0.03, 0.03, 500)
     zeta, w, eps, mean = (float(field[394]) for field in fields)
-    model = TorsionalModel(zeta, w, eps, mean, float(force[394]), 1.0, float(heat[394]))
+    model = TorsionalModel(
+        damping_ratio=zeta,
+        frequency=w,
+        stiffness_amplitude=eps,
+        mean_force=mean,
+        force_amplitude=float(force[394]),
+        half_backlash=1.0,
+        thermal_stiffness=float(heat[394]),
+    )
     found = label(model)
     assert str(found) in ("undecided", "period-2", "period-6")
     if str(found) != "undecided":
@@ -118,13 +164,13 @@ def test_five_hundred_random_points_keep_their_labels():
     rng = np.random.default_rng(7)
     count = 500
     model = TorsionalModel(
-        rng.uniform(0.02, 0.2, count),
-        rng.uniform(0.3, 2.2, count),
-        rng.uniform(0, 0.9, count),
-        rng.uniform(0.01, 0.3, count),
-        rng.uniform(-1.2, 1.2, count),
-        1.0,
-        rng.uniform(-0.03, 0.03, count),
+        damping_ratio=rng.uniform(0.02, 0.2, count),
+        frequency=rng.uniform(0.3, 2.2, count),
+        stiffness_amplitude=rng.uniform(0, 0.9, count),
+        mean_force=rng.uniform(0.01, 0.3, count),
+        force_amplitude=rng.uniform(-1.2, 1.2, count),
+        half_backlash=1.0,
+        thermal_stiffness=rng.uniform(-0.03, 0.03, count),
     )
     first = labels(model)
     longer = labels(model, discard=1000, cap=64_000)
@@ -135,7 +181,13 @@ def test_five_hundred_random_points_keep_their_labels():
 
 
 def test_the_orbit_of_a_label_can_be_continued():
-    model = TorsionalModel(0.18, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.18,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     orbit = label(model).orbit
     assert orbit is not None
     assert orbit.model is model
@@ -180,15 +232,30 @@ def test_chaos_wants_a_finite_record_positive_in_both_halves(batches, positive):
     values = np.array(batches)
     with np.errstate(invalid="ignore"):
         error = float(values.std(ddof=1) / np.sqrt(values.size))
-    assert _positive(Lyapunov(float(values.mean()), error, -0.1, values, np.zeros(2))) == positive
-    # both halves count even where the mean stands far above its error
-    assert _positive(Lyapunov(float(values.mean()), 1e-9, -0.1, values, np.zeros(2))) == (
-        positive or batches == [0.01, 0.01, 2.0, 2.0]
+    assert (
+        _positive(
+            Lyapunov(
+                value=float(values.mean()), error=error, sum=-0.1, batches=values, state=np.zeros(2)
+            )
+        )
+        == positive
     )
+    # both halves count even where the mean stands far above its error
+    assert _positive(
+        Lyapunov(
+            value=float(values.mean()), error=1e-9, sum=-0.1, batches=values, state=np.zeros(2)
+        )
+    ) == (positive or batches == [0.01, 0.01, 2.0, 2.0])
 
 
 def test_a_window_is_on_the_orbit_when_it_is_near_and_comes_nearer():
-    model = TorsionalModel(0.168, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.168,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     lane, unit = model.lanes(), scales(model.lanes())
     orbit = periodic_orbit(model, 2, (1.13, -0.28))
     assert orbit.stable

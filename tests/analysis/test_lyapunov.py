@@ -18,13 +18,13 @@ CHAOTIC = [case for case in TRUTH["cases"] if case["kind"] == "chaotic"]
 
 def model_of(params):
     return TorsionalModel(
-        params["zeta"],
-        params["omega_h"],
-        params["epsilon"],
-        params["F_m"],
-        params["F_h"],
-        params["b_prime"],
-        params["epsilon_T"],
+        damping_ratio=params["zeta"],
+        frequency=params["omega_h"],
+        stiffness_amplitude=params["epsilon"],
+        mean_force=params["F_m"],
+        force_amplitude=params["F_h"],
+        half_backlash=params["b_prime"],
+        thermal_stiffness=params["epsilon_T"],
     )
 
 
@@ -58,7 +58,13 @@ def test_exponent_of_a_closed_orbit_is_its_multiplier(name, compared):
 
 
 def test_several_lanes_are_the_same_as_one_by_one():
-    model = TorsionalModel([0.1, 0.18], 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=[0.1, 0.18],
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     many = lyapunov_exponents(model, discard=100, batches=3, batch_periods=50)
     for lane, zeta in enumerate((0.1, 0.18)):
         alone = lyapunov_exponent(
@@ -68,7 +74,9 @@ def test_several_lanes_are_the_same_as_one_by_one():
 
 
 def test_requests_out_of_range_are_refused():
-    model = TorsionalModel(0.1, 1, 0.1, 0.1, 0.1)
+    model = TorsionalModel(
+        damping_ratio=0.1, frequency=1, stiffness_amplitude=0.1, mean_force=0.1, force_amplitude=0.1
+    )
     for name, wrong, least in (("batches", 1, 2), ("discard", -1, 0), ("batch_periods", 0, 1)):
         with pytest.raises(
             InputError, match=f"{name}: got {wrong}; allowed a whole number >= {least}"
@@ -82,7 +90,13 @@ def test_requests_out_of_range_are_refused():
 
 def test_batches_are_the_growth_of_a_tangent_period_by_period():
     """Jacobians of single periods multiplied by hand; the tangent turns for a while first."""
-    model = TorsionalModel(0.1, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.1,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     found = lyapunov_exponent(
         model, initial_state=(0.2, -0.1), discard=30, batches=3, batch_periods=20
     )
@@ -108,7 +122,13 @@ def test_batches_are_the_growth_of_a_tangent_period_by_period():
 def test_progress_ends_at_all_periods_of_all_lanes():
     told = []
     lyapunov_exponents(
-        TorsionalModel([0.1, 0.12], 1.0, 0.1, 0.1, 0.05),
+        TorsionalModel(
+            damping_ratio=[0.1, 0.12],
+            frequency=1.0,
+            stiffness_amplitude=0.1,
+            mean_force=0.1,
+            force_amplitude=0.05,
+        ),
         discard=30,
         batches=4,
         batch_periods=7,

@@ -8,7 +8,9 @@ from thermogear.analysis.maps import MAP_RULE, MapPlan, _refined, parameter_map
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
 
-MODEL = TorsionalModel(0.05, 1.0, 0.3, 0.1, 0.3)
+MODEL = TorsionalModel(
+    damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3
+)
 
 
 def axes(count):
@@ -139,4 +141,6 @@ def test_strides_and_tiles_that_make_no_lattice_are_refused():
             parameter_map(MODEL, axes(3), stride=stride)
     with pytest.raises(InputError, match="tile: got 1; allowed >= 2"):
         parameter_map(MODEL, axes(3), tile=1)
-    assert MapPlan(family_for(MODEL, tuple(axes(2))), ((1.0,), (0.1, 0.2)), tile=2, stride=1)
+    assert MapPlan(
+        family=family_for(MODEL, tuple(axes(2))), axes=((1.0,), (0.1, 0.2)), tile=2, stride=1
+    )

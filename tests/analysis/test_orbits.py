@@ -19,13 +19,13 @@ ORBITS = [case for case in TRUTH["cases"] if "poincare_points" in case]
 
 def model_of(params):
     return TorsionalModel(
-        params["zeta"],
-        params["omega_h"],
-        params["epsilon"],
-        params["F_m"],
-        params["F_h"],
-        params["b_prime"],
-        params["epsilon_T"],
+        damping_ratio=params["zeta"],
+        frequency=params["omega_h"],
+        stiffness_amplitude=params["epsilon"],
+        mean_force=params["F_m"],
+        force_amplitude=params["F_h"],
+        half_backlash=params["b_prime"],
+        thermal_stiffness=params["epsilon_T"],
     )
 
 
@@ -116,7 +116,12 @@ def test_m5_thermal_stiffness_is_a_change_of_scale(orbits):
     heat = one.model.thermal_stiffness
     s = np.sqrt(1 + heat)
     cold = TorsionalModel(
-        0.1535 / s, 1.300551 / s, 0.335 / s**2, 0.0136 / s**2, -0.928 / s**2, 0.8857142857142857
+        damping_ratio=0.1535 / s,
+        frequency=1.300551 / s,
+        stiffness_amplitude=0.335 / s**2,
+        mean_force=0.0136 / s**2,
+        force_amplitude=-0.928 / s**2,
+        half_backlash=0.8857142857142857,
     )
     other = periodic_orbit(cold, 1, one.state / [1.0, s])
     assert other.state == pytest.approx(one.state / [1.0, s], abs=1e-11)
@@ -148,7 +153,13 @@ def test_threshold_of_the_contact_only_system(case, compared):
     sign = 1.0 if case["omega_h"] == 1.0 else -1.0
 
     def distance(eps):
-        model = TorsionalModel(case["zeta"], case["omega_h"], eps, 0.0, 0.0)
+        model = TorsionalModel(
+            damping_ratio=case["zeta"],
+            frequency=case["omega_h"],
+            stiffness_amplitude=eps,
+            mean_force=0.0,
+            force_amplitude=0.0,
+        )
         return abs(contact_multipliers(model)[0]) - 1.0
 
     value = case["epsilon_critical"]
@@ -159,15 +170,39 @@ def test_threshold_of_the_contact_only_system(case, compared):
         found - value,
         1e-9,
     )
-    model = TorsionalModel(case["zeta"], case["omega_h"], value, 0.0, 0.0)
+    model = TorsionalModel(
+        damping_ratio=case["zeta"],
+        frequency=case["omega_h"],
+        stiffness_amplitude=value,
+        mean_force=0.0,
+        force_amplitude=0.0,
+    )
     assert contact_multipliers(model)[0] == pytest.approx(sign, abs=1e-8)
 
 
 def test_dynamic_load_factor_of_a_slow_constant_mesh_is_one():
-    orbit = periodic_orbit(TorsionalModel(0.05, 0.01, 0.0, 0.3, 0.0), 1, (1.3, 0.0))
+    orbit = periodic_orbit(
+        TorsionalModel(
+            damping_ratio=0.05,
+            frequency=0.01,
+            stiffness_amplitude=0.0,
+            mean_force=0.3,
+            force_amplitude=0.0,
+        ),
+        1,
+        (1.3, 0.0),
+    )
     assert orbit.dynamic_load_factor() == pytest.approx(1.0, abs=1e-12)
     assert periodic_orbit(
-        TorsionalModel(0.05, 0.7, 0.0, 0.3, 0.05), 1, (1.3, 0.0)
+        TorsionalModel(
+            damping_ratio=0.05,
+            frequency=0.7,
+            stiffness_amplitude=0.0,
+            mean_force=0.3,
+            force_amplitude=0.05,
+        ),
+        1,
+        (1.3, 0.0),
     ).dynamic_load_factor() == pytest.approx(1.0 + 0.097 / 0.3, abs=2e-3)
 
 
@@ -181,19 +216,45 @@ def test_orbit_samples_are_the_simulated_motion(orbits):
 
 
 def test_requests_that_lead_nowhere_are_refused():
-    model = TorsionalModel(0.1, 1.0, 0.1, 0.1, 0.1)
+    model = TorsionalModel(
+        damping_ratio=0.1,
+        frequency=1.0,
+        stiffness_amplitude=0.1,
+        mean_force=0.1,
+        force_amplitude=0.1,
+    )
     with pytest.raises(InputError, match="period: got 0; allowed a whole number >= 1"):
         periodic_orbit(model, 0)
     with pytest.raises(InputError, match="guess"):
         periodic_orbit(model, 1, (0.0, np.nan))
     with pytest.raises(ConvergenceError, match="Newton did not settle"):
-        periodic_orbit(TorsionalModel(0.0, 2.0, 0.9, 0.1, 0.1), 1, (1e5, 0.0))
+        periodic_orbit(
+            TorsionalModel(
+                damping_ratio=0.0,
+                frequency=2.0,
+                stiffness_amplitude=0.9,
+                mean_force=0.1,
+                force_amplitude=0.1,
+            ),
+            1,
+            (1e5, 0.0),
+        )
 
 
 def test_an_orbit_in_lasting_contact_is_the_forced_oscillation_in_closed_form():
     """x = b + F_m + Re X e^{i w t}, X = F_h/(1 - w^2 + 2 i zeta w): constant stiffness."""
     zeta, w, mean, force = 0.05, 0.7, 1.0, 0.2
-    orbit = periodic_orbit(TorsionalModel(zeta, w, 0.0, mean, force), 1, (2.0, 0.0))
+    orbit = periodic_orbit(
+        TorsionalModel(
+            damping_ratio=zeta,
+            frequency=w,
+            stiffness_amplitude=0.0,
+            mean_force=mean,
+            force_amplitude=force,
+        ),
+        1,
+        (2.0, 0.0),
+    )
     response = force / (1.0 - w**2 + 2j * zeta * w)
     phase, x, v = orbit.samples(64)
     turn = np.exp(2j * np.pi * phase)

@@ -153,7 +153,13 @@ def test_a_chunk_of_the_wrong_shape_is_an_error():
 
 
 def test_a_family_says_what_defines_it_and_lets_the_rest_vary():
-    model = DeadZoneModel(0.05, 0.7, Periodic(1.0, (0.1 - 0.2j,)), Periodic(0.3, ()), 2.0)
+    model = DeadZoneModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness=Periodic(1.0, (0.1 - 0.2j,)),
+        force=Periodic(0.3, ()),
+        half_backlash=2.0,
+    )
     family = ModelFamily(model, ("frequency", "half_backlash"))
     assert family.units == ("1", "1")
     told = family.inputs()
@@ -189,11 +195,17 @@ def test_an_axis_is_finite_and_never_twice_the_same(values):
 
 
 def test_an_ensemble_is_its_lanes_one_by_one_and_keeps_the_last_sections():
-    model = TorsionalModel([0.1, 0.18, 0.15], 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=[0.1, 0.18, 0.15],
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     start = np.array([[0.0, 0.0], [1.0, 0.2], [-1.0, 0.1]])
     group = Ensemble(model.lanes(), start, threads=2)
     first = group.run(7)
-    kept = group.run(9, 4)
+    kept = group.run(9, keep=4)
     assert (first.shape, kept.shape, group.elapsed) == ((3, 0, 2), (3, 4, 2), 16)
     for lane in range(3):
         path = ReturnMap(model.lanes().take(lane)).visit(start[lane], 16)

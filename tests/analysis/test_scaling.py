@@ -23,19 +23,34 @@ SCALES = [2.0**-13, 2.0**9]
 def rattling(scale=1.0, damping=0.1):
     """The base set of table 4.2: period 1 at 0.18, 2 at 0.168, chaotic at 0.10."""
     force = Periodic(0.017 * scale, (-1.16 * scale,))
-    return DeadZoneModel(damping, 1.245, Periodic(1.0, (0.335,)), force, scale)
+    return DeadZoneModel(
+        damping_ratio=damping,
+        frequency=1.245,
+        stiffness=Periodic(1.0, (0.335,)),
+        force=force,
+        half_backlash=scale,
+    )
 
 
 def bistable(scale=1.0, frequency=0.7):
     force = Periodic(0.1 * scale, (0.05 * scale,))
-    return DeadZoneModel(0.05, frequency, Periodic(1.0, (0.1,)), force, scale)
+    return DeadZoneModel(
+        damping_ratio=0.05,
+        frequency=frequency,
+        stiffness=Periodic(1.0, (0.1,)),
+        force=force,
+        half_backlash=scale,
+    )
 
 
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("model", [rattling, bistable])
 def test_basins_do_not_know_the_unit_of_length(model, scale):
     axis = np.linspace(-2.0, 2.0, 5)
-    one, other = basins(model(), axis, axis), basins(model(scale), scale * axis, scale * axis)
+    one, other = (
+        basins(model(), x=axis, v=axis),
+        basins(model(scale), x=scale * axis, v=scale * axis),
+    )
     assert np.array_equal(one.attractor.values, other.attractor.values)
     assert np.array_equal(one.attractor_period.values, other.attractor_period.values)
     assert np.array_equal(scale * one.attractor_x, other.attractor_x, equal_nan=True)
@@ -44,7 +59,7 @@ def test_basins_do_not_know_the_unit_of_length(model, scale):
 
 def test_all_starts_of_a_chaotic_point_end_on_its_one_set():
     axis = np.linspace(-2.0, 2.0, 5)
-    data = basins(rattling(), axis, axis)
+    data = basins(rattling(), x=axis, v=axis)
     assert data.attractor_period.values.tolist() == [0]
     assert np.all(data.attractor.values == 0)
     assert data.fraction.values.tolist() == [1.0]
@@ -102,5 +117,11 @@ def test_a_diagram_scales_with_its_branches(scale):
 
 
 def test_a_family_is_measured_by_the_scales_of_its_first_lane():
-    lanes = TorsionalModel(0.1, [0.5, 2.0], 0.1, 0.1, 0.1).lanes()
+    lanes = TorsionalModel(
+        damping_ratio=0.1,
+        frequency=[0.5, 2.0],
+        stiffness_amplitude=0.1,
+        mean_force=0.1,
+        force_amplitude=0.1,
+    ).lanes()
     assert scales(lanes).tolist() == pytest.approx([1.0, 0.5], rel=1e-15)

@@ -35,9 +35,19 @@ ORBITS = [
 ]
 
 
+def torsional(zeta, frequency, eps, mean, amplitude):
+    return TorsionalModel(
+        damping_ratio=zeta,
+        frequency=frequency,
+        stiffness_amplitude=eps,
+        mean_force=mean,
+        force_amplitude=amplitude,
+    )
+
+
 @pytest.mark.parametrize(("numbers", "start", "period", "multiplier"), ORBITS)
 def test_known_orbits_with_their_multipliers(numbers, start, period, multiplier):
-    found = settle(TorsionalModel(*numbers).lanes(), np.array([start]), Rule())
+    found = settle(torsional(*numbers).lanes(), np.array([start]), Rule())
     assert found.label[0] == PERIODIC
     assert found.period[0] == period
     assert abs(found.multiplier[0, 0] - multiplier) < 1e-9
@@ -45,7 +55,7 @@ def test_known_orbits_with_their_multipliers(numbers, start, period, multiplier)
     product = found.multiplier[0].prod()
     assert product == pytest.approx(np.exp(-4 * np.pi * zeta * period / frequency), rel=1e-12)
     # time in back, free and drive contact, counts: those of the single orbit
-    orbit = periodic_orbit(TorsionalModel(*numbers), period, found.point[0])
+    orbit = periodic_orbit(torsional(*numbers), period, found.point[0])
     assert found.shares[0] == pytest.approx(orbit.shares, abs=1e-9)
     assert found.shares[0].sum() == pytest.approx(1.0, abs=1e-12)
     assert (found.losses[0], found.impacts[0]) == (orbit.contact_losses, orbit.back_impacts)
@@ -53,7 +63,15 @@ def test_known_orbits_with_their_multipliers(numbers, start, period, multiplier)
 
 def test_exponent_of_a_periodic_orbit_is_the_log_of_its_multiplier():
     found = settle(
-        TorsionalModel(0.18, 1.245, 0.335, 0.017, -1.16).lanes(), np.zeros((1, 2)), Rule()
+        TorsionalModel(
+            damping_ratio=0.18,
+            frequency=1.245,
+            stiffness_amplitude=0.335,
+            mean_force=0.017,
+            force_amplitude=-1.16,
+        ).lanes(),
+        np.zeros((1, 2)),
+        Rule(),
     )
     assert found.lyapunov[0] == pytest.approx(-0.011806229408744076, abs=1e-9)
     assert found.lyapunov_error[0] == 0.0
@@ -61,7 +79,15 @@ def test_exponent_of_a_periodic_orbit_is_the_log_of_its_multiplier():
 
 def test_chaos_has_a_positive_exponent():
     found = settle(
-        TorsionalModel(0.1, 1.245, 0.335, 0.017, -1.16).lanes(), np.zeros((1, 2)), Rule()
+        TorsionalModel(
+            damping_ratio=0.1,
+            frequency=1.245,
+            stiffness_amplitude=0.335,
+            mean_force=0.017,
+            force_amplitude=-1.16,
+        ).lanes(),
+        np.zeros((1, 2)),
+        Rule(),
     )
     assert found.label[0] == CHAOTIC
     assert found.lyapunov[0] == pytest.approx(0.0488, abs=3 * found.lyapunov_error[0] + 1.5e-3)
@@ -69,7 +95,15 @@ def test_chaos_has_a_positive_exponent():
 
 def test_settled_census_of_a_row_with_long_transients():
     """Near the cascade short transients imitate other motions; the census is of settled ones."""
-    model = TorsionalModel(np.linspace(0.02, 0.14, 121), 1.268, 0.6, 0.056, 0.314, 1.0, 0.03)
+    model = TorsionalModel(
+        damping_ratio=np.linspace(0.02, 0.14, 121),
+        frequency=1.268,
+        stiffness_amplitude=0.6,
+        mean_force=0.056,
+        force_amplitude=0.314,
+        half_backlash=1.0,
+        thermal_stiffness=0.03,
+    )
     found = settle(model.lanes(), np.zeros((121, 2)), Rule(cap=16384, chaos_periods=4000))
     single = labels(model, max_period=32)
     names = [
@@ -80,7 +114,15 @@ def test_settled_census_of_a_row_with_long_transients():
 
 
 def test_company_changes_no_bit():
-    model = TorsionalModel(0.05, np.linspace(0.5, 2.0, 40), 0.5, 0.1, 0.3, 1.0, 0.02)
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=np.linspace(0.5, 2.0, 40),
+        stiffness_amplitude=0.5,
+        mean_force=0.1,
+        force_amplitude=0.3,
+        half_backlash=1.0,
+        thermal_stiffness=0.02,
+    )
     lanes, rule = model.lanes(), Rule(cap=2048)
     whole = settle(lanes, np.zeros((40, 2)), rule, keep=4)
     for lane in (0, 7, 21, 39):
@@ -92,7 +134,13 @@ def test_company_changes_no_bit():
 
 def test_unbounded_motion_is_diverged():
     # parametric resonance far above its threshold with hardly any damping, never out of contact
-    model = TorsionalModel(0.001, 2.0, 0.9, 500.0, 0.0)
+    model = TorsionalModel(
+        damping_ratio=0.001,
+        frequency=2.0,
+        stiffness_amplitude=0.9,
+        mean_force=500.0,
+        force_amplitude=0.0,
+    )
     found = settle(model.lanes(), np.array([[501.0, 0.1]]), Rule(cap=4096))
     assert LABELS[found.label[0]] in ("diverged", "chaotic", "periodic", "undecided")
     assert np.isfinite(found.state[0]).all() == (LABELS[found.label[0]] != "diverged")
@@ -133,7 +181,7 @@ def test_a_rule_takes_its_least_value_and_none_below(name, least):
 
 def test_an_orbit_longer_than_the_longest_sought_is_not_called_periodic():
     numbers, start, period, _ = ORBITS[3]
-    lanes, start = TorsionalModel(*numbers).lanes(), np.array([start])
+    lanes, start = torsional(*numbers).lanes(), np.array([start])
     assert period == 6
     found = settle(lanes, start, Rule(max_period=6, cap=1024))
     assert (found.label[0], found.period[0]) == (PERIODIC, 6)
@@ -157,7 +205,13 @@ def test_an_orbit_longer_than_the_longest_sought_is_not_called_periodic():
 
 def test_an_orbit_within_the_border_is_not_decided_and_one_below_it_is():
     """zeta = 0.1701 lies just before the flip: its multiplier is -0.9995."""
-    model = TorsionalModel(0.1701, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.1701,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     orbit = periodic_orbit(model, 1, (1.08, -0.25))
     size = abs(orbit.multipliers[0])
     start = (orbit.state + np.array([1e-5, 0.0]))[None]
@@ -170,7 +224,13 @@ def test_an_orbit_within_the_border_is_not_decided_and_one_below_it_is():
 
 def test_exponent_of_chaos_is_the_growth_of_a_tangent_period_by_period():
     """Jacobians of single periods multiplied by hand; batch means and their standard error."""
-    model = TorsionalModel(0.1, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.1,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     rule = Rule(first=64, cap=64 + 64, chaos_periods=40, batches=4, early=False)
     found = settle(model.lanes(), np.zeros((1, 2)), rule)
     section = ReturnMap(model.lanes())
@@ -195,7 +255,7 @@ def test_multipliers_are_the_eigenvalues_the_larger_first():
     rng = np.random.default_rng(1)
     jacobian = rng.normal(size=(200, 2, 2))
     determinant = np.linalg.det(jacobian)
-    found = multipliers_of(jacobian, determinant)
+    found = multipliers_of(jacobian, determinant=determinant)
     for one, both in zip(jacobian, found, strict=True):
         expected = np.linalg.eigvals(one)
         expected = expected[np.lexsort((-expected.imag, -np.abs(expected).round(12)))]
@@ -205,8 +265,13 @@ def test_multipliers_are_the_eigenvalues_the_larger_first():
 
 
 def test_newton_lane_by_lane_ends_on_the_orbits_and_tells_who_did_not_get_there():
-    model = TorsionalModel([0.05, 0.1535, 0.05], [0.7, 1.245, 0.7], [0.1, 0.335, 0.1],
-                           [0.1, 0.017, 0.1], [0.05, -1.16, 0.05])  # fmt: skip
+    model = TorsionalModel(
+        damping_ratio=[0.05, 0.1535, 0.05],
+        frequency=[0.7, 1.245, 0.7],
+        stiffness_amplitude=[0.1, 0.335, 0.1],
+        mean_force=[0.1, 0.017, 0.1],
+        force_amplitude=[0.05, -1.16, 0.05],
+    )
     lanes = model.lanes()
     ((_, borders, marks),) = exact.layouts(lanes)
     maps = exact.prepare_maps(lanes, borders, marks)
@@ -225,7 +290,13 @@ def test_newton_lane_by_lane_ends_on_the_orbits_and_tells_who_did_not_get_there(
 
 
 def test_points_without_motion_keep_their_start_and_their_status():
-    model = TorsionalModel(0.18, [1.245, 1.25, 1.26], 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.18,
+        frequency=[1.245, 1.25, 1.26],
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     start = np.array([[0.3, 0.1], [0.0, 0.0], [0.2, 0.0]])
     jammed = STATUS.index("jammed")
     status = np.array([0, jammed, 0], np.int8)

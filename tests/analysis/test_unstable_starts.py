@@ -7,7 +7,13 @@ from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.dynamics.models import TorsionalModel
 
-BASE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+BASE = TorsionalModel(
+    damping_ratio=0.1535,
+    frequency=1.245,
+    stiffness_amplitude=0.335,
+    mean_force=0.017,
+    force_amplitude=-1.16,
+)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,13 @@ from thermogear.dynamics.exact import State
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 
-MODEL = TorsionalModel(0.05, [0.7, 0.9], 0.2, 0.1, 0.15)
+MODEL = TorsionalModel(
+    damping_ratio=0.05,
+    frequency=[0.7, 0.9],
+    stiffness_amplitude=0.2,
+    mean_force=0.1,
+    force_amplitude=0.15,
+)
 
 
 def test_an_error_in_a_block_is_raised_and_stops_the_others() -> None:
@@ -26,7 +32,7 @@ def test_an_error_in_a_block_is_raised_and_stops_the_others() -> None:
 
     def works(pace: Pace) -> None:
         started.set()
-        for _ in pace.chunks(10_000, blocks.CHUNK):
+        for _ in pace.chunks(10_000, lanes=blocks.CHUNK):
             time.sleep(1e-3)
         if pace.done < 10_000 * blocks.CHUNK:
             stopped.set()
@@ -43,11 +49,11 @@ def test_no_blocks_are_no_work() -> None:
 
 def test_pieces_cover_all_periods_once_and_are_counted() -> None:
     pace = Pace(0)
-    pieces = list(pace.chunks(7, blocks.CHUNK // 3))
+    pieces = list(pace.chunks(7, lanes=blocks.CHUNK // 3))
     assert pieces == [(0, 3), (3, 3), (6, 1)]
     assert pace.done == 7 * (blocks.CHUNK // 3)
     pace.stop()
-    assert list(pace.chunks(7, 1)) == []
+    assert list(pace.chunks(7, lanes=1)) == []
 
 
 @pytest.mark.parametrize("method", ["exact", "rk4", "adaptive"])
@@ -68,7 +74,9 @@ def test_the_first_sample_of_every_period_is_its_section(
 
 
 def test_a_start_has_the_identity_as_tangent_and_nothing_counted() -> None:
-    state = State.start(np.array([0.2, 1.4]), np.array([0.0, 0.1]), np.array([1.0, 1.0]))
+    state = State.start(
+        x=np.array([0.2, 1.4]), y=np.array([0.0, 0.1]), backlash=np.array([1.0, 1.0])
+    )
     for lane in range(2):
         assert state.tangent[:, lane].reshape(2, 2).tolist() == [[1.0, 0.0], [0.0, 1.0]]
     assert not state.counts.any()

@@ -17,22 +17,65 @@ def uniform(low, high, count=128):
 
 
 KINDS = {
-    "straight": TorsionalModel(uniform(0.03, 0.1), uniform(0.5, 0.75), 0.1, 0.35, 0.03),
-    "one loss": TorsionalModel(uniform(0.05, 0.2), uniform(1, 1.5), 0.3, 0.1, uniform(0.1, 0.3)),
-    "rattling": TorsionalModel(
-        uniform(0.1, 0.2), uniform(1.1, 1.35), uniform(0.1, 0.6), 0.017, uniform(-1.19, -0.8)
+    "straight": TorsionalModel(
+        damping_ratio=uniform(0.03, 0.1),
+        frequency=uniform(0.5, 0.75),
+        stiffness_amplitude=0.1,
+        mean_force=0.35,
+        force_amplitude=0.03,
     ),
-    "back side": TorsionalModel(uniform(0.05, 0.1), uniform(0.5, 0.8), 0.2, 0.1, uniform(0.3, 0.8)),
-    "slow": TorsionalModel(uniform(0.02, 0.05), uniform(0.12, 0.35), 0.3, 0.05, uniform(0.3, 0.5)),
-    "tiny gap": TorsionalModel(0.05, uniform(0.6, 1.4), 0.3, 0.01, 0.4, uniform(1e-4, 1e-2)),
-    "undamped": TorsionalModel(0.0, uniform(0.6, 1.4), 0.2, 0.1, uniform(0.1, 0.5)),
+    "one loss": TorsionalModel(
+        damping_ratio=uniform(0.05, 0.2),
+        frequency=uniform(1, 1.5),
+        stiffness_amplitude=0.3,
+        mean_force=0.1,
+        force_amplitude=uniform(0.1, 0.3),
+    ),
+    "rattling": TorsionalModel(
+        damping_ratio=uniform(0.1, 0.2),
+        frequency=uniform(1.1, 1.35),
+        stiffness_amplitude=uniform(0.1, 0.6),
+        mean_force=0.017,
+        force_amplitude=uniform(-1.19, -0.8),
+    ),
+    "back side": TorsionalModel(
+        damping_ratio=uniform(0.05, 0.1),
+        frequency=uniform(0.5, 0.8),
+        stiffness_amplitude=0.2,
+        mean_force=0.1,
+        force_amplitude=uniform(0.3, 0.8),
+    ),
+    "slow": TorsionalModel(
+        damping_ratio=uniform(0.02, 0.05),
+        frequency=uniform(0.12, 0.35),
+        stiffness_amplitude=0.3,
+        mean_force=0.05,
+        force_amplitude=uniform(0.3, 0.5),
+    ),
+    "tiny gap": TorsionalModel(
+        damping_ratio=0.05,
+        frequency=uniform(0.6, 1.4),
+        stiffness_amplitude=0.3,
+        mean_force=0.01,
+        force_amplitude=0.4,
+        half_backlash=uniform(1e-4, 1e-2),
+    ),
+    "undamped": TorsionalModel(
+        damping_ratio=0.0,
+        frequency=uniform(0.6, 1.4),
+        stiffness_amplitude=0.2,
+        mean_force=0.1,
+        force_amplitude=uniform(0.1, 0.5),
+    ),
 }
 
 
 def on_grid(lanes, count, order, periods):
     borders = np.arange(count + 1) / count
     maps = exact.prepare_maps(lanes, borders, np.zeros(count, np.uint8), order=order)
-    state = exact.State.start(np.zeros(len(lanes)), np.zeros(len(lanes)), lanes.half_backlash)
+    state = exact.State.start(
+        x=np.zeros(len(lanes)), y=np.zeros(len(lanes)), backlash=lanes.half_backlash
+    )
     exact.advance(maps, state, periods, columns=2)
     return state
 
@@ -67,7 +110,13 @@ def test_error_after_ten_periods_is_rounding_times_the_orbits_own_sensitivity(ki
 @pytest.mark.parametrize("offset", [-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6, 1e-3])
 def test_grazing_is_followed(offset):
     """Around w = .7733103 the closed orbit just touches the edge."""
-    model = TorsionalModel(0.05, 0.7733103356255804 + offset, 0.1, 0.1, 0.05)
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7733103356255804 + offset,
+        stiffness_amplitude=0.1,
+        mean_force=0.1,
+        force_amplitude=0.05,
+    )
     options = {"periods": 3, "initial_state": (1.1954104642733394, 0.01479006606425257)}
     exactly = simulate(model, **options)
     reference = simulate(model, method="adaptive", **options)
@@ -77,7 +126,13 @@ def test_grazing_is_followed(offset):
 
 def test_a_start_on_an_edge_goes_where_its_velocity_points():
     for v in (0.3, -0.3):
-        model = TorsionalModel(0.05, 0.9, 0.2, 0.1, 0.3)
+        model = TorsionalModel(
+            damping_ratio=0.05,
+            frequency=0.9,
+            stiffness_amplitude=0.2,
+            mean_force=0.1,
+            force_amplitude=0.3,
+        )
         options = {"periods": 1, "initial_state": (1.0, v)}
         exactly = simulate(model, **options)
         reference = simulate(model, method="adaptive", **options)
@@ -88,7 +143,7 @@ def test_maps_agree_with_a_slow_set_up_in_extended_precision():
     """Fundamental solutions by plain series of 40 terms in long double."""
     k = Periodic(1.1, (0.3, 0.1 - 0.2j, 0.05j))
     force = Periodic(0.2, (0.5j, -0.1))
-    lanes = DeadZoneModel(0.07, 0.8, k, force).lanes()
+    lanes = DeadZoneModel(damping_ratio=0.07, frequency=0.8, stiffness=k, force=force).lanes()
     count, order = 48, 40
     borders = np.arange(count + 1) / count
     maps = exact.prepare_maps(lanes, borders, np.zeros(count, np.uint8)).maps
@@ -142,17 +197,38 @@ def test_maps_agree_with_a_slow_set_up_in_extended_precision():
 
 
 def test_substeps_grow_with_stiffness_over_frequency_and_with_harmonics():
-    slow, fast = exact.substeps(TorsionalModel(0.1, [0.05, 1.2], 0.3, 0.1, 0.1).lanes())
+    slow, fast = exact.substeps(
+        TorsionalModel(
+            damping_ratio=0.1,
+            frequency=[0.05, 1.2],
+            stiffness_amplitude=0.3,
+            mean_force=0.1,
+            force_amplitude=0.1,
+        ).lanes()
+    )
     assert slow > 4 * fast
     plain, rich = (
-        exact.substeps(DeadZoneModel(0.1, 1.2, Periodic(1.0, (0.2,) * n), Periodic(0.1)).lanes())[0]
+        exact.substeps(
+            DeadZoneModel(
+                damping_ratio=0.1,
+                frequency=1.2,
+                stiffness=Periodic(1.0, (0.2,) * n),
+                force=Periodic(0.1),
+            ).lanes()
+        )[0]
         for n in (1, 40)
     )
     assert rich > 2 * plain
 
 
 def test_a_frequency_too_low_for_the_maps_falls_back_to_fixed_steps():
-    model = TorsionalModel(0.1, 1e-5, 0.3, 0.1, 0.1)
+    model = TorsionalModel(
+        damping_ratio=0.1,
+        frequency=1e-5,
+        stiffness_amplitude=0.3,
+        mean_force=0.1,
+        force_amplitude=0.1,
+    )
     with pytest.raises(InputError, match="more than 49152 sub-steps"):
         exact.substeps(model.lanes())
     data = simulate(model, periods=1, samples_per_period=0, steps_per_period=64)

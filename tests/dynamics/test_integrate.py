@@ -15,9 +15,19 @@ from thermogear.dynamics.models import DeadZoneModel, PairModel, TorsionalModel,
 from thermogear.dynamics.tables import Pieces
 
 TRUTH = json.loads((Path(__file__).parent / "truth.json").read_text())
-BASE = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+BASE = TorsionalModel(
+    damping_ratio=0.1535,
+    frequency=1.245,
+    stiffness_amplitude=0.335,
+    mean_force=0.017,
+    force_amplitude=-1.16,
+)
 RATTLE = TorsionalModel(
-    [0.05, 0.05, 0.03, 0.1535], [0.7, 1.1, 1.3, 1.245], 0.2, 0.1, [0.2, 0.2, -0.05, -1.16]
+    damping_ratio=[0.05, 0.05, 0.03, 0.1535],
+    frequency=[0.7, 1.1, 1.3, 1.245],
+    stiffness_amplitude=0.2,
+    mean_force=0.1,
+    force_amplitude=[0.2, 0.2, -0.05, -1.16],
 )
 PAIR = Excitation(
     stiffness=Periodic(4e8, (6e7, 2e7j)),
@@ -38,7 +48,13 @@ def test_linear_frequency_response(method, compared):
     """No contact loss, constant stiffness: x = b + F_m + F_h cos(w t - phi)/|...|."""
     w = np.array([0.3, 0.7, 0.95, 1.4])
     zeta, mean, amplitude = 0.08, 0.6, 0.05
-    model = TorsionalModel(zeta, w, 0.0, mean, amplitude)
+    model = TorsionalModel(
+        damping_ratio=zeta,
+        frequency=w,
+        stiffness_amplitude=0.0,
+        mean_force=mean,
+        force_amplitude=amplitude,
+    )
     data = simulate(
         model, periods=1, discard=150, method=method, steps_per_period=1024, initial_state=(1.6, 0)
     )
@@ -105,7 +121,13 @@ def test_a_lane_does_not_depend_on_its_company_or_on_threads(method):
 def test_energy_balance_and_mean_mesh_force(compared):
     """dE = int(F v - c v^2 + k' f^2/2) over the run, and <k f> = F_m on a closed orbit."""
     per = 8192
-    model = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=0.1535,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     data = simulate(model, periods=2, discard=300, samples_per_period=per)
     x, v = data.x.values[0], data.v.values[0]
     phase = 2 * np.pi * np.arange(2 * per) / per
@@ -146,7 +168,13 @@ def test_other_methods_agree_with_the_exact_maps(method, compared):
 
 
 def test_runge_kutta_is_of_fourth_order_where_the_motion_is_smooth():
-    model = TorsionalModel(0.05, 0.7, 0.1, 0.3, 0.05)
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.1,
+        mean_force=0.3,
+        force_amplitude=0.05,
+    )
     options = {"periods": 3, "samples_per_period": 0, "initial_state": (1.4, 0.0)}
     exact = simulate(model, method="exact", **options).section_x.values[0, -1]
     errors = [
@@ -176,9 +204,21 @@ def test_rescaling_removes_thermal_stiffness_and_hot_backlash(compared):
     """eps_T and b' are the cold equation with s = sqrt(1 + eps_T), b' = 1."""
     heat, backlash = 0.02, 0.8
     s = np.sqrt(1 + heat)
-    hot = TorsionalModel(0.1535, 1.245, 0.335, 0.017, -1.16, backlash, heat)
+    hot = TorsionalModel(
+        damping_ratio=0.1535,
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+        half_backlash=backlash,
+        thermal_stiffness=heat,
+    )
     cold = TorsionalModel(
-        0.1535 / s, 1.245 / s, 0.335 / s**2, 0.017 / (s**2 * backlash), -1.16 / (s**2 * backlash)
+        damping_ratio=0.1535 / s,
+        frequency=1.245 / s,
+        stiffness_amplitude=0.335 / s**2,
+        mean_force=0.017 / (s**2 * backlash),
+        force_amplitude=-1.16 / (s**2 * backlash),
     )
     one = simulate(hot, periods=20, initial_state=(0.4, 0.2))
     two = simulate(cold, periods=20, initial_state=(0.4 / backlash, 0.2 / (s * backlash)))
@@ -239,7 +279,7 @@ def test_tables_of_many_harmonics(count, compared):
     ranks = np.arange(1, count + 1)
     k = Periodic(1.0, tuple(0.25 / ranks * np.exp(0.7j * ranks)))
     force = Periodic(0.08, tuple(0.4 / ranks**1.5 * np.exp(-0.3j * ranks**2)))
-    model = DeadZoneModel(0.06, 0.9, k, force)
+    model = DeadZoneModel(damping_ratio=0.06, frequency=0.9, stiffness=k, force=force)
     exact = simulate(model, periods=2)
     reference = simulate(model, periods=2, method="adaptive")
     assert exact.contact_losses.item() > 0
@@ -252,9 +292,9 @@ def test_tables_of_many_harmonics(count, compared):
 
 
 def test_tables_with_jumps_have_their_borders_at_the_jumps():
-    k = Pieces.constant((0.0, 0.37, 0.8123), (1.2, 0.8, 1.1))
-    force = Pieces((0.0, 0.5), ((0.3, -0.4), (0.1, 0.2)))
-    model = DeadZoneModel(0.06, 0.8, k, force)
+    k = Pieces.constant(starts=(0.0, 0.37, 0.8123), values=(1.2, 0.8, 1.1))
+    force = Pieces(starts=(0.0, 0.5), coefficients=((0.3, -0.4), (0.1, 0.2)))
+    model = DeadZoneModel(damping_ratio=0.06, frequency=0.8, stiffness=k, force=force)
     exact = simulate(model, periods=4, initial_state=(1.2, 0.3))
     reference = simulate(model, periods=4, method="adaptive", initial_state=(1.2, 0.3))
     assert exact.contact_losses.item() > 0
@@ -279,14 +319,26 @@ def test_a_model_of_the_state_falls_back_and_says_why():
 @pytest.mark.parametrize("method", ["exact", "rk4"])
 def test_a_diverging_lane_is_a_status_and_its_neighbours_go_on(method):
     """w = 2 and eps = .9: the straight system gains energy every period, for ever."""
-    model = TorsionalModel(0.0, [2.0, 1.3], [0.9, 0.1], 0.1, 0.05)
+    model = TorsionalModel(
+        damping_ratio=0.0,
+        frequency=[2.0, 1.3],
+        stiffness_amplitude=[0.9, 0.1],
+        mean_force=0.1,
+        force_amplitude=0.05,
+    )
     data = simulate(model, periods=200, method=method, initial_state=(1.5, 0.3))
     meanings = data.status.attrs["flag_meanings"].split()
     assert [meanings[i] for i in data.status.values] == ["diverged", "ok"]
     assert tuple(meanings) == STATUS
     assert np.isnan(data.section_x.values[0, -1])
     alone = simulate(
-        TorsionalModel(0.0, 1.3, 0.1, 0.1, 0.05),
+        TorsionalModel(
+            damping_ratio=0.0,
+            frequency=1.3,
+            stiffness_amplitude=0.1,
+            mean_force=0.1,
+            force_amplitude=0.05,
+        ),
         periods=200,
         method=method,
         initial_state=(1.5, 0.3),
@@ -355,8 +407,8 @@ def test_a_start_at_rest_finds_the_graze_between_two_steps():
             gap,
             2 * np.pi,
             np.array([way * low, 0.0]),
-            1,
-            0,
+            periods=1,
+            samples=0,
         )
         near = np.sqrt(2e-9 / a)
         assert crossings == pytest.approx([np.pi - near, np.pi + near], abs=1e-8)

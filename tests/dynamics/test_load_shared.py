@@ -38,7 +38,12 @@ def test_one_lasting_pair_is_the_one_spring() -> None:
     shared = LoadSharedModel(1.0, 0.16, 1.2, 1.0, force, alone(), alone())
     run = {"periods": 6, "samples_per_period": 32, "initial_state": (1.1, 0.0)}
     ours = simulate(shared, steps_per_period=4096, **run)  # type: ignore[arg-type]
-    one = simulate(DeadZoneModel(0.08, 1.2, LINE, force, 1.0), **run)  # type: ignore[arg-type]
+    one = simulate(
+        DeadZoneModel(
+            damping_ratio=0.08, frequency=1.2, stiffness=LINE, force=force, half_backlash=1.0
+        ),
+        **run,
+    )  # type: ignore[arg-type]
     assert ours["x"].values == pytest.approx(one["x"].values, abs=2e-5)
     assert ours.attrs["method"] == "rk4"
     assert int(ours["contact_losses"][0]) == int(one["contact_losses"][0])

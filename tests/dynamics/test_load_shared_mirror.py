@@ -50,7 +50,12 @@ def test_impacts_on_both_sides_are_those_of_the_one_spring() -> None:
     shared = LoadSharedModel(1.0, 0.1, 0.6, 1.0, force, springs(1.0, 0.0), springs(1.0, 0.0))
     run = {"periods": 12, "samples_per_period": 16, "initial_state": (2.5, -1.0)}
     ours = simulate(shared, steps_per_period=8192, **run)  # type: ignore[arg-type]
-    one = simulate(DeadZoneModel(0.05, 0.6, LINE, force, 1.0), **run)  # type: ignore[arg-type]
+    one = simulate(
+        DeadZoneModel(
+            damping_ratio=0.05, frequency=0.6, stiffness=LINE, force=force, half_backlash=1.0
+        ),
+        **run,
+    )  # type: ignore[arg-type]
     assert int(one["back_impacts"][0]) > 0
     for name in ("contact_losses", "back_impacts"):
         assert int(ours[name][0]) == int(one[name][0])
@@ -64,9 +69,17 @@ def test_an_excitation_gives_mass_damping_and_inertial_force() -> None:
     """c = 2 zeta sqrt(k_m m_e); -m e'' of e = e_1 cos(w t) is m e_1 w^2 cos(w t)."""
     error = Periodic(0.0, (2e-6,))
     excitation = Excitation(
-        Periodic(4e8, (6e7,)), error, 50e-6, 60e-6, 2000.0, 9000.0, (0.001, 0.02), (0.05, 0.15),
-        (100.0, 300.0), 0.07,
-    )  # fmt: skip
+        stiffness=Periodic(4e8, (6e7,)),
+        error=error,
+        half_backlash=50e-6,
+        reference_half_backlash=60e-6,
+        mean_force=2000.0,
+        mesh_frequency=9000.0,
+        inertias=(0.001, 0.02),
+        base_radii=(0.05, 0.15),
+        torques=(100.0, 300.0),
+        damping_ratio=0.07,
+    )
     mass = 0.001 * 0.02 / (0.001 * 0.15**2 + 0.02 * 0.05**2)
     model = LoadSharedModel.from_excitation(excitation, springs(4e8, 0.0), springs(4e8, 0.0), error)
     assert model.mass == pytest.approx(mass, rel=1e-14)

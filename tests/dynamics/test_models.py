@@ -73,8 +73,8 @@ def test_shapes_that_do_not_broadcast_are_refused():
     b=st.floats(0, 3),
 )
 def test_the_dead_zone_is_odd_continuous_and_zero_inside(x, b):
-    value = float(dead_zone(x, b))
-    assert value == -float(dead_zone(-x, b))
+    value = float(dead_zone(x, half_backlash=b))
+    assert value == -float(dead_zone(-x, half_backlash=b))
     assert value == (0.0 if abs(x) <= b else x - np.copysign(b, x))
 
 
@@ -87,8 +87,22 @@ def test_the_dead_zone_is_odd_continuous_and_zero_inside(x, b):
     t=st.floats(0, 20),
 )
 def test_the_general_model_with_one_cosine_is_the_torsional_model(zeta, w, x, v, t):
-    one = TorsionalModel(zeta, w, 0.3, 0.1, -0.2, 0.9, 0.02)
-    other = DeadZoneModel(zeta, w, Periodic(1.02, (0.3,)), Periodic(0.1, (-0.2,)), 0.9)
+    one = TorsionalModel(
+        damping_ratio=zeta,
+        frequency=w,
+        stiffness_amplitude=0.3,
+        mean_force=0.1,
+        force_amplitude=-0.2,
+        half_backlash=0.9,
+        thermal_stiffness=0.02,
+    )
+    other = DeadZoneModel(
+        damping_ratio=zeta,
+        frequency=w,
+        stiffness=Periodic(1.02, (0.3,)),
+        force=Periodic(0.1, (-0.2,)),
+        half_backlash=0.9,
+    )
     assert one.derivative(t, [x, v]) == pytest.approx(other.derivative(t, [x, v]), abs=1e-13)
 
 
@@ -124,7 +138,7 @@ def test_mean_mesh_force_of_balanced_torques_is_the_tooth_force():
 
 def test_start_of_the_pair_has_the_displacement_asked_for_and_no_momentum():
     pair = PairModel.from_excitation(a_pair())
-    state = pair.start(7e-5, 0.02)
+    state = pair.start(x=7e-5, v=0.02)
     x, v = pair.displacement(0.0, state)
     assert float(x) == pytest.approx(7e-5, rel=1e-13)
     assert float(v) == pytest.approx(0.02, rel=1e-13)
@@ -132,13 +146,13 @@ def test_start_of_the_pair_has_the_displacement_asked_for_and_no_momentum():
 
 
 def test_pieces_hold_their_polynomials_and_their_mean():
-    piece = Pieces((0.0, 0.25, 0.6), ((1.0,), (2.0, 4.0), (0.5, 0.0, 3.0)))
+    piece = Pieces(starts=(0.0, 0.25, 0.6), coefficients=((1.0,), (2.0, 4.0), (0.5, 0.0, 3.0)))
     assert piece([0.0, 0.1, 0.25, 0.5, 0.6, 0.9]) == pytest.approx([1, 1, 2, 3, 0.5, 0.77])
     phase = (np.arange(200_000) + 0.5) / 200_000
     assert piece.mean == pytest.approx(float(piece(phase).mean()), abs=1e-9)
     centre, half = 0.8, 0.05
     u = np.linspace(-1, 1, 7)
-    series = np.polynomial.polynomial.polyval(u, piece.taylor(centre, half, 6))
+    series = np.polynomial.polynomial.polyval(u, piece.taylor(centre=centre, half=half, order=6))
     assert series == pytest.approx(piece(centre + half * u), abs=1e-15)
 
 
@@ -147,4 +161,4 @@ def test_pieces_hold_their_polynomials_and_their_mean():
 )
 def test_impossible_pieces_are_refused(starts, rows):
     with pytest.raises(InputError):
-        Pieces(starts, rows)
+        Pieces(starts=starts, coefficients=rows)

@@ -22,7 +22,7 @@ def test_regions_of_starts_about_both_edges(b: float) -> None:
         (-1.5, 1.0, -1),
     ]
     x, v, region = (np.array(column, dtype=float) for column in zip(*cases, strict=True))
-    state = State.start(b * x, v, np.full(x.size, b))
+    state = State.start(x=b * x, y=v, backlash=np.full(x.size, b))
     assert state.region.tolist() == region.tolist()
-    mirrored = State.start(-b * x, -v, np.full(x.size, b))
+    mirrored = State.start(x=-b * x, y=-v, backlash=np.full(x.size, b))
     assert mirrored.region.tolist() == (-region).tolist()

@@ -19,7 +19,7 @@ from thermogear.front import cli as command_line
 from thermogear.front.cli import main
 from thermogear.front.lines import one_line, system_error
 from thermogear.front.progress import progress
-from thermogear.study.case import Case
+from thermogear.study.case import Case, load_case
 from thermogear.study.ready import EXAMPLES, example_text
 
 HEAVY = (
@@ -115,7 +115,7 @@ def test_module_and_errors_as_a_program(tmp_path: Path) -> None:
     assert wrong.returncode == 2
     assert wrong.stdout == ""
     assert wrong.stderr == (
-        "error: none.toml: got no such file; `thermogear example rig > rig.toml` writes one\n"
+        "error: none.toml: got no such file; `thermogear example rig -o rig.toml` writes one\n"
     )
 
 
@@ -134,13 +134,67 @@ def test_a_reader_that_leaves_is_no_error() -> None:
 # --- commands -----------------------------------------------------------------------------
 def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
-    assert "thermogear example rig > rig.toml" in capsys.readouterr().out
+    assert "thermogear example rig -o rig.toml" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example_prints_the_file_as_it_is(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["example", name]) == 0
     assert capsys.readouterr().out == example_text(name)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_writes_the_file_as_it_is(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    assert main(["example", name, "-o", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path}\n"
+    assert path.read_bytes() == example_text(name).encode("utf-8")
+    assert b"\r" not in path.read_bytes()
+    assert main(["check", str(path)]) == 0
+
+
+def test_schema_writes_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "case.schema.json"
+    assert main(["schema", "-o", str(path)]) == 0
+    assert "$defs" in json.loads(path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ("mine.toml", "output: got {path}; it is there already; name a new file"),
+        ("", "output: got {path}; it is a directory; name a file in it"),
+        ("none/mine.toml", "output: got {path}; there is no directory {folder}"),
+    ],
+)
+def test_example_never_overwrites(
+    place: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.toml").write_text("mine")
+    path = tmp_path / place
+    assert main(["example", "rig", "-o", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said == f"error: {message.format(path=path, folder=path.parent)}\n"
+    assert (tmp_path / "mine.toml").read_text() == "mine"
+
+
+def test_example_needs_a_name_to_write(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["example", "-o", "mine.toml"]) == 2
+    assert capsys.readouterr().err == (
+        "error: -o needs the NAME of a case: rig | table-4.2 | section-4.1\n"
+    )
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+def test_a_case_is_read_as_windows_writes_it(encoding: str, tmp_path: Path) -> None:
+    """PowerShell 5.1's ``>``: UTF-16 with its mark, lines that end with CR LF."""
+    text = example_text("rig").replace('title = "', 'title = "Prüfstand µ ').replace("\n", "\r\n")
+    mark = "\ufeff" if encoding.endswith(("le", "be")) else ""
+    path = tmp_path / "rig.toml"
+    path.write_bytes((mark + text).encode(encoding))
+    assert load_case(path).title.startswith("Prüfstand µ ")
 
 
 def test_example_without_a_name_lists_them(capsys: pytest.CaptureFixture[str]) -> None:

@@ -121,7 +121,7 @@ def test_ctrl_c_keeps_what_is_done(
         (["orbit", *NUMBERS, "--period", "0"], "period: got 0; allowed a whole number >= 1"),
         (["orbit", "--zeta", "-1", *NUMBERS[2:]], "damping_ratio: got -1; allowed 0..1000"),
         (["orbit", "nowhere.toml"], "nowhere.toml: got no such file"),
-        (["orbit", "rig", "--state", "warm"], "--state: got 'warm'; allowed cold | hot"),
+        (["orbit", "rig", "--state", "warm"], "--state: got 'warm'; allowed undeformed | hot"),
         (["lyapunov", *NUMBERS, "--batches", "1"], "--batches: got 1; allowed >= 4"),
         (["continue", *NUMBERS], "--parameter: got nothing"),
         (["continue", *NUMBERS, "--parameter", "zeta"], "--to: got nothing"),

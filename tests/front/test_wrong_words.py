@@ -77,7 +77,7 @@ def _here(tmp_path, monkeypatch):
         ("map table-4.2 --over eps=0.1:0.2:2 --over epsilon=0.3:0.4:2 -o out", "amplitude twice"),
         (
             "sweep rig --over gears.pinion.face_width=20:30:3 -o out",
-            "gears.pinion.face_width: got 20; allowed 0.1..10000 mm; the unit is missing; "
+            "gears.pinion.face_width: got 20; allowed 0.01..10000 mm; the unit is missing; "
             "write it at every value: gears.pinion.face_width=20 mm:TO mm:COUNT",
         ),
         ("sweep rig --over 'gears.pinion.face_width=20 kg:30 kg:3' -o out", "no unit of length"),

@@ -26,7 +26,9 @@ from thermogear.gears import (
     sharing,
     stiffness,
     tooth,
+    touch,
 )
+from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import BasePitchDifference, PitchError, Relief
 from thermogear.gears.geometry import Gear, GearPair
 
@@ -39,7 +41,7 @@ class Units(NamedTuple):
     time: float = 1.0
 
 
-OTHER = Units(1e3, 0.37, 60.0)
+OTHER = Units(7.3, 0.37, 60.0)
 
 # powers of length, force and time
 NUMBER, LENGTH, SPEED = (0, 0, 0), (1, 0, 0), (1, 0, -1)
@@ -100,7 +102,7 @@ def given(u: Units) -> Given:
 
 def solved(g: Given) -> loaded.LoadedMesh:
     flanks = [
-        Relief("wheel", g.amount, 0.3 * g.pair.base_pitch),
+        Relief("wheel", amount=g.amount, length=0.3 * g.pair.base_pitch),
         PitchError("pinion", tuple(0.1 * g.amount * np.cos(np.arange(25)))),
         BasePitchDifference(2e-4),
     ]
@@ -131,7 +133,12 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
     "weber_approach": (
         LENGTH,
         lambda g: contact_compliance.weber_approach(
-            g.force, g.depth, g.half, g.young, 0.3, g.width
+            g.force,
+            depth=g.depth,
+            half_width=g.half,
+            modulus=g.young,
+            poisson=0.3,
+            face_width=g.width,
         ),
     ),
     "palmgren_approach": (
@@ -139,21 +146,29 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
         lambda g: contact_compliance.palmgren_approach(g.force, g.young, g.width),
     ),
     "contact_point": (LENGTH, lambda g: corner.contact_point(g.pair, 1.02 * g.s)),
+    "off_path": (NUMBER, lambda g: corner.off_path(g.pair, 1.02 * g.s)),
+    "pinion_point": (LENGTH, lambda g: corner.pinion_point(g.pair, g.s, rho=1.02 * g.s)),
+    "wheel_point": (LENGTH, lambda g: corner.wheel_point(g.pair, g.s, rho=1.02 * g.s)),
+    "flank_ends": (LENGTH, lambda g: corner.flank_ends(g.pair)),
+    "first_touch": (LENGTH, lambda g: touched(g)),
     "flank_point": (LENGTH, lambda g: tooth.flank_point(g.gear, g.t)[:2]),
     "start_angle": (NUMBER, lambda g: tooth.start_angle(g.gear, "30-degree")),
     "tooth_compliances": (COMPLIANCE, lambda g: tooth.tooth_compliances(g.gear, g.t)),
+    "unit_compliance": (NUMBER, lambda g: tooth.unit_compliance(g.gear, g.t)),
     "sainsot_coefficients": (
         NUMBER,
         lambda g: list(
             body.sainsot_coefficients(
-                g.gear.root_half_angle, g.gear.root_radius / g.gear.bore_radius
+                g.gear.root_half_angle, ratio=g.gear.root_radius / g.gear.bore_radius
             ).values()
         ),
     ),
     "sainsot_compliance": (COMPLIANCE, lambda g: body.sainsot_compliance(g.gear, g.t)),
     "rim_compliance": (
         NUMBER,
-        lambda g: ring.rim_compliance([1, 2, 5], g.gear.root_radius, g.gear.bore_radius, 0.3),
+        lambda g: ring.rim_compliance(
+            [1, 2, 5], outer=g.gear.root_radius, inner=g.gear.bore_radius, poisson=0.3
+        ),
     ),
     "foot_load": (NUMBER, lambda g: ring.foot_load(g.gear, g.t)),
     "body_matrices": (NUMBER, lambda g: ring.body_matrices(g.gear)[0]),
@@ -177,7 +192,25 @@ FORMULAS: dict[str, tuple[tuple[int, int, int], Formula]] = {
         lambda g: loaded.loaded_contact(g.pair, g.force, g.phase).transmission_error.values,
     ),
 }
-MODULES = (body, contact, contact_compliance, corner, loaded, ring, sharing, stiffness, tooth)
+MODULES = (
+    body,
+    contact,
+    contact_compliance,
+    corner,
+    loaded,
+    ring,
+    sharing,
+    stiffness,
+    tooth,
+    touch,
+)
+
+
+def touched(g: Given) -> np.ndarray:
+    """Gaps of steep relief at positions where every candidate is in reach."""
+    relief = [Relief("pinion", amount=g.amount, length=0.3 * (g.pair.path.e - g.pair.path.a))]
+    gap = touch.first_touch(mesh_points(g.pair, g.phase), relief).gap
+    return np.where(gap < g.gear.module, gap, 0.0)
 
 
 @pytest.mark.parametrize("name", FORMULAS)

@@ -31,7 +31,9 @@ def test_relief_removes_most_of_the_error_of_a_cold_pair(shape: str) -> None:
     assert design.relieved < 0.2 * design.unrelieved
     # neighbours are no better: a minimum, not only an improvement
     for change in (0.9, 1.1):
-        other = Relief("pinion", design.pinion.amount * change, design.pinion.length, shape=shape)
+        other = Relief(
+            "pinion", amount=design.pinion.amount * change, length=design.pinion.length, shape=shape
+        )
         assert peak(other, design.wheel) > design.relieved
 
 

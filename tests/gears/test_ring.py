@@ -51,7 +51,7 @@ def ritz(n: int, outer: float, inner: float, nu: float, degree: int = 26) -> np.
 @pytest.mark.parametrize("nu", [0.0, 0.3, 1.0 / 3.0])
 def test_each_order_is_the_minimum_of_energy(ratio: float, nu: float, compared: Compared) -> None:
     orders = np.array([1, 2, 3, 4, 7])
-    got = rim_compliance(orders, 1.0, ratio, nu)
+    got = rim_compliance(orders, outer=1.0, inner=ratio, poisson=nu)
     differences = []
     for i, n in enumerate(orders):
         exact = ritz(int(n), 1.0, ratio, nu)
@@ -71,7 +71,7 @@ def test_each_order_is_the_minimum_of_energy(ratio: float, nu: float, compared: 
 def test_high_orders_see_a_half_plane() -> None:
     """n -> inf: g_rr = 2/n, g_tt = 2/n, g_rt = (1 - nu)/n for an edge in plane stress."""
     n = np.array([800])
-    rr, rt, tt = rim_compliance(n, 1.0, 0.4, 0.3)
+    rr, rt, tt = rim_compliance(n, outer=1.0, inner=0.4, poisson=0.3)
     assert float(rr[0]) * 800 == pytest.approx(2.0, rel=3e-3)
     assert float(tt[0]) * 800 == pytest.approx(2.0, rel=3e-3)
     assert float(rt[0]) * 800 == pytest.approx(0.7, rel=4e-3)
@@ -112,8 +112,8 @@ def test_hub_windup_is_the_torsion_of_the_ring(
 
 
 def test_deflection_is_reciprocal_and_fades_with_distance() -> None:
-    one = ring_compliance(WHEEL, 0.3, 0.45, pitches=2)
-    other = ring_compliance(WHEEL, 0.45, 0.3, pitches=-2)
+    one = ring_compliance(WHEEL, 0.3, other=0.45, pitches=2)
+    other = ring_compliance(WHEEL, 0.45, other=0.3, pitches=-2)
     assert float(one) == pytest.approx(float(other), rel=1e-12)
     own = [float(ring_compliance(WHEEL, 0.36, pitches=j, windup=False)) for j in range(5)]
     assert own[0] > 2.0 * own[1] > 0.0
@@ -135,7 +135,7 @@ def test_energy_is_positive_for_any_load() -> None:
 def test_sainsot_is_near_the_ring() -> None:
     """Its P* and P* Q* are the ring's radial and shear terms: pinion 0.3 %, wheel 6 %."""
     for gear, tolerance in ((PINION, 5e-3), (WHEEL, 0.07)):
-        c = sainsot_coefficients(gear.root_half_angle, gear.root_radius / gear.bore_radius)
+        c = sainsot_coefficients(gear.root_half_angle, ratio=gear.root_radius / gear.bore_radius)
         table, centre = body_matrices(gear)
         assert table[centre][1, 1] == pytest.approx(c["P"], rel=tolerance)
         assert table[centre][0, 0] == pytest.approx(c["P"] * c["Q"], rel=tolerance)

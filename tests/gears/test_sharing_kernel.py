@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from thermogear.gears.sharing_kernel import _share_one, _solve_spd
+from thermogear.gears.contact_compliance import weber_approach
+from thermogear.gears.sharing_kernel import _approach, _share_one, _solve_spd
+
+LINEAR = np.zeros(6)
+"""A contact law of nothing: the springs stand in the compliance alone."""
+CURVED = np.array([0.05, 0.08, 0.43, 0.2, 0.02, 0.1])
+RUN = pytest.mark.parametrize("run", [_share_one, _share_one.py_func], ids=["compiled", "python"])
+
+
+def reach(count: int = 4) -> np.ndarray:
+    """(h/a)^2 F of both gears: from deep flanks to one without depth."""
+    return np.stack([np.geomspace(1e-3, 100.0, count), np.linspace(0.0, 5.0, count)])
 
 
 def random_mesh(seed: int, count: int = 4) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -35,33 +46,70 @@ def by_enumeration(
     raise AssertionError("no contact set fits")
 
 
-@pytest.mark.parametrize("run", [_share_one, _share_one.py_func], ids=["compiled", "python"])
+@RUN
 def test_linear_contact_is_the_only_contact_set_that_fits(run) -> None:  # type: ignore[no-untyped-def]
     for seed in range(40):
         compliance, gap, linear = random_mesh(seed)
         for load in (0.05, 1.0, 30.0):
             force = np.empty(4)
-            delta, stiffness, settled = run(load, True, gap, compliance, linear, 0.0, 0.0, force)
-            exact, at, slope = by_enumeration(load, gap, compliance + np.diag(linear))
+            springs = compliance + np.diag(linear)
+            delta, stiffness, settled = run(load, True, gap, springs, reach(), LINEAR, force)
+            exact, at, slope = by_enumeration(load, gap, springs)
             assert settled
             assert force == pytest.approx(exact, rel=1e-9, abs=1e-11 * load)
             assert delta == pytest.approx(at, rel=1e-10)
             assert stiffness == pytest.approx(slope, rel=1e-9)
 
 
-def test_nonlinear_contact_has_the_least_energy() -> None:
-    """Energy with delta_H = F (A - C ln F) + K F^0.9, minimised by another method."""
-    logarithm, power = 0.05, 0.02
-    for seed in range(6):
-        compliance, gap, linear = random_mesh(seed)
+def test_the_contact_of_the_kernel_is_the_written_law() -> None:
+    """Weber and Banaschek's approach of both gears beside K F^0.9 and a constant compliance."""
+    nu, depth, softest = (0.3, 0.2), (4e-3, 1e-5), 3e-12
+    # a = sqrt(4 F rho*/(pi b E*)) with 4 rho*/(pi b E*) = softest m^2/N
+    law = np.array([0.0, 0.0, 0.3 / 0.7, 0.2 / 0.8, 0.02, 0.1])
+    for i in range(2):
+        law[i] = 2.0 * (1.0 - nu[i] ** 2) / (np.pi * 206e9 * 0.02)
+    for force in (1e-3, 1.0, 4e3, 1e7):
+        exact = 0.02 * force**0.9 + 0.1 * force
+        for i in range(2):
+            exact += float(
+                weber_approach(
+                    force,
+                    depth=depth[i],
+                    half_width=np.sqrt(softest * force),
+                    modulus=206e9,
+                    poisson=nu[i],
+                    face_width=0.02,
+                )
+            )
+        near = [d * d / softest for d in depth]
+        got, slope = _approach(force, near[0], near[1], law)
+        assert got == pytest.approx(exact, rel=1e-12)
+        h = 1e-5 * force
+        ends = [_approach(f, near[0], near[1], law)[0] for f in (force - h, force + h)]
+        assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-8)
 
-        def energy(f: np.ndarray, c=compliance, g=gap, a=linear) -> float:
-            f = np.maximum(f, 1e-300)
-            contact = 0.5 * a * f**2 - logarithm * f**2 * (0.5 * np.log(f) - 0.25)
-            return float(0.5 * f @ c @ f + g @ f + np.sum(contact + power * f**1.9 / 1.9))
+
+def test_nonlinear_contact_has_the_least_energy() -> None:
+    """Energy with the integral of the contact's approach, minimised by another method."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    for seed in range(6):
+        compliance, gap, _ = random_mesh(seed)
+
+        def energy(f: np.ndarray, c=compliance, g=gap) -> float:
+            work = 0.0
+            for j, top in enumerate(np.maximum(f, 1e-12)):
+                # the fifth power of the node: the approach has a root at no force
+                at = top * (0.5 * (1.0 + nodes)) ** 5
+                rate = 2.5 * top * (0.5 * (1.0 + nodes)) ** 4 * weights
+                near = reach()[:, j]
+                work += sum(
+                    _approach(p, near[0], near[1], CURVED)[0] * w
+                    for p, w in zip(at, rate, strict=True)
+                )
+            return float(0.5 * f @ c @ f + g @ f + work)
 
         force = np.empty(4)
-        _, _, settled = _share_one(3.0, True, gap, compliance, linear, logarithm, power, force)
+        _, _, settled = _share_one(3.0, True, gap, compliance, reach(), CURVED, force)
         assert settled
         found = minimize(
             energy,
@@ -77,15 +125,15 @@ def test_nonlinear_contact_has_the_least_energy() -> None:
 
 def test_a_given_deflection_gives_back_its_load() -> None:
     for seed in range(20):
-        compliance, gap, linear = random_mesh(seed)
+        compliance, gap, _ = random_mesh(seed)
         one, two = np.empty(4), np.empty(4)
-        delta, stiffness, _ = _share_one(2.0, True, gap, compliance, linear, 0.05, 0.02, one)
-        same, slope, settled = _share_one(delta, False, gap, compliance, linear, 0.05, 0.02, two)
+        delta, stiffness, _ = _share_one(2.0, True, gap, compliance, reach(), CURVED, one)
+        same, slope, settled = _share_one(delta, False, gap, compliance, reach(), CURVED, two)
         assert settled
         assert two == pytest.approx(one, rel=1e-9, abs=1e-10)
         assert (same, slope) == pytest.approx((delta, stiffness), rel=1e-9)
     force = np.empty(4)
-    assert _share_one(gap.min(), False, gap, compliance, linear, 0.0, 0.0, force) == (
+    assert _share_one(gap.min(), False, gap, compliance, reach(), LINEAR, force) == (
         gap.min(),
         0.0,
         True,
@@ -94,12 +142,44 @@ def test_a_given_deflection_gives_back_its_load() -> None:
 
 
 def test_pairs_that_cannot_touch_are_left_out() -> None:
-    compliance, gap, linear = random_mesh(3)
+    compliance, gap, _ = random_mesh(3)
     gap[1] = np.inf
     force = np.empty(4)
-    _, _, settled = _share_one(50.0, True, gap, compliance, linear, 0.0, 0.0, force)
+    _, _, settled = _share_one(50.0, True, gap, compliance, reach(), LINEAR, force)
     assert settled
     assert force[1] == 0.0
+
+
+NAN = np.nan
+
+
+@RUN
+@pytest.mark.parametrize("by_load", [True, False])
+@pytest.mark.parametrize("place", [0, 3], ids=["nearest pair", "another pair"])
+@pytest.mark.parametrize(
+    "what", ["asked", "gap", "compliance", "negative compliance", "reach", "law"]
+)
+def test_nothing_settles_that_is_not_a_number(run, by_load: bool, place: int, what: str) -> None:  # type: ignore[no-untyped-def]
+    compliance, _, _ = random_mesh(5)
+    gap, near, law = np.array([0.0, 0.1, 0.2, 0.3]), reach(), CURVED.copy()
+    asked = 2.0 if by_load else 5.0
+    match what:
+        case "asked":
+            asked = NAN
+        case "gap":
+            gap[place] = NAN
+        case "compliance":
+            compliance[place, place] = NAN
+        case "negative compliance":
+            compliance[place, place] = -5.0
+        case "reach":
+            near[0, place] = NAN
+        case "law":
+            law[place] = NAN
+    force = np.empty(4)
+    delta, stiffness, settled = run(asked, by_load, gap, compliance, near, law, force)
+    assert not settled
+    assert np.isnan([delta, stiffness, *force]).all()
 
 
 @pytest.mark.parametrize("run", [_solve_spd, _solve_spd.py_func], ids=["compiled", "python"])

@@ -73,7 +73,12 @@ def test_inclined_force_adds_its_axial_part_and_its_moment() -> None:
         Gear(17, 3e-3, profile_shift=0.35),
         Gear(90, 2e-3, profile_shift=-0.3),
         Gear(10, 4e-3, allow_undercut=True),
-        Gear(40, 4e-3, pressure_angle=math.radians(25), rack=Rack(0.9, 1.1, 0.2)),
+        Gear(
+            40,
+            4e-3,
+            pressure_angle=math.radians(25),
+            rack=Rack(addendum=0.9, dedendum=1.1, fillet_radius=0.2),
+        ),
     ],
     ids=["rig", "shifted", "large", "undercut", "25 deg"],
 )

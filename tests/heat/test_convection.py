@@ -41,16 +41,16 @@ def test_published_gradients_to_four_digits(
     prandtl: float, uniform: float, growing: float, compared: Compared
 ) -> None:
     found = [
-        rotating_disc_gradient(prandtl, 0.0) - uniform,
-        rotating_disc_gradient(prandtl, 2.0) - growing,
+        rotating_disc_gradient(prandtl, exponent=0.0) - uniform,
+        rotating_disc_gradient(prandtl, exponent=2.0) - growing,
     ]
     compared("heat transfer of a rotating disc, Pr 0.71 to 1000", "computed apart", found, 6e-5)
-    assert disc_nusselt(prandtl, 0.0) == pytest.approx(uniform, abs=6e-5)
+    assert disc_nusselt(prandtl, exponent=0.0) == pytest.approx(uniform, abs=6e-5)
 
 
 def test_reynolds_analogy(compared: Compared) -> None:
     """T ~ r^2 at Pr = 1 obeys the equation of the swirl: -theta'(0) = -G'(0)."""
-    heat = rotating_disc_gradient(1.0, 2.0)
+    heat = rotating_disc_gradient(1.0, exponent=2.0)
     compared(
         "heat transfer at Pr = 1, wall growing with the square",
         "Reynolds analogy with the drag",
@@ -70,22 +70,24 @@ def test_uniform_disc_against_its_closed_integral() -> None:
     z = np.linspace(0.0, 4.0, 4001)
     flow = solve_ivp(slope, (0, 4), [0, radial, 1, swirl, 0], t_eval=z, rtol=1e-10, atol=1e-12)
     weight = np.exp(10.0 * cumulative_simpson(flow.y[4], x=z, initial=0.0))
-    assert 1.0 / simpson(weight, x=z) == pytest.approx(rotating_disc_gradient(10.0, 0.0), rel=1e-5)
+    assert 1.0 / simpson(weight, x=z) == pytest.approx(
+        rotating_disc_gradient(10.0, exponent=0.0), rel=1e-5
+    )
 
 
 def test_large_prandtl_grows_as_the_cube_root_and_gear_formula_is_far_off() -> None:
-    ratio = rotating_disc_gradient(8e5, 2.0) / rotating_disc_gradient(1e5, 2.0)
+    ratio = rotating_disc_gradient(8e5, exponent=2.0) / rotating_disc_gradient(1e5, exponent=2.0)
     assert ratio == pytest.approx(2.0, rel=5e-3)
-    assert rotating_disc_gradient(1000.0, 0.0) == pytest.approx(0.62 * 10.0, rel=0.05)
-    assert rotating_disc_gradient(1000.0, 2.0) == pytest.approx(0.85 * 10.0, rel=0.05)
+    assert rotating_disc_gradient(1000.0, exponent=0.0) == pytest.approx(0.62 * 10.0, rel=0.05)
+    assert rotating_disc_gradient(1000.0, exponent=2.0) == pytest.approx(0.85 * 10.0, rel=0.05)
     usual = 0.308 * np.sqrt(4.0) * np.sqrt(np.array([0.71, 300.0, 1000.0]))
-    excess = usual / disc_nusselt([0.71, 300.0, 1000.0], 2.0) - 1.0
+    excess = usual / disc_nusselt([0.71, 300.0, 1000.0], exponent=2.0) - 1.0
     assert excess == pytest.approx([0.001, 0.94, 1.35], abs=0.01)
 
 
 def test_interpolation_is_as_good_as_the_solution() -> None:
     probe = np.geomspace(0.11, 9e5, 12)
-    exact = [rotating_disc_gradient(float(p), 2.0) for p in probe]
+    exact = [rotating_disc_gradient(float(p), exponent=2.0) for p in probe]
     assert disc_nusselt(probe) == pytest.approx(exact, rel=1e-5)
 
 
@@ -131,8 +133,11 @@ def test_torque_grows_with_immersion_and_halves_at_the_axis() -> None:
     ("call", "message"),
     [
         (lambda: disc_nusselt(0.01), "prandtl: got 0.01 .. 0.01; allowed 0.1 .. 1e6"),
-        (lambda: rotating_disc_gradient(1.0, -1.0), "exponent: got -1.0; allowed >= 0"),
-        (lambda: rotating_disc_gradient(1e8, 2.0), "prandtl: got 100000000.0; allowed 0.05"),
+        (lambda: rotating_disc_gradient(1.0, exponent=-1.0), "exponent: got -1.0; allowed >= 0"),
+        (
+            lambda: rotating_disc_gradient(1e8, exponent=2.0),
+            "prandtl: got 100000000.0; allowed 0.05",
+        ),
         (lambda: disc_torque(1.0, 0.1, 850.0, 4e-5, 2.5), "immersion: got 2.5 .. 2.5"),
     ],
 )

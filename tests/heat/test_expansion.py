@@ -31,7 +31,13 @@ CENTRE, BASE_SUM = 0.25, 0.25 * math.sin(math.radians(20.0))
 def field_of(gear: Gear, addendum: float, drop: float = 20.0) -> RadialField:
     """T_a [C] at the addendum, ``drop`` K less at the bore."""
     hot = ZERO_CELSIUS + addendum
-    return RadialField(gear.bore_radius, gear.tip_radius, hot - drop, hot, COLD)
+    return RadialField(
+        bore_radius=gear.bore_radius,
+        tip_radius=gear.tip_radius,
+        bore_temperature=hot - drop,
+        addendum_temperature=hot,
+        reference=COLD,
+    )
 
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
@@ -62,7 +68,9 @@ def test_annulus_against_a_boundary_value_solver(bore: str, plane: str, compared
     solved = solve_bvp(slope, ends, mesh, np.zeros((2, 60)), tol=1e-9, max_nodes=20000)
     assert solved.success
     probe = np.linspace(edge, 1.0, 17)
-    ours = annulus_displacement(field, probe * outer, outer, LAM, NU, bore, plane)
+    ours = annulus_displacement(
+        field, probe * outer, outer_radius=outer, expansion=LAM, poisson=NU, bore=bore, plane=plane
+    )
     compared(
         "displacement of the ring, three bores, both plane states",
         "boundary-value solver",
@@ -92,20 +100,22 @@ def literal(field: RadialField, r: np.ndarray, outer: float, bore: str) -> np.nd
 def test_annulus_is_the_textbook_form(bore: str) -> None:
     field, outer = field_of(WHEEL, 140.0), WHEEL.root_radius
     r = np.linspace(field.bore_radius, outer, 9)
-    ours = annulus_displacement(field, r, outer, LAM, NU, bore)
+    ours = annulus_displacement(field, r, outer_radius=outer, expansion=LAM, poisson=NU, bore=bore)
     assert ours == pytest.approx(literal(field, r, outer, bore), abs=1e-17)
 
 
 def test_outer_edge_moves_by_the_area_mean() -> None:
     field, outer = field_of(PINION, 130.0, 35.0), PINION.root_radius
     mean = float(field.area_mean(outer)) - COLD
-    edge = annulus_displacement(field, outer, outer, LAM, NU)
+    edge = annulus_displacement(field, outer, outer_radius=outer, expansion=LAM, poisson=NU)
     assert edge == pytest.approx(LAM * outer * mean, rel=1e-13)
 
 
 def test_displacement_is_continuous_at_the_root_circle_and_follows_its_integral() -> None:
     field, rf = field_of(PINION, 120.0), PINION.root_radius
-    near = radial_displacement(field, rf * (1.0 + np.array([-1e-12, 1e-12])), rf, LAM, NU)
+    near = radial_displacement(
+        field, rf * (1.0 + np.array([-1e-12, 1e-12])), root_radius=rf, expansion=LAM, poisson=NU
+    )
     assert near[0] == pytest.approx(near[1], abs=1e-15)
     r, rx = 0.066, field.bore_radius
     tx, g = float(field.bore_rise), float(field.gradient)
@@ -113,7 +123,9 @@ def test_displacement_is_continuous_at_the_root_circle_and_follows_its_integral(
     def primitive(s: float) -> float:
         return LAM * (tx * s + g * (s * np.log(s / rx) - s))
 
-    free = radial_displacement(field, r, rf, LAM, NU) - radial_displacement(field, rf, rf, LAM, NU)
+    free = radial_displacement(
+        field, r, root_radius=rf, expansion=LAM, poisson=NU
+    ) - radial_displacement(field, rf, root_radius=rf, expansion=LAM, poisson=NU)
     assert free == pytest.approx(primitive(r) - primitive(rf), rel=1e-11)
 
 
@@ -232,7 +244,12 @@ def test_everything_uniform_keeps_the_backlash_exactly(
     beyond = [
         flank_growth(
             gear,
-            RadialField.uniform(gear.bore_radius, gear.tip_radius, hot, COLD),
+            RadialField.uniform(
+                bore_radius=gear.bore_radius,
+                tip_radius=gear.tip_radius,
+                temperature=hot,
+                reference=COLD,
+            ),
             r,
             bore,
             strain_taken_off=strain,
@@ -242,17 +259,27 @@ def test_everything_uniform_keeps_the_backlash_exactly(
     compared(
         "hot half backlash, everything equally warm",
         "the cold one, exactly",
-        hot_half_backlash(125e-6, *beyond) - 125e-6,
+        hot_half_backlash(125e-6, growth_1=beyond[0], growth_2=beyond[1]) - 125e-6,
         0.0,
         "m",
     )
     # the plain form says the same to rounding
     plain = [
-        flank_growth(g, RadialField.uniform(g.bore_radius, g.tip_radius, hot, COLD), r, bore)
+        flank_growth(
+            g,
+            RadialField.uniform(
+                bore_radius=g.bore_radius, tip_radius=g.tip_radius, temperature=hot, reference=COLD
+            ),
+            r,
+            bore,
+        )
         for g, r in ((PINION, r1), (WHEEL, r2))
     ]
-    opening = centre_distance_growth(CENTRE, LAM, hot, COLD) * math.sin(math.radians(20.0))
-    assert hot_half_backlash(0.0, *plain, opening) == pytest.approx(np.zeros(41), abs=1e-17)
+    opening = centre_distance_growth(CENTRE, LAM, temperature=hot, reference=COLD) * math.sin(
+        math.radians(20.0)
+    )
+    closed = hot_half_backlash(0.0, growth_1=plain[0], growth_2=plain[1], axis_opening=opening)
+    assert closed == pytest.approx(np.zeros(41), abs=1e-17)
 
 
 def test_both_ways_of_the_housing_agree_for_any_field() -> None:
@@ -260,12 +287,15 @@ def test_both_ways_of_the_housing_agree_for_any_field() -> None:
     strain = LAM * 60.0
     fields = field_of(PINION, 120.0), field_of(WHEEL, 110.0)
     plain = flank_growth(PINION, fields[0], r1), flank_growth(WHEEL, fields[1], r2)
-    opening = centre_distance_growth(CENTRE, LAM, COLD + 60.0, COLD) * math.sin(math.radians(20.0))
+    opening = centre_distance_growth(
+        CENTRE, LAM, temperature=COLD + 60.0, reference=COLD
+    ) * math.sin(math.radians(20.0))
     beyond = (
         flank_growth(PINION, fields[0], r1, strain_taken_off=strain),
         flank_growth(WHEEL, fields[1], r2, strain_taken_off=strain),
     )
-    first, second = hot_half_backlash(1e-4, *plain, opening), hot_half_backlash(1e-4, *beyond)
+    first = hot_half_backlash(1e-4, growth_1=plain[0], growth_2=plain[1], axis_opening=opening)
+    second = hot_half_backlash(1e-4, growth_1=beyond[0], growth_2=beyond[1])
     assert first == pytest.approx(second, abs=1e-17)
 
 
@@ -288,8 +318,12 @@ def test_published_backlash_losses(
     opening = 0.0
     if below is not None:
         hot = ZERO_CELSIUS + addendum - below
-        opening = float(centre_distance_growth(CENTRE, LAM, hot, COLD)) * BASE_SUM / CENTRE
-    change = -hot_half_backlash(0.0, total, 0.0, opening) * 1e6
+        opening = (
+            float(centre_distance_growth(CENTRE, LAM, temperature=hot, reference=COLD))
+            * BASE_SUM
+            / CENTRE
+        )
+    change = -hot_half_backlash(0.0, growth_1=total, growth_2=0.0, axis_opening=opening) * 1e6
     compared(
         "half backlash lost",
         "computed apart, four states",
@@ -302,16 +336,25 @@ def test_published_backlash_losses(
 def least_backlash(temperature: float) -> float:
     """94 um of total normal backlash; both gears uniformly hot, steel housing cold."""
     r1, r2 = path_radii()
-    growth = [
-        flank_growth(g, RadialField.uniform(g.bore_radius, g.tip_radius, temperature, COLD), r)
+    one, two = (
+        flank_growth(
+            g,
+            RadialField.uniform(
+                bore_radius=g.bore_radius,
+                tip_radius=g.tip_radius,
+                temperature=temperature,
+                reference=COLD,
+            ),
+            r,
+        )
         for g, r in ((PINION, r1), (WHEEL, r2))
-    ]
-    return float(np.min(hot_half_backlash(47e-6, *growth)))
+    )
+    return float(np.min(hot_half_backlash(47e-6, growth_1=one, growth_2=two)))
 
 
 def test_uniformly_hot_gears_jam_over_a_cold_housing(compared: Compared) -> None:
     """1.967 um/K of total normal backlash, so 94 um are gone near +48 K."""
-    jam = jam_temperature(least_backlash, COLD, COLD + 120.0)
+    jam = jam_temperature(least_backlash, low=COLD, high=COLD + 120.0)
     closed = 94e-6 / (2.0 * BASE_SUM * LAM)
     compared(
         "temperature at which a pair jams",
@@ -326,20 +369,26 @@ def test_uniformly_hot_gears_jam_over_a_cold_housing(compared: Compared) -> None
 
 
 def test_a_pair_that_never_jams_gives_nan_and_a_jammed_one_its_start() -> None:
-    assert math.isnan(jam_temperature(least_backlash, COLD, COLD + 40.0))
-    assert jam_temperature(least_backlash, COLD + 90.0, COLD + 120.0) == COLD + 90.0
+    assert math.isnan(jam_temperature(least_backlash, low=COLD, high=COLD + 40.0))
+    assert jam_temperature(least_backlash, low=COLD + 90.0, high=COLD + 120.0) == COLD + 90.0
     with pytest.raises(InputError, match=r"^temperature range: got 300.0 .. 290.0 K"):
-        jam_temperature(least_backlash, 300.0, 290.0)
+        jam_temperature(least_backlash, low=300.0, high=290.0)
     # any range above 0 K will do, and 0 K itself is none
-    assert jam_temperature(lambda t: 0.75 - t, 0.5, 2.0) == pytest.approx(0.75, abs=1e-9)
+    assert jam_temperature(lambda t: 0.75 - t, low=0.5, high=2.0) == pytest.approx(0.75, abs=1e-9)
     with pytest.raises(InputError, match=r"^temperature range: got 0.0 .. 2.0 K"):
-        jam_temperature(lambda t: 0.75 - t, 0.0, 2.0)
+        jam_temperature(lambda t: 0.75 - t, low=0.0, high=2.0)
 
 
 def test_batch_over_operating_points_is_one_by_one() -> None:
     addenda = ZERO_CELSIUS + np.array([[100.0], [140.0]])
     r = np.linspace(0.0595, 0.067, 5)
-    many = RadialField(PINION.bore_radius, PINION.tip_radius, addenda - 20.0, addenda, COLD)
+    many = RadialField(
+        bore_radius=PINION.bore_radius,
+        tip_radius=PINION.tip_radius,
+        bore_temperature=addenda - 20.0,
+        addendum_temperature=addenda,
+        reference=COLD,
+    )
     for bore in ("free", "rigid", "shaft"):
         batch = flank_growth(PINION, many, r, bore)
         single = [flank_growth(PINION, field_of(PINION, t), r, bore) for t in (100.0, 140.0)]
@@ -357,16 +406,45 @@ def test_scaling_the_gear_scales_the_growth() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: RadialField(0.07, 0.0675, 350.0, 350.0, COLD), "bore_radius: got 0.07 m with"),
-        (lambda: RadialField(0.025, 0.0675, -3.0, 350.0, COLD), "bore_temperature: got -3.0 K"),
-        (lambda: RadialField(0.025, 0.0675, 350.0, 350.0, 0.0), "reference temperature: got 0.0"),
+        (
+            lambda: RadialField(
+                bore_radius=0.07,
+                tip_radius=0.0675,
+                bore_temperature=350.0,
+                addendum_temperature=350.0,
+                reference=COLD,
+            ),
+            "bore_radius: got 0.07 m with",
+        ),
+        (
+            lambda: RadialField(
+                bore_radius=0.025,
+                tip_radius=0.0675,
+                bore_temperature=-3.0,
+                addendum_temperature=350.0,
+                reference=COLD,
+            ),
+            "bore_temperature: got -3.0 K",
+        ),
+        (
+            lambda: RadialField(
+                bore_radius=0.025,
+                tip_radius=0.0675,
+                bore_temperature=350.0,
+                addendum_temperature=350.0,
+                reference=0.0,
+            ),
+            "reference temperature: got 0.0",
+        ),
         (lambda: flank_growth(PINION, field_of(PINION, 90.0), 0.05), "radius: got 0.05 m"),
         (
             lambda: flank_growth(PINION, field_of(PINION, 90.0), 0.06, "fre"),
             "bore: got 'fre'; allowed free | rigid | shaft; did you mean 'free'?",
         ),
         (
-            lambda: annulus_displacement(field_of(PINION, 90.0), 0.03, 0.02, LAM, NU),
+            lambda: annulus_displacement(
+                field_of(PINION, 90.0), 0.03, outer_radius=0.02, expansion=LAM, poisson=NU
+            ),
             "bore_radius: got 0.025 m with root radius 0.02 m",
         ),
     ],

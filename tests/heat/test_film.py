@@ -179,14 +179,14 @@ def test_roelands_meets_barus_at_low_pressure_and_stays_below_it() -> None:
 
 
 def test_film_parameter_and_regime() -> None:
-    values = film_parameter([0.2e-6, 1e-6, 3e-6], 0.3e-6, 0.4e-6)
+    values = film_parameter([0.2e-6, 1e-6, 3e-6], roughness_1=0.3e-6, roughness_2=0.4e-6)
     assert values == pytest.approx([0.4, 2.0, 6.0])
     assert regime(values).tolist() == [0, 1, 2]
     assert regime([1.0, 3.0, np.inf]).tolist() == [1, 2, 2]
     with pytest.raises(InputError, match=r"^roughness: got 0.0; allowed > 0 m"):
-        film_parameter(1e-6, 0.0, 0.0)
+        film_parameter(1e-6, roughness_1=0.0, roughness_2=0.0)
     with pytest.raises(InputError, match=r"^regime limits: got 3.0 and 1.0"):
-        regime(1.0, 3.0, 1.0)
+        regime(1.0, boundary_below=3.0, full_film_above=1.0)
 
 
 def test_shares_of_the_path() -> None:

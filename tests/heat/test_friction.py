@@ -115,7 +115,9 @@ def state(**changed: object) -> ContactState:
         "kinematic_viscosity": 39e-6,
         "film_parameter": 0.8,
         "pressure_viscosity": 1.8e-8,
-        "pitch_point": PitchPoint(2e5, 5.0, 0.016, 0.025),
+        "pitch_point": PitchPoint(
+            line_load=2e5, sum_speed=5.0, reduced_radius=0.016, face_width=0.025
+        ),
     }
     return ContactState(**(fields | changed))  # type: ignore[arg-type]
 
@@ -148,7 +150,12 @@ def test_law_object_carries_its_own_parameters() -> None:
     one = state()
     mine = BenedictKelley(pitch_floor=0.05)(one)
     table = benedict_kelley(
-        one.line_load, one.sliding, one.sum_speed, one.viscosity, one.roughness, 0.05
+        one.line_load,
+        sliding_speed=one.sliding,
+        sum_speed=one.sum_speed,
+        viscosity=one.viscosity,
+        roughness=one.roughness,
+        pitch_floor=0.05,
     )
     assert np.array_equal(mine, table)
 

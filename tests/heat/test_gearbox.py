@@ -45,16 +45,23 @@ def test_face_conductance_is_area_times_the_similarity_coefficient() -> None:
     nu, pr = float(kinematic_viscosity(OIL, warm)), float(oil_prandtl(OIL, warm))
     film = float(disc_nusselt(pr)) * OIL.thermal_conductivity * math.sqrt(omega / nu)
     area = math.pi * (0.056**2 - 0.025**2)
-    computed = face_conductance(omega, 0.025, 0.056, OIL, warm)
+    computed = face_conductance(
+        omega, inner_radius=0.025, outer_radius=0.056, lubricant=OIL, oil_temperature=warm
+    )
     assert computed == pytest.approx(film * area, rel=1e-10)
-    assert face_conductance(0.0, 0.025, 0.056, OIL, warm) == 0.0
+    assert (
+        face_conductance(
+            0.0, inner_radius=0.025, outer_radius=0.056, lubricant=OIL, oil_temperature=warm
+        )
+        == 0.0
+    )
 
 
 def test_paths_of_the_network_by_hand() -> None:
     """Shaft and bearing in series on both sides; wetted flanks and faces; housing by area."""
     around = Surroundings(wetted_share=(0.2, 0.4), shaft_length=0.1, bearing_conductance=7.0)
     warm, omega = ZERO_CELSIUS + 70.0, 90.0
-    network = thermal_network(PINION, WHEEL, omega, Losses(10.0), OIL, warm, around)
+    network = thermal_network(PINION, WHEEL, omega, Losses(mesh=10.0), OIL, warm, around)
     found = {(x.first, x.second): float(np.asarray(x.conductance)) for x in network.links}
     along = 46.0 * math.pi * 0.025**2 / 0.1
     mount = 2.0 * along * 7.0 / (along + 7.0)
@@ -65,7 +72,15 @@ def test_paths_of_the_network_by_hand() -> None:
     film = float(disc_nusselt(pr)) * OIL.thermal_conductivity * math.sqrt(omega / 3.0 / nu)
     flanks = 2.0 * 75 * 0.025 * (WHEEL.tip_radius - WHEEL.root_radius)
     assert found["wheel_tooth", "oil"] == pytest.approx(0.4 * film * flanks, rel=1e-10)
-    faces = 2.0 * float(face_conductance(omega / 3.0, 0.080, WHEEL.root_radius, OIL, warm))
+    faces = 2.0 * float(
+        face_conductance(
+            omega / 3.0,
+            inner_radius=0.080,
+            outer_radius=WHEEL.root_radius,
+            lubricant=OIL,
+            oil_temperature=warm,
+        )
+    )
     assert found["wheel_body", "oil"] == pytest.approx(0.4 * faces, rel=1e-12)
     rings = (PINION.root_radius**2 - 0.025**2) * math.pi * 0.025
     assert network.capacities["pinion_body"] == pytest.approx(7850.0 * 470.0 * rings)
@@ -74,14 +89,16 @@ def test_paths_of_the_network_by_hand() -> None:
 
 def test_equal_temperature_without_heat() -> None:
     around = Surroundings(ambient=300.0)
-    state = thermal_network(PINION, WHEEL, 100.0, Losses(0.0), OIL, 330.0, around).steady()
+    state = thermal_network(PINION, WHEEL, 100.0, Losses(mesh=0.0), OIL, 330.0, around).steady()
     for value in state.temperatures.values():
         assert value == pytest.approx(300.0, abs=1e-9)
 
 
 def test_hotter_with_load_pinion_hotter_than_wheel_and_heat_flows_outwards() -> None:
     mesh = np.array([50.0, 200.0, 800.0])
-    state = thermal_network(PINION, WHEEL, 150.0, Losses(mesh, 0.5, 20.0), OIL, 350.0).steady()
+    state = thermal_network(
+        PINION, WHEEL, 150.0, Losses(mesh=mesh, partition_1=0.5, churning=20.0), OIL, 350.0
+    ).steady()
     tooth = state["pinion_tooth"]
     assert np.all(np.diff(tooth) > 0.0)
     assert np.all(tooth > state["wheel_tooth"])
@@ -93,7 +110,7 @@ def test_hotter_with_load_pinion_hotter_than_wheel_and_heat_flows_outwards() -> 
 
 
 def test_warm_up_ends_steady() -> None:
-    network = thermal_network(PINION, WHEEL, 150.0, Losses(200.0, 0.5), OIL, 350.0)
+    network = thermal_network(PINION, WHEEL, 150.0, Losses(mesh=200.0, partition_1=0.5), OIL, 350.0)
     curve = network.transient([0.0, 600.0, 3600.0, 1e7], dict.fromkeys(network.free, 293.15))
     steady = network.steady()
     assert np.all(np.diff(curve["pinion_tooth"]) > 0.0)
@@ -103,7 +120,7 @@ def test_warm_up_ends_steady() -> None:
 def test_supplied_oil_carries_its_heat_away() -> None:
     """Steady: rho c Q (T_oil - T_supply) leaves with the oil, the rest through the housing."""
     around = Surroundings(oil_flow=1e-4, supply_temperature=330.0)
-    state = thermal_network(PINION, WHEEL, 150.0, Losses(3000.0), OIL, 350.0, around).steady()
+    state = thermal_network(PINION, WHEEL, 150.0, Losses(mesh=3000.0), OIL, 350.0, around).steady()
     carried = float(density(OIL, 330.0)) * OIL.specific_heat * 1e-4 * (state["oil"] - 330.0)
     assert state.heat_out["supply"] == pytest.approx(float(carried), rel=1e-10)
     assert state.heat_out["supply"] + state.heat_out["ambient"] == pytest.approx(3000.0, rel=1e-10)
@@ -145,11 +162,19 @@ def test_body_temperature_of_the_fzg_test_against_regression_and_standard(
     speed = float(sum_velocity(pair, omega, path.c))
     eta = dynamic_viscosity(OIL, ZERO_CELSIUS + 90.0)
     w = torque / pair.pinion.base_radius / 0.02
-    mu = schlenk(w, speed, radius, eta, 0.35e-6, 1.0)
-    factor = gear_loss_factor(16, 1.5, (path.c - path.a) / pitch, (path.e - path.c) / pitch)
+    mu = schlenk(w, speed, radius, eta, 0.35e-6, factor=1.0)
+    factor = gear_loss_factor(
+        teeth_1=16, ratio=1.5, approach=(path.c - path.a) / pitch, recess=(path.e - path.c) / pitch
+    )
     loss = mesh_loss(torque * omega, mu, factor)
     state = thermal_network(
-        pair.pinion, pair.wheel, omega, Losses(loss, 0.5), OIL, oil, measured={"oil": oil}
+        pair.pinion,
+        pair.wheel,
+        omega,
+        Losses(mesh=loss, partition_1=0.5),
+        OIL,
+        oil,
+        measured={"oil": oil},
     ).steady()
     measured = 80.0 + 0.23 * torque
     body = state["pinion_body"] - ZERO_CELSIUS
@@ -164,13 +189,16 @@ def test_body_temperature_of_the_fzg_test_against_regression_and_standard(
     assert np.all((tooth - measured > 0.0) & (tooth - measured < 28.0))
     mu_iso = iso_13989_2(w, speed, radius, eta, 0.35e-6)
     lost = mesh_loss(torque * omega, mu_iso, factor)
-    estimate = body_temperature_15144(oil, lost, 0.0915, 0.02, 1.0) - ZERO_CELSIUS
+    estimate = (
+        body_temperature_15144(oil, lost, centre_distance=0.0915, face_width=0.02, lubrication=1.0)
+        - ZERO_CELSIUS
+    )
     assert np.max(np.abs(estimate - measured)) < 17.0
 
 
 def test_measured_oil_holds_its_node() -> None:
     network = thermal_network(
-        PINION, WHEEL, 150.0, Losses(200.0), OIL, 350.0, measured={"oil": 350.0}
+        PINION, WHEEL, 150.0, Losses(mesh=200.0), OIL, 350.0, measured={"oil": 350.0}
     )
     state = network.steady()
     assert state["oil"] == 350.0
@@ -180,9 +208,9 @@ def test_measured_oil_holds_its_node() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: Losses(-1.0), "losses.mesh: got -1.0 W; allowed >= 0"),
-        (lambda: Losses(1.0, 1.5), "losses.partition_1: got 1.5; allowed 0 .. 1"),
-        (lambda: Surroundings(ambient=-1.0), "surroundings.ambient: got -1.0"),
+        (lambda: Losses(mesh=-1.0), "losses.mesh: got -1.0 W; allowed >= 0"),
+        (lambda: Losses(mesh=1.0, partition_1=1.5), "losses.partition_1: got 1.5; allowed 0 .. 1"),
+        (lambda: Surroundings(ambient=-1.0), "surroundings.ambient: got -1 K (-274.15 degC)"),
         (lambda: Surroundings(wetted_share=(0.5, 1.5)), "surroundings.wetted_share: got (0.5, 1."),
     ],
 )

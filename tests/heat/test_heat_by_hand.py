@@ -15,7 +15,6 @@ from thermogear.heat.friction import XuKahraman
 from thermogear.heat.gearbox import Losses, thermal_network
 from thermogear.heat.laws import iso_13989_1, iso_13989_2, schlenk
 from thermogear.heat.measured_temperature import (
-    InfraredReading,
     ThermocoupleReading,
     infrared_signal,
     infrared_temperature,
@@ -43,7 +42,17 @@ def test_mean_friction_laws_in_the_units_of_their_sources() -> None:
 
 def test_flash_at_the_tip_in_the_units_of_its_source() -> None:
     """mu X_M X_BE X_alpha w^0.75 sqrt(v)/a^0.25 with 256 N/mm, 9 m/s, 81 mm."""
-    rise = flash_at_tip_13989_2(0.1, 256e3, 9.0, 81e-3, 0.2, 0.978, 0.8, 1.25, 50.0)
+    rise = flash_at_tip_13989_2(
+        0.1,
+        256e3,
+        9.0,
+        81e-3,
+        geometry=0.2,
+        angle=0.978,
+        rotation=0.8,
+        tip_relief=1.25,
+        thermo_elastic=50.0,
+    )
     by_hand = 0.1 * 50.0 * 0.2 * 0.978 * 64.0 * 3.0 / 3.0 / (0.8 * 1.25)
     assert rise == pytest.approx(by_hand, rel=1e-12)
 
@@ -68,7 +77,7 @@ def test_half_the_ring_between_root_and_tip_is_tooth() -> None:
     """Capacities of steel, rho c V; teeth fill half of their ring, the shaft sticks out twice."""
     pinion = Gear(teeth=25, module=5e-3, bore_radius=0.025, face_width=0.025)
     wheel = Gear(teeth=75, module=5e-3, bore_radius=0.080, face_width=0.025)
-    network = thermal_network(pinion, wheel, 100.0, Losses(10.0), lubricant("M100"), 350.0)
+    network = thermal_network(pinion, wheel, 100.0, Losses(mesh=10.0), lubricant("M100"), 350.0)
     for name, gear in (("pinion", pinion), ("wheel", wheel)):
         steel = gear.material.density * gear.material.specific_heat
         teeth = 0.5 * math.pi * 0.025 * (gear.tip_radius**2 - gear.root_radius**2)
@@ -80,14 +89,23 @@ def test_half_the_ring_between_root_and_tip_is_tooth() -> None:
 @pytest.mark.parametrize("true", [150.4, 2999.0])
 def test_the_infrared_inversion_reaches_its_ends(true: float) -> None:
     """Surroundings as hot as the surface: the signal is the black one, at any emissivity."""
-    assert infrared_temperature(true, 0.5, 0.8, true, true) == pytest.approx(true, abs=1e-6)
-    assert float(infrared_signal(true, 0.5, 0.8, true, true)) == pytest.approx(
-        float(infrared_signal(true, 1.0, 1.0, 300.0, 300.0)), rel=1e-12
+    assert infrared_temperature(
+        true, emissivity=0.5, transmission=0.8, surroundings=true, path=true
+    ) == pytest.approx(true, abs=1e-6)
+    assert float(
+        infrared_signal(true, emissivity=0.5, transmission=0.8, surroundings=true, path=true)
+    ) == pytest.approx(
+        float(
+            infrared_signal(true, emissivity=1.0, transmission=1.0, surroundings=300.0, path=300.0)
+        ),
+        rel=1e-12,
     )
-    assert InfraredReading(true, 1.0, 300.0).temperature() == pytest.approx(true, abs=1e-6)
+    assert infrared_temperature(
+        true, emissivity=1.0, transmission=1.0, surroundings=300.0, path=300.0
+    ) == pytest.approx(true, abs=1e-6)
 
 
 @pytest.mark.parametrize("indicated", [0.0, -0.5])
 def test_a_thermocouple_below_absolute_zero_is_refused(indicated: float) -> None:
-    with pytest.raises(InputError, match=r"^thermocouple: got"):
-        ThermocoupleReading(indicated, 0.0, 1e-3, 46.0)
+    with pytest.raises(InputError, match=r"^thermocouple\.indicated: got -?0(\.5)? K"):
+        ThermocoupleReading(indicated=indicated, flux=0.0, depth=1e-3, conductivity=46.0)

@@ -31,7 +31,9 @@ kelvin = st.floats(230.0, 480.0)
 @settings(max_examples=60, deadline=None)
 @given(gears, kelvin, st.sampled_from(["free", "shaft"]))
 def test_uniform_fields_only_scale(gear: Gear, hot: float, bore: str) -> None:
-    field = RadialField.uniform(gear.bore_radius, gear.tip_radius, hot, COLD)
+    field = RadialField.uniform(
+        bore_radius=gear.bore_radius, tip_radius=gear.tip_radius, temperature=hot, reference=COLD
+    )
     r = np.linspace(gear.form_radius, gear.tip_radius, 9)
     strain = gear.material.thermal_expansion * (hot - COLD)
     assert np.all(flank_growth(gear, field, r, bore, strain_taken_off=strain) == 0.0)
@@ -49,7 +51,13 @@ def test_growth_is_linear_in_the_temperatures(
     r = np.linspace(gear.form_radius, gear.tip_radius, 5)
 
     def growth(bore: float, tip: float) -> np.ndarray:
-        field = RadialField(gear.bore_radius, gear.tip_radius, bore, tip, 1000.0)
+        field = RadialField(
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            bore_temperature=bore,
+            addendum_temperature=tip,
+            reference=1000.0,
+        )
         return flank_growth(gear, field, r, "rigid")
 
     both = growth(bore_1 + bore_2 - 1000.0 + 600.0, tip_1 + tip_2 - 1000.0 + 600.0)
@@ -62,20 +70,47 @@ def test_growth_is_linear_in_the_temperatures(
 def test_a_clamped_bore_never_grows_more_than_a_free_one_when_hot(
     gear: Gear, bore: float, tip: float
 ) -> None:
-    field = RadialField(gear.bore_radius, gear.tip_radius, max(bore, COLD), max(tip, COLD), COLD)
-    where = (gear.root_radius, gear.root_radius, 11.5e-6, 0.3)
-    free = radial_displacement(field, *where)
-    assert radial_displacement(field, *where, "rigid") <= free + 1e-15
+    field = RadialField(
+        bore_radius=gear.bore_radius,
+        tip_radius=gear.tip_radius,
+        bore_temperature=max(bore, COLD),
+        addendum_temperature=max(tip, COLD),
+        reference=COLD,
+    )
+    rim = gear.root_radius
+    body = {"root_radius": rim, "expansion": 11.5e-6, "poisson": 0.3}
+    free = radial_displacement(field, rim, **body)
+    assert radial_displacement(field, rim, **body, bore="rigid") <= free + 1e-15
 
 
 @settings(max_examples=100, deadline=None)
 @given(st.floats(0.01, 50.0), st.floats(0.01, 50.0), st.floats(0.1, 10.0))
 def test_swapping_the_flanks_keeps_the_flash(v1: float, v2: float, ratio: float) -> None:
-    one = blok_flash(0.05, 1e5, v1, v2, 1e-4, 1e4, 1e4 * ratio)
-    two = blok_flash(0.05, 1e5, v2, v1, 1e-4, 1e4 * ratio, 1e4)
+    one = blok_flash(
+        0.05,
+        1e5,
+        speed_1=v1,
+        speed_2=v2,
+        half_width=1e-4,
+        contact_coefficient_1=1e4,
+        contact_coefficient_2=1e4 * ratio,
+    )
+    two = blok_flash(
+        0.05,
+        1e5,
+        speed_1=v2,
+        speed_2=v1,
+        half_width=1e-4,
+        contact_coefficient_1=1e4 * ratio,
+        contact_coefficient_2=1e4,
+    )
     assert one == pytest.approx(float(two), rel=1e-12)
-    share = heat_partition(v1, v2, 1e4, 1e4 * ratio)
-    assert share + heat_partition(v2, v1, 1e4 * ratio, 1e4) == pytest.approx(1.0, abs=1e-14)
+    share = heat_partition(
+        speed_1=v1, speed_2=v2, contact_coefficient_1=1e4, contact_coefficient_2=1e4 * ratio
+    )
+    assert share + heat_partition(
+        speed_1=v2, speed_2=v1, contact_coefficient_1=1e4 * ratio, contact_coefficient_2=1e4
+    ) == pytest.approx(1.0, abs=1e-14)
 
 
 @settings(max_examples=100, deadline=None)

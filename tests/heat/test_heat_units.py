@@ -278,7 +278,15 @@ def test_printed_flash_carries_kelvin_metres() -> None:
 def steel(odd: bool) -> Material:
     units = ("Pa", "kg/m**3", "W/m/K", "J/kg/K", "1/K")
     e, rho, k, c, lam = (factor(u) if odd else 1.0 for u in units)
-    return Material("steel", 206e9 * e, 0.3, 7850.0 * rho, 46.0 * k, 470.0 * c, 11.5e-6 * lam)
+    return Material(
+        name="steel",
+        youngs_modulus=206e9 * e,
+        poisson_ratio=0.3,
+        density=7850.0 * rho,
+        thermal_conductivity=46.0 * k,
+        specific_heat=470.0 * c,
+        thermal_expansion=11.5e-6 * lam,
+    )
 
 
 @pytest.mark.parametrize("method", ["blok", "peclet", "exact"])
@@ -286,11 +294,13 @@ def test_flash_of_materials_is_the_same_in_any_coherent_units(method: str) -> No
     values = []
     for odd in (False, True):
         names = ("friction", "line_load", "speed_1", "speed_2", "half_width")
-        given = [v * (factor(u) if odd else 1.0) for v, u in (ARGUMENTS[n] for n in names)]  # type: ignore[operator]
-        flash = moving_source.flash_temperature(*given, steel(odd), steel(odd), method=method)
-        heat = temperature.frictional_heat(*given[:4])
-        other = moving_source.peclet_flash(heat, *given[2:], steel(odd), steel(odd))
-        share = moving_source.peclet_partition(*given[2:], steel(odd), steel(odd))
+        given = {n: ARGUMENTS[n][0] * (factor(ARGUMENTS[n][1]) if odd else 1.0) for n in names}  # type: ignore[operator]
+        bodies = {"material_1": steel(odd), "material_2": steel(odd)}
+        flash = moving_source.flash_temperature(**given, **bodies, method=method)
+        heat = temperature.frictional_heat(**{n: given[n] for n in names[:4]})
+        rolling = {n: given[n] for n in names[2:]}
+        other = moving_source.peclet_flash(heat, **rolling, **bodies)
+        share = moving_source.peclet_partition(**rolling, **bodies)
         values.append((float(flash), float(other), float(share)))
     assert values[1][0] == pytest.approx(values[0][0] * factor("K"), rel=1e-9)
     assert values[1][1] == pytest.approx(values[0][1] * factor("K"), rel=1e-9)
@@ -310,7 +320,13 @@ def rig(odd: bool) -> tuple[Gear, RadialField, np.ndarray]:
     """Pinion, field and radii in SI or in the odd units."""
     long, hot = (factor("m"), factor("K")) if odd else (1.0, 1.0)
     gear = Gear(teeth=25, module=5e-3 * long, bore_radius=0.025 * long, material=steel(odd))
-    field = RadialField(gear.bore_radius, gear.tip_radius, 353.0 * hot, 373.0 * hot, 293.0 * hot)
+    field = RadialField(
+        bore_radius=gear.bore_radius,
+        tip_radius=gear.tip_radius,
+        bore_temperature=353.0 * hot,
+        addendum_temperature=373.0 * hot,
+        reference=293.0 * hot,
+    )
     return gear, field, np.array([0.0595, 0.064]) * long
 
 
@@ -319,10 +335,15 @@ GROWTHS = {
     "flank_normal_growth": lambda g, f, r: expansion.flank_growth(g, f, r, "rigid", "strain"),
     "base_circle_growth": lambda g, f, r: expansion.base_circle_growth(g, f, "shaft"),
     "radial_displacement": lambda g, f, r: expansion.radial_displacement(
-        f, r, g.root_radius, g.material.thermal_expansion, 0.3
+        f, r, root_radius=g.root_radius, expansion=g.material.thermal_expansion, poisson=0.3
     ),
     "annulus_displacement": lambda g, f, r: expansion.annulus_displacement(
-        f, 0.8 * g.root_radius, g.root_radius, g.material.thermal_expansion, 0.3, "rigid"
+        f,
+        0.8 * g.root_radius,
+        outer_radius=g.root_radius,
+        expansion=g.material.thermal_expansion,
+        poisson=0.3,
+        bore="rigid",
     ),
     "thesis_flank_growth": lambda g, f, r: thesis_profile.thesis_flank_growth(g, f, r),
     "deformed_profile": lambda g, f, r: thesis_profile.deformed_profile(g, f, r)[0],

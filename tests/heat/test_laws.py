@@ -128,7 +128,9 @@ def state(**changed: object) -> ContactState:
         "roughness": 0.4e-6,
         "film_parameter": 0.8,
         "pressure_viscosity": 1.8e-8,
-        "pitch_point": PitchPoint(2.2e5, 5.0, 0.016, 0.025),
+        "pitch_point": PitchPoint(
+            line_load=2.2e5, sum_speed=5.0, reduced_radius=0.016, face_width=0.025
+        ),
     }
     return ContactState(**(fields | changed))  # type: ignore[arg-type]
 
@@ -183,4 +185,4 @@ def test_every_law_names_its_source_and_regime(name: str) -> None:
 
 def test_pitch_point_refuses_the_impossible() -> None:
     with pytest.raises(InputError, match=r"^pitch point.reduced_radius: got 0.0"):
-        PitchPoint(2e5, 5.0, 0.0, 0.02)
+        PitchPoint(line_load=2e5, sum_speed=5.0, reduced_radius=0.0, face_width=0.02)

@@ -28,7 +28,11 @@ def fzg_c() -> GearPair:
 def factor_of(pair: GearPair) -> float:
     path, pitch = pair.path, pair.base_pitch
     approach, recess = (path.c - path.a) / pitch, (path.e - path.c) / pitch
-    return float(gear_loss_factor(pair.pinion.teeth, pair.ratio, approach, recess))
+    return float(
+        gear_loss_factor(
+            teeth_1=pair.pinion.teeth, ratio=pair.ratio, approach=approach, recess=recess
+        )
+    )
 
 
 def test_published_loss_factor_and_loss_of_fzg_c(compared: Compared) -> None:
@@ -92,6 +96,6 @@ def test_seal_in_the_units_of_its_source() -> None:
 
 def test_bearing_and_efficiency() -> None:
     assert bearing_loss(2000.0, 0.03, 100.0) == pytest.approx(0.0015 * 2000.0 * 0.015 * 100.0)
-    assert efficiency(1000.0, 20.0) == pytest.approx(0.98)
-    assert efficiency(0.5, 0.1) == pytest.approx(0.8)
-    assert np.isnan(efficiency(0.0, 20.0))
+    assert efficiency(power=1000.0, loss=20.0) == pytest.approx(0.98)
+    assert efficiency(power=0.5, loss=0.1) == pytest.approx(0.8)
+    assert np.isnan(efficiency(power=0.0, loss=20.0))

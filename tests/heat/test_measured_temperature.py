@@ -47,21 +47,29 @@ def test_correction_is_the_inverse_of_the_signal(
     band: tuple[float, float] | None,
 ) -> None:
     true = np.array([330.0, 380.0, 430.0])
-    signal = infrared_signal(true, 0.85, 0.92, 300.0, 310.0, band)
+    signal = infrared_signal(
+        true, emissivity=0.85, transmission=0.92, surroundings=300.0, path=310.0, band=band
+    )
     # what an instrument set to emissivity 1 says to that signal
     seen = [
         float(np.interp(s, band_radiance(grid, band), grid))
         for s in signal
         for grid in [np.linspace(250.0, 500.0, 200001)]
     ]
-    corrected = infrared_temperature(seen, 0.85, 0.92, 300.0, 310.0, band)
+    corrected = infrared_temperature(
+        seen, emissivity=0.85, transmission=0.92, surroundings=300.0, path=310.0, band=band
+    )
     assert corrected == pytest.approx(true, abs=1e-3)
 
 
 def test_perfect_conditions_need_no_correction() -> None:
-    assert infrared_temperature(400.0, 1.0, 1.0, 300.0, 300.0) == pytest.approx(400.0, abs=1e-8)
+    assert infrared_temperature(
+        400.0, emissivity=1.0, transmission=1.0, surroundings=300.0, path=300.0
+    ) == pytest.approx(400.0, abs=1e-8)
     # a surface as hot as its surroundings and the window looks black whatever its emissivity
-    same = infrared_temperature(400.0, 0.3, 0.5, 400.0, 400.0)
+    same = infrared_temperature(
+        400.0, emissivity=0.3, transmission=0.5, surroundings=400.0, path=400.0
+    )
     assert same == pytest.approx(400.0, abs=1e-8)
 
 
@@ -75,7 +83,9 @@ def test_thermocouple_at_one_millimetre() -> None:
     """About 1.5 K per mm at FZG C and 200 Nm: q = 1.5 K * k/d."""
     flux = 1.5 * 46.0 / 1e-3
     assert surface_temperature(380.0, flux, 1e-3, 46.0) == pytest.approx(381.5)
-    reading = ThermocoupleReading(380.0, flux, 1e-3, 46.0, u_indicated=0.5, u_depth=2e-4)
+    reading = ThermocoupleReading(
+        indicated=380.0, flux=flux, depth=1e-3, conductivity=46.0, u_indicated=0.5, u_depth=2e-4
+    )
     assert reading.temperature() == pytest.approx(381.5)
     expected = math.hypot(0.5, 2e-4 * flux / 46.0)
     assert reading.uncertainty() == pytest.approx(expected, rel=1e-6)
@@ -83,21 +93,25 @@ def test_thermocouple_at_one_millimetre() -> None:
 
 def test_infrared_uncertainty_is_the_sum_of_squares_and_short_waves_win() -> None:
     readings = {
-        name: InfraredReading(380.0, 0.9, 300.0, band=band, u_emissivity=0.05)
+        name: InfraredReading(
+            indicated=380.0, emissivity=0.9, surroundings=300.0, band=band, u_emissivity=0.05
+        )
         for name, band in BANDS.items()
     }
     spread = {name: reading.uncertainty() for name, reading in readings.items()}
     assert spread["4 um"] < 0.6 * spread["10 um"]
     one = readings["total"]
-    both = InfraredReading(380.0, 0.9, 300.0, u_emissivity=0.05, u_indicated=1.0)
-    alone = InfraredReading(380.0, 0.9, 300.0, u_indicated=1.0)
+    both = InfraredReading(
+        indicated=380.0, emissivity=0.9, surroundings=300.0, u_emissivity=0.05, u_indicated=1.0
+    )
+    alone = InfraredReading(indicated=380.0, emissivity=0.9, surroundings=300.0, u_indicated=1.0)
     total = math.hypot(one.uncertainty(), alone.uncertainty())
     assert both.uncertainty() == pytest.approx(total, rel=1e-9)
     # by hand: eps T^4 = S - (1 - eps) T_env^4
     t = one.temperature()
     slope = (300.0**4 - t**4) / (4.0 * 0.9 * t**3)
     assert one.uncertainty() == pytest.approx(abs(slope) * 0.05, rel=1e-5)
-    black = InfraredReading(380.0, 1.0, 300.0, u_emissivity=0.05)
+    black = InfraredReading(indicated=380.0, emissivity=1.0, surroundings=300.0, u_emissivity=0.05)
     assert black.uncertainty() == pytest.approx((380.0**4 - 300.0**4) / (4 * 380.0**3) * 0.05)
 
 
@@ -106,23 +120,50 @@ def test_uncertainty_carries_into_the_field() -> None:
     place = math.log(0.0625 / 0.025) / math.log(0.0675 / 0.025)
 
     def at_pitch(addendum: float, bore: float) -> float:
-        return float(RadialField(0.025, 0.0675, bore, addendum, 293.15).temperature(0.0625))
+        return float(
+            RadialField(
+                bore_radius=0.025,
+                tip_radius=0.0675,
+                bore_temperature=bore,
+                addendum_temperature=addendum,
+                reference=293.15,
+            ).temperature(0.0625)
+        )
 
-    spread = field_uncertainty(at_pitch, (380.0, 2.0), (360.0, 1.0))
+    spread = field_uncertainty(at_pitch, addendum=(380.0, 2.0), bore=(360.0, 1.0))
     assert spread == pytest.approx(math.hypot(2.0 * place, 1.0 - place), rel=1e-8)
-    assert field_uncertainty(at_pitch, (380.0, 0.0), (360.0, 0.0)) == 0.0
+    assert field_uncertainty(at_pitch, addendum=(380.0, 0.0), bore=(360.0, 0.0)) == 0.0
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: InfraredReading(380.0, 1.2, 300.0), "emissivity: got 1.2; allowed 0 < value <= 1"),
-        (lambda: InfraredReading(300.0, 0.2, 400.0), "infrared reading: got"),
-        (lambda: infrared_temperature(380.0, 0.9, 0.0, 300.0, 300.0), "transmission: got 0.0"),
-        (lambda: infrared_temperature(380.0, 1.01, 1.0, 300.0, 300.0), "emissivity: got 1.01"),
+        (
+            lambda: InfraredReading(indicated=380.0, emissivity=1.2, surroundings=300.0),
+            "emissivity: got 1.2; allowed 0 < value <= 1",
+        ),
+        (
+            lambda: InfraredReading(indicated=300.0, emissivity=0.2, surroundings=400.0),
+            "infrared reading: got",
+        ),
+        (
+            lambda: infrared_temperature(
+                380.0, emissivity=0.9, transmission=0.0, surroundings=300.0, path=300.0
+            ),
+            "transmission: got 0.0",
+        ),
+        (
+            lambda: infrared_temperature(
+                380.0, emissivity=1.01, transmission=1.0, surroundings=300.0, path=300.0
+            ),
+            "emissivity: got 1.01",
+        ),
         (lambda: band_radiance(-5.0), "temperature: got -5.0 K; allowed > 0 K"),
         (lambda: band_radiance(300.0, (5e-6, 3e-6)), "band: got 5e-06 .. 3e-06 m"),
-        (lambda: ThermocoupleReading(380.0, 1.0, -1.0, 46.0), "thermocouple: got 380.0 K at"),
+        (
+            lambda: ThermocoupleReading(indicated=380.0, flux=1.0, depth=-1.0, conductivity=46.0),
+            "thermocouple.depth: got -1 m (-1000 mm); allowed 0..50 mm",
+        ),
     ],
 )
 def test_impossible_readings_are_refused(call, message: str) -> None:  # type: ignore[no-untyped-def]

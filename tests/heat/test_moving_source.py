@@ -84,7 +84,7 @@ def test_rise_against_adaptive_quadrature(x: float, peclet: float, compared: Com
     compared(
         "rise under a moving source",
         "adaptive quadrature",
-        float(moving_source_rise(x, peclet)) / expected - 1.0,
+        float(moving_source_rise(x, peclet=peclet)) / expected - 1.0,
         1e-7,
     )
 
@@ -92,7 +92,7 @@ def test_rise_against_adaptive_quadrature(x: float, peclet: float, compared: Com
 def test_rise_of_a_fast_source_is_bloks_integral() -> None:
     """Uniform band, Pe -> infinity: sqrt((1+x)/pi)."""
     x = np.linspace(-0.9, 1.0, 9)
-    exact = moving_source_rise(x, 1e6, "uniform")
+    exact = moving_source_rise(x, peclet=1e6, distribution="uniform")
     assert exact == pytest.approx(np.sqrt((1.0 + x) / np.pi), rel=1e-3)
 
 
@@ -111,7 +111,7 @@ TWO = [  # Pe of both flanks, Blok's error in percent (published)
 def test_blok_against_pointwise_equal_temperatures(
     one: float, two: float, error: float, compared: Compared
 ) -> None:
-    peak, share = exact_two_body(one, two)
+    peak, share = exact_two_body(peclet_1=one, peclet_2=two)
     blok = FLASH_FACTORS["ellipse"] / (np.sqrt(one) + np.sqrt(two))
     compared(
         "error of Blok's formula for two bodies",
@@ -125,20 +125,26 @@ def test_blok_against_pointwise_equal_temperatures(
 
 
 def test_two_equal_bodies_halve_the_heat_and_meet_the_single_source() -> None:
-    peak, share = exact_two_body(8.0, 8.0)
+    peak, share = exact_two_body(peclet_1=8.0, peclet_2=8.0)
     assert share == pytest.approx(0.5, abs=1e-12)
     single = float(peclet_factor(8.0)) / np.sqrt(8.0)
     assert peak == pytest.approx(0.5 * single, rel=1e-4)
 
 
 def test_more_elements_change_nothing() -> None:
-    coarse, fine = exact_two_body(20.0, 2.0, elements=200), exact_two_body(20.0, 2.0, elements=800)
+    coarse, fine = (
+        exact_two_body(peclet_1=20.0, peclet_2=2.0, elements=200),
+        exact_two_body(peclet_1=20.0, peclet_2=2.0, elements=800),
+    )
     assert coarse[0] == pytest.approx(fine[0], rel=2e-4)
     assert coarse[1] == pytest.approx(fine[1], abs=1e-4)
 
 
 def test_exchanging_the_bodies_exchanges_the_shares() -> None:
-    one, two = exact_two_body(12.0, 3.0), exact_two_body(3.0, 12.0)
+    one, two = (
+        exact_two_body(peclet_1=12.0, peclet_2=3.0),
+        exact_two_body(peclet_1=3.0, peclet_2=12.0),
+    )
     assert one[0] == pytest.approx(two[0], rel=1e-10)
     assert one[1] + two[1] == pytest.approx(1.0, abs=1e-10)
 
@@ -203,11 +209,11 @@ def test_blok_method_is_bloks_formula() -> None:
     plain = blok_flash(
         given["friction"],  # type: ignore[arg-type]
         given["line_load"],  # type: ignore[arg-type]
-        given["speed_1"],  # type: ignore[arg-type]
-        given["speed_2"],  # type: ignore[arg-type]
-        given["half_width"],  # type: ignore[arg-type]
-        STEEL.thermal_contact_coefficient,
-        STEEL.thermal_contact_coefficient,
+        speed_1=given["speed_1"],  # type: ignore[arg-type]
+        speed_2=given["speed_2"],  # type: ignore[arg-type]
+        half_width=given["half_width"],  # type: ignore[arg-type]
+        contact_coefficient_1=STEEL.thermal_contact_coefficient,
+        contact_coefficient_2=STEEL.thermal_contact_coefficient,
     )
     assert flash_temperature(**given, method="blok") == plain
 
@@ -215,23 +221,48 @@ def test_blok_method_is_bloks_formula() -> None:
 def test_partition_of_the_corrected_method() -> None:
     given = point(50.0, 25.0)
     v1, v2 = given["speed_1"], given["speed_2"]
-    ours = peclet_partition(v1, v2, 190e-6, STEEL, STEEL)
+    ours = peclet_partition(
+        speed_1=v1, speed_2=v2, half_width=190e-6, material_1=STEEL, material_2=STEEL
+    )
     assert ours == pytest.approx(
-        float(heat_partition(v1, v2, 1.0, 1.0)),
+        float(
+            heat_partition(
+                speed_1=v1, speed_2=v2, contact_coefficient_1=1.0, contact_coefficient_2=1.0
+            )
+        ),
         abs=1e-3,  # type: ignore[arg-type]
     )
-    assert peclet_partition(0.0, 0.0, 190e-6, STEEL, STEEL) == 0.5
-    assert peclet_partition(1.0, 0.0, 190e-6, STEEL, STEEL) == 1.0
+    assert (
+        peclet_partition(
+            speed_1=0.0, speed_2=0.0, half_width=190e-6, material_1=STEEL, material_2=STEEL
+        )
+        == 0.5
+    )
+    assert (
+        peclet_partition(
+            speed_1=1.0, speed_2=0.0, half_width=190e-6, material_1=STEEL, material_2=STEEL
+        )
+        == 1.0
+    )
 
 
 def test_batch_is_one_by_one() -> None:
     v1 = np.linspace(0.5, 3.0, 4)
     heat = np.array([[1e4], [2e4]])
-    batch = peclet_flash(heat, v1, 1.5, 190e-6, STEEL, STEEL)
+    batch = peclet_flash(
+        heat, speed_1=v1, speed_2=1.5, half_width=190e-6, material_1=STEEL, material_2=STEEL
+    )
     assert batch.shape == (2, 4)
     for i in range(2):
         for j in range(4):
-            single = peclet_flash(heat[i, 0], v1[j], 1.5, 190e-6, STEEL, STEEL)
+            single = peclet_flash(
+                heat[i, 0],
+                speed_1=v1[j],
+                speed_2=1.5,
+                half_width=190e-6,
+                material_1=STEEL,
+                material_2=STEEL,
+            )
             assert batch[i, j] == pytest.approx(float(single), rel=1e-12)
 
 
@@ -239,8 +270,8 @@ def test_batch_is_one_by_one() -> None:
     ("call", "message"),
     [
         (lambda: peclet_factor(-1.0), "peclet: got -1.0; allowed >= 0"),
-        (lambda: moving_source_rise(0.0, 0.0), "peclet: got 0.0; allowed > 0"),
-        (lambda: exact_two_body(1.0, 0.0), "peclet: got (1.0, 0.0)"),
+        (lambda: moving_source_rise(0.0, peclet=0.0), "peclet: got 0.0; allowed > 0"),
+        (lambda: exact_two_body(peclet_1=1.0, peclet_2=0.0), "peclet: got (1.0, 0.0)"),
         (lambda: peclet_factor(1.0, "elipse"), "distribution: got 'elipse'"),
         (
             lambda: flash_temperature(**point(2.0, 1.0), method="bloc"),

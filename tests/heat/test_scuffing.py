@@ -49,26 +49,37 @@ def test_published_factors() -> None:
     assert thermo_elastic_factor(ER, BM) == pytest.approx(50.14, abs=5e-3)
     assert thermo_elastic_factor(ER, np.sqrt(50.0 * 3.8e6)) == pytest.approx(50.04, abs=5e-3)
     alpha = np.radians(20.0)
-    assert angle_factor(alpha, np.radians(20.0)) == pytest.approx(0.978, abs=6e-4)
+    assert angle_factor(pressure_angle=alpha, operating_angle=np.radians(20.0)) == pytest.approx(
+        0.978, abs=6e-4
+    )
 
 
 def test_contact_ratio_factor_is_continuous_and_symmetric_where_it_should_be() -> None:
     """The cases meet at eps_1 = 1 and eps_2 = 1; equal tips give one mean over two halves."""
-    below, above = contact_ratio_factor(1.0 - 1e-9, 0.5), contact_ratio_factor(1.0, 0.5)
+    below, above = (
+        contact_ratio_factor(recess=1.0 - 1e-9, approach=0.5),
+        contact_ratio_factor(recess=1.0, approach=0.5),
+    )
     assert below == pytest.approx(above, abs=1e-8)
-    below, above = contact_ratio_factor(0.5, 1.0 - 1e-9), contact_ratio_factor(0.5, 1.0)
+    below, above = (
+        contact_ratio_factor(recess=0.5, approach=1.0 - 1e-9),
+        contact_ratio_factor(recess=0.5, approach=1.0),
+    )
     assert below == pytest.approx(above, abs=1e-8)
-    one, two = contact_ratio_factor(0.9, 0.6), contact_ratio_factor(0.6, 0.9)
+    one, two = (
+        contact_ratio_factor(recess=0.9, approach=0.6),
+        contact_ratio_factor(recess=0.6, approach=0.9),
+    )
     assert one * 0.9 == pytest.approx(two * 0.6, rel=1e-12)
     with pytest.raises(InputError, match=r"^contact ratio: got 2.1; allowed 1 <= eps_alpha < 2$"):
-        contact_ratio_factor(1.1, 1.0)
+        contact_ratio_factor(recess=1.1, approach=1.0)
 
 
 def test_rotation_factor_is_continuous() -> None:
-    assert rotation_factor(1.5, 1.0) == 1.0
-    assert rotation_factor(1.5 + 1e-9, 1.0) == pytest.approx(1.0, abs=1e-8)
-    assert rotation_factor(3.0, 1.0) == pytest.approx(0.6, abs=1e-12)
-    assert rotation_factor(9.0, 1.0) == 0.6
+    assert rotation_factor(approach=1.5, recess=1.0) == 1.0
+    assert rotation_factor(approach=1.5 + 1e-9, recess=1.0) == pytest.approx(1.0, abs=1e-8)
+    assert rotation_factor(approach=3.0, recess=1.0) == pytest.approx(0.6, abs=1e-12)
+    assert rotation_factor(approach=9.0, recess=1.0) == 0.6
 
 
 def test_fzg_torques(compared: Compared) -> None:
@@ -96,13 +107,15 @@ def test_integral_flash_of_the_fzg_test(compared: Compared) -> None:
         w,
         omega * pitch_radius,
         0.0915,
-        geometry_factor(rho_1, rho_2, 1.5),
-        angle_factor(np.radians(20.0), pair.operating_pressure_angle),
-        rotation_factor(approach, recess),
-        1.0,
-        thermo_elastic_factor(ER, BM),
+        geometry=geometry_factor(curvature_1=rho_1, curvature_2=rho_2, ratio=1.5),
+        angle=angle_factor(
+            pressure_angle=np.radians(20.0), operating_angle=pair.operating_pressure_angle
+        ),
+        rotation=rotation_factor(approach=approach, recess=recess),
+        tip_relief=1.0,
+        thermo_elastic=thermo_elastic_factor(ER, BM),
     )
-    ratio = tip * contact_ratio_factor(recess, approach) / (0.2 * torque)
+    ratio = tip * contact_ratio_factor(recess=recess, approach=approach) / (0.2 * torque)
     assert ratio == pytest.approx([1.09, 1.02, 1.00, 0.99, 0.98], abs=0.012)
     assert abs(ratio[0] - 1.0) < 0.10
     compared(
@@ -119,14 +132,22 @@ def fzg_c_point() -> dict[str, object]:
     s = path_of_contact(pair, 2001)
     pitch_radius = pair.operating_radii[0]
     w = 200.0 / pitch_radius / 0.014
-    share = load_sharing_13989(s, pair.path.a, pair.path.b, pair.path.d, pair.path.e)
+    share = load_sharing_13989(s, a=pair.path.a, b=pair.path.b, d=pair.path.d, e=pair.path.e)
     radius = reduced_radius(pair, pair.path.c)
     speed = 2.0 * omega * pitch_radius * np.sin(pair.operating_pressure_angle)
     eta = dynamic_viscosity(lubricant("FVA3"), ZERO_CELSIUS + 60.0)
     mu_1 = float(iso_13989_1(w, speed, radius, eta, 0.355e-6))
     mu_2 = float(iso_13989_2(w, speed, radius, eta, 0.355e-6))
     rho_1, rho_2 = curvature_radii(pair, s)
-    flash = flash_13989_1(mu_1, share * w, omega, rho_1, rho_2, 1.5, thermo_elastic_factor(ER, BM))
+    flash = flash_13989_1(
+        mu_1,
+        share * w,
+        omega,
+        curvature_1=rho_1,
+        curvature_2=rho_2,
+        ratio=1.5,
+        thermo_elastic=thermo_elastic_factor(ER, BM),
+    )
     return {
         "pair": pair,
         "omega": omega,
@@ -151,10 +172,18 @@ def test_published_body_temperatures_of_fzg_c() -> None:
     normal = np.asarray(at["load"]) / np.cos(pair.operating_pressure_angle)
     width = hertz_half_width(normal, reduced_radius(pair, s), ER / 2.0)
     data = np.sqrt(45.0 * 7800.0 * 440.0)
-    flash = blok_flash(mu_1, normal, v1, v2, width, data, data)
+    flash = blok_flash(
+        mu_1,
+        normal,
+        speed_1=v1,
+        speed_2=v2,
+        half_width=width,
+        contact_coefficient_1=data,
+        contact_coefficient_2=data,
+    )
     assert np.max(flash) == pytest.approx(63.4, abs=0.1)
     assert np.mean(flash) == pytest.approx(39.6, abs=0.1)
-    first = body_temperature_13989_1(warm, np.mean(flash)) - ZERO_CELSIUS
+    first = body_temperature_13989_1(oil_temperature=warm, mean_flash=np.mean(flash)) - ZERO_CELSIUS
     assert first == pytest.approx(78.6, abs=0.1)
     path = pair.path
     recess, approach = (path.e - path.c) / pair.base_pitch, (path.c - path.a) / pair.base_pitch
@@ -164,17 +193,23 @@ def test_published_body_temperatures_of_fzg_c() -> None:
         at["w"],  # type: ignore[arg-type]
         float(at["omega"]) * pair.operating_radii[0],  # type: ignore[arg-type]
         0.0915,
-        geometry_factor(rho_1, rho_2, 1.5),
-        angle_factor(np.radians(20.0), pair.operating_pressure_angle),
-        rotation_factor(approach, recess),
-        1.0,
-        thermo_elastic_factor(ER, BM),
+        geometry=geometry_factor(curvature_1=rho_1, curvature_2=rho_2, ratio=1.5),
+        angle=angle_factor(
+            pressure_angle=np.radians(20.0), operating_angle=pair.operating_pressure_angle
+        ),
+        rotation=rotation_factor(approach=approach, recess=recess),
+        tip_relief=1.0,
+        thermo_elastic=thermo_elastic_factor(ER, BM),
     )
-    mean = tip * contact_ratio_factor(recess, approach)
-    assert body_temperature_13989_2(warm, mean) - ZERO_CELSIUS == pytest.approx(78.1, abs=0.5)
+    mean = tip * contact_ratio_factor(recess=recess, approach=approach)
+    assert body_temperature_13989_2(
+        oil_temperature=warm, integral_flash=mean
+    ) - ZERO_CELSIUS == pytest.approx(78.1, abs=0.5)
     loss = mesh_loss(200.0 * float(at["omega"]), mu_2, factor_of(pair))  # type: ignore[arg-type]
     assert loss == pytest.approx(377.0, abs=1.0)
-    third = body_temperature_15144(warm, loss, 0.0915, 0.014) - ZERO_CELSIUS
+    third = (
+        body_temperature_15144(warm, loss, centre_distance=0.0915, face_width=0.014) - ZERO_CELSIUS
+    )
     assert third == pytest.approx(77.7, abs=0.3)
 
 
@@ -187,7 +222,17 @@ def test_flash_of_the_standard_against_blok() -> None:
     rows = []
     for line_load in (load, normal):
         width = hertz_half_width(line_load, reduced_radius(pair, s), ER / 2.0)
-        rows.append(blok_flash(at["mu"][0], line_load, v1, v2, width, BM, BM))  # type: ignore[index]
+        rows.append(
+            blok_flash(
+                at["mu"][0],
+                line_load,
+                speed_1=v1,
+                speed_2=v2,
+                half_width=width,
+                contact_coefficient_1=BM,
+                contact_coefficient_2=BM,
+            )
+        )  # type: ignore[index]
     inside = np.asarray(at["flash"]) > 1.0
     for blok, expected in zip(rows, (-0.019, 0.041), strict=True):
         ratio = blok[inside] / np.asarray(at["flash"])[inside]
@@ -195,9 +240,9 @@ def test_flash_of_the_standard_against_blok() -> None:
 
 
 def test_load_sharing_along_the_path() -> None:
-    share = load_sharing_13989([-1.0, 0.0, 1.0, 1.5, 2.0, 3.0, 3.1], 0.0, 1.0, 2.0, 3.0)
+    share = load_sharing_13989([-1.0, 0.0, 1.0, 1.5, 2.0, 3.0, 3.1], a=0.0, b=1.0, d=2.0, e=3.0)
     assert share == pytest.approx([0.0, 1 / 3, 1.0, 1.0, 1.0, 1 / 3, 0.0])
-    rough = load_sharing_13989([0.0], 0.0, 1.0, 2.0, 3.0, grade=10)
+    rough = load_sharing_13989([0.0], a=0.0, b=1.0, d=2.0, e=3.0, grade=10)
     assert rough == pytest.approx([8 / 15])
 
 
@@ -214,7 +259,7 @@ def test_scuffing_limits_and_margins() -> None:
     assert other - ZERO_CELSIUS == pytest.approx(by_hand)
     expected = 80.0 + 0.23 * torque + 1.5 * 0.2 * torque
     assert scuffing_integral_temperature(12, 100e-6) - ZERO_CELSIUS == pytest.approx(expected)
-    assert integral_temperature(350.0, 20.0) == 380.0
-    assert scuffing_margin(limit, limit - 60.0) == pytest.approx(60.0)
-    assert scuffing_safety(400.0, 375.0, 350.0) == 2.0
-    assert scuffing_safety(400.0, 350.0, 350.0) == np.inf
+    assert integral_temperature(body_temperature=350.0, integral_flash=20.0) == 380.0
+    assert scuffing_margin(limit=limit, temperature=limit - 60.0) == pytest.approx(60.0)
+    assert scuffing_safety(limit=400.0, temperature=375.0, oil_temperature=350.0) == 2.0
+    assert scuffing_safety(limit=400.0, temperature=350.0, oil_temperature=350.0) == np.inf

@@ -103,27 +103,58 @@ def test_flash_grows_as_load_to_three_quarters() -> None:
 
 def test_both_flanks_reach_the_same_flash_with_their_shares_of_the_heat() -> None:
     v1, v2, b1, b2 = 3.0, 0.7, 12e3, 15e3
-    heat = frictional_heat(0.05, 1e5, v1, v2)
-    share = heat_partition(v1, v2, b1, b2)
+    heat = frictional_heat(0.05, 1e5, speed_1=v1, speed_2=v2)
+    share = heat_partition(
+        speed_1=v1, speed_2=v2, contact_coefficient_1=b1, contact_coefficient_2=b2
+    )
     first = flank_flash(share * heat, v1, 1e-4, b1)
     second = flank_flash((1.0 - share) * heat, v2, 1e-4, b2)
-    whole = blok_flash(0.05, 1e5, v1, v2, 1e-4, b1, b2)
+    whole = blok_flash(
+        0.05,
+        1e5,
+        speed_1=v1,
+        speed_2=v2,
+        half_width=1e-4,
+        contact_coefficient_1=b1,
+        contact_coefficient_2=b2,
+    )
     assert first == pytest.approx(second, rel=1e-14)
     assert first == pytest.approx(whole, rel=1e-14)
 
 
 def test_partition_limits_and_symmetry() -> None:
-    assert heat_partition(2.0, 2.0, STEEL, STEEL) == 0.5
-    assert heat_partition(0.0, 0.0, STEEL, STEEL) == 0.5
-    assert heat_partition(3.0, 0.0, STEEL, STEEL) == 1.0
-    one = heat_partition(3.0, 1.0, 12e3, 15e3)
-    assert one + heat_partition(1.0, 3.0, 15e3, 12e3) == pytest.approx(1.0, abs=1e-15)
+    assert (
+        heat_partition(
+            speed_1=2.0, speed_2=2.0, contact_coefficient_1=STEEL, contact_coefficient_2=STEEL
+        )
+        == 0.5
+    )
+    assert (
+        heat_partition(
+            speed_1=0.0, speed_2=0.0, contact_coefficient_1=STEEL, contact_coefficient_2=STEEL
+        )
+        == 0.5
+    )
+    assert (
+        heat_partition(
+            speed_1=3.0, speed_2=0.0, contact_coefficient_1=STEEL, contact_coefficient_2=STEEL
+        )
+        == 1.0
+    )
+    one = heat_partition(
+        speed_1=3.0, speed_2=1.0, contact_coefficient_1=12e3, contact_coefficient_2=15e3
+    )
+    assert one + heat_partition(
+        speed_1=1.0, speed_2=3.0, contact_coefficient_1=15e3, contact_coefficient_2=12e3
+    ) == pytest.approx(1.0, abs=1e-15)
 
 
 def test_bodies_of_unequal_heat_meet_at_the_weighted_mean() -> None:
-    assert contact_temperature(20.0, 0.5, 350.0, 350.0) == 370.0
-    share = heat_partition(3.0, 2.0, STEEL, STEEL)
-    met = contact_temperature(0.0, share, 380.0, 350.0)
+    assert contact_temperature(20.0, 0.5, bulk_1=350.0, bulk_2=350.0) == 370.0
+    share = heat_partition(
+        speed_1=3.0, speed_2=2.0, contact_coefficient_1=STEEL, contact_coefficient_2=STEEL
+    )
+    met = contact_temperature(0.0, share, bulk_1=380.0, bulk_2=350.0)
     # heat given by one flank is taken by the other
     given = STEEL * np.sqrt(3.0) * (380.0 - met)
     assert given == pytest.approx(STEEL * np.sqrt(2.0) * (met - 350.0), rel=1e-12)
@@ -131,7 +162,13 @@ def test_bodies_of_unequal_heat_meet_at_the_weighted_mean() -> None:
 
 def test_radial_field_meets_its_ends_and_conducts_a_constant_flux() -> None:
     radii = np.linspace(0.025, 0.0675, 201)
-    field = radial_temperature(radii, 0.025, 0.0675, 353.15, 373.15)
+    field = radial_temperature(
+        radii,
+        bore_radius=0.025,
+        tip_radius=0.0675,
+        bore_temperature=353.15,
+        addendum_temperature=373.15,
+    )
     assert field[0] == 353.15
     assert field[-1] == pytest.approx(373.15, abs=1e-12)
     flux = radii[1:-1] * np.gradient(field, radii)[1:-1]
@@ -141,39 +178,80 @@ def test_radial_field_meets_its_ends_and_conducts_a_constant_flux() -> None:
 
 def test_equal_ends_are_a_uniform_field_exactly() -> None:
     radii = np.linspace(0.025, 0.0675, 7)
-    assert np.all(radial_temperature(radii, 0.025, 0.0675, 360.0, 360.0) == 360.0)
+    assert np.all(
+        radial_temperature(
+            radii,
+            bore_radius=0.025,
+            tip_radius=0.0675,
+            bore_temperature=360.0,
+            addendum_temperature=360.0,
+        )
+        == 360.0
+    )
 
 
 def test_operating_points_broadcast_against_radii() -> None:
     bore = np.array([[350.0], [360.0]])
-    field = radial_temperature(np.linspace(0.03, 0.06, 4), 0.025, 0.0675, bore, bore + 20.0)
+    field = radial_temperature(
+        np.linspace(0.03, 0.06, 4),
+        bore_radius=0.025,
+        tip_radius=0.0675,
+        bore_temperature=bore,
+        addendum_temperature=bore + 20.0,
+    )
     assert field.shape == (2, 4)
     assert field[1] - field[0] == pytest.approx(np.full(4, 10.0), abs=1e-11)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("wrong", "message"),
     [
-        ((0.05, 0.07, 0.0675, 350.0, 370.0), "bore_radius: got 0.07 m with tip_radius 0.0675 m"),
-        ((0.05, 0.0, 0.0675, 350.0, 370.0), "bore_radius: got 0.0 m with tip_radius 0.0675 m"),
-        ((0.02, 0.025, 0.0675, 350.0, 370.0), "radius: got 0.02 .. 0.02 m"),
-        ((0.05, 0.025, 0.0675, -1.0, 370.0), "bore_temperature: got -1.0 K; allowed > 0 K"),
-        ((0.05, 0.025, 0.0675, 350.0, 0.0), "addendum_temperature: got 0.0 K; allowed > 0 K"),
+        ({"bore_radius": 0.07}, "bore_radius: got 0.07 m with tip_radius 0.0675 m"),
+        ({"bore_radius": 0.0}, "bore_radius: got 0.0 m with tip_radius 0.0675 m"),
+        ({"radius": 0.02}, "radius: got 0.02 .. 0.02 m"),
+        ({"bore_temperature": -1.0}, "bore_temperature: got -1.0 K; allowed > 0 K"),
+        ({"addendum_temperature": 0.0}, "addendum_temperature: got 0.0 K; allowed > 0 K"),
     ],
 )
-def test_impossible_fields_are_refused(arguments: tuple[float, ...], message: str) -> None:
+def test_impossible_fields_are_refused(wrong: dict[str, float], message: str) -> None:
+    good = {"radius": 0.05, "bore_radius": 0.025, "tip_radius": 0.0675}
+    good |= {"bore_temperature": 350.0, "addendum_temperature": 370.0}
     with pytest.raises(InputError) as caught:
-        radial_temperature(*arguments)
+        radial_temperature(**good | wrong)
     assert str(caught.value).startswith(message)
 
 
 def test_conduction_into_the_shaft() -> None:
     """20 K over the pinion send 145 W into its shaft, 92 W over the wheel of bore 40 mm."""
-    pinion = conduction_power(0.025, 0.0675, 353.15, 373.15, 46.0, 0.025)
-    wheel = conduction_power(0.040, 0.1925, 353.15, 373.15, 46.0, 0.025)
+    pinion = conduction_power(
+        bore_radius=0.025,
+        tip_radius=0.0675,
+        bore_temperature=353.15,
+        addendum_temperature=373.15,
+        conductivity=46.0,
+        face_width=0.025,
+    )
+    wheel = conduction_power(
+        bore_radius=0.040,
+        tip_radius=0.1925,
+        bore_temperature=353.15,
+        addendum_temperature=373.15,
+        conductivity=46.0,
+        face_width=0.025,
+    )
     assert pinion == pytest.approx(145.0, abs=0.6)
     assert wheel == pytest.approx(92.0, abs=0.4)
-    assert conduction_power(0.025, 0.0675, 353.15, 353.15, 46.0, 0.025) == 0.0
+    assert (
+        conduction_power(
+            bore_radius=0.025,
+            tip_radius=0.0675,
+            bore_temperature=353.15,
+            addendum_temperature=353.15,
+            conductivity=46.0,
+            face_width=0.025,
+        )
+        == 0.0
+    )
 
 
 def test_unknown_distribution_says_the_nearest() -> None:

@@ -23,7 +23,13 @@ RADII = np.linspace(0.0590, 0.0675, 12)
 
 def field(addendum: float, drop: float = 20.0) -> RadialField:
     hot = ZERO_CELSIUS + addendum
-    return RadialField(PINION.bore_radius, PINION.tip_radius, hot - drop, hot, COLD)
+    return RadialField(
+        bore_radius=PINION.bore_radius,
+        tip_radius=PINION.tip_radius,
+        bore_temperature=hot - drop,
+        addendum_temperature=hot,
+        reference=COLD,
+    )
 
 
 def test_reading_written_out_for_a_uniform_rise() -> None:
@@ -45,7 +51,12 @@ def test_reading_is_two_to_four_times_too_small() -> None:
 
 
 def test_cold_is_undeformed() -> None:
-    cold = RadialField.uniform(PINION.bore_radius, PINION.tip_radius, COLD, COLD)
+    cold = RadialField.uniform(
+        bore_radius=PINION.bore_radius,
+        tip_radius=PINION.tip_radius,
+        temperature=COLD,
+        reference=COLD,
+    )
     for function in (thesis_flank_growth, flank_growth_as_printed):
         assert np.all(function(PINION, cold, RADII) == 0.0)
     r, angle = deformed_profile(PINION, cold, RADII)
@@ -57,7 +68,13 @@ def test_printed_deformation_adds_a_pure_number_to_a_length() -> None:
     """Scaling the gear by two keeps the printed first term and doubles the second."""
     twice = Gear(teeth=25, module=1e-2, bore_radius=0.05)
     hot = ZERO_CELSIUS + 120.0
-    same = RadialField(twice.bore_radius, twice.tip_radius, hot - 20.0, hot, COLD)
+    same = RadialField(
+        bore_radius=twice.bore_radius,
+        tip_radius=twice.tip_radius,
+        bore_temperature=hot - 20.0,
+        addendum_temperature=hot,
+        reference=COLD,
+    )
     one = flank_growth_as_printed(PINION, field(120.0), RADII)
     two = flank_growth_as_printed(twice, same, 2.0 * RADII)
     assert np.min(np.abs(two / one - 2.0)) > 0.05
@@ -67,7 +84,9 @@ def test_printed_profile_radius_is_the_true_displacement() -> None:
     """r' = r + int + u_b is right as printed; theta' barely turns, lacking the temperature."""
     hot = field(120.0)
     r, angle = profile_as_printed(PINION, hot, RADII)
-    moved = radial_displacement(hot, RADII, PINION.root_radius, LAM, 0.3)
+    moved = radial_displacement(
+        hot, RADII, root_radius=PINION.root_radius, expansion=LAM, poisson=0.3
+    )
     assert r == pytest.approx(RADII + moved, rel=1e-14)
     assert np.max(np.abs(angle - PINION.half_thickness_angle(RADII))) < 1e-6
     assert angle.shape == RADII.shape
@@ -90,4 +109,6 @@ def test_repaired_profile_grows_by_the_normal_growth() -> None:
 
 
 def test_thesis_backlash_as_printed() -> None:
-    assert thesis_half_backlash(125e-6, 10e-6, 30e-6) == pytest.approx(105e-6, rel=1e-14)
+    assert thesis_half_backlash(125e-6, deformation_1=10e-6, deformation_2=30e-6) == pytest.approx(
+        105e-6, rel=1e-14
+    )

@@ -50,7 +50,7 @@ def test_blocks_and_slices_agree_with_the_whole(tmp_path: Path, name: str) -> No
     channel = read_record(path, **said).channels[1]  # type: ignore[arg-type]
     whole = channel.values()
     np.testing.assert_array_equal(np.concatenate(list(channel.blocks(77))), whole)
-    np.testing.assert_array_equal(channel.values(10, 20), whole[10:20])
+    np.testing.assert_array_equal(channel.values(10, stop=20), whole[10:20])
 
 
 def test_the_bytes_tell_the_format_not_the_name(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def test_displacement_of_the_mesh_line(
 def test_the_thesis_way_loses_what_the_trapezoid_law_says() -> None:
     frequency, amplitude = THESIS[2]
     found = measure(tone(frequency, amplitude, 5120.0 * 2), chain=Chain("trapezoid"))
-    law = float(trapezoid_factor(frequency, 5120.0 * 2))
+    law = float(trapezoid_factor(frequency, rate=5120.0 * 2))
     assert found.lines[0].displacement == pytest.approx(law * amplitude, rel=3e-3)
 
 

@@ -36,8 +36,11 @@ def test_the_rig_as_solid_discs_of_pitch_radius(rig: GearPair, hot_rig: Operatin
 
 
 def test_disc_inertias_of_tip_and_bored_discs(rig: GearPair) -> None:
-    tip = [disc_inertia(g, g.tip_radius) for g in (rig.pinion, rig.wheel)]
-    bored = [disc_inertia(g, g.pitch_radius, g.bore_radius) for g in (rig.pinion, rig.wheel)]
+    tip = [disc_inertia(g, radius=g.tip_radius) for g in (rig.pinion, rig.wheel)]
+    bored = [
+        disc_inertia(g, radius=g.pitch_radius, bore_radius=g.bore_radius)
+        for g in (rig.pinion, rig.wheel)
+    ]
     r1, r2 = rig.pinion.base_radius, rig.wheel.base_radius
 
     def mass(inertias: list[float]) -> float:
@@ -50,7 +53,7 @@ def test_disc_inertias_of_tip_and_bored_discs(rig: GearPair) -> None:
 def test_inertia_of_a_thin_ring_is_mass_times_radius_squared(rig: GearPair) -> None:
     gear = rig.wheel
     mass = 7850.0 * gear.face_width * np.pi * (0.1**2 - 0.0999**2)
-    ring = disc_inertia(gear, 0.1, 0.0999)
+    ring = disc_inertia(gear, radius=0.1, bore_radius=0.0999)
     assert ring == pytest.approx(mass * 0.5 * (0.1**2 + 0.0999**2), rel=1e-12)
 
 

@@ -30,7 +30,8 @@ def test_springs_of_the_loaded_pair(rig: GearPair, hot_rig: Operating) -> None:
         assert np.all(np.isfinite(k) & (k > 0.0))
         if not name.endswith(("body_stiffness", "hertz_stiffness")):
             assert k == pytest.approx(tooth[name], rel=1e-12)
-    series = 1.0 / sum(1.0 / k for k in parts.values())
+    series = loaded.pair_stiffness(s)
+    assert series == pytest.approx(1.0 / sum(1.0 / k for k in parts.values()), rel=1e-12)
     # corner contact lets neighbours help a little outside the single contact's ends
     alone = np.flatnonzero(np.all(loaded.share(s) > 1.0 - 1e-12, axis=0))
     assert alone.size >= 3
@@ -42,9 +43,16 @@ def test_each_gear_carries_its_own_modulus_and_deviations_into_the_loaded_contac
     rig: GearPair, hot_rig: Operating
 ) -> None:
     """A hot wheel on a cold pinion: the loaded contact asked directly says the same."""
-    warm = Temperatures(293.15, 293.15, 293.15, 413.15, 393.15, 333.15)
+    warm = Temperatures(
+        reference=293.15,
+        pinion_addendum=293.15,
+        pinion_bore=293.15,
+        wheel_addendum=413.15,
+        wheel_bore=393.15,
+        housing=333.15,
+    )
     hot = HotPair(rig, replace(hot_rig, temperatures=warm), MeshModel.consistent())
-    crest = Relief("wheel", 20e-6, 3e-3)
+    crest = Relief("wheel", amount=20e-6, length=3e-3)
     loaded = LoadedPair(hot, (crest,))
     phase = np.array([0.1, 0.4, 0.8])
     cold, soft = (hot.moduli(gear) for gear in (rig.pinion, rig.wheel))
@@ -55,8 +63,8 @@ def test_each_gear_carries_its_own_modulus_and_deviations_into_the_loaded_contac
         rig,
         np.full(3, 100.0 / rig.pinion.base_radius),
         phase,
-        pinion=Moduli(*cold),
-        wheel=Moduli(*soft),
+        pinion=Moduli(tooth=cold[0], body=cold[1]),
+        wheel=Moduli(tooth=soft[0], body=soft[1]),
         deviations=(crest, ThermalDeviation(hot)),
         model=LoadedModel(body="rim"),
     )

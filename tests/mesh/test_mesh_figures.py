@@ -17,7 +17,7 @@ from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.mesh.balance import Gearbox, _aitken, heat_balance
 from thermogear.mesh.elastic import TextbookPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
-from thermogear.mesh.thermal import HotPair, hot_backlash
+from thermogear.mesh.thermal import HotPair
 
 TEXTBOOK = MeshModel.consistent().override(stiffness="textbook-30-degree", sharing="stiffness")
 
@@ -214,17 +214,3 @@ def test_the_inlet_is_as_warm_as_its_choice_says(rig: GearPair, hot_rig: Operati
         assert path.inlet_temperature.tolist() == expected
         rough = 1.25 * np.hypot(rig.pinion.roughness, rig.wheel.roughness)
         assert path.film_parameter == pytest.approx(path.film / rough, rel=1e-12)
-
-
-@pytest.mark.parametrize("flank", ["growth", "thesis"])
-def test_one_pair_alone_takes_its_own_added_material_off_the_drive_side(
-    rig: GearPair, hot_rig: Operating, flank: str
-) -> None:
-    """(b - b') - e_th = (S + S^c)/2 + (S - S^c)/2 = S, whatever the pairs weigh."""
-    hot = HotPair(rig, hot_rig, MeshModel.consistent().override(flank=flank))
-    phase = np.linspace(rig.contact_ratio - 1.0 + 1e-6, 1.0 - 1e-6, 9)  # one pair in contact
-    s = rig.path.a + phase * rig.base_pitch
-    found = hot_backlash(hot, phase, lambda at: 1.0 + np.abs(at)[None, :])
-    taken = hot_rig.half_backlash - found.half_backlash - found.error
-    np.testing.assert_allclose(taken, hot.added_material(s), rtol=0, atol=1e-17)
-    assert np.any(found.error) == (flank == "growth")

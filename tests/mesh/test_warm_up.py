@@ -107,7 +107,7 @@ def test_impossible_temperatures_name_their_place(place: int, wrong: float) -> N
         "wheel_bore",
         "housing",
     )
-    values = [300.0] * 6
-    values[place] = wrong
-    with pytest.raises(InputError, match=rf"^temperatures\.{names[place]}: got .* K; allowed > 0"):
-        Temperatures(*values)
+    values = dict.fromkeys(names, 300.0) | {names[place]: wrong}
+    message = rf"^temperatures\.{names[place]}: got .* K.*; allowed -70\.\.600 degC"
+    with pytest.raises(InputError, match=message):
+        Temperatures(**values)

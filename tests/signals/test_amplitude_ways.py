@@ -37,7 +37,7 @@ def rig(rate: float, seconds: float = 4.0, seed: int = 7) -> Floats:
 def errors(displacement: Floats, rate: float) -> list[float]:
     """Error of each line in per cent, read with a flat-top window."""
     return [
-        100 * (find_line(displacement, rate, f, 4.0).amplitude / amplitude - 1)
+        100 * (find_line(displacement, rate, near=f, half_width=4.0).amplitude / amplitude - 1)
         for f, amplitude in LINES
     ]
 
@@ -63,7 +63,7 @@ def test_trapezoid_law_is_exact(u: float, phase: float, compared: Compared) -> N
     expected = -scale * (np.cos(2 * u * n + phase) - np.cos(phase)) - start * n * step
     got = integrate_twice_trapezoid(a, rate)
     assert np.max(np.abs(got - expected)) <= 1e-12 * max(np.max(np.abs(expected)), 1.0)
-    law = float(trapezoid_factor(frequency, rate))
+    law = float(trapezoid_factor(frequency, rate=rate))
     compared(
         "loss of a line by two trapezoidal sums",
         "the sums in closed form",
@@ -73,14 +73,14 @@ def test_trapezoid_law_is_exact(u: float, phase: float, compared: Compared) -> N
 
 
 def test_trapezoid_factor_at_its_ends() -> None:
-    np.testing.assert_allclose(trapezoid_factor([0.0, 500.0], 1000.0), [1.0, 0.0], atol=1e-30)
+    np.testing.assert_allclose(trapezoid_factor([0.0, 500.0], rate=1000.0), [1.0, 0.0], atol=1e-30)
     with pytest.raises(InputError, match=r"^frequency: got 501\.0; allowed 0\.\.500 Hz"):
-        trapezoid_factor(501.0, 1000.0)
+        trapezoid_factor(501.0, rate=1000.0)
 
 
 @pytest.mark.parametrize("rate", [5120.0, 25600.0])
 def test_division_by_omega_squared_reads_every_line(rate: float, compared: Compared) -> None:
-    displacement = integrate_twice(filtered(rate), rate, 0.4 * LINES[0][0])
+    displacement = integrate_twice(filtered(rate), rate, low_cut=0.4 * LINES[0][0])
     gains = [float(_band(rate).gain(f)) for f, _ in LINES]
     corrected = [
         (1 + e / 100) / g - 1 for e, g in zip(errors(displacement, rate), gains, strict=True)
@@ -97,7 +97,7 @@ def test_division_by_omega_squared_reads_every_line(rate: float, compared: Compa
 def test_flat_top_line_over_omega_squared(rate: float, limit: float, compared: Compared) -> None:
     x = without_trend(rig(rate))
     for frequency, amplitude in LINES:
-        line = find_line(x, rate, frequency, 4.0)
+        line = find_line(x, rate, near=frequency, half_width=4.0)
         read = line.amplitude / (2 * np.pi * line.frequency) ** 2
         compared(
             "displacement of a flat-top line over ω²",
@@ -110,7 +110,7 @@ def test_flat_top_line_over_omega_squared(rate: float, limit: float, compared: C
 @pytest.mark.parametrize("rate", [5120.0, 25600.0])
 def test_trapezoid_after_a_filter_loses_what_its_law_says(rate: float) -> None:
     x = without_trend(integrate_twice_trapezoid(filtered(rate), rate))
-    law = [100 * (float(trapezoid_factor(f, rate)) - 1) for f, _ in LINES]
+    law = [100 * (float(trapezoid_factor(f, rate=rate)) - 1) for f, _ in LINES]
     np.testing.assert_allclose(errors(x, rate), law, atol=0.3)
     table = {5120.0: (-4.3, -16.9, -36.8), 25600.0: (-0.1, -0.6, -1.5)}
     np.testing.assert_allclose(law, table[rate], atol=0.16)
@@ -172,8 +172,8 @@ def test_filter_refusals() -> None:
     with pytest.raises(InputError, match=r"^taps: got 65; allowed below the record's 65 samples"):
         BandPass(1000.0, (50.0, 60.0), 65).apply(np.zeros(65))
     with pytest.raises(InputError, match=r"^low_cut: got 0; allowed 0 < low cut < 500 Hz"):
-        integrate_twice(np.zeros(16), 1000.0, 0)
-    assert taps_for(1000.0, 10.0) % 2 == 1
+        integrate_twice(np.zeros(16), 1000.0, low_cut=0)
+    assert taps_for(1000.0, transition=10.0) % 2 == 1
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -183,7 +183,7 @@ def test_line_within_five_hundredths_per_cent_and_two_hundredths_bin(
 ) -> None:
     x = without_trend(rig(rate, 4.0, seed))
     for frequency, amplitude in LINES:
-        line = find_line(x, rate, frequency, 4.0)
+        line = find_line(x, rate, near=frequency, half_width=4.0)
         compared(
             "frequency of a noisy line, in bins",
             "the line put in",
@@ -206,7 +206,7 @@ def test_stated_errors_of_a_line_are_those_of_many_records() -> None:
     for seed in range(records):
         rng = np.random.default_rng(seed)
         x = amplitude * np.cos(2 * np.pi * 203.37 * t + 1.0) + noise * rng.standard_normal(count)
-        found.append(find_line(x, rate, 203.0, 2.0))
+        found.append(find_line(x, rate, near=203.0, half_width=2.0))
     spread = np.std([line.amplitude for line in found])
     assert spread == pytest.approx(np.mean([line.amplitude_error for line in found]), rel=0.15)
     wander = np.std([line.frequency for line in found])
@@ -217,13 +217,13 @@ def test_stated_errors_of_a_line_are_those_of_many_records() -> None:
 
 def test_line_at_recovers_amplitude_and_phase_between_bins() -> None:
     t = np.arange(5000) / 1000.0
-    value = line_at(3.0 + 0.7 * np.cos(2 * np.pi * 101.237 * t - 0.9), 1000.0, 101.237)
+    value = line_at(3.0 + 0.7 * np.cos(2 * np.pi * 101.237 * t - 0.9), 1000.0, frequency=101.237)
     assert abs(value) == pytest.approx(0.7, rel=1e-6)
     assert np.angle(value) == pytest.approx(-0.9, abs=1e-6)
     with pytest.raises(InputError, match=r"^frequency: got 500\.0; allowed 0 < f < 500$"):
-        line_at(t, 1000.0, 500.0)
+        line_at(t, 1000.0, frequency=500.0)
     with pytest.raises(InputError, match=r"no bin of the spectrum lies there$"):
-        find_line(t, 1000.0, 700.0, 1.0)
+        find_line(t, 1000.0, near=700.0, half_width=1.0)
 
 
 def _band(rate: float) -> BandPass:

@@ -40,8 +40,8 @@ def test_tacho_orders_are_sharp_where_the_speed_wanders() -> None:
     assert times.size == pytest.approx(turns[-1], abs=2)
     angle = tacho_angle(times, 1.0, t)
     inside = np.isfinite(angle)
-    y = resample_by_angle(gear(turns)[inside], angle[inside], 256, 100)
-    lines = order_amplitudes(y, 256, 100, [24, 25, 26, 50, 25.5])
+    y = resample_by_angle(gear(turns)[inside], angle[inside], samples_per_turn=256, turns=100)
+    lines = order_amplitudes(y, samples_per_period=256, periods=100, orders=[24, 25, 26, 50, 25.5])
     np.testing.assert_allclose(lines[:4], [0.05, 1.0, 0.1, 0.3], rtol=0.05, atol=0.005)
     assert lines[4] < 0.005
 
@@ -51,12 +51,14 @@ def test_mesh_line_phase_gives_the_angle_without_a_tacho() -> None:
     rng = np.random.default_rng(1)
     x = gear(turns) + 0.2 * rng.standard_normal(t.size)
     # the neighbours at orders 24 and 26 lie 20 Hz off
-    cycles, dropped = line_angle(x, 500.0 / RATE, 15.0 / RATE)
+    cycles, dropped = line_angle(x, frequency=500.0 / RATE, half_width=15.0 / RATE)
     expected = 25 * turns[dropped : dropped + cycles.size]
     difference = cycles - expected
     assert np.std(difference - np.round(difference.mean())) < 0.02
-    y = resample_by_angle(x[dropped : dropped + cycles.size], cycles / 25.0, 256, 100)
-    lines = order_amplitudes(y, 256, 100, [24, 25, 26, 50])
+    y = resample_by_angle(
+        x[dropped : dropped + cycles.size], cycles / 25.0, samples_per_turn=256, turns=100
+    )
+    lines = order_amplitudes(y, samples_per_period=256, periods=100, orders=[24, 25, 26, 50])
     np.testing.assert_allclose(lines, [0.05, 1.0, 0.1, 0.3], atol=0.02)
 
 
@@ -90,12 +92,16 @@ def test_welch_amplitude_of_a_line_at_a_bin() -> None:
 
 
 def test_sidebands_and_refusals() -> None:
-    np.testing.assert_allclose(sideband_orders(32, 0.4, 2), [31.2, 31.6, 32, 32.4, 32.8])
+    np.testing.assert_allclose(
+        sideband_orders(centre=32, spacing=0.4, count=2), [31.2, 31.6, 32, 32.4, 32.8]
+    )
     with pytest.raises(InputError, match=r"^tacho: got 0 edges; allowed >= 2 rising edges$"):
         tacho_times(np.zeros(100), 10.0)
     with pytest.raises(InputError, match=r"^segment: got 64; allowed at most the record's 32"):
         welch([np.zeros(32)], 1.0, 64)
+    with pytest.raises(InputError, match=r"^record: got a non-finite sample; allowed finite$"):
+        welch([np.zeros(64), np.array([np.nan])], 1.0, 64)
     with pytest.raises(InputError, match=r"^angle: got shape \(5,\); allowed rising"):
-        resample_by_angle(np.zeros(5), [0, 1, 1, 2, 3], 8)
+        resample_by_angle(np.zeros(5), [0, 1, 1, 2, 3], samples_per_turn=8)
     with pytest.raises(InputError, match=r"^half_width: got 0\.2 at 0\.1"):
-        line_angle(np.zeros(100), 0.1, 0.2)
+        line_angle(np.zeros(100), frequency=0.1, half_width=0.2)

@@ -17,15 +17,15 @@ def test_floor_of_a_sloping_spectrum_is_its_value_at_the_line(lobe: int, reach: 
     """Both sides weigh alike, whatever stands in the lobe."""
     slope = np.arange(400.0)
     slope[200 - lobe : 200 + lobe + 1] = 1e6
-    assert floor_around(slope, 200, lobe, reach) == 200.0
+    assert floor_around(slope, 200, lobe=lobe, reach=reach) == 200.0
 
 
 def test_floor_near_an_end_is_taken_from_what_is_there_without_the_mean() -> None:
     flat = np.full(50, 3.0)
     flat[0] = 1e9
-    assert floor_around(flat, 2, 1, 1) == 3.0
-    assert floor_around(flat, 48, 1, 10) == 3.0
-    assert floor_around(np.ones(3), 1, 1) == 0.0
+    assert floor_around(flat, 2, lobe=1, reach=1) == 3.0
+    assert floor_around(flat, 48, lobe=1, reach=10) == 3.0
+    assert floor_around(np.ones(3), 1, lobe=1) == 0.0
 
 
 @pytest.mark.parametrize("low", [0.0, -0.5, 100.0, 120.0])
@@ -38,8 +38,8 @@ def test_a_band_without_a_lower_edge_is_refused(low: float) -> None:
 def test_a_record_shorter_than_two_kernels_is_refused(samples: int) -> None:
     """A half width of 0.05 needs a kernel of 41 samples."""
     with pytest.raises(InputError, match=r"^half_width: got 0\.05; allowed above"):
-        line_angle(np.cos(0.4 * np.pi * np.arange(samples)), 0.2, 0.05)
-    angle, dropped = line_angle(np.cos(0.4 * np.pi * np.arange(83)), 0.2, 0.05)
+        line_angle(np.cos(0.4 * np.pi * np.arange(samples)), frequency=0.2, half_width=0.05)
+    angle, dropped = line_angle(np.cos(0.4 * np.pi * np.arange(83)), frequency=0.2, half_width=0.05)
     assert dropped == 20
     assert angle.size == 43
 
@@ -47,7 +47,7 @@ def test_a_record_shorter_than_two_kernels_is_refused(samples: int) -> None:
 @pytest.mark.parametrize(("rate", "width"), [(1000.0, 10.0), (25600.0, 100.0), (5120.0, 77.0)])
 def test_taps_give_the_transition_of_a_hamming_window(rate: float, width: float) -> None:
     """3.3 rate/width taps: from the edge (-6 dB) half the width goes to -50 dB and to 0.5 %."""
-    taps = taps_for(rate, width)
+    taps = taps_for(rate, transition=width)
     assert taps % 2 == 1
     assert 0.0 <= taps - np.floor(3.3 * rate / width) <= 2.0
     low, high = 0.1 * rate, 0.3 * rate
@@ -59,12 +59,12 @@ def test_taps_give_the_transition_of_a_hamming_window(rate: float, width: float)
 
 
 def test_floor_beside_the_mean_takes_bin_one_and_leaves_the_mean_out() -> None:
-    assert floor_around(np.array([9.0, 1.0, 100.0, 3.0, 50.0]), 2, 0, 1) == 2.0
+    assert floor_around(np.array([9.0, 1.0, 100.0, 3.0, 50.0]), 2, lobe=0, reach=1) == 2.0
 
 
 def test_channels_are_integrated_each_for_itself() -> None:
     """x = -a/omega^2 of one line; three channels of many samples, not many of three."""
     turn = 2.0 * np.pi * 8.0 * np.arange(400) / 400.0
     sizes = np.array([[1.0], [-2.0], [0.5]])
-    found = integrate_twice(sizes * np.cos(turn), 400.0, 2.0)
+    found = integrate_twice(sizes * np.cos(turn), 400.0, low_cut=2.0)
     np.testing.assert_allclose(found, -sizes * np.cos(turn) / (16.0 * np.pi) ** 2, atol=1e-15)

@@ -81,21 +81,25 @@ def test_half_order_over_an_even_number_of_periods_is_exact(compared: Compared) 
     per, periods = 128, 6
     t = np.arange(per * periods) / per
     x = 0.5 + 0.02 * np.cos(2 * np.pi * 0.5 * t + 0.3) + 0.8 * np.sin(2 * np.pi * t)
-    amplitudes = order_amplitudes(x, per, periods, [0.0, 0.5, 1.0, 1.5])
+    amplitudes = order_amplitudes(
+        x, samples_per_period=per, periods=periods, orders=[0.0, 0.5, 1.0, 1.5]
+    )
     compared(
         "lines of a periodic record, half order among them",
         "the lines put in",
         amplitudes - [0.5, 0.02, 0.8, 0.0],
         1e-14,
     )
-    assert np.angle(order_lines(x, per, periods, 0.5)[0]) == pytest.approx(0.3, abs=1e-12)
+    assert np.angle(
+        order_lines(x, samples_per_period=per, periods=periods, orders=0.5)[0]
+    ) == pytest.approx(0.3, abs=1e-12)
 
 
 def test_orders_keep_the_leading_axes_and_the_nyquist_order_is_single() -> None:
     per, periods = 8, 2
     t = np.arange(per * periods) / per
     x = np.stack([np.cos(2 * np.pi * 4 * t), 2.0 * np.cos(2 * np.pi * t)])
-    lines = order_amplitudes(x, per, periods, [1.0, 4.0])
+    lines = order_amplitudes(x, samples_per_period=per, periods=periods, orders=[1.0, 4.0])
     np.testing.assert_allclose(lines, [[0.0, 1.0], [2.0, 0.0]], atol=1e-14)
 
 
@@ -106,11 +110,11 @@ def test_an_order_between_two_lines_is_refused() -> None:
         r"take a number of periods that makes order x periods whole$"
     )
     with pytest.raises(InputError, match=message):
-        order_amplitudes(x, 64, 3, [1.0, 0.5])
+        order_amplitudes(x, samples_per_period=64, periods=3, orders=[1.0, 0.5])
     with pytest.raises(InputError, match=r"^record: got 191 samples; allowed 64 x 3 = 192"):
-        order_amplitudes(x[:-1], 64, 3, 1.0)
+        order_amplitudes(x[:-1], samples_per_period=64, periods=3, orders=1.0)
     with pytest.raises(InputError, match=r"^orders: got \[33\.0\]; allowed 0\.\.32$"):
-        order_amplitudes(x, 64, 3, 33.0)
+        order_amplitudes(x, samples_per_period=64, periods=3, orders=33.0)
 
 
 def test_refusals_name_field_and_value() -> None:

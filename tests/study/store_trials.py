@@ -24,7 +24,9 @@ from thermogear.study.fingerprint import code_version
 from thermogear.study.store import QUARANTINE, read_journal
 from thermogear.study.work import carry_out
 
-MODEL = TorsionalModel(0.05, 1.0, 0.3, 0.1, 0.3)
+MODEL = TorsionalModel(
+    damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3
+)
 
 
 def small_plan(count: int = 30, tile: int = 6) -> MapPlan:

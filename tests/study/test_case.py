@@ -153,8 +153,71 @@ def test_speed_is_the_slow_axis_of_the_grid() -> None:
     assert case.torques == (50.0, 200.0)
 
 
-def test_bodies_follow_the_addendum_along_the_row() -> None:
-    case = rig('oil.temperature_below_addendum="50 K"')
+@pytest.mark.parametrize(
+    "given", [(), ('oil.temperature="95 degC"',), ('temperatures.wheel_addendum="110 degC"',)]
+)
+def test_gears_at_the_drawing_temperature_are_as_drawn(given: tuple[str, ...]) -> None:
+    """Shafts, housing and oil keep their proportion to the gears, whatever was held where."""
+    text = example_text("rig")
+    if given and given[0].startswith("oil"):
+        text = text.replace('temperature_below_addendum = "40 K"', 'temperature = "95 degC"')
+        text = text.replace('"oil.temperature_below_addendum"', '"oil.temperature"')
+    case = load_case(text, given)
+    assert isinstance(case, GearCase)
+    assert case.follow == "proportional"
+    drawn = case.operating_at(ZERO_CELSIUS + 20.0)
+    for temperature in (*drawn.temperatures.bodies.values(), drawn.oil_temperature):
+        assert np.all(np.asarray(temperature) == ZERO_CELSIUS + 20.0)
+    if any("wheel_addendum" in one for one in given):
+        return
+    # and at the stated temperature all is as stated
+    stated, hot = case.operating_at(ZERO_CELSIUS + 140.0), case.operating
+    for name, body in hot.temperatures.bodies.items():
+        np.testing.assert_allclose(stated.temperatures.bodies[name], body, rtol=1e-15)
+    np.testing.assert_allclose(stated.oil_temperature, hot.oil_temperature, rtol=1e-15)
+
+
+def test_excesses_scale_with_the_gears() -> None:
+    case = rig('temperatures.wheel_addendum="100 degC"')
+    warm = case.operating_at(ZERO_CELSIUS + 60.0)
+    # 40 K of 120 K at the pinion, of 80 K at the wheel, of 100 K between them
+    expected = {"pinion_bore": 40.0 / 120.0 * 100.0, "wheel_bore": 40.0 / 80.0 * 60.0}
+    expected |= {"housing": 40.0 / 100.0 * 80.0, "pinion_addendum": 40.0, "wheel_addendum": 40.0}
+    for name, excess in expected.items():
+        body = warm.temperatures.bodies[name]
+        assert float(body) - ZERO_CELSIUS - 20.0 == pytest.approx(excess, rel=1e-12)
+
+
+def test_a_proportion_that_no_case_could_hold_is_one_line() -> None:
+    # gears hardly warm over a housing far warmer
+    with pytest.raises(InputError) as caught:
+        rig(
+            'temperatures.pinion_addendum="60 degC"',
+            'temperatures.pinion_bore_below_addendum="80 K"',
+        )
+    assert str(caught.value) == (
+        "gear temperature: got 120 degC; pinion_bore in proportion to it would be at 193.15 K "
+        "(-80 degC); allowed -70..600 degC; give the addenda other temperatures, "
+        'or write temperatures.follow = "fixed"'
+    )
+    with pytest.raises(InputError) as caught:
+        rig('temperatures.pinion_addendum="25 degC"', 'temperatures.wheel_addendum="25 degC"')
+    assert str(caught.value) == (
+        "gear temperature: got 100 degC; pinion_bore in proportion to it would be at 53.15 K "
+        "(-220 degC); allowed -70..600 degC; give the addenda other temperatures, "
+        'or write temperatures.follow = "fixed"'
+    )
+    with pytest.raises(InputError) as caught:
+        rig('temperatures.pinion_addendum="20 degC"', 'temperatures.wheel_addendum="20 degC"')
+    assert str(caught.value) == (
+        "gear temperature: got 100 degC; in the hot state the gears stand at the reference "
+        "temperature, which gives no proportion; give the addenda other temperatures, or write "
+        'temperatures.follow = "fixed"'
+    )
+
+
+def test_fixed_distances_are_kept_where_asked() -> None:
+    case = rig('oil.temperature_below_addendum="50 K"', 'temperatures.follow="fixed"')
     warm = case.operating_at(400.0)
     assert warm.temperatures.pinion_addendum == warm.temperatures.wheel_addendum == 400.0
     assert warm.temperatures.pinion_bore == warm.temperatures.wheel_bore == 380.0
@@ -167,6 +230,7 @@ def test_bodies_follow_the_addendum_along_the_row() -> None:
 def test_bodies_given_outright_stay() -> None:
     text = example_text("rig").replace('housing_below_addendum = "40 K"', 'housing = "60 degC"')
     text = text.replace('"temperatures.housing_below_addendum"', '"temperatures.housing"')
+    text = text.replace('follow = "proportional"', 'follow = "fixed"')
     case = load_case(text)
     assert isinstance(case, GearCase)
     assert case.operating_at(430.0).temperatures.housing == pytest.approx(333.15)
@@ -258,8 +322,8 @@ def test_materials_of_the_users_own() -> None:
             r"^temperatures.row\[1\].pinion_addendum: got 195 degC; valid -60..180 degC",
         ),
         (
-            "temperatures.wheel_bore_below_addendum=165 K",
-            r"^temperatures.row\[0\].wheel_bore: got -65 degC; valid -60..180 degC; below "
+            "temperatures.wheel_bore_below_addendum=195 K",
+            r"^temperatures.row\[3\].wheel_bore: got -67.5 degC; valid -60..180 degC; below "
             r"the data of steel$",
         ),
         (

@@ -76,7 +76,9 @@ def test_rigid_housing_eats_the_backlash_as_published() -> None:
 
 
 def test_tolerances_give_middle_and_corners() -> None:
-    given = from_tolerances((-60e-6, -100e-6), (-80e-6, -140e-6), (-20e-6, 20e-6), PAIR)
+    given = from_tolerances(
+        pinion=(-60e-6, -100e-6), wheel=(-80e-6, -140e-6), distance=(-20e-6, 20e-6), pair=PAIR
+    )
     assert given.least < given.half < given.most
     cosine = math.cos(PINION.pressure_angle)
     assert given.half == pytest.approx(0.5 * 190e-6 * cosine, rel=1e-9)
@@ -87,7 +89,7 @@ def test_tolerances_give_middle_and_corners() -> None:
 
 def test_thick_teeth_are_refused() -> None:
     with pytest.raises(InputError, match=r"^backlash: got a cold half backlash of -0\.0187939 mm"):
-        from_tolerances((20e-6,), (20e-6,), (0.0,), PAIR)
+        from_tolerances(pinion=(20e-6,), wheel=(20e-6,), distance=(0.0,), pair=PAIR)
 
 
 def test_a_distance_within_the_base_circles_is_refused() -> None:

@@ -78,11 +78,27 @@ def test_left_out_temperatures_are_those_of_the_heat_balance(tree: xr.DataTree) 
 
 
 def test_the_row_of_gear_temperatures_holds_the_teeth_alone(tree: xr.DataTree) -> None:
-    warm = left_out().operating_at(400.0)
+    warm = left_out('temperatures.follow="fixed"').operating_at(400.0)
     np.testing.assert_allclose(warm.temperatures.pinion_addendum, 400.0)
     np.testing.assert_allclose(warm.temperatures.wheel_addendum, 400.0)
     assert np.all(np.asarray(warm.temperatures.housing) < 400.0)
     assert tree["temperature"].sizes["gear_temperature"] == 1
+
+
+def test_computed_temperatures_follow_the_gears_in_proportion() -> None:
+    case = left_out()
+    base = case.operating.temperatures.reference
+    drawn = case.operating_at(base)
+    assert all(np.all(body == base) for body in drawn.temperatures.bodies.values())
+    assert np.all(drawn.oil_temperature == base)
+    hot, warm = case.operating, case.operating_at(400.0)
+    mean = 0.5 * (hot.temperatures.pinion_addendum + hot.temperatures.wheel_addendum) - base  # type: ignore[operator]
+    assert np.ptp(mean) > 0.0  # each operating point has a balance of its own
+    np.testing.assert_allclose(
+        (warm.temperatures.housing - base) / (400.0 - base),  # type: ignore[operator]
+        (hot.temperatures.housing - base) / mean,  # type: ignore[operator]
+        rtol=1e-12,
+    )
 
 
 def test_what_is_given_outright_holds_its_node() -> None:

@@ -106,7 +106,7 @@ def test_a_relief_reaches_every_result_of_a_run() -> None:
         case.pair,
         case.operating,
         case.models[0],
-        deviations=[Relief("pinion", 20e-6, 4e-3)],
+        deviations=[Relief("pinion", amount=20e-6, length=4e-3)],
         path_positions=21,
         mesh_positions=64,
     )
@@ -130,7 +130,7 @@ def test_a_bundle_that_does_not_feel_deviations_is_named() -> None:
 
 
 def test_a_relief_pasted_into_a_case_is_the_same_relief() -> None:
-    relief = Relief("wheel", 12.345e-6, 3.456789e-3, shape="parabolic")
+    relief = Relief("wheel", amount=12.345e-6, length=3.456789e-3, shape="parabolic")
     table = relief_text("wheel", relief)
     assert table.startswith("[gears.wheel.tip_relief]\n")
     entries = ", ".join(table.splitlines()[1:])

@@ -182,7 +182,13 @@ def test_heat_moves_a_cascade_by_scaling_alone() -> None:
             "stiffness_amplitude": sweep.base["stiffness_amplitude"] / s**2,
             "damping_ratio": sweep.first / s,
         }
-        scaled = Sweep("scaled", "damping_ratio", sweep.first / s, sweep.last / s, numbers)
+        scaled = Sweep(
+            row="scaled",
+            parameter="damping_ratio",
+            first=sweep.first / s,
+            last=sweep.last / s,
+            base=numbers,
+        )
         same = cascade_results([scaled], 2, title="").summary["cascades"][0]
         assert [s * f["value"] for f in same["flips"]] == pytest.approx(
             [f["value"] for f in entry["flips"]], abs=1e-9
@@ -271,8 +277,8 @@ def test_what_is_not_in_a_dimensionless_case(changes: dict[str, object], message
 def test_what_does_not_fit_a_gear_case(rig_case: GearCase) -> None:
     with pytest.raises(InputError, match="--zeta: got a number beside a gear case"):
         of_case(rig_case, numbers={"damping_ratio": 0.1})
-    with pytest.raises(InputError, match="--state: got cold, with a temperature to vary"):
-        family(of_case(rig_case, state="cold"), "temperature")
+    with pytest.raises(InputError, match="--state: got undeformed, with a temperature to vary"):
+        family(of_case(rig_case, state="undeformed"), "temperature")
     with pytest.raises(InputError, match="--bundle: got 'thesys'"):
         of_case(rig_case, bundle="thesys")
     with pytest.raises(InputError, match=r"--parameter: got 'sped'.*did you mean 'speed'"):

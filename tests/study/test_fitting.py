@@ -21,7 +21,12 @@ def resonance(factors: np.ndarray) -> np.ndarray:
 
 def test_known_factors_are_found_again() -> None:
     truth = np.array([1.7, 0.6])
-    found = fit(resonance, ["damping", "force"], resonance(truth), 0.01 * resonance(truth))
+    found = fit(
+        resonance,
+        ["damping", "force"],
+        measured=resonance(truth),
+        uncertainty=0.01 * resonance(truth),
+    )
     assert found.factors == pytest.approx(tuple(truth), rel=1e-5)
     assert found.notices == ()
 
@@ -34,8 +39,8 @@ def test_the_uncertainty_is_that_of_many_noisy_fits() -> None:
         fit(
             resonance,
             ["damping", "force"],
-            clean * (1 + 0.02 * rng.standard_normal(6)),
-            0.02 * clean,
+            measured=clean * (1 + 0.02 * rng.standard_normal(6)),
+            uncertainty=0.02 * clean,
         )
         for _ in range(150)
     ]
@@ -47,23 +52,32 @@ def test_what_the_data_cannot_tell_is_said() -> None:
     def product(factors: np.ndarray) -> np.ndarray:
         return np.array([1.0, 2.0, 3.0]) * factors[0] * factors[1]
 
-    alike = fit(product, ["a", "b"], np.array([2.0, 4.0, 6.0]), np.full(3, 0.1))
+    alike = fit(
+        product, ["a", "b"], measured=np.array([2.0, 4.0, 6.0]), uncertainty=np.full(3, 0.1)
+    )
     assert ("important", "the data cannot tell a from b: they act alike") in alike.notices
 
     def deaf(factors: np.ndarray) -> np.ndarray:
         return np.array([1.0, 2.0]) * factors[0]
 
-    unseen = fit(deaf, ["a", "b"], np.array([1.1, 2.2]), np.full(2, 0.01))
+    unseen = fit(deaf, ["a", "b"], measured=np.array([1.1, 2.2]), uncertainty=np.full(2, 0.01))
     assert any("the data do not determine b" in text for _, text in unseen.notices)
-    few = fit(lambda f: np.array([f[0] * f[1] ** 2]), ["a", "b"], np.array([2.0]), np.array([0.1]))
+    few = fit(
+        lambda f: np.array([f[0] * f[1] ** 2]),
+        ["a", "b"],
+        measured=np.array([2.0]),
+        uncertainty=np.array([0.1]),
+    )
     assert ("important", "2 parameters from 1 values: not determined") in few.notices
 
 
 def test_refusals() -> None:
-    with pytest.raises(InputError, match=r"^uncertainty: got \[0\.0\]; allowed > 0, one for each"):
-        fit(resonance, ["a"], np.ones(1), np.zeros(1))
+    with pytest.raises(
+        InputError, match=r"^uncertainty: got \[0\.0\]; allowed > 0, finite, one for each"
+    ):
+        fit(resonance, ["a"], measured=np.ones(1), uncertainty=np.zeros(1))
     with pytest.raises(InputError, match=r"^parameters: got none; allowed one or more fields$"):
-        fit(resonance, [], np.ones(1), np.ones(1))
+        fit(resonance, [], measured=np.ones(1), uncertainty=np.ones(1))
 
 
 def test_overrides_scale_values_with_their_units() -> None:
@@ -99,7 +113,13 @@ def test_a_cases_transmission_error_is_found_again_from_its_own_lines() -> None:
         "transmission_error.harmonics": '[{ order = 1, amplitude = "6 um", phase = "0 deg" }]',
     }
     lines = tree_lines(run(load_example("rig", grown)))["consistent hot"].lines
-    table = LineTable("made", tuple(SpeedLine(x.speed, x.frequency, x.displacement) for x in lines))
+    table = LineTable(
+        "made",
+        tuple(
+            SpeedLine(speed=x.speed, frequency=x.frequency, displacement=x.displacement)
+            for x in lines
+        ),
+    )
     found = fit_case(load_example("rig", quick), table, ["transmission_error.amplitude"])
     assert found.factors[0] == pytest.approx(1.2, rel=1e-3)
     assert lines[0].speed == pytest.approx(1000 * RPM)

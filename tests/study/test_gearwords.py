@@ -58,7 +58,7 @@ def test_rows_one_by_one_and_together_agree(rig):
 
 def test_cold_backlash_scales_the_lane(rig):
     """Everything uniform: b' = b, so the dimensionless half backlash is 1 whatever b is."""
-    family = GearFamily(rig, ("cold_half_backlash",), state="cold")
+    family = GearFamily(rig, ("cold_half_backlash",), state="undeformed")
     points = family(np.array([[60e-6], [125e-6]]))
     assert points.flat.half_backlash == pytest.approx([1.0, 1.0], rel=1e-12)
     means = points.flat.force[:, 0].real

@@ -71,7 +71,7 @@ def test_cold_contact_is_the_plain_loaded_contact(contact: xr.DataTree) -> None:
     plain = loaded_contact(
         case.pair, 100.0 / case.pair.pinion.base_radius, PHASES, model=LoadedModel()
     )
-    here = contact["contact"].sel(temperature="cold").isel(load=1)
+    here = contact["contact"].sel(temperature="undeformed").isel(load=1)
     for name in ("tangent_stiffness", "secant_stiffness", "load_share"):
         np.testing.assert_allclose(here[name].values, plain[name].values, rtol=1e-9, atol=1e-12)
 
@@ -80,7 +80,7 @@ def test_shares_add_up_and_tangent_is_the_stiffer(contact: xr.DataTree) -> None:
     data = contact["contact"]
     np.testing.assert_allclose(data["load_share"].sum("pair").values, 1.0, rtol=1e-9)
     assert np.all(data["tangent_stiffness"].values >= data["secant_stiffness"].values * (1 - 1e-9))
-    assert list(data["temperature"].values) == ["cold", "hot"]
+    assert list(data["temperature"].values) == ["undeformed", "hot"]
 
 
 def test_double_contact_is_lost_at_light_load_between_unequally_hot_gears(
@@ -109,3 +109,38 @@ def test_iso_stands_beside_the_model_within_its_usual_distance(contact: xr.DataT
     compared = contact["iso_6336"].isel(load=1)
     ratio = float(compared["iso_stiffness"]) / float(compared["loaded_stiffness"])
     assert 0.8 < ratio < 1.25
+
+
+def test_a_pressure_on_a_tip_corner_is_left_out_with_its_reason(contact: xr.DataTree) -> None:
+    data = contact["contact"]
+    flags = data["edge_contact"].values
+    assert np.array_equal(np.isnan(data["contact_pressure"].values), flags > 0)
+    shares = (flags > 0).any(axis=-1).mean(axis=-1)
+    np.testing.assert_array_equal(data["edge_contact_share"].values, shares)
+    # heavier load, longer contact on the corners; the same over the light loads
+    assert np.all(np.diff(shares, axis=1) > 0.0)
+    light = contact["base_pitch"]["edge_contact_share"].sel(temperature_difference=0.0).values
+    assert np.all(np.diff(light) >= 0.0)
+    state, load = np.unravel_index(shares.argmax(), shares.shape)
+    (told,) = (
+        one for one in json.loads(contact.attrs["notices"]) if one["text"].startswith("Tip corners")
+    )
+    assert told["level"] == "important"
+    assert told["text"] == (
+        f"Tip corners carry load during up to {100 * shares.max():.3g} % of the mesh period "
+        f"({data['temperature'].values[state]}, {data['load'].values[load]:.4g} N m). The Hertzian "
+        "pressure is not valid on a corner (edge contact): it is left out there."
+    )
+
+
+def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:
+    data = relief["error"]
+    flags = data["edge_contact"].values
+    assert np.array_equal(np.isnan(data["greatest_pressure"].values), flags > 0)
+    plain, relieved = data["edge_contact_share"].values
+    assert plain == np.mean(flags[0] > 0)
+    assert 0.0 <= relieved < 0.5 * plain
+    over = relief["loads"]["edge_contact_share"].values
+    assert np.all(over[1] <= over[0])
+    texts = [one["text"] for one in json.loads(relief.attrs["notices"])]
+    assert any(f"{100 * plain:.3g} % of the mesh period without the relief" in t for t in texts)

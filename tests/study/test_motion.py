@@ -22,7 +22,13 @@ SIMULATION = Simulation(
 
 def test_every_motion_carries_its_proof() -> None:
     """Published multipliers of the base set (period 2 and 1) and its exponent in chaos."""
-    model = TorsionalModel(np.array([0.1535, 0.18, 0.10]), 1.245, 0.335, 0.017, -1.16)
+    model = TorsionalModel(
+        damping_ratio=np.array([0.1535, 0.18, 0.10]),
+        frequency=1.245,
+        stiffness_amplitude=0.335,
+        mean_force=0.017,
+        force_amplitude=-1.16,
+    )
     values = follow(model, SIMULATION).values
     assert values["label"].tolist() == ["period-2", "period-1", "chaotic"]
     assert values["orbit_period"].tolist() == [2, 1, 0]
@@ -40,7 +46,16 @@ def test_every_motion_carries_its_proof() -> None:
 
 def test_a_complex_pair_is_stored_by_its_upper_half() -> None:
     """Lasting contact with eps = 0: mu = exp((-zeta + i sqrt(1 - zeta^2)) 2 pi/w)."""
-    values = follow(TorsionalModel(np.array([0.05]), 0.7, 0.0, 0.3, 0.05), SIMULATION).values
+    values = follow(
+        TorsionalModel(
+            damping_ratio=np.array([0.05]),
+            frequency=0.7,
+            stiffness_amplitude=0.0,
+            mean_force=0.3,
+            force_amplitude=0.05,
+        ),
+        SIMULATION,
+    ).values
     turn = 2.0 * np.pi / 0.7
     expected = np.exp(turn * (-0.05 + 1j * np.sqrt(1.0 - 0.05**2)))
     assert values["multiplier_real"][0] == pytest.approx(expected.real, abs=1e-12)

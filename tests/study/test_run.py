@@ -48,7 +48,7 @@ def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: xr.DataTre
     }
     mesh = small["mesh"]
     assert list(mesh["bundle"].values) == ["consistent", "thesis"]
-    assert list(mesh["state"].values) == ["cold", "hot"]
+    assert list(mesh["state"].values) == ["undeformed", "hot"]
     assert np.all(mesh["status"].values == STATUS.index("ok"))
     assert set(small["motion"]["label"].values.ravel()) <= {"period-1", "undecided"}
 
@@ -78,7 +78,7 @@ def test_dimensionless_numbers_close_with_the_stored_si_values(small: xr.DataTre
     np.testing.assert_allclose(
         (mean_deflection * mesh["mean_stiffness"]).values, mesh["normal_force"].values, rtol=1e-12
     )
-    assert np.all(mesh["thermal_stiffness_ratio"].sel(state="cold").values == 0.0)
+    assert np.all(mesh["thermal_stiffness_ratio"].sel(state="undeformed").values == 0.0)
 
 
 def test_steady_motion_carries_the_load(small: xr.DataTree) -> None:
@@ -121,11 +121,15 @@ def test_jammed_points_are_a_status_and_the_rest_goes_on() -> None:
     assert np.all(hot["status"].values == STATUS.index("jammed"))
     motion = tree["motion"].sel(bundle="consistent")
     assert np.all(motion["label"].sel(state="hot").values == "jammed")
-    assert np.all(motion["label"].sel(state="cold").values == "period-1")
+    assert np.all(motion["label"].sel(state="undeformed").values == "period-1")
     assert np.all(np.isnan(motion["displacement"].sel(state="hot").values))
     texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
     assert any("jammed when hot" in text and "°C" in text for text in texts)
-    assert all(row["label"] == "jammed" for row in summary(tree)["temperature_row"][:8])
+    row = tree["temperature"].sel(bundle="consistent")
+    jam = float(hot["proportional_jam_temperature"].min())
+    beyond = row["gear_temperature"].values > jam
+    assert 0 < beyond.sum() < beyond.size
+    assert np.all((row["label"].values == "jammed") == beyond[:, None])
 
 
 def test_a_pair_that_is_jammed_everywhere_still_gives_a_tree() -> None:

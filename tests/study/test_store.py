@@ -23,7 +23,9 @@ from thermogear.study import work
 from thermogear.study.store import COPY, JOURNAL, MANIFEST, QUARANTINE, RESULT, Store, read_store
 from thermogear.study.work import carry_out, duration, estimate, require_space
 
-MODEL = TorsionalModel(0.05, 1.0, 0.3, 0.1, 0.3)
+MODEL = TorsionalModel(
+    damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3
+)
 
 
 def plan_of(count=12, tile=6, damping=0.05):
@@ -71,7 +73,7 @@ def test_xarray_opens_the_result_without_us(tmp_path, memory):
         lambda: diagram_plan(
             MODEL, "frequency", np.linspace(0.9, 1.0, 6), block=2, branch_period=1
         ),
-        lambda: basin_plan(MODEL, np.linspace(-2, 2, 9), np.linspace(-2, 2, 9), survey=4),
+        lambda: basin_plan(MODEL, x=np.linspace(-2, 2, 9), v=np.linspace(-2, 2, 9), survey=4),
     ],
     ids=["diagram", "basins"],
 )
@@ -125,7 +127,7 @@ def test_other_inputs_are_refused_by_the_first_field(tmp_path):
     with pytest.raises(InputError, match=r"rule\.cap: got 1024; allowed 512"):
         carry_out(replace(plan_of(), rule=Rule(cap=1024)), tmp_path / "s")
     with pytest.raises(InputError, match="kind: got basins; allowed map"):
-        carry_out(basin_plan(MODEL, [0.0, 1.0], [0.0, 1.0], survey=2), tmp_path / "s")
+        carry_out(basin_plan(MODEL, x=[0.0, 1.0], v=[0.0, 1.0], survey=2), tmp_path / "s")
 
 
 def test_foreign_directories_and_files_are_refused(tmp_path):

@@ -83,7 +83,7 @@ def test_words_for_trends() -> None:
 def test_ctrl_c_keeps_what_is_judged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def stop(*_: object) -> None:
+    def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(motions, "diagrams", stop)
@@ -116,6 +116,11 @@ def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path)
         assert verdicts[number] == "reproduced", number
     for number in ("2.2.6", "5.1.3", "5.2.9", "5.2.10", "6.4.1"):
         assert verdicts[number] == "cannot be decided", number
+    # the document says "mainly": that heat acts on stability at all is another row, and stands
+    rows = {row["number"]: row for row in summary["rows"]}
+    assert all("mainly" in rows[number]["words"] for number in ("4.3.2", "6.3.1"))
+    assert f"row 4.3.10 ({verdicts['4.3.10']})" in rows["6.3.1"]["argument"]
+    assert verdicts["6.3.1"] == verdicts["4.3.2"] != verdicts["4.3.10"]
     with xr.open_datatree(tmp_path / "results.nc", engine="h5netcdf") as tree:
         assert tree.attrs["kind"] == "thesis"
         parts = {"grid", "flips", "warming", "experiment", "sensitivity", "diagrams", "path"}

@@ -73,7 +73,9 @@ def test_where_the_model_leaves_three_per_cent(checked: CheckedPair) -> None:
 
 
 def test_splitting_every_element() -> None:
-    coarse, fine = (pair_stiffness(PUBLISHED.pair, FORCE, [0.3, 0.8], Density(n)) for n in (1, 2))
+    coarse, fine = (
+        pair_stiffness(PUBLISHED.pair, FORCE, [0.3, 0.8], Density(refinement=n)) for n in (1, 2)
+    )
     assert coarse.secant == pytest.approx(fine.secant, rel=1.2e-3)
     assert coarse.share == pytest.approx(fine.share, abs=2e-4)
 
@@ -99,7 +101,7 @@ def test_only_the_contact_knows_the_load() -> None:
 
 
 def test_three_pairs_in_contact() -> None:
-    high = Rack(1.25, 1.5, 0.3)
+    high = Rack(addendum=1.25, dedendum=1.5, fillet_radius=0.3)
     pair = GearPair(Gear(40, 3e-3, rack=high), Gear(60, 3e-3, rack=high))
     got = check_stiffness(pair, 200e3 * pair.face_width, inner_phases(pair, 1))
     assert got.pairs.tolist() == [3, 2]
@@ -135,7 +137,13 @@ class TestGrowth:
         compared: Compared,
     ) -> None:
         gear = Gear(teeth, 5e-3, bore_radius=bore)
-        field = RadialField(bore, gear.tip_radius, addendum - 20.0, addendum, 293.15)
+        field = RadialField(
+            bore_radius=bore,
+            tip_radius=gear.tip_radius,
+            bore_temperature=addendum - 20.0,
+            addendum_temperature=addendum,
+            reference=293.15,
+        )
         got = check_growth(gear, field, 1e-3 * np.array(radii))
         compared(
             "growth of the flank in a temperature gradient",
@@ -148,7 +156,13 @@ class TestGrowth:
     @pytest.mark.parametrize("support", ["rigid", "shaft"])
     def test_held_bores(self, support: str, compared: Compared) -> None:
         gear = Gear(25, 5e-3, bore_radius=25e-3)
-        field = RadialField(25e-3, gear.tip_radius, 393.15, 413.15, 293.15)
+        field = RadialField(
+            bore_radius=25e-3,
+            tip_radius=gear.tip_radius,
+            bore_temperature=393.15,
+            addendum_temperature=413.15,
+            reference=293.15,
+        )
         got = check_growth(gear, field, [60e-3, 65e-3, 67.5e-3], support)
         compared(
             "growth of the flank, bore held by its shaft",
@@ -161,7 +175,12 @@ class TestGrowth:
     @pytest.mark.parametrize("gear", [Gear(25, 5e-3), Gear(16, 2e-3, profile_shift=0.3)])
     def test_uniform_heat_keeps_the_involute(self, gear: Gear, compared: Compared) -> None:
         """delta_n = lambda tau rho_k, exactly: the displacement is in the elements' space."""
-        field = RadialField.uniform(gear.bore_radius, gear.tip_radius, 393.15, 293.15)
+        field = RadialField.uniform(
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            temperature=393.15,
+            reference=293.15,
+        )
         radii = flank_radii(gear)
         got = finite_flank_growth(gear, field, radii)
         expected = 100.0 * gear.material.thermal_expansion * gear.curvature_radius(radii)
@@ -176,7 +195,13 @@ class TestGrowth:
         gear = Gear(25, 5e-3)
 
         def growth(bore: float, tip: float) -> np.ndarray:
-            field = RadialField(gear.bore_radius, gear.tip_radius, bore, tip, 300.0)
+            field = RadialField(
+                bore_radius=gear.bore_radius,
+                tip_radius=gear.tip_radius,
+                bore_temperature=bore,
+                addendum_temperature=tip,
+                reference=300.0,
+            )
             return finite_flank_growth(gear, field, 65e-3)
 
         parts = growth(310.0, 300.0) + growth(300.0, 320.0)
@@ -184,13 +209,21 @@ class TestGrowth:
 
     def test_refusals(self) -> None:
         gear = Gear(25, 5e-3)
-        field = RadialField.uniform(gear.bore_radius, gear.tip_radius, 393.15, 293.15)
+        field = RadialField.uniform(
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            temperature=393.15,
+            reference=293.15,
+        )
         with pytest.raises(InputError, match=r"radius: got 50 \.\. 50 mm; allowed 59\.1183"):
             finite_flank_growth(gear, field, 50e-3)
         with pytest.raises(InputError, match=r"bore: got 'fre'; .* did you mean 'free'"):
             finite_flank_growth(gear, field, 65e-3, "fre")
         many = RadialField.uniform(
-            gear.bore_radius, gear.tip_radius, np.array([[300.0], [310.0]]), 293.15
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            temperature=np.array([[300.0], [310.0]]),
+            reference=293.15,
         )
         with pytest.raises(InputError, match="field: got 2 states; allowed one state"):
             finite_flank_growth(gear, many, 65e-3)

@@ -39,7 +39,7 @@ def patches(gear: Gear) -> list[Patch]:
     across = plain_across(Density())
     return [
         foot_mesh(gear, across, Density()).patch,
-        tooth_mesh(gear, across, plain_arcs(gear, Density()), Density()).patch,
+        tooth_mesh(gear, across=across, arcs=plain_arcs(gear, Density()), density=Density()).patch,
     ]
 
 
@@ -83,7 +83,7 @@ def test_pressure_has_the_base_circle_as_its_lever(gear: Gear) -> None:
     """Every normal of an involute touches the base circle: moment = F r_b."""
     t, density = pitch_point(gear), Density()
     across = contact_across(gear, A, density)
-    mesh = tooth_mesh(gear, across, contact_arcs(gear, t, A, density), density)
+    mesh = tooth_mesh(gear, across=across, arcs=contact_arcs(gear, t, A, density), density=density)
     centre = 0.5 * gear.base_radius * t * t
 
     def pressure(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ def test_pressure_has_the_base_circle_as_its_lever(gear: Gear) -> None:
 @pytest.mark.parametrize(("near", "factor"), [("stress", 1.0), ("strain", 1.0 - 0.3**2)])
 def test_indentation_follows_the_half_plane(near: str, factor: float) -> None:
     """Halving the width of the pressure adds 2 (1 - nu^2)/(pi E) ln 2 (plane stress: nu = 0)."""
-    gear = ElasticGear(PINION, 1, A, Density(2), near)
+    gear = ElasticGear(PINION, 1, A, Density(refinement=2), near)
     tooth = [gear.tooth(pitch_point(PINION))]
     wide, narrow = (float(gear.compliance(tooth, [a])[0, 0]) for a in (A, 0.5 * A))
     assert narrow - wide == pytest.approx(2.0 * factor / np.pi * np.log(2.0), rel=4e-3)
@@ -113,7 +113,7 @@ def test_indentation_follows_the_half_plane(near: str, factor: float) -> None:
 
 def test_torsion_of_a_clamped_ring_is_in_balance() -> None:
     """v = r (1/r_x^2 - 1/r^2) solves the plane problem: it needs forces at the edges alone."""
-    foot = foot_mesh(WHEEL, plain_across(Density()), Density(2))
+    foot = foot_mesh(WHEEL, plain_across(Density()), Density(refinement=2))
     x, y = foot.patch.nodes.T
     r = np.hypot(x, y)
     hoop = r * (1.0 / WHEEL.bore_radius**2 - 1.0 / r**2)
@@ -170,13 +170,15 @@ def test_spectators_change_nothing_and_neighbours_are_reciprocal() -> None:
 def test_splitting_every_element_changes_little(gear: Gear) -> None:
     t = 0.5 * (gear.junction[1] + float(np.tan(gear.pressure_angle_at(gear.tip_radius))))
     a = 0.02 * gear.module
-    coarse, fine = (ElasticGear(gear, 1, a, Density(refinement)) for refinement in (1, 2))
+    coarse, fine = (
+        ElasticGear(gear, 1, a, Density(refinement=refinement)) for refinement in (1, 2)
+    )
     values = [float(g.compliance([g.tooth(t)], [a])[0, 0]) for g in (coarse, fine)]
     assert values[0] == pytest.approx(values[1], rel=2e-3)
 
 
 def test_grading_keeps_ends_core_and_growth() -> None:
-    nodes = graded(-1.0, 3.0, 0.5, 0.1, 0.02, 1.5, 0.5)
+    nodes = graded(low=-1.0, high=3.0, centre=0.5, core=0.1, fine=0.02, rate=1.5, coarse=0.5)
     steps = np.diff(nodes)
     assert (nodes[0], nodes[-1]) == (-1.0, 3.0)
     assert np.allclose(steps[(nodes[:-1] > 0.399) & (nodes[1:] < 0.601)], 0.02)

@@ -32,7 +32,7 @@ def build(
         "path": path_group(bundles, torques),
         "mesh": mesh_group(bundles, torques, jammed),
         "profile": profile_group(),
-        "motion": motion_group(bundles, torques, ("cold", "hot"), "state", jammed),
+        "motion": motion_group(bundles, torques, ("undeformed", "hot"), "state", jammed),
         "temperature": temperature_group(bundles, torques, jammed),
         "base_sets/table-4.2": points_group(),
         "base_sets/section-4.1": points_group("temperature", (293.15, 413.15), "K"),
@@ -118,7 +118,7 @@ def path_group(bundles: tuple[str, ...], torques: tuple[float, ...]) -> xr.Datas
         )
     coordinates = {**_operating(torques), "path_position": (("path_position",), s)}
     data = label(variables, coordinates, {"path_points": json.dumps(POINTS)})
-    return data.assign_coords(bundle=list(bundles), state=["cold", "hot"])
+    return data.assign_coords(bundle=list(bundles), state=["undeformed", "hot"])
 
 
 def mesh_group(bundles: tuple[str, ...], torques: tuple[float, ...], jammed: bool) -> xr.Dataset:
@@ -157,7 +157,7 @@ def mesh_group(bundles: tuple[str, ...], torques: tuple[float, ...], jammed: boo
         "path_position": (("path_position",), s),
     }
     data = label(variables, coordinates, {"path_points": json.dumps(POINTS)})
-    return data.assign_coords(bundle=list(bundles), state=["cold", "hot"])
+    return data.assign_coords(bundle=list(bundles), state=["undeformed", "hot"])
 
 
 def profile_group() -> xr.Dataset:

@@ -106,10 +106,10 @@ def test_key_results_say_what_heat_does(text: str) -> None:
     assert words.index("two regimes") < words.index("quiet")
 
 
-def test_a_natural_frequency_is_said_to_be_that_of_the_cold_mean_stiffness(text: str) -> None:
-    assert "mesh over natural frequency of the cold mean stiffness" in text
-    assert "f<sub>n</sub> of cold mean k [Hz]" in text
-    assert "of the natural frequency of the cold mean stiffness (" in words_of(text)
+def test_a_natural_frequency_is_said_to_be_that_of_the_undeformed_mean_stiffness(text: str) -> None:
+    assert "mesh over natural frequency of the undeformed mean stiffness" in text
+    assert "f<sub>n</sub> of undeformed mean k [Hz]" in text
+    assert "of the natural frequency of the undeformed mean stiffness (" in words_of(text)
 
 
 def test_base_sets_are_said_to_be_none_of_the_rig(text: str) -> None:
@@ -222,7 +222,7 @@ def test_hostile_texts_are_shown_and_never_obeyed(tmp_path: Path) -> None:
 def test_points_in_plenty_are_thinned_and_said_to_be(
     tmp_path: Path, figures: dict[str, Figure]
 ) -> None:
-    three = synthetic.motion_group(("c",), (1.0, 2.0, 3.0), ("cold", "hot"), "state", False)
+    three = synthetic.motion_group(("c",), (1.0, 2.0, 3.0), ("undeformed", "hot"), "state", False)
     wide = three.isel(operating=[0, 1, 2, 0, 1, 2, 0, 1])
     synthetic.write(tmp_path, {"motion": wide}, title="t", kind="gear")
     assert "6 of 8 operating points are drawn" in rendered(tmp_path)

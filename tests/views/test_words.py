@@ -76,7 +76,7 @@ def test_prose_is_escaped_before_it_is_polished() -> None:
 def test_refined_curves_are_exact_for_cubics_and_keep_every_sample() -> None:
     t = np.linspace(-1.0, 2.0, 7)
     x, v = t**3 - 2.0 * t, 3.0 * t**2 - 2.0
-    fine, place, slope = refined(t, x, v, 5)
+    fine, place, slope = refined(t, x=x, v=v, times=5)
     np.testing.assert_allclose(place, fine**3 - 2.0 * fine, atol=1e-12)
     np.testing.assert_allclose(slope, 3.0 * fine**2 - 2.0, atol=1e-12)
     np.testing.assert_array_equal(place[::5], x)
@@ -84,22 +84,22 @@ def test_refined_curves_are_exact_for_cubics_and_keep_every_sample() -> None:
 
 def test_a_settled_section_keeps_a_point_per_period() -> None:
     x = np.tile([0.0, 1.0], 50) + 1e-9 * np.arange(100)
-    kept, _ = thinned(x, x, scale=(1.0, 1.0))
+    kept, _ = thinned(x=x, y=x, scale=(1.0, 1.0))
     assert kept.size == 2
-    spread, _ = thinned(np.linspace(0.0, 1.0, 100), np.zeros(100), scale=(1.0, 0.0))
+    spread, _ = thinned(x=np.linspace(0.0, 1.0, 100), y=np.zeros(100), scale=(1.0, 0.0))
     assert spread.size == 100
-    assert thinned(np.full(3, np.nan), np.zeros(3), (1.0, 1.0))[0].size == 0
+    assert thinned(x=np.full(3, np.nan), y=np.zeros(3), scale=(1.0, 1.0))[0].size == 0
 
 
 def test_an_orbit_is_drawn_once_and_closes() -> None:
-    assert periods_to_draw("period-2", 64, 512) == 129
-    assert periods_to_draw("period-8", 64, 512) == 512
-    assert periods_to_draw("chaotic", 64, 512) == 512
+    assert periods_to_draw("period-2", samples_per_period=64, stored=512) == 129
+    assert periods_to_draw("period-8", samples_per_period=64, stored=512) == 512
+    assert periods_to_draw("chaotic", samples_per_period=64, stored=512) == 512
 
 
 def test_the_floor_of_a_spectrum_lies_below_its_greatest_line() -> None:
     order = np.array([0.0, 0.5, 1.0, 9.0])
-    floor, top = floor_of(np.array([50.0, 0.1, 2.0, 8.0]), order, 8.0)
+    floor, top = floor_of(np.array([50.0, 0.1, 2.0, 8.0]), order=order, highest=8.0)
     assert floor == pytest.approx(2e-5)
     assert top > 2.0
-    assert floor_of(np.full(4, np.nan), order, 8.0) == (1e-6, 1.0)
+    assert floor_of(np.full(4, np.nan), order=order, highest=8.0) == (1e-6, 1.0)

@@ -31,7 +31,7 @@ WIDEST_TRAP = 0.05
 NARROWEST_TRAP = 1e-5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Attractor:
     """A periodic orbit (``points`` its section, (period, 2)) or a chaotic set (a cloud of it).
 
@@ -100,7 +100,13 @@ def attractors_from(
                 cloud = close_orbits(field.one, settled.state[i][None], CLOUD).points[0]
                 where[i] = len(found)
                 found.append(
-                    Attractor(0, cloud, complex(np.nan, np.nan), float(settled.lyapunov[i]), 0.0)
+                    Attractor(
+                        period=0,
+                        points=cloud,
+                        multiplier=complex(np.nan, np.nan),
+                        lyapunov=float(settled.lyapunov[i]),
+                        trap=0.0,
+                    )
                 )
         elif period > 0:
             where[i] = periodic_index(found, settled.point[i], period, field.unit)
@@ -143,7 +149,9 @@ def _orbit(field: Field, point: Floats, period: int, multiplier: complex) -> Att
     points = run.points[0, :-1]
     exponent = float(np.log(abs(multiplier)) / (period * field.lanes.period[0]))
     trap = _trap(field, points, multiplier, period)
-    return Attractor(period, points, complex(multiplier), exponent, trap)
+    return Attractor(
+        period=period, points=points, multiplier=complex(multiplier), lyapunov=exponent, trap=trap
+    )
 
 
 def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> float:
@@ -161,7 +169,7 @@ def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> flo
     while radius > NARROWEST_TRAP:
         starts = (points[:, None, :] + radius * shape[None] * field.unit).reshape(-1, 2)
         state = exact.State.start(
-            starts[:, 0], starts[:, 1], np.full(len(starts), field.one.backlash[0])
+            x=starts[:, 0], y=starts[:, 1], backlash=np.full(len(starts), field.one.backlash[0])
         )
         exact.advance(field.of(len(starts)), state, turns * period)
         ends = np.stack([state.x, state.y], axis=1).reshape(len(points), -1, 2)
@@ -198,7 +206,7 @@ def trapped(
     reach = np.array([attractors[n].trap for n in owner])
     lane = np.arange(min(field.width, count))
     maps = field.of(lane.size)
-    state = exact.State.start(starts[lane, 0], starts[lane, 1], maps.backlash)
+    state = exact.State.start(x=starts[lane, 0], y=starts[lane, 1], backlash=maps.backlash)
     fresh = lane.size
     while lane.size:
         alive()
@@ -221,7 +229,9 @@ def trapped(
         enter = np.arange(fresh, min(fresh + done.size, count))
         fresh += enter.size
         seats = done[: enter.size]
-        begin = exact.State.start(starts[enter, 0], starts[enter, 1], maps.backlash[seats])
+        begin = exact.State.start(
+            x=starts[enter, 0], y=starts[enter, 1], backlash=maps.backlash[seats]
+        )
         state.x[seats], state.y[seats] = begin.x, begin.y
         state.region[seats] = begin.region
         lane[seats] = enter
@@ -231,18 +241,18 @@ def trapped(
             lane = lane[left]
             maps = part_of(maps, left)
             state = exact.State(
-                state.x[left],
-                state.y[left],
-                state.region[left],
-                np.ascontiguousarray(state.tangent[:, left]),
-                np.ascontiguousarray(state.counts[:, left]),
-                np.ascontiguousarray(state.spent[:, left]),
+                x=state.x[left],
+                y=state.y[left],
+                region=state.region[left],
+                tangent=np.ascontiguousarray(state.tangent[:, left]),
+                counts=np.ascontiguousarray(state.counts[:, left]),
+                spent=np.ascontiguousarray(state.spent[:, left]),
             )
     return where, used, last
 
 
 def matched(
-    old: Sequence[Attractor], new: Sequence[Attractor], landed: Sequence[int], unit: Floats
+    old: Sequence[Attractor], new: Sequence[Attractor], *, landed: Sequence[int], unit: Floats
 ) -> list[int]:
     """Old number of every new attractor; -1 for one that no old one continues into.
 

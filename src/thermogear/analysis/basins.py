@@ -45,7 +45,7 @@ SURVEY = 24
 BOX = 5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class BasinPlan:
     """Basins of one parameter point over a grid of starts; see :func:`basins`."""
 
@@ -217,7 +217,9 @@ def _described(
         kept = one.points[:longest]
         points[n, : len(kept)] = kept
     mixed, all_boxes, rough = basin_entropy(where)
-    safe = border_distances(data["x"].values, data["v"].values, where, known, unit)
+    safe = border_distances(
+        x=data["x"].values, v=data["v"].values, where=where, known=known, unit=unit
+    )
     words = {
         "fraction": ("share of the starts", counts / max(where.size, 1)),
         "count": ("starts that end here", counts),
@@ -282,6 +284,7 @@ def basin_entropy(where: NDArray[np.int64], box: int = BOX) -> tuple[float, floa
 
 
 def border_distances(
+    *,
     x: Floats,
     v: Floats,
     where: NDArray[np.int64],
@@ -311,9 +314,9 @@ def border_distances(
 
 def basin_plan(
     model: object,
+    *,
     x: ArrayLike,
     v: ArrayLike,
-    *,
     rule: Rule = BASIN_RULE,
     seeds: ArrayLike = (),
     survey: int = SURVEY,
@@ -327,20 +330,20 @@ def basin_plan(
     starts = np.concatenate([extra, _spread(xs.tolist(), vs.tolist(), survey)])
     found, _ = attractors_from(lanes, starts, rule)
     return BasinPlan(
-        model,
-        tuple(xs.tolist()),
-        tuple(vs.tolist()),
-        tuple(found),
-        tuple((float(a), float(b)) for a, b in extra),
-        rule,
+        model=model,
+        x=tuple(xs.tolist()),
+        v=tuple(vs.tolist()),
+        attractors=tuple(found),
+        seeds=tuple((float(a), float(b)) for a, b in extra),
+        rule=rule,
     )
 
 
 def basins(
     model: object,
+    *,
     x: ArrayLike,
     v: ArrayLike,
-    *,
     rule: Rule = BASIN_RULE,
     seeds: ArrayLike = (),
     survey: int = SURVEY,
@@ -357,17 +360,17 @@ def basins(
     attractors' sections and multipliers, their distance to the nearest border and the basin
     entropies. The result does not depend on ``threads``.
     """
-    plan = basin_plan(model, x, v, rule=rule, seeds=seeds, survey=survey)
+    plan = basin_plan(model, x=x, v=v, rule=rule, seeds=seeds, survey=survey)
     return gather(plan, threads=threads, progress=progress)
 
 
 def basins_along(
     model: object,
     parameter: str,
+    *,
     values: ArrayLike,
     x: ArrayLike,
     v: ArrayLike,
-    *,
     rule: Rule = BASIN_RULE,
     survey: int = SURVEY,
     threads: int | None = None,
@@ -388,7 +391,7 @@ def basins_along(
     for done, value in enumerate(points):
         here = replace(family.model, **{parameter: float(value)})
         seeds = [one.points[0] for _, one in last]
-        plan = basin_plan(here, x, v, rule=rule, seeds=seeds or (), survey=survey)
+        plan = basin_plan(here, x=x, v=v, rule=rule, seeds=seeds or (), survey=survey)
         data = gather(plan, threads=threads)
         lanes = lanes_of(here)
         field = Field(lanes)
@@ -399,7 +402,7 @@ def basins_along(
             for number, end in enumerate(ends):
                 if end >= 0:
                     landed[number] = _same(now, found[int(end)], field)
-        numbers = matched([a for _, a in last], now, landed, field.unit)
+        numbers = matched([a for _, a in last], now, landed=landed, unit=field.unit)
         row: dict[int, tuple[float, int, Floats, float]] = {}
         named: list[tuple[int, Attractor]] = []
         for n, one in enumerate(now):
@@ -427,11 +430,11 @@ def _read(data: xr.Dataset) -> list[Attractor]:
         points = points[np.isfinite(points[:, 0])]
         found.append(
             Attractor(
-                int(data["attractor_period"].values[n]),
-                points,
-                complex(data["attractor_multiplier"].values[n]),
-                float(data["attractor_lyapunov"].values[n]),
-                0.0,
+                period=int(data["attractor_period"].values[n]),
+                points=points,
+                multiplier=complex(data["attractor_multiplier"].values[n]),
+                lyapunov=float(data["attractor_lyapunov"].values[n]),
+                trap=0.0,
             )
         )
     return found

@@ -56,7 +56,7 @@ class Bifurcation:
         return self.orbit.multipliers
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Point:
     """A converged point of a branch in scaled coordinates, with its tangent."""
 
@@ -88,7 +88,7 @@ class Curve:
     """G(z, p) = P^n(z; p) - z in coordinates scaled by b, 2 pi b/T and the parameter's range."""
 
     def __init__(
-        self, family: Family, parameter: str, period: int, start: float, span: float
+        self, family: Family, parameter: str, period: int, *, start: float, span: float
     ) -> None:
         self.family = family
         self.parameter = parameter
@@ -117,10 +117,10 @@ class Curve:
     def correct(
         self,
         guess: Floats,
+        *,
         normal: Floats,
         old: Floats | None = None,
         reach: float = np.inf,
-        *,
         tangent: bool = True,
     ) -> Point | None:
         """Newton onto the curve inside the plane through ``guess`` normal to ``normal``.
@@ -151,13 +151,15 @@ class Curve:
             except np.linalg.LinAlgError:
                 return None
             scaled = scaled + step
-            if float(np.linalg.norm(scaled - guess)) > reach:
+            if not float(np.linalg.norm(scaled - guess)) <= reach:
                 return None
             gap, visit = self.residual(scaled)
         else:
             return None
         if tangent:
             matrix[:2, 2] = self.in_parameter(scaled)
+        if not np.all(np.isfinite(matrix)):
+            return None
         null = np.linalg.svd(matrix[:2])[2][2]
         direction = normal if old is None else old
         if null @ direction < 0.0:
@@ -165,14 +167,14 @@ class Curve:
         value = float(scaled[2] * self.unit[2])
         lanes = lanes_of(self.family(value))
         determinant = float(np.exp(-lanes.damping[0] * lanes.period[0] * self.period))
-        return Point(scaled, null, visit, determinant)
+        return Point(scaled=scaled, tangent=null, visit=visit, determinant=determinant)
 
     def orbit(self, point: Point) -> Orbit:
         value = point.scaled * self.unit
         model = self.family(float(value[2]))
         return closed(ReturnMap(lanes_of(model)), value[:2], self.period, model=model)
 
-    def zero(self, a: Point, name: str, low: float, high: float) -> float:
+    def zero(self, a: Point, name: str, *, low: float, high: float) -> float:
         """Where the test function ``name`` vanishes between two distances from ``a``."""
         return float(
             brentq(
@@ -188,7 +190,7 @@ class Curve:
         """The point a distance ``step`` along the tangent of ``a``."""
         if step == 0.0:
             return a
-        point = self.correct(a.scaled + step * a.tangent, a.tangent, tangent=False)
+        point = self.correct(a.scaled + step * a.tangent, normal=a.tangent, tangent=False)
         if point is None:
             raise ConvergenceError(
                 f"continuation in {self.parameter}: no orbit between two orbits of the branch "
@@ -232,7 +234,7 @@ def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
     for low, high in pairwise(ends):
         for name, kind in (("fold", FOLD), ("flip", FLIP)):
             if getattr(nodes[low], name) * getattr(nodes[high], name) < 0.0:
-                at(curve.zero(a, name, low, high), kind)
+                at(curve.zero(a, name, low=low, high=high), kind)
     return [event for _, event in sorted(events, key=lambda pair: pair[0])]
 
 

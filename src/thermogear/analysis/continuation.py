@@ -49,7 +49,7 @@ SHRUNK = "the orbit shrank into one of half its period"
 SHORTEST_STEP = 1e-7
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Branch:
     """A branch of periodic orbits, stable and unstable, in the order it was walked.
 
@@ -165,17 +165,19 @@ def continuation(
         family, start = family_of(orbit.model, parameter)
     if start is None:
         raise InputError("start", None, why="a family of models needs the present value")
+    if not np.isfinite(start):
+        raise InputError("start", start, allowed="finite")
     if not np.isfinite(to) or to == start:
         raise InputError("to", to, allowed=f"a finite number other than {start}")
     span = abs(to - start)
-    curve = Curve(family, parameter, orbit.period, start, span)
+    curve = Curve(family, parameter, orbit.period, start=start, span=span)
     guess = np.append(orbit.state, start) / curve.unit
     heading = np.array([0.0, 0.0, float(np.sign(to - start))])
     if direction is None:
-        first = curve.correct(guess, heading)
+        first = curve.correct(guess, normal=heading)
     else:
         toward = np.asarray(direction, dtype=float)
-        first = curve.correct(guess, toward, toward)
+        first = curve.correct(guess, normal=toward, old=toward)
     if first is None:
         raise ConvergenceError(f"continuation in {parameter}: the first orbit does not close")
     points = [first]
@@ -207,16 +209,16 @@ def continuation(
         ended = "interrupted"
     scaled = np.array([p.scaled for p in points])
     return Branch(
-        parameter,
-        orbit.period,
-        family,
-        scaled[:, 2] * span,
-        scaled[:, :2] * curve.unit[:2],
-        np.array([multipliers(p.visit.jacobian, p.determinant) for p in points]),
-        np.array([p.contacts[0] for p in points]),
-        np.array([p.contacts[1] for p in points]),
-        tuple(found),
-        ended,
+        parameter=parameter,
+        period=orbit.period,
+        family=family,
+        values=scaled[:, 2] * span,
+        states=scaled[:, :2] * curve.unit[:2],
+        multipliers=np.array([multipliers(p.visit.jacobian, p.determinant) for p in points]),
+        contact_losses=np.array([p.contacts[0] for p in points]),
+        back_impacts=np.array([p.contacts[1] for p in points]),
+        bifurcations=tuple(found),
+        ended=ended,
     )
 
 
@@ -232,7 +234,9 @@ def _walk(
             guess = here.scaled + step * here.tangent
             point = None
             try:
-                point = curve.correct(guess, here.tangent, here.tangent, 0.5 * step)
+                point = curve.correct(
+                    guess, normal=here.tangent, old=here.tangent, reach=0.5 * step
+                )
             except InputError:
                 point = None  # the step left the parameter's range
             # near its birth a doubled orbit's corrector may slide onto the mother or the
@@ -269,7 +273,7 @@ def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
     weight = (value - a.scaled[2]) / (b.scaled[2] - a.scaled[2])
     guess = a.scaled + weight * (b.scaled - a.scaled)
     guess[2] = value
-    return curve.correct(guess, np.array([0.0, 0.0, 1.0]), a.tangent)
+    return curve.correct(guess, normal=np.array([0.0, 0.0, 1.0]), old=a.tangent)
 
 
 @dataclass(frozen=True)
@@ -294,14 +298,16 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
         family, _ = family_of(orbit.model, bifurcation.parameter)
     value = bifurcation.value
     span = max(abs(value), 1e-3)
-    curve = Curve(family, bifurcation.parameter, 2 * orbit.period, value, span)
+    curve = Curve(family, bifurcation.parameter, 2 * orbit.period, start=value, span=span)
     two = curve.unit[:2]
     matrix = orbit.jacobian / two[:, None] * two
     direction = np.linalg.svd(matrix + np.eye(2))[2][1]
     normal = np.append(direction, 0.0)
     centre = np.append(orbit.state, value) / curve.unit
     for amplitude in (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-3, 1e-2):
-        point = curve.correct(centre + amplitude * normal, normal, normal, 10.0 * amplitude)
+        point = curve.correct(
+            centre + amplitude * normal, normal=normal, old=normal, reach=10.0 * amplitude
+        )
         if point is None:
             continue
         doubled = curve.orbit(point)

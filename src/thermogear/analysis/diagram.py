@@ -46,7 +46,7 @@ BRANCH_PERIOD = 4
 """Branches are followed for orbits of up to so many periods."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DiagramPlan:
     """An orbit diagram; see :func:`orbit_diagram`."""
 
@@ -136,7 +136,13 @@ class DiagramPlan:
         some = np.linspace(0, len(self.values) - 1, count).round().astype(int)
         chosen = tuple(self.values[i] for i in np.unique(some))
         small = DiagramPlan(
-            self.family, chosen, self.starts, self.rule, self.keep, max(len(chosen), 1), 0
+            family=self.family,
+            values=chosen,
+            starts=self.starts,
+            rule=self.rule,
+            keep=self.keep,
+            block=max(len(chosen), 1),
+            branch_period=0,
         )
         small.compute((0, 0), None, keep_going)
         return len(chosen) * len(self.starts)
@@ -239,11 +245,11 @@ def diagram_plan(
     if begin.shape[1] != 2 or not np.all(np.isfinite(begin)):
         raise InputError("starts", f"shape {begin.shape}", allowed="finite pairs (x, x')")
     return DiagramPlan(
-        family_for(model, (parameter,)),
-        tuple(axis.tolist()),
-        tuple((float(a), float(b)) for a, b in begin),
-        rule,
-        keep,
-        block,
-        branch_period,
+        family=family_for(model, (parameter,)),
+        values=tuple(axis.tolist()),
+        starts=tuple((float(a), float(b)) for a, b in begin),
+        rule=rule,
+        keep=keep,
+        block=block,
+        branch_period=branch_period,
     )

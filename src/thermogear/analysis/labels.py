@@ -114,7 +114,7 @@ def labels(
 ) -> list[Label]:
     """:func:`label` for every lane of ``model``; ``progress`` counts finished lanes."""
     for name, value, least in (("max_period", max_period, 1), ("discard", discard, 1)):
-        if int(value) != value or value < least:
+        if not (least <= value < np.inf and int(value) == value):
             raise InputError(name, value, allowed=f"a whole number >= {least}")
     lanes = lanes_of(model)
     start = starts_of(initial_state, len(lanes))
@@ -174,7 +174,7 @@ def _settle(
     keep = 2 * search.max_period
     while waiting.size and elapsed < search.cap:
         group = Ensemble(lanes.take(waiting), state[waiting], threads=search.threads, refine=refine)
-        window = group.run(length + keep, keep)
+        window = group.run(length + keep, keep=keep)
         elapsed += length + keep
         state[waiting] = group.state
         silent: list[int] = []
@@ -266,14 +266,14 @@ def _periodic(
     early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())
     largest = float(np.max(np.abs(orbit.multipliers)))
     shown = f"largest Floquet multiplier {_shown(orbit)} over {period} period{'s' * (period > 1)}"
-    if late > SETTLED or (late > 1e-10 and late >= early):
+    if not (late <= SETTLED and (late <= 1e-10 or late < early)):
         return None, False
     if period > 1:
         others = [np.max(np.abs(points[k] - points[0])) for k in range(1, period)]
         closure = max(orbit.residual, 1e-12)
-        if min(others) <= 1e3 * closure:
+        if not np.min(others) > 1e3 * closure:
             return Label("undecided", period, "shorter lags nearly close", elapsed, orbit), False
-    if largest > near_border:
+    if not largest <= near_border:
         reason = f"{shown}: within {1.0 - near_border:.2g} of a bifurcation"
         return Label("undecided", period, reason, elapsed, orbit), False
     return Label(f"period-{period}", period, shown, elapsed, orbit), False

@@ -17,7 +17,7 @@ from thermogear.dynamics.tables import Lanes
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Lyapunov:
     """Largest exponent ``value`` per unit time with the standard ``error`` of its batch means.
 
@@ -39,7 +39,7 @@ class Lyapunov:
     @property
     def kaplan_yorke(self) -> float:
         """Kaplan-Yorke dimension on the section: 1 + value/|second|, 0 when not chaotic."""
-        return 1.0 + self.value / abs(self.second) if self.value > 0.0 else 0.0
+        return 0.0 if self.value <= 0.0 else 1.0 + self.value / abs(self.second)
 
 
 def _block(
@@ -56,8 +56,8 @@ def _block(
 ) -> None:
     mine = lanes.take(index)
     maps = exact.prepare_maps(mine, borders, marks)
-    state = exact.State.start(start[index, 0], start[index, 1], mine.half_backlash)
-    for _, count in pace.chunks(discard, index.size):
+    state = exact.State.start(x=start[index, 0], y=start[index, 1], backlash=mine.half_backlash)
+    for _, count in pace.chunks(discard, lanes=index.size):
         exact.advance(maps, state, count)
     # the tangent turns into its own direction before it is counted
     state.fresh_tangent()
@@ -65,7 +65,7 @@ def _block(
     exact.advance(maps, state, min(50, length), columns=1, normalise=True)
     for batch in range(means.shape[1]):
         total = np.zeros(index.size)
-        for _, count in pace.chunks(length, index.size):
+        for _, count in pace.chunks(length, lanes=index.size):
             _, stretch, _ = exact.advance(maps, state, count, columns=1, normalise=True)
             # one after the other, so that neither chunks nor company change the last bit
             total = np.cumsum(np.vstack([total, stretch]), axis=0)[-1]
@@ -90,7 +90,7 @@ def lyapunov_exponents(
         ("batches", batches, 2),
         ("batch_periods", batch_periods, 1),
     ):
-        if int(value) != value or value < least:
+        if not (least <= value < np.inf and int(value) == value):
             raise InputError(name, value, allowed=f"a whole number >= {least}")
     lanes = lanes_of(model)
     start = starts_of(initial_state, len(lanes))
@@ -105,7 +105,11 @@ def lyapunov_exponents(
     errors = means.std(axis=1, ddof=1) / np.sqrt(batches)
     return [
         Lyapunov(
-            float(means[i].mean()), float(errors[i]), -float(lanes.damping[i]), means[i], ends[i]
+            value=float(means[i].mean()),
+            error=float(errors[i]),
+            sum=-float(lanes.damping[i]),
+            batches=means[i],
+            state=ends[i],
         )
         for i in range(len(lanes))
     ]

@@ -39,7 +39,7 @@ TILE = 64
 STRIDE = 4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MapPlan:
     """A map over ``axes``, two of them; see :func:`parameter_map`."""
 
@@ -245,5 +245,11 @@ def map_plan(
     values = [tuple(map(float, axis_values(name, v))) for name, v in axes.items()]
     family = family_for(model, tuple(axes))
     return MapPlan(
-        family, (values[0], values[1]), start_of(initial_state), rule, refine, tile, stride
+        family=family,
+        axes=(values[0], values[1]),
+        start=start_of(initial_state),
+        rule=rule,
+        refine=refine,
+        tile=tile,
+        stride=stride,
     )

@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Orbit:
     """A closed orbit of ``period`` mesh periods.
 
@@ -162,7 +162,7 @@ def shoot(
         used += 1
         visit = section.visit(z, period)
         gap = visit.points[-1] - z
-        if not np.all(np.isfinite(gap)):
+        if not (np.all(np.isfinite(gap)) and np.all(np.isfinite(visit.jacobian))):
             return None
         residual = float(np.max(np.abs(gap) / unit))
         if best is None or residual < best[0]:
@@ -200,16 +200,16 @@ def closed(
     if residual is None:
         residual = float(section.distance(visit.points[-1], visit.points[0]))
     return Orbit(
-        section.lanes,
-        model,
-        period,
-        visit.points[:-1],
-        visit.jacobian,
-        residual,
-        visit.contact_losses,
-        visit.back_impacts,
-        visit.shares,
-        iterations,
+        lanes=section.lanes,
+        model=model,
+        period=period,
+        points=visit.points[:-1],
+        jacobian=visit.jacobian,
+        residual=residual,
+        contact_losses=visit.contact_losses,
+        back_impacts=visit.back_impacts,
+        shares=visit.shares,
+        iterations=iterations,
     )
 
 
@@ -225,7 +225,7 @@ def periodic_orbit(
     Raises InputError for a period that is no whole number >= 1 or a model of several lanes, and
     ConvergenceError when Newton does not settle from this guess.
     """
-    if int(period) != period or period < 1:
+    if not (1 <= period < np.inf and int(period) == period):
         raise InputError("period", period, allowed="a whole number >= 1")
     start = np.asarray(guess, dtype=float)
     if start.shape != (2,) or not np.all(np.isfinite(start)):

@@ -94,7 +94,7 @@ def settle_with_status(
     alive: Alive = keep_going,
 ) -> Settled:
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
-    result = Settled.empty(len(lanes), keep)
+    result = Settled.empty(len(lanes), keep=keep)
     result.state[:] = start
     result.label[status != 0] = JAMMED
     moving = np.flatnonzero(status == 0)

@@ -48,7 +48,7 @@ def scales(lanes: Lanes) -> Floats:
     return np.array([backlash, 2.0 * np.pi * backlash / float(lanes.period[0])])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Visit:
     """Where ``n`` periods of one lane lead.
 
@@ -72,7 +72,7 @@ class ReturnMap:
         if len(lanes) != 1:
             raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
         self.lanes = lanes
-        ((_, borders, marks),) = exact.layouts(lanes, samples)
+        ((_, borders, marks),) = exact.layouts(lanes, samples=samples)
         self.maps = exact.prepare_maps(lanes, borders, marks)
         self.period = float(lanes.period[0])
         self.backlash = float(lanes.half_backlash[0])
@@ -93,17 +93,17 @@ class ReturnMap:
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
         state = exact.State.start(
-            np.array([start[0]]), np.array([start[1]]), self.lanes.half_backlash
+            x=np.array([start[0]]), y=np.array([start[1]]), backlash=self.lanes.half_backlash
         )
         sections, _, samples = exact.advance(self.maps, state, periods, columns=2, sampled=sampled)
         points = np.vstack([np.asarray(start, dtype=float)[None], sections[:, :, 0]])
         return Visit(
-            points,
-            state.tangent[:, 0].reshape(2, 2),
-            int(state.counts[0, 0]),
-            int(state.counts[1, 0]),
-            state.spent[:, 0] / (periods * self.period),
-            samples[:, :, 0],
+            points=points,
+            jacobian=state.tangent[:, 0].reshape(2, 2),
+            contact_losses=int(state.counts[0, 0]),
+            back_impacts=int(state.counts[1, 0]),
+            shares=state.spent[:, 0] / (periods * self.period),
+            samples=samples[:, :, 0],
         )
 
 
@@ -118,7 +118,9 @@ class Ensemble:
         self.elapsed = 0
         self._blocks = list(exact.layouts(lanes, refine=refine))
         self._states = [
-            exact.State.start(start[index, 0], start[index, 1], lanes.half_backlash[index])
+            exact.State.start(
+                x=start[index, 0], y=start[index, 1], backlash=lanes.half_backlash[index]
+            )
             for index, _, _ in self._blocks
         ]
 
@@ -130,7 +132,7 @@ class Ensemble:
             out[index, 0], out[index, 1] = state.x, state.y
         return out
 
-    def run(self, periods: int, keep: int = 0) -> Floats:
+    def run(self, periods: int, *, keep: int = 0) -> Floats:
         """Advance; the last ``keep`` sections as (lane, keep, 2)."""
         kept = np.full((len(self.lanes), keep, 2), np.nan)
 
@@ -139,9 +141,9 @@ class Ensemble:
             index, borders, marks = self._blocks[number]
             maps = exact.prepare_maps(self.lanes.take(index), borders, marks)
             state = self._states[number]
-            for _, count in pace.chunks(periods - keep, index.size):
+            for _, count in pace.chunks(periods - keep, lanes=index.size):
                 exact.advance(maps, state, count)
-            for first, count in pace.chunks(keep, index.size):
+            for first, count in pace.chunks(keep, lanes=index.size):
                 sections, _, _ = exact.advance(maps, state, count)
                 kept[index, first : first + count] = sections.transpose(2, 0, 1)
 

@@ -27,7 +27,7 @@ UNDECIDED, PERIODIC, CHAOTIC, DIVERGED, JAMMED = range(5)
 TRIES = 4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Rule:
     """How long a motion is followed, and what counts as proof.
 
@@ -54,7 +54,7 @@ class Rule:
             ("max_period", 1), ("first", 8), ("cap", 8), ("chaos_periods", 40), ("batches", 4)
         ):  # fmt: skip
             value = getattr(self, name)
-            if int(value) != value or value < least:
+            if not (least <= value < np.inf and int(value) == value):
                 raise InputError(f"rule.{name}", value, allowed=f"a whole number >= {least}")
         for name in ("near_border", "close", "settled"):
             value = getattr(self, name)
@@ -77,7 +77,7 @@ class Rule:
         return lengths
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Settled:
     """One entry per lane.
 
@@ -103,22 +103,22 @@ class Settled:
     sections: Floats
 
     @classmethod
-    def empty(cls, lanes: int, keep: int = 0) -> Settled:
+    def empty(cls, lanes: int, *, keep: int = 0) -> Settled:
         """Nothing known yet."""
         nan = np.nan
         return cls(
-            np.zeros(lanes, np.int8),
-            np.zeros(lanes, np.int32),
-            np.full((lanes, 2), nan),
-            np.full((lanes, 2), complex(nan, nan)),
-            np.full(lanes, nan),
-            np.full(lanes, nan),
-            np.full(lanes, -1, np.int32),
-            np.full(lanes, -1, np.int32),
-            np.full((lanes, 3), nan),
-            np.zeros(lanes, np.int32),
-            np.full((lanes, 2), nan),
-            np.full((lanes, keep, 2), nan),
+            label=np.zeros(lanes, np.int8),
+            period=np.zeros(lanes, np.int32),
+            point=np.full((lanes, 2), nan),
+            multiplier=np.full((lanes, 2), complex(nan, nan)),
+            lyapunov=np.full(lanes, nan),
+            lyapunov_error=np.full(lanes, nan),
+            losses=np.full(lanes, -1, np.int32),
+            impacts=np.full(lanes, -1, np.int32),
+            shares=np.full((lanes, 3), nan),
+            used=np.zeros(lanes, np.int32),
+            state=np.full((lanes, 2), nan),
+            sections=np.full((lanes, keep, 2), nan),
         )
 
     def put(self, index: Whole | Flags, other: Settled) -> None:
@@ -144,7 +144,7 @@ def units_of(lanes: Lanes) -> Floats:
     return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Closed:
     """Orbits of one common period ``n``: points (lane, n + 1, 2), Jacobians (lane, 2, 2)."""
 
@@ -158,17 +158,17 @@ class Closed:
 
 def close_orbits(maps: exact.ExactMaps, start: Floats, n: int) -> Closed:
     """Run ``n`` periods from ``start`` (lane, 2) with the variational equations."""
-    state = exact.State.start(start[:, 0], start[:, 1], maps.backlash)
+    state = exact.State.start(x=start[:, 0], y=start[:, 1], backlash=maps.backlash)
     sections, _, _ = exact.advance(maps, state, n, columns=2)
     points = np.concatenate([start[:, None, :], sections.transpose(2, 0, 1)], axis=1)
     jacobian = state.tangent.T.reshape(-1, 2, 2)
     return Closed(
-        points,
-        jacobian.copy(),
-        points[:, -1] - points[:, 0],
-        state.counts[0].copy(),
-        state.counts[1].copy(),
-        state.spent.T.copy(),
+        points=points,
+        jacobian=jacobian.copy(),
+        residual=points[:, -1] - points[:, 0],
+        losses=state.counts[0].copy(),
+        impacts=state.counts[1].copy(),
+        spent=state.spent.T.copy(),
     )
 
 
@@ -214,7 +214,7 @@ def polish(
     return best, least
 
 
-def multipliers_of(jacobian: Floats, determinant: Floats) -> NDArray[np.complex128]:
+def multipliers_of(jacobian: Floats, *, determinant: Floats) -> NDArray[np.complex128]:
     """Floquet multipliers (lane, 2) of Jacobians with known determinants, the larger first."""
     half = 0.5 * (jacobian[:, 0, 0] + jacobian[:, 1, 1])
     square = half * half - determinant
@@ -244,7 +244,7 @@ def settle(
     Each lane's result depends on that lane alone, to the last bit. ``alive`` is called between
     rounds; it raises to end the work.
     """
-    result = Settled.empty(len(lanes), keep)
+    result = Settled.empty(len(lanes), keep=keep)
     for index, borders, marks in exact.layouts(lanes):
         mine = lanes.take(index)
         maps = exact.prepare_maps(mine, borders, marks)
@@ -263,9 +263,9 @@ class _Block:
         self.rule = rule
         self.keep = keep
         self.unit = units_of(lanes)
-        self.state = exact.State.start(start[:, 0], start[:, 1], maps.backlash)
+        self.state = exact.State.start(x=start[:, 0], y=start[:, 1], backlash=maps.backlash)
         self.active = np.arange(len(lanes))
-        self.result = Settled.empty(len(lanes), keep)
+        self.result = Settled.empty(len(lanes), keep=keep)
 
     def drop(self, out: Flags) -> None:
         """Go on without the lanes that are done."""
@@ -274,12 +274,12 @@ class _Block:
         self.active = self.active[left]
         old = self.state
         self.state = exact.State(
-            old.x[left],
-            old.y[left],
-            old.region[left],
-            np.ascontiguousarray(old.tangent[:, left]),
-            np.ascontiguousarray(old.counts[:, left]),
-            np.ascontiguousarray(old.spent[:, left]),
+            x=old.x[left],
+            y=old.y[left],
+            region=old.region[left],
+            tangent=np.ascontiguousarray(old.tangent[:, left]),
+            counts=np.ascontiguousarray(old.counts[:, left]),
+            spent=np.ascontiguousarray(old.spent[:, left]),
         )
 
     def window(self, length: int, measured: int) -> tuple[Floats, Floats]:
@@ -432,7 +432,7 @@ def _accept(
     run = close_orbits(part_of(block.maps, rows), point, n)
     lanes = block.active[rows]
     rate = block.lanes.damping[lanes] * block.lanes.period[lanes]
-    mu = multipliers_of(run.jacobian, np.exp(-rate * n))
+    mu = multipliers_of(run.jacobian, determinant=np.exp(-rate * n))
     size = np.abs(mu[:, 0])
     orbit = run.points[:, :-1] / block.unit[lanes, None, :]
     width = scaled.shape[1]

@@ -33,7 +33,7 @@ class Periodic:
 
     @classmethod
     def from_samples(cls, samples: ArrayLike, harmonics: int | None = None) -> Periodic:
-        """The series through uniform ``samples`` over one period, phase 0 first.
+        """The series through uniform ``samples`` [any unit] over one period, phase 0 first.
 
         ``harmonics`` keeps the first so many; the default keeps all below the Nyquist
         limit, floor((n - 1)/2), so that the series passes through an odd number of
@@ -80,7 +80,7 @@ class Periodic:
     __rmul__ = __mul__
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Excitation:
     """One operating point of a gear pair as its vibration sees it (SI).
 

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import difflib
+import re
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import bounds
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+NEVER = 1e9
+"""A tempering temperature [K] that nothing reaches."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Material:
     """An isotropic gear material (SI, at 20 C).
 
@@ -29,20 +36,21 @@ class Material:
     specific_heat: float
     thermal_expansion: float
     modulus_slope: float = 0.0
-    tempering_temperature: float = 1e9
+    tempering_temperature: float = NEVER
     source: str = "given by the user"
 
     def __post_init__(self) -> None:
-        for field in (
-            "youngs_modulus",
-            "density",
-            "thermal_conductivity",
-            "specific_heat",
-            "thermal_expansion",
+        for field, allowed in (
+            ("youngs_modulus", bounds.YOUNGS_MODULUS),
+            ("density", bounds.DENSITY),
+            ("thermal_conductivity", bounds.CONDUCTIVITY),
+            ("specific_heat", bounds.SPECIFIC_HEAT),
+            ("thermal_expansion", bounds.EXPANSION),
+            ("modulus_slope", bounds.MODULUS_SLOPE),
         ):
-            value = getattr(self, field)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"material.{field}", value, allowed="> 0, finite")
+            allowed.require(f"material.{field}", getattr(self, field))
+        if self.tempering_temperature != NEVER:
+            bounds.TEMPERING.require("material.tempering_temperature", self.tempering_temperature)
         if not 0.0 <= self.poisson_ratio < 0.5:
             raise InputError("material.poisson_ratio", self.poisson_ratio, allowed="0 <= nu < 0.5")
 
@@ -68,7 +76,7 @@ LUBRICANT_KINDS: dict[str, str] = {
 _WALTHER_SHIFT = 0.7  # mm^2/s, ASTM D341 above 2 mm^2/s (DIN 51563 prints 0.8)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Lubricant:
     """An oil by its Walther line (ASTM D341): log10 log10(nu + 0.7) = A - B log10 T.
 
@@ -101,7 +109,6 @@ class Lubricant:
         for field in (
             "walther_a",
             "walther_b",
-            "density_15",
             "thermal_conductivity",
             "specific_heat",
         ):
@@ -112,6 +119,7 @@ class Lubricant:
             raise InputError(
                 "lubricant.density_slope", self.density_slope, allowed=">= 0 kg/(m^3 K)"
             )
+        bounds.OIL_DENSITY.require("lubricant.density_15", self.density_15)
         low, high = self.temperature_range
         if not 0.0 < low < high:
             raise InputError(
@@ -138,20 +146,20 @@ class Lubricant:
         two, or the viscosity does not fall from the colder to the hotter.
         """
         (cold, thick), (hot, thin) = sorted([point_1, point_2])
-        if not 0.0 < cold < hot:
+        bounds.BODY.require("lubricant.temperatures", [cold, hot])
+        bounds.VISCOSITY.require("lubricant.viscosities", [thick, thin])
+        if not cold < hot:
             raise InputError(
                 "lubricant.temperatures",
                 f"{cold} and {hot} K",
-                allowed="two different temperatures > 0 K",
+                allowed="two different temperatures",
                 fix="give the viscosities at 313.15 K and 373.15 K (40 and 100 C)",
             )
-        if not 0.3e-6 < thin < thick < np.inf:
+        if not thin < thick:
             raise InputError(
                 "lubricant.viscosities",
                 f"{thick * 1e6:g} mm^2/s at {cold} K and {thin * 1e6:g} mm^2/s at {hot} K",
-                allowed="> 0.3 mm^2/s and falling with temperature",
-                why="the Walther line takes log10(log10(nu + 0.7))",
-                fix="viscosities are in m^2/s: 100 mm^2/s is 100e-6",
+                allowed="falling with temperature",
             )
         ordinates = np.log10(np.log10(np.array([thick, thin]) * 1e6 + _WALTHER_SHIFT))
         abscissae = np.log10([cold, hot])
@@ -160,7 +168,14 @@ class Lubricant:
         if density_15 is None:
             at_40 = 10.0 ** (10.0 ** (intercept - slope * np.log10(ZERO_CELSIUS + 40.0)))
             density_15 = float(43.37 * np.log10(at_40 - _WALTHER_SHIFT) + 805.5)
-        return cls(name, kind, intercept, slope, density_15, source)
+        return cls(
+            name=name,
+            kind=kind,
+            walther_a=intercept,
+            walther_b=slope,
+            density_15=density_15,
+            source=source,
+        )
 
 
 MATERIALS: dict[str, Material] = {
@@ -263,8 +278,31 @@ LUBRICANTS: dict[str, Lubricant] = {
 }
 
 
+_ISO_GRADE = re.compile(r"(?:iso[\s-]*)?vg[\s-]*(\d+)", re.IGNORECASE)
+
+
 def lubricant(name: str) -> Lubricant:
-    """The named oil, or an error that says the nearest name."""
-    if name not in LUBRICANTS:
-        raise InputError("lubricant", repr(name), fix=nearest(name, LUBRICANTS))
-    return LUBRICANTS[name]
+    """The named oil, or an error that says the nearest name.
+
+    An ISO viscosity grade alone, "ISO VG 100" or "VG 100", is the mineral oil of that grade.
+    """
+    grade = _ISO_GRADE.fullmatch(name.strip())
+    known = f"M{grade[1]}" if grade else name
+    if known in LUBRICANTS:
+        return LUBRICANTS[known]
+    raise InputError("lubricant", repr(name), fix=_advice(name, bool(grade)))
+
+
+def _advice(name: str, mineral: bool) -> str:
+    """The nearest oil, its kind said; all grades of the kind where there is none of that number."""
+    plain = re.sub(r"[\s-]", "", name).upper()
+    number = plain[len(plain.rstrip("0123456789")) :]
+    family = [n for n in LUBRICANTS if n[0] == ("M" if mineral else plain[:1]) and n[1:].isdigit()]
+    if family and (mineral or plain[1:] == number) and plain not in family:
+        return f"grades of {LUBRICANT_KINDS[LUBRICANTS[family[0]].kind]}: {', '.join(family)}"
+    close = [plain] if plain in family else [n for n in LUBRICANTS if number and n[1:] == number]
+    close = close or difflib.get_close_matches(plain, LUBRICANTS, n=1, cutoff=0.5)
+    if close:
+        oils = [f"{n!r} ({LUBRICANT_KINDS[LUBRICANTS[n].kind]})" for n in close]
+        return f"did you mean {' or '.join(oils)}?"
+    return "known: " + ", ".join(LUBRICANTS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,18 +16,26 @@ Floats = NDArray[np.float64]
 class PairSprings:
     """The tooth pairs of one flank side, each a spring that pushes only.
 
-    F = sum_j k_j(psi) <delta + S_j(psi)>_+,   psi = frac(offset + direction phi)
+    F = sum_j k_j(psi) <w + S_j(psi)>_+,   psi = frac(offset + direction phi)
 
     ``stiffness`` k_j [N/m] >= 0 and ``added`` S_j [m] (added material: a pair touches at
-    delta = -S_j), arrays (pair, samples + 1) at uniform psi from 0 to 1; pair j at psi = 1 is
+    w = -S_j), arrays (pair, samples + 1) at uniform psi from 0 to 1; pair j at psi = 1 is
     pair j + 1 at psi = 0, so that the sum is periodic. Between samples both are linear.
     ``direction`` +1 for drive flanks; -1 for back flanks, which run along the path backwards.
+
+    w is the deflection delta itself, unless ``foot`` says where the mesh truly touches first:
+    an array (2, samples) of touch e and knee kappa > e [m] over the mesh phase phi. Springs that
+    are right about one load miss the touch by the hardening of the contact and by what its
+    neighbours bend a tooth; below the knee delta is stretched so that the force begins at e:
+    w = kappa - (kappa - delta) (kappa + max_j S_j)/(kappa - e).
     """
 
     stiffness: Floats
     added: Floats
+    _: KW_ONLY
     offset: float = 0.0
     direction: int = 1
+    foot: Floats | None = None
 
     def __post_init__(self) -> None:
         k = np.array(self.stiffness, dtype=float)
@@ -44,6 +52,14 @@ class PairSprings:
         s.setflags(write=False)
         object.__setattr__(self, "stiffness", k)
         object.__setattr__(self, "added", s)
+        if self.foot is not None:
+            foot = np.array(self.foot, dtype=float)
+            if foot.ndim != 2 or foot.shape[0] != 2 or not np.all(foot[0] < foot[1]):
+                raise InputError(
+                    "pair_springs.foot", f"shape {foot.shape}", allowed="(2, samples), touch < knee"
+                )
+            foot.setflags(write=False)
+            object.__setattr__(self, "foot", foot)
 
     @classmethod
     def from_samples(
@@ -57,7 +73,10 @@ class PairSprings:
         closing = np.append(k[1:, 0], 0.0)
         closing_added = np.append(s[1:, 0], s[-1, -1])
         return cls(
-            np.column_stack([k, closing]), np.column_stack([s, closing_added]), offset, direction
+            np.column_stack([k, closing]),
+            np.column_stack([s, closing_added]),
+            offset=offset,
+            direction=direction,
         )
 
     @property
@@ -77,13 +96,49 @@ class PairSprings:
             s[:, left] + weight * (s[:, left + 1] - s[:, left]),
         )
 
+    def stretch_at(self, phase: ArrayLike) -> tuple[Floats, Floats]:
+        """(knee, slope dw/d delta below it) at ``phase``; (-inf, 1) where there is no foot."""
+        phi = np.asarray(phase, dtype=float)
+        if self.foot is None:
+            return np.full(phi.shape, -np.inf), np.ones(phi.shape)
+        touch, knee = self._foot_at(phi)
+        k, s = self.at(phi)
+        return knee, np.asarray((knee - _own_touch(k, s)) / (knee - touch))
+
+    def touch(self, phase: ArrayLike) -> Floats:
+        """delta [m] at which the first pair touches at ``phase``."""
+        phi = np.asarray(phase, dtype=float)
+        if self.foot is None:
+            return _own_touch(*self.at(phi))
+        return np.asarray(self._foot_at(phi)[0])
+
+    def _foot_at(self, phase: Floats) -> Floats:
+        """Touch and knee [m] at ``phase``, (2, phase...), linear between the samples."""
+        assert self.foot is not None
+        count = self.foot.shape[1]
+        place = np.mod(phase, 1.0) * count
+        left = place.astype(np.int64) % count
+        weight = place - np.floor(place)
+        here, after = self.foot[:, left], self.foot[:, (left + 1) % count]
+        return np.asarray(here + weight * (after - here))
+
+    def _stretched(self, deflection: Floats, phase: Floats) -> tuple[Floats, Floats]:
+        """w [m] and dw/d delta at ``deflection`` delta and ``phase`` of one shape."""
+        if self.foot is None:
+            return deflection, np.ones_like(deflection)
+        knee, slope = self.stretch_at(phase)
+        below = deflection < knee
+        stretched = np.where(below, knee - (knee - deflection) * slope, deflection)
+        return stretched, np.where(below, slope, 1.0)
+
     def force(self, deflection: ArrayLike, phase: ArrayLike) -> Floats:
         """F [N] >= 0 at ``deflection`` delta [m] and ``phase``, which broadcast."""
         delta, phi = np.broadcast_arrays(
             np.asarray(deflection, dtype=float), np.asarray(phase, dtype=float)
         )
         k, s = self.at(phi)
-        return np.asarray(np.sum(k * np.maximum(delta + s, 0.0), axis=0))
+        w, _ = self._stretched(delta, phi)
+        return np.asarray(np.sum(k * np.maximum(w + s, 0.0), axis=0))
 
     def stiffness_at(self, deflection: ArrayLike, phase: ArrayLike) -> Floats:
         """dF/d delta [N/m]: the sum over the pairs that carry."""
@@ -91,7 +146,8 @@ class PairSprings:
             np.asarray(deflection, dtype=float), np.asarray(phase, dtype=float)
         )
         k, s = self.at(phi)
-        return np.asarray(np.sum(np.where(delta + s > 0.0, k, 0.0), axis=0))
+        w, slope = self._stretched(delta, phi)
+        return np.asarray(np.sum(np.where(w + s > 0.0, k, 0.0), axis=0) * slope)
 
     def deflection(self, force: ArrayLike, phase: ArrayLike) -> Floats:
         """delta [m] at which the pairs carry ``force`` > 0 [N]: the inverse of :meth:`force`.
@@ -115,4 +171,12 @@ class PairSprings:
         enough = (total > 0.0) & (delta + later <= 0.0)
         place = np.argmax(enough, axis=0)[None]
         found = np.take_along_axis(delta, place, axis=0)[0]
+        if self.foot is not None:
+            knee, slope = self.stretch_at(phi)
+            found = np.where(found < knee, knee - (knee - found) / slope, found)
         return np.asarray(np.where(enough.any(axis=0), found, np.nan))
+
+
+def _own_touch(stiffness: Floats, added: Floats) -> Floats:
+    """-max_j S_j [m] over the pairs that have a stiffness; first axis the pair."""
+    return np.asarray(-np.max(np.where(stiffness > 0.0, added, -np.inf), axis=0))

@@ -29,8 +29,14 @@ class Quantity:
     source: str = ""
 
 
+UNDEFORMED, HOT = STATES = ("undeformed", "hot")
+"""States of a run: gears as drawn with the oil of operation, and as hot as the case says."""
+
 STATUS = ("ok", "jammed", "not_converged", "diverged")
 """Meaning of the values 0, 1, 2, ... of every ``status`` variable."""
+
+EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")
+"""Meaning of the values 0, 1, 2, 3 of every ``edge_contact``: the tip corner that carries load."""
 
 DIMENSIONLESS = (
     "damping_ratio",
@@ -75,11 +81,11 @@ QUANTITIES: dict[str, Quantity] = {
     "dynamic_viscosity": Quantity("Pa s", "oil viscosity at the inlet", "η₀", "ASTM D341"),
     "friction_coefficient": Quantity("1", "friction coefficient of the chosen law", "|μ|"),
     "friction_coefficient_mixed": Quantity(
-        "1", "friction coefficient, mixed lubrication", "|μ|", "Benedict and Kelley 1961"
+        "1", "friction coefficient, lubricated", "|μ|", "Benedict and Kelley 1961"
     ),
     "friction_coefficient_dry": Quantity("1", "friction coefficient, dry", "|μ|"),
     "flash_temperature": Quantity("K", "flash temperature rise", "ΔT_f", "Blok 1937"),
-    "flash_temperature_mixed": Quantity("K", "flash temperature rise, mixed lubrication", "ΔT_f"),
+    "flash_temperature_mixed": Quantity("K", "flash temperature rise, lubricated", "ΔT_f"),
     "flash_temperature_dry": Quantity("K", "flash temperature rise, dry", "ΔT_f"),
     "pinion_heat_share": Quantity("1", "share of the frictional heat into the pinion", "β₁"),
     "contact_temperature": Quantity("K", "greatest contact temperature of both flanks", "T_c"),
@@ -97,8 +103,11 @@ QUANTITIES: dict[str, Quantity] = {
     "wheel_base_growth": Quantity("m", "radial growth at the wheel's base circle", "u_b2"),
     "half_backlash_curve": Quantity("m", "half backlash along the line of action", "b′(φ)"),
     "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
-    "cold_half_backlash": Quantity("m", "cold half backlash", "b"),
-    "thermal_error": Quantity("m", "kinematic error made by heat", "e_th"),
+    "least_half_backlash": Quantity("m", "half backlash, least over a mesh period", "b′_min"),
+    "cold_half_backlash": Quantity("m", "cold half backlash, flanks without deviations", "b"),
+    "kinematic_error": Quantity(
+        "m", "unloaded error of both flanks' touch, by deviations and heat", "e_k"
+    ),
     "spring_error": Quantity(
         "m", "error of the one-spring mesh force, mean removed (elasticity not in it)", "e_0"
     ),
@@ -108,6 +117,12 @@ QUANTITIES: dict[str, Quantity] = {
         "pinion addendum temperature at which the backlash is used up, "
         "both gears rising alike, housing as it is",
         "T_jam",
+    ),
+    "proportional_jam_temperature": Quantity(
+        "K",
+        "pinion addendum temperature at which the backlash is used up, "
+        "shafts and housing rising in proportion to the gears",
+        "T_jam,p",
     ),
     # stiffness
     "mesh_stiffness": Quantity("N/m", "mesh stiffness", "k"),
@@ -220,6 +235,15 @@ def status_attributes() -> dict[str, Any]:
         "long_name": "status of the point",
         "flag_values": np.arange(len(STATUS), dtype=np.int8),
         "flag_meanings": " ".join(STATUS),
+    }
+
+
+def edge_attributes() -> dict[str, Any]:
+    """CF flag attributes of an ``edge_contact`` variable."""
+    return {
+        "long_name": "tip corner that carries load; the Hertzian pressure is not valid there",
+        "flag_values": np.arange(len(EDGE_CONTACT), dtype=np.int8),
+        "flag_meanings": " ".join(EDGE_CONTACT),
     }
 
 

@@ -57,9 +57,9 @@ def follow(
     gap: Gap | None,
     period: float,
     start: Floats,
+    *,
     periods: int,
     samples: int,
-    *,
     jumps: tuple[float, ...] = (),
     rtol: float = 1e-12,
     atol: float = 1e-14,
@@ -100,6 +100,12 @@ def follow(
                     events = [_event(gap.value, edge, way) for edge, way in ways]
                     if end == right:
                         events.append(_event(gap.speed, 0.0, -1 if rising else 1))
+                if not np.all(np.isfinite(rate(t, y, region))):
+                    # the stepper would look for a first step for ever
+                    raise ConvergenceError(
+                        f"adaptive reference: the derivative at t = {t:g} of period {turn} is no "
+                        f"number at the state {y.tolist()}"
+                    )
                 solution = solve_ivp(
                     partial(_in_region, rate, region),
                     (t, end),

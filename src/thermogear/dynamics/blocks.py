@@ -26,7 +26,7 @@ class Pace:
         """Ask every block to end at its next chunk."""
         self._stop.set()
 
-    def chunks(self, periods: int, lanes: int) -> Iterator[tuple[int, int]]:
+    def chunks(self, periods: int, *, lanes: int) -> Iterator[tuple[int, int]]:
         """(first period, periods) pieces short enough to interrupt; counts them as done."""
         size = max(1, CHUNK // max(1, lanes))
         for first in range(0, periods, size):

@@ -74,7 +74,7 @@ def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ExactMaps:
     """Affine maps of lanes that share their sub-steps; made by :func:`prepare_maps`."""
 
@@ -92,7 +92,7 @@ class ExactMaps:
         return int(self.marks.sum())
 
 
-@dataclass
+@dataclass(kw_only=True)
 class State:
     """Where a group of lanes stands; advanced in place."""
 
@@ -104,19 +104,19 @@ class State:
     spent: Floats = field(repr=False)
 
     @classmethod
-    def start(cls, x: Floats, y: Floats, backlash: Floats) -> State:
+    def start(cls, *, x: Floats, y: Floats, backlash: Floats) -> State:
         """Lanes at (x, y); on an edge the velocity says which region comes next."""
         drive = (x > backlash) | ((x == backlash) & (y > 0.0))
         back = (x < -backlash) | ((x == -backlash) & (y < 0.0))
         tangent = np.zeros((4, x.size))
         tangent[0] = tangent[3] = 1.0
         return cls(
-            np.array(x, dtype=float),
-            np.array(y, dtype=float),
-            drive.astype(np.int64) - back.astype(np.int64),
-            tangent,
-            np.zeros((2, x.size), np.int64),
-            np.zeros((3, x.size)),
+            x=np.array(x, dtype=float),
+            y=np.array(y, dtype=float),
+            region=drive.astype(np.int64) - back.astype(np.int64),
+            tangent=tangent,
+            counts=np.zeros((2, x.size), np.int64),
+            spent=np.zeros((3, x.size)),
         )
 
     def fresh_tangent(self) -> None:
@@ -153,7 +153,7 @@ def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) 
         if piece is not None:
             if piece not in done:
                 rows = [
-                    piece.taylor(float(c), float(h), order)
+                    piece.taylor(centre=float(c), half=float(h), order=order)
                     for c, h in zip(centres, half, strict=True)
                 ]
                 done[piece] = np.array(rows)
@@ -181,12 +181,18 @@ def prepare_maps(
     size, rate = _bounds(lanes, "force")
     jerk = rate / lanes.period + lanes.damping * size
     return ExactMaps(
-        maps, polys, half, jerk * half.max(axis=0) ** 3, lanes.half_backlash, marks, borders
+        maps=maps,
+        polys=polys,
+        half=half,
+        reach=jerk * half.max(axis=0) ** 3,
+        backlash=lanes.half_backlash,
+        marks=marks,
+        borders=borders,
     )
 
 
 def layouts(
-    lanes: Lanes, samples: int = 0, block: int = BLOCK, refine: int = 1
+    lanes: Lanes, *, samples: int = 0, block: int = BLOCK, refine: int = 1
 ) -> Iterator[tuple[Whole, Floats, NDArray[np.uint8]]]:
     """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
 

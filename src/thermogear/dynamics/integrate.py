@@ -17,7 +17,7 @@ from thermogear.dynamics.kernels.rk4 import advance_rk4
 from thermogear.dynamics.load_shared import LoadSharedModel, simulate_shared
 from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import Result, dataset
-from thermogear.dynamics.pair import simulate_pair, two_of, with_angles
+from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -69,15 +69,15 @@ def _exact_block(
 ) -> None:
     mine = lanes.take(index)
     maps = exact.prepare_maps(mine, borders, marks)
-    state = exact.State.start(start[index, 0], start[index, 1], mine.half_backlash)
-    for _, count in pace.chunks(discard, index.size):
+    state = exact.State.start(x=start[index, 0], y=start[index, 1], backlash=mine.half_backlash)
+    for _, count in pace.chunks(discard, lanes=index.size):
         exact.advance(maps, state, count)
     state.fresh_tangent()
     result.sections[index, 0, 0] = state.x
     result.sections[index, 1, 0] = state.y
     periods = result.sections.shape[2] - 1
     wanted = maps.marked
-    for first, count in pace.chunks(periods, index.size):
+    for first, count in pace.chunks(periods, lanes=index.size):
         sections, _, samples = exact.advance(maps, state, count, sampled=wanted > 0)
         result.sections[index, :, first + 1 : first + 1 + count] = sections.transpose(2, 1, 0)
         if wanted:
@@ -111,13 +111,13 @@ def _rk4_block(
     v = start[index, 1].astype(precision)
     none = np.empty((0, 2, index.size), precision)
     stride = steps // samples if samples else 1
-    for _, count in pace.chunks(discard, index.size):
+    for _, count in pace.chunks(discard, lanes=index.size):
         sections = np.empty((count, 2, index.size), precision)
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, none, stride)
     result.sections[index, 0, 0] = x
     result.sections[index, 1, 0] = v
     periods = result.sections.shape[2] - 1
-    for first, count in pace.chunks(periods, index.size):
+    for first, count in pace.chunks(periods, lanes=index.size):
         sections = np.empty((count, 2, index.size), precision)
         path = np.empty((count * samples, 2, index.size), precision) if samples else none
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, path, stride)
@@ -146,15 +146,15 @@ def _adaptive_lane(
     rate = adaptive.lane_rate(one)
     result.sections[lane, :, 0] = y
     for turn in range(total):
-        for _ in pace.chunks(1, 1):
+        for _ in pace.chunks(1, lanes=1):
             kept = turn - discard
             sections, path, _crossings = adaptive.follow(
                 rate,
                 adaptive.Gap(_displacement, _velocity, backlash),
                 float(one.period[0]),
                 y,
-                1,
-                samples if kept >= 0 else 0,
+                periods=1,
+                samples=samples if kept >= 0 else 0,
                 jumps=one.jumps(0),
                 rtol=tolerances[0],
                 atol=tolerances[1] * backlash,
@@ -177,7 +177,7 @@ def _velocity(_t: float, y: Floats) -> float:
 
 
 def _count(name: str, value: int, least: int) -> int:
-    if int(value) != value or value < least:
+    if not (least <= value < np.inf and int(value) == value):
         raise InputError(name, value, allowed=f"a whole number >= {least}")
     return int(value)
 
@@ -239,14 +239,25 @@ def simulate(
     if chosen == "adaptive":
         settings |= {"rtol": rtol, "atol": atol}
     if isinstance(model, LoadSharedModel) and chosen == "rk4":
-        data = simulate_shared(model, start, periods, discard, steps, samples)
+        data = simulate_shared(
+            model, start, periods=periods, discard=discard, steps=steps, samples=samples
+        )
     elif not isinstance(model, ClearanceModel):
         data = _free(model, start, periods, discard, samples, (rtol, atol))
     elif isinstance(model, PairModel) and chosen != "exact":
-        data = simulate_pair(model, chosen, start, periods, discard, steps, samples, (rtol, atol))
+        data = simulate_pair(
+            model,
+            chosen,
+            start,
+            periods=periods,
+            discard=discard,
+            steps=steps,
+            samples=samples,
+            tolerances=(rtol, atol),
+        )
     else:
         if isinstance(model, PairModel):
-            state = start if start.size == 4 else model.start(*two_of(start))
+            state = four_of(start, model)
             x0, v0 = model.displacement(0.0, state)
             pair_start, start = state, np.array([float(x0), float(v0)])
         lanes = model.lanes()
@@ -256,10 +267,10 @@ def simulate(
             raise InputError(
                 "initial_state", f"shape {start.shape}", allowed=f"(2,) or ({len(lanes)}, 2)"
             ) from None
-        result = Result(len(lanes), periods, samples)
+        result = Result(lanes=len(lanes), periods=periods, samples=samples)
         work: list[Callable[[Pace], None]] = []
         if chosen == "exact":
-            for index, borders, marks in exact.layouts(lanes, samples):
+            for index, borders, marks in exact.layouts(lanes, samples=samples):
                 work.append(
                     partial(_exact_block, lanes, index, borders, marks, starts, discard, result)
                 )
@@ -278,7 +289,9 @@ def simulate(
                     )
                 )
         run_blocks(work, len(lanes) * (periods + discard), threads=threads, progress=progress)
-        data = dataset(result, lanes.period, periods, discard, samples)
+        data = dataset(
+            result, period=lanes.period, periods=periods, discard=discard, samples=samples
+        )
         if isinstance(model, PairModel):
             data = with_angles(data, model, pair_start)
     si = isinstance(model, PairModel | LoadSharedModel)
@@ -321,12 +334,14 @@ def _free(
         None if backlash is None else adaptive.Gap(_displacement, _velocity, float(backlash)),
         float(period),
         start,
-        discard + periods,
-        samples,
+        periods=discard + periods,
+        samples=samples,
         rtol=tolerances[0],
         atol=tolerances[1],
     )
-    result = Result(1, periods, samples)
+    result = Result(lanes=1, periods=periods, samples=samples)
     result.sections[0] = sections[discard:, :2].T
     result.samples[0] = path[discard * samples :, :2].T
-    return dataset(result, np.array([float(period)]), periods, discard, samples)
+    return dataset(
+        result, period=np.array([float(period)]), periods=periods, discard=discard, samples=samples
+    )

@@ -23,7 +23,9 @@ class LoadSharedModel:
     """Relative motion under a mesh force shared pair by pair (SI).
 
     m y'' + c y' + sum_j k_j(phi) <y - b + S_j(phi)>_+
-                 - sum_j k_j^c(phi) <-y - b + S_j^c(phi)>_+ = F(phi)
+                 - sum_j k_j^c(phi) <-y - b + S_j^c(phi)>_+ = F(phi),
+
+    between first touch and knee as :class:`PairSprings` says.
 
     y [m] displacement of the pinion's base circle over the wheel's less the kinematic error,
     positive on the drive side; ``half_backlash`` b [m] the cold one, because heat stands in
@@ -85,6 +87,10 @@ class LoadSharedModel:
         x, b = np.asarray(y, dtype=float), self.half_backlash
         return self.drive.force(x - b, phase) - self.back.force(-x - b, phase)
 
+    def clearance(self, phase: ArrayLike) -> Floats:
+        """Free play 2 b' [m] between both flanks' first touches at ``phase``; <= 0 is jammed."""
+        return 2.0 * self.half_backlash + self.drive.touch(phase) + self.back.touch(phase)
+
     def derivative(self, t: float, y: ArrayLike) -> Floats:
         """(y', y'') of the state ``y`` = (y, y'), first axis the component."""
         x, v = np.asarray(y, dtype=float)
@@ -102,16 +108,18 @@ class LoadSharedModel:
 
 
 def simulate_shared(
-    model: LoadSharedModel, start: Floats, periods: int, discard: int, steps: int, samples: int
+    model: LoadSharedModel, start: Floats, *, periods: int, discard: int, steps: int, samples: int
 ) -> xr.Dataset:
     """Classical Runge-Kutta steps of ``model`` from (y, y'); see ``simulate``."""
     if start.shape != (2,):
         raise InputError("initial_state", f"shape {start.shape}", allowed="(y, y')")
     phase = np.arange(2 * steps) / (2 * steps)
-    drive, back = (np.ascontiguousarray(side.at(phase)) for side in (model.drive, model.back))
+    sides = (model.drive, model.back)
+    drive, back = (np.ascontiguousarray(side.at(phase)) for side in sides)
+    drive_stretch, back_stretch = (np.ascontiguousarray(side.stretch_at(phase)) for side in sides)
     constants = np.array([model.mass, model.damping, model.half_backlash])
     state = np.array(start, dtype=float)
-    result = Result(1, periods, samples)
+    result = Result(lanes=1, periods=periods, samples=samples)
     stride = steps // samples if samples else 1
     none = np.empty((0, 2))
     counts, spent = np.zeros(2, np.int64), np.zeros(3)
@@ -123,6 +131,8 @@ def simulate_shared(
         advance_shared(
             drive,
             back,
+            drive_stretch,
+            back_stretch,
             model.force(phase),
             constants,
             model.period / steps,
@@ -138,4 +148,6 @@ def simulate_shared(
     result.losses[0], result.impacts[0] = counts
     result.shares[0] = spent / spent.sum()
     result.substeps[0] = steps
-    return dataset(result, np.array([model.period]), periods, discard, samples)
+    return dataset(
+        result, period=np.array([model.period]), periods=periods, discard=discard, samples=samples
+    )

@@ -16,7 +16,7 @@ from thermogear.dynamics.tables import Lanes, Pieces, Table, stack
 Floats = NDArray[np.float64]
 
 
-def dead_zone(x: ArrayLike, half_backlash: ArrayLike = 1.0) -> Floats:
+def dead_zone(x: ArrayLike, *, half_backlash: ArrayLike = 1.0) -> Floats:
     """Deflection of the teeth behind the backlash.
 
     f(x; b) = x - min(max(x, -b), b)
@@ -54,7 +54,7 @@ def _checked(owner: object, name: str, *, positive: bool = False, floor: bool = 
     object.__setattr__(owner, name, float(values) if values.ndim == 0 else values)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TorsionalModel:
     """The dimensionless gear pair with one cosine in stiffness and force.
 
@@ -112,7 +112,7 @@ class TorsionalModel:
             np.asarray(getattr(self, f.name), dtype=float) for f in fields(self)
         )
         carrier = np.cos(frequency * t)
-        spring = (1.0 + eps * carrier + thermal) * dead_zone(x, backlash)
+        spring = (1.0 + eps * carrier + thermal) * dead_zone(x, half_backlash=backlash)
         rate = mean + amplitude * carrier - 2.0 * zeta * v - spring
         return np.stack(np.broadcast_arrays(v, rate))
 
@@ -125,13 +125,13 @@ class TorsionalModel:
         zeta, frequency, eps, mean, amplitude, backlash, thermal = flat
         none = (None,) * zeta.size
         return Lanes(
-            2.0 * np.pi / frequency,
-            2.0 * zeta,
-            backlash.copy(),
-            np.stack([1.0 + thermal, eps], axis=1).astype(complex),
-            np.stack([mean, amplitude], axis=1).astype(complex),
-            none,
-            none,
+            period=2.0 * np.pi / frequency,
+            damping=2.0 * zeta,
+            half_backlash=backlash.copy(),
+            stiffness=np.stack([1.0 + thermal, eps], axis=1).astype(complex),
+            force=np.stack([mean, amplitude], axis=1).astype(complex),
+            stiffness_pieces=none,
+            force_pieces=none,
         )
 
     def replace(self, **changes: ArrayLike) -> TorsionalModel:
@@ -139,7 +139,7 @@ class TorsionalModel:
         return replace(self, **changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DeadZoneModel:
     """A clearance oscillator with any periodic stiffness and force.
 
@@ -217,7 +217,9 @@ class DeadZoneModel:
             k, force = k[0], force[0]
         damping = 2.0 * np.asarray(self.damping_ratio) * v
         return np.stack(
-            np.broadcast_arrays(v, force - damping - k * dead_zone(x, self.half_backlash))
+            np.broadcast_arrays(
+                v, force - damping - k * dead_zone(x, half_backlash=self.half_backlash)
+            )
         )
 
     def lanes(self) -> Lanes:
@@ -230,13 +232,13 @@ class DeadZoneModel:
             for v in (self.period, self.damping_ratio, self.half_backlash)
         ]
         return Lanes(
-            number[0],
-            2.0 * number[1],
-            number[2],
-            stiffness,
-            force,
-            stiffness_pieces,
-            force_pieces,
+            period=number[0],
+            damping=2.0 * number[1],
+            half_backlash=number[2],
+            stiffness=stiffness,
+            force=force,
+            stiffness_pieces=stiffness_pieces,
+            force_pieces=force_pieces,
         )
 
 
@@ -265,9 +267,21 @@ def from_excitation(excitation: Excitation | Sequence[Excitation]) -> DeadZoneMo
         numbers.append((row.damping_ratio, frequency, row.half_backlash / length))
     if isinstance(excitation, Excitation):
         damping, omega, backlash = numbers[0]
-        return DeadZoneModel(damping, omega, stiffness[0], force[0], backlash)
+        return DeadZoneModel(
+            damping_ratio=damping,
+            frequency=omega,
+            stiffness=stiffness[0],
+            force=force[0],
+            half_backlash=backlash,
+        )
     columns = np.array(numbers).T
-    return DeadZoneModel(columns[0], columns[1], stiffness, force, columns[2])
+    return DeadZoneModel(
+        damping_ratio=columns[0],
+        frequency=columns[1],
+        stiffness=stiffness,
+        force=force,
+        half_backlash=columns[2],
+    )
 
 
 @dataclass(frozen=True)
@@ -356,7 +370,7 @@ class PairModel:
         (i1, i2), (r1, r2) = self.inertias, self.base_radii
         return np.asarray(i1 * y[2] / r1 + i2 * y[3] / r2)
 
-    def start(self, x: float, v: float) -> Floats:
+    def start(self, *, x: float, v: float) -> Floats:
         """The state with line-of-action displacement ``x`` and velocity ``v`` at phase 0.
 
         The wheel takes none of it in the rigid mode: the momentum is zero.
@@ -372,7 +386,9 @@ class PairModel:
         state = np.asarray(y, dtype=float)
         x, v = self.displacement(t, state)
         (i1, i2), (r1, r2), (t1, t2) = self.inertias, self.base_radii, self.torques
-        mesh = self.damping * v + self.stiffness(t / self.period) * dead_zone(x, self.half_backlash)
+        mesh = self.damping * v + self.stiffness(t / self.period) * dead_zone(
+            x, half_backlash=self.half_backlash
+        )
         return np.stack([state[2], state[3], (t1 - r1 * mesh) / i1, (r2 * mesh - t2) / i2])
 
     def reduced(self) -> DeadZoneModel:
@@ -383,11 +399,11 @@ class PairModel:
         mass = self.equivalent_mass
         acceleration = self.error.derivative(2) * (1.0 / self.period**2)
         return DeadZoneModel(
-            self.damping / (2.0 * mass),
-            self.mesh_frequency,
-            self.stiffness * (1.0 / mass),
-            acceleration * -1.0 + self.mean_force / mass,
-            self.half_backlash,
+            damping_ratio=self.damping / (2.0 * mass),
+            frequency=self.mesh_frequency,
+            stiffness=self.stiffness * (1.0 / mass),
+            force=acceleration * -1.0 + self.mean_force / mass,
+            half_backlash=self.half_backlash,
         )
 
     def lanes(self) -> Lanes:

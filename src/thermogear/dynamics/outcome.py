@@ -17,7 +17,7 @@ SIDES = ("back", "free", "drive")
 class Result:
     """What the kernels fill, one row per lane."""
 
-    def __init__(self, lanes: int, periods: int, samples: int) -> None:
+    def __init__(self, *, lanes: int, periods: int, samples: int) -> None:
         self.sections = np.full((lanes, 2, periods + 1), np.nan)
         self.samples = np.full((lanes, 2, periods * samples), np.nan)
         self.losses = np.full(lanes, -1, np.int64)
@@ -26,7 +26,9 @@ class Result:
         self.substeps = np.zeros(lanes, np.int64)
 
 
-def dataset(result: Result, period: Floats, periods: int, discard: int, samples: int) -> xr.Dataset:
+def dataset(
+    result: Result, *, period: Floats, periods: int, discard: int, samples: int
+) -> xr.Dataset:
     lanes = period.size
     good = np.all(np.isfinite(result.sections), axis=(1, 2))
     phase = np.arange(periods * samples) / samples if samples else np.empty(0)

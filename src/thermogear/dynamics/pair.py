@@ -15,10 +15,13 @@ from thermogear.dynamics.outcome import Result, dataset
 Floats = NDArray[np.float64]
 
 
-def two_of(start: Floats) -> tuple[float, float]:
+def four_of(start: Floats, model: PairModel) -> Floats:
+    """The state of ``model`` that ``start`` says: whole, or by (x, x') on the line of action."""
+    if start.size == 4:
+        return start
     if start.shape != (2,):
         raise InputError("initial_state", f"shape {start.shape}", allowed="(x, x') or 4 numbers")
-    return float(start[0]), float(start[1])
+    return model.start(x=float(start[0]), v=float(start[1]))
 
 
 def with_angles(data: xr.Dataset, model: PairModel, start: Floats) -> xr.Dataset:
@@ -58,6 +61,7 @@ def simulate_pair(
     model: PairModel,
     method: str,
     start: Floats,
+    *,
     periods: int,
     discard: int,
     steps: int,
@@ -65,7 +69,7 @@ def simulate_pair(
     tolerances: tuple[float, float],
 ) -> xr.Dataset:
     """Both rotations integrated as they stand: four states."""
-    state = np.array(start if start.size == 4 else model.start(*two_of(start)), dtype=float)
+    state = np.array(four_of(start, model), dtype=float)
     total = discard + periods
     if method == "rk4":
         phase = np.arange(2 * steps) / (2 * steps)
@@ -90,19 +94,21 @@ def simulate_pair(
             ),
             model.period,
             state,
-            total,
-            samples,
+            periods=total,
+            samples=samples,
             rtol=tolerances[0],
             atol=tolerances[1] * scale,
         )
     kept, path = sections[discard:], path[discard * samples :]
-    result = Result(1, periods, samples)
+    result = Result(lanes=1, periods=periods, samples=samples)
     result.substeps[:] = steps if method == "rk4" else 0
     # e is periodic, so the phase within the period is enough
     within = np.tile(np.arange(samples) / samples, periods) if samples else np.empty(0)
     result.samples[0] = np.stack(model.displacement(within * model.period, path.T))
     result.sections[0] = np.stack(model.displacement(np.zeros(periods + 1), kept.T))
-    data = dataset(result, np.array([model.period]), periods, discard, samples)
+    data = dataset(
+        result, period=np.array([model.period]), periods=periods, discard=discard, samples=samples
+    )
     for position, name in enumerate(("theta1", "theta2", "omega1", "omega2")):
         attributes = _angle_attributes(name)
         data[name] = (("point", "sample"), path[None, :, position], attributes)

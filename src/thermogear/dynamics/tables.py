@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Pieces:
     """A periodic function given by polynomials between jumps.
 
@@ -44,9 +44,9 @@ class Pieces:
             raise InputError("pieces.coefficients", "a non-finite number", allowed="finite")
 
     @classmethod
-    def constant(cls, starts: Sequence[float], values: Sequence[float]) -> Pieces:
+    def constant(cls, *, starts: Sequence[float], values: Sequence[float]) -> Pieces:
         """A staircase: ``values[i]`` from ``starts[i]`` on (the rectangular mesh stiffness)."""
-        return cls(tuple(starts), tuple((float(v),) for v in values))
+        return cls(starts=tuple(starts), coefficients=tuple((float(v),) for v in values))
 
     @property
     def mean(self) -> float:
@@ -71,7 +71,7 @@ class Pieces:
             total = total * local + table[index, m]
         return np.asarray(total)
 
-    def taylor(self, centre: float, half: float, order: int) -> Floats:
+    def taylor(self, *, centre: float, half: float, order: int) -> Floats:
         """Coefficients in u of p(centre + half u), for an interval inside one piece."""
         index = int(np.searchsorted(self.starts, centre, side="right")) - 1
         poly = np.polynomial.Polynomial(self.coefficients[index])
@@ -84,14 +84,15 @@ class Pieces:
     def scaled(self, factor: float) -> Pieces:
         """The same function times ``factor``."""
         return Pieces(
-            self.starts, tuple(tuple(c * factor for c in row) for row in self.coefficients)
+            starts=self.starts,
+            coefficients=tuple(tuple(c * factor for c in row) for row in self.coefficients),
         )
 
 
 Table = Periodic | Pieces
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Lanes:
     """Parameter points side by side: x'' + c x' + k(t) f(x; b) = F(t), one entry per lane.
 
@@ -114,13 +115,13 @@ class Lanes:
         """The lanes of ``index``, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
         return Lanes(
-            self.period[chosen],
-            self.damping[chosen],
-            self.half_backlash[chosen],
-            self.stiffness[chosen],
-            self.force[chosen],
-            tuple(self.stiffness_pieces[i] for i in chosen),
-            tuple(self.force_pieces[i] for i in chosen),
+            period=self.period[chosen],
+            damping=self.damping[chosen],
+            half_backlash=self.half_backlash[chosen],
+            stiffness=self.stiffness[chosen],
+            force=self.force[chosen],
+            stiffness_pieces=tuple(self.stiffness_pieces[i] for i in chosen),
+            force_pieces=tuple(self.force_pieces[i] for i in chosen),
         )
 
     def jumps(self, lane: int) -> tuple[float, ...]:

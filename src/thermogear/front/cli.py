@@ -70,7 +70,7 @@ def cli() -> None:
     stiffness and nonlinear vibration.
 
     \b
-      thermogear example rig > rig.toml
+      thermogear example rig -o rig.toml
       thermogear run rig.toml -o results
     """
 
@@ -156,31 +156,49 @@ def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
             click.echo(f"\n{group}")
         value = f"{fact.value:.7g}" if isinstance(fact.value, float) else str(fact.value)
         click.echo(f"  {fact.name:<38} {value} {fact.unit}".rstrip())
-    click.echo(
-        f"\n{len(read.assumptions)} values are ours; a run takes about "
-        f"{estimated_bytes(read) / 2**20:.3g} MiB of memory"
-    )
+    count = len(read.assumptions)
+    told = "1 value is ours" if count == 1 else f"{count or 'no'} values are ours"
+    click.echo(f"\n{told}; a run takes about {estimated_bytes(read) / 2**20:.3g} MiB of memory")
+
+
+_to_file = click.option("-o", "--output", metavar="FILE", help="Write a new FILE (UTF-8) instead.")
 
 
 @cli.command()
 @click.argument("name", required=False)
-def example(name: str | None) -> None:
+@_to_file
+def example(name: str | None, output: str | None) -> None:
     """Print the ready-made case NAME; without a name, list them."""
     from thermogear.study.ready import EXAMPLES, example_text
 
     if name is None:
+        if output is not None:
+            raise click.UsageError(f"-o needs the NAME of a case: {' | '.join(EXAMPLES)}")
         for known, words in EXAMPLES.items():
             click.echo(f"{known:<12} {words}")
         return
-    click.echo(example_text(name), nl=False)
+    _put(example_text(name), output)
 
 
 @cli.command()
-def schema() -> None:
+@_to_file
+def schema(output: str | None) -> None:
     """Print the JSON schema of a case file."""
     from thermogear.study.schema import json_schema
 
-    click.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    _put(json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n", output)
+
+
+def _put(text: str, output: str | None) -> None:
+    """Print ``text``, or write it to a new file and print its name."""
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    from thermogear.base.files import put, require_new_file
+
+    path = Path(output)
+    require_new_file(path)
+    click.echo(put(path, text))
 
 
 for _list in (

@@ -52,7 +52,7 @@ def _subject_options(command: _Command) -> _Command:
             help="Operating point of a gear case, from 1 (speeds x torques).",
         ),
         click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
-        click.option("--state", default="hot", show_default=True, help="cold | hot."),
+        click.option("--state", default="hot", show_default=True, help="undeformed | hot."),
         click.option(
             "--set", "overrides", multiple=True, metavar="PATH=VALUE",
             help="Put a value in place of the file's. May be repeated.",
@@ -335,7 +335,7 @@ def _sweeps(
         if begin is not None:
             first = parameter_value("--from", subject, name, begin)
         last = parameter_value("--to", subject, name, to)
-        return (sweep_of_subject(subject, name, first, last),), subject.title
+        return (sweep_of_subject(subject, name, first=first, last=last),), subject.title
     if begin is not None or to is not None:
         raise InputError("--parameter", "nothing", fix="name what runs from --from to --to")
     numbers = _numbers(options)

@@ -13,7 +13,7 @@ import click
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
-from thermogear.base.units import RPM
+from thermogear.base.units import RPM, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -118,9 +118,10 @@ def temperature(
 ) -> None:
     """Close the loop of friction and heat over speeds and torques: the map of everything hot.
 
-    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates, warm-up,
-    and the thesis's first conclusion checked. Temperatures that CASE gives are not used; nodes
-    that [gearbox.measured] holds are. Writes temperature.nc, temperature.html, pictures and CSV.
+    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates, warm-up;
+    for the thesis's rig its first conclusion, checked. Temperatures that CASE gives are not used;
+    nodes that [gearbox.measured] holds are. Writes temperature.nc, temperature.html, pictures and
+    CSV.
     """
     read = _gear_case(case, overrides)
     if own and (speeds or torques):
@@ -165,7 +166,17 @@ def temperature(
         **{name: _table(data[name]) for name in names},
         "conclusion": json.loads(tree.attrs["verdicts"]),
     }
-    lines = [f"{one['claim']}: {one['verdict']} ({one['found']})" for one in found["conclusion"]]
+    teeth = data["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).values
+    figures = {
+        "teeth [degC]": teeth - ZERO_CELSIUS,
+        "greatest flash temperature [K]": data["greatest_flash"].values,
+        "least half backlash [um]": 1e6 * data["least_half_backlash"].values,
+        "scuffing margin [K]": data["scuffing_margin"].values,
+        "least film parameter": data["least_film_parameter"].values,
+        "mean friction coefficient": data["mean_friction"].values,
+    }
+    lines = [f"{words:<32} {_reach(values)}" for words, values in figures.items()]
+    lines += [f"{one['claim']}: {one['verdict']} ({one['found']})" for one in found["conclusion"]]
     _finish(tree, found, lines, Path(output) / "temperature.html", as_json)
 
 
@@ -179,7 +190,8 @@ def temperature(
     "celsius",
     type=float,
     metavar="DEGC",
-    help="Addendum temperature of both gears; the case's hot state if left out.",
+    help="Addendum temperature of both gears, the rest as temperatures.follow says; the case's hot "
+    "state if left out.",
 )
 @click.option(
     "--shape",
@@ -228,13 +240,16 @@ def relief(
         )
 
     tree = _carry_out("relief", Path(output), make, quiet=as_json)
-    attributes = tree.attrs
+    attributes, error = tree.attrs, tree["error"].to_dataset()
     found: dict[str, Any] = {
         "torque_Nm": float(attributes["torque"]),
         "unrelieved_m": float(attributes["unrelieved"]),
         "relieved_m": float(attributes["relieved"]),
         "evaluations": int(attributes["evaluations"]),
         "reliefs": json.loads(attributes["reliefs"]),
+        "edge_contact_share": {
+            str(one["pair_kind"].values): float(one) for one in error["edge_contact_share"]
+        },
         "paste": attributes["paste"],
     }
     before, after = 1e6 * found["unrelieved_m"], 1e6 * found["relieved_m"]
@@ -274,8 +289,9 @@ def contact(
     """Loaded tooth contact of CASE over mesh position, load and temperature.
 
     Tangent and secant stiffness, transmission error, load shares, pressure, double contact (and
-    how gears of unequal temperature lose it at light load), beside ISO 6336-1. Writes contact.nc,
-    contact.html, pictures and CSV to DIR.
+    how gears of unequal temperature lose it at light load), how long tip corners carry (edge
+    contact, where no pressure is given), beside ISO 6336-1. Writes contact.nc, contact.html,
+    pictures and CSV to DIR.
     """
     read = _gear_case(case, overrides)
     moments = _axis("--torques", torques, 1.0, ())
@@ -292,13 +308,21 @@ def contact(
         "temperature": [str(v) for v in data["temperature"].values],
         "mean_stiffness": _table(data["mean_stiffness"]),
         "double_contact_length_m": _table(data["double_contact_length"]),
+        "edge_contact_share": _table(data["edge_contact_share"]),
         "iso_6336_stiffness": [float(v) for v in iso["iso_stiffness"].values],
     }
-    lines = [f"{'N m':>10} {'k cold':>12} {'k hot':>12} {'ISO 6336':>12}   [1e8 N/m]"]
+    head = f"{'N m':>10} {'k undeformed':>14} {'k hot':>12} {'ISO 6336':>12}   [1e8 N/m]"
+    lines = [f"{head}  {'edge undeformed':>15} {'hot':>6}   [% of the period]"]
     for place, torque in enumerate(found["pinion_torque_Nm"]):
-        cold, hot = (1e-8 * found["mean_stiffness"][t][place] for t in (0, 1))
-        standard = 1e-8 * found["iso_6336_stiffness"][place]
-        lines.append(f"{torque:>10.4g} {cold:>12.4f} {hot:>12.4f} {standard:>12.4f}")
+        springs = [found["mean_stiffness"][t][place] for t in (0, 1)]
+        springs.append(found["iso_6336_stiffness"][place])
+        cells = [_text(None if k is None else 1e-8 * k) for k in springs]
+        edges = [found["edge_contact_share"][t][place] for t in (0, 1)]
+        shares = ["-" if s is None else f"{100.0 * s:.1f}" for s in edges]
+        lines.append(
+            f"{torque:>10.4g} {cells[0]:>14} {cells[1]:>12} {cells[2]:>12}"
+            f"{shares[0]:>23} {shares[1]:>6}"
+        )
     _finish(tree, found, lines, Path(output) / "contact.html", as_json)
 
 
@@ -408,6 +432,15 @@ def _finite(value: object) -> float | None:
 
 def _text(value: float | None) -> str:
     return "-" if value is None else f"{value:.4f}"
+
+
+def _reach(values: Any) -> str:
+    """Least and greatest of ``values``, or the one there is; "-" without any."""
+    known = [float(v) for v in values.ravel() if math.isfinite(v)]
+    if not known:
+        return "-"
+    low, high = (f"{v:.4g}" for v in (min(known), max(known)))
+    return low if low == high else f"{low} .. {high}"
 
 
 def _table(data: xr.DataArray) -> list[list[float | None]]:

@@ -37,7 +37,7 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
                      help="Put a value in place of the file's. May be repeated."),
         click.option("--bundle", default="", help="Bundle of choices; default: the case's first."),
         click.option("--state", default="hot", show_default=True,
-                     help="hot, cold, or the gears' temperature in degC."),
+                     help="hot, undeformed, or the gears' temperature in degC."),
         click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
         click.option("--scheduler", metavar="ADDRESS",
                      help="Hand the chunks to this dask scheduler (extra [cluster])."),
@@ -182,7 +182,7 @@ def basins(
 
     read = _load(case, options["overrides"])
     plan = case_basins(
-        read, _grid("x", x), _grid("v", v), bundle=options["bundle"],
+        read, x=_grid("x", x), v=_grid("v", v), bundle=options["bundle"],
         state=_state(options["state"]), changes=_numbers(but),
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options, _basin_summary)
@@ -192,7 +192,7 @@ def basins(
 @_case
 @click.option("--rpm", default="200:12000:119", show_default=True, metavar="FROM:TO:COUNT")
 @click.option("--hot", multiple=True, type=float, metavar="DEGC",
-              help="Gear temperature beside the cold run; the case's own if left out.")  # fmt: skip
+              help="Gear temperature beside undeformed; the case's own if left out.")  # fmt: skip
 @click.option("--torque", type=float, metavar="NM", help="The case's first if left out.")
 @click.option("--branch-period", type=click.IntRange(0, 16), default=2, show_default=True,
               help="Locate folds on branches up to this period; 0: none.")  # fmt: skip
@@ -207,7 +207,7 @@ def runup(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Run CASE up and down in speed, cold and hot: transmission error, mesh force, K_v, jumps."""
+    """Run CASE up and down in speed, without heat and hot: error, mesh force, K_v, jumps."""
     from thermogear.study.allowed import kelvin
     from thermogear.study.case import gear_case
     from thermogear.study.runup import run_up_plan
@@ -254,12 +254,14 @@ def _load(case: str, overrides: tuple[str, ...]) -> GearCase | DimensionlessCase
 def _state(text: str) -> str | float:
     from thermogear.study.allowed import kelvin
 
-    if text in ("hot", "cold"):
+    if text in ("hot", "undeformed"):
         return text
     try:
         celsius = float(text)
     except ValueError:
-        raise InputError("state", repr(text), allowed="hot | cold | degrees Celsius") from None
+        raise InputError(
+            "state", repr(text), allowed="hot | undeformed | degrees Celsius"
+        ) from None
     return kelvin("state", celsius)
 
 

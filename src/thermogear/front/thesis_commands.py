@@ -77,18 +77,31 @@ def sensitivity(
     overrides: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Which unstated inputs of CASE decide its results (extra [sensitivity])."""
+    """Which inputs that the thesis leaves unstated decide its conclusions (extra [sensitivity]).
+
+    Ranges and conclusions are those of the thesis's rig: CASE is the ready-made case `rig`, or a
+    copy of it with the same gears and values; any other is refused.
+    """
     from thermogear.front.progress import progress
     from thermogear.study.case import gear_case, load_case
     from thermogear.study.results import claim_directory
-    from thermogear.study.sensitivity import Plan, as_rows, plain_words, require_salib, store
+    from thermogear.study.sensitivity import (
+        ABOUT,
+        Plan,
+        as_rows,
+        plain_words,
+        require_salib,
+        store,
+    )
     from thermogear.study.sensitivity import sensitivity as study
+    from thermogear.study.thesis_cases import require_of_the_thesis
 
     require_salib()
     if speed is not None and not 0.0 < speed < 1e6:
         raise InputError("--speed", f"{speed:g} rpm", allowed="> 0, below 1e6 rpm")
     plan = Plan(samples=samples, speed=None if speed is None else speed * RPM, seed=seed)
     read = gear_case(load_case(Path(case), overrides))
+    require_of_the_thesis(read, ABOUT)
     if output is not None:
         claim_directory(Path(output))
     with progress(wanted=not as_json) as told:

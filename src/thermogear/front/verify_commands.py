@@ -91,7 +91,7 @@ def stiffness(
         pair,
         moment / pair.pinion.base_radius,
         inner_phases(pair, positions),
-        Density(refine),
+        Density(refinement=refine),
         near,
     )
     if as_json:
@@ -130,7 +130,13 @@ def growth(case: str, overrides: tuple[str, ...], bore: str, as_json: bool) -> N
         click.echo(f"{read.title}\nnormal growth of one flank, plane stress, bores {bore}")
     for name, gear, inner, outer in gears:
         at_bore, at_tip = (float(np.ravel(np.asarray(t))[0]) for t in (inner, outer))
-        field = RadialField(gear.bore_radius, gear.tip_radius, at_bore, at_tip, heat.reference)
+        field = RadialField(
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            bore_temperature=at_bore,
+            addendum_temperature=at_tip,
+            reference=heat.reference,
+        )
         found = check_growth(gear, field, bore=bore)
         content[name] = _growth_numbers(found)
         if as_json:
@@ -179,7 +185,7 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
                 checked.pair,
                 checked.line_load * checked.pair.face_width,
                 inner_phases(checked.pair, 4),
-                Density(refine),
+                Density(refinement=refine),
                 near,
             )
             content.setdefault(group, {})[checked.name] = _stiffness_numbers(found)

@@ -25,7 +25,7 @@ _ANGLE_RANGE = (0.01, 0.12)
 _ANGLE_MARGIN = 1.05
 
 
-def sainsot_coefficients(theta_f: float, ratio: float) -> dict[str, float]:
+def sainsot_coefficients(theta_f: float, *, ratio: float) -> dict[str, float]:
     """L*, M*, P*, Q* for the foot half angle ``theta_f`` [rad] and h = r_f/r_bore."""
     return {
         name: a / theta_f**2 + b * ratio**2 + c * ratio / theta_f + d / theta_f + e * ratio + f
@@ -61,7 +61,7 @@ def sainsot_compliance(
             ValidityWarning,
             stacklevel=2,
         )
-    c = sainsot_coefficients(theta_f, ratio)
+    c = sainsot_coefficients(theta_f, ratio=ratio)
     beta = np.asarray(t, dtype=float) - gear.base_half_angle
     cosine = np.cos(beta)
     lever = (gear.base_radius / cosine - gear.root_radius) / (2.0 * gear.root_radius * theta_f)

@@ -1,7 +1,6 @@
 """Approach of two flanks in line contact: Hertzian laws by three sources.
 
-Every law here has the form delta = F (A - C ln F) + K F^0.9, whose coefficients the
-load-sharing solver takes; the functions say the formulas.
+The load-sharing solver has each of them in compiled form; the functions say the formulas.
 """
 
 from __future__ import annotations
@@ -31,6 +30,7 @@ def yang_sun_stiffness(modulus: ArrayLike, face_width: ArrayLike) -> Floats:
 
 def weber_approach(
     force: ArrayLike,
+    *,
     depth: ArrayLike,
     half_width: ArrayLike,
     modulus: ArrayLike,
@@ -39,20 +39,27 @@ def weber_approach(
 ) -> Floats:
     """Approach [m] of one flank to its tooth's axis under a Hertzian line load.
 
-    delta_i = F 2 (1 - nu^2)/(pi E b) [ ln(2 h_i/a) - nu/(2 (1 - nu)) ]
+    delta_i = F 2 (1 - nu^2)/(pi E b) [ arsinh(eta) - nu/(1 - nu) eta (sqrt(1 + eta^2) - eta) ],
+    eta = h_i/a: the strain of the half plane under Hertz's pressure down to the depth h_i.
 
-    force: F [N] >= 0 of the tooth pair; depth: h_i = x_p/cos(beta) [m], from the contact along
-    the force to the tooth axis; half_width: a [m] of the contact; modulus, poisson: of this
-    gear; face_width: b [m]. The pair's approach is the sum over its two teeth. Any shapes;
-    zero load gives 0 (F ln a -> 0). Plane strain near the contact; meant for a << h_i.
-    Source: Weber & Banaschek 1953, eq. for delta_H.
+    For a << h_i it is Weber and Banaschek's ln(2 h_i/a) - nu/(2 (1 - nu)), from which it departs
+    by (a/h_i)^2/4. That form turns negative near a thin tip, where h_i < 0.6 a; the whole
+    integral is >= 0 and rises with the force, 0 where the tooth has no depth left.
+
+    force: F [N] >= 0 of the tooth pair; depth: h_i = x_p/cos(beta) >= 0 [m], from the contact
+    along the force to the tooth axis; half_width: a [m] of the contact; modulus, poisson: of
+    this gear; face_width: b [m]. The pair's approach is the sum over its two teeth. Any shapes;
+    zero load gives 0 (F ln a -> 0). Plane strain near the contact.
+    Source: Weber & Banaschek 1953; the stresses under the line contact Johnson, eq. 4.46.
     """
     f, a = np.asarray(force, dtype=float), np.asarray(half_width, dtype=float)
     loaded = f > 0.0
-    ratio = 2.0 * np.asarray(depth, dtype=float) / np.where(loaded, a, 1.0)
-    bracket = np.log(ratio) - poisson / (2.0 * (1.0 - poisson))
+    eta = np.asarray(depth, dtype=float) / np.where(loaded, a, 1.0)
+    # sqrt(1 + eta^2) - eta without the difference
+    narrow = 1.0 / (np.hypot(1.0, eta) + eta)
+    bracket = np.arcsinh(eta) - poisson / (1.0 - poisson) * eta * narrow
     scale = 2.0 * (1.0 - poisson**2) / (np.pi * np.asarray(modulus, dtype=float) * face_width)
-    return np.asarray(np.where(loaded, f * scale * bracket, 0.0))
+    return np.asarray(np.where(f == 0.0, 0.0, f * scale * bracket))
 
 
 def palmgren_approach(force: ArrayLike, modulus: ArrayLike, face_width: ArrayLike) -> Floats:

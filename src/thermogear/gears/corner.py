@@ -1,4 +1,4 @@
-"""Extended contact: where tooth pairs meet before A and beyond E, on a tip corner.
+"""Where flanks meet beside the path of contact: any point of one on the other, tip corners too.
 
 A pair whose involutes would meet off the path of contact cannot touch there; a loaded mesh
 lets the tip corner of one tooth touch the other's flank, early on the way in and late on the
@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.gears.geometry import GearPair
 
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 class ContactPoint(NamedTuple):
@@ -34,6 +35,52 @@ class ContactPoint(NamedTuple):
     gap: Floats
 
 
+def off_path(pair: GearPair, s: Floats) -> tuple[Flags, Flags]:
+    """(s < s_A, s > s_E), rounding aside: where the wheel's, the pinion's tip corner touches."""
+    slack = 1e-12 * pair.base_pitch
+    return s < pair.path.a - slack, s > pair.path.e + slack
+
+
+def pinion_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats, Floats]:
+    """Where a point of the pinion's flank meets the wheel's involute, and the advance till then.
+
+    s [m]: where the pair's involutes would meet; rho [m]: string length of the pinion's point,
+    whose string has turned by (s - rho)/r_b1. Returns (string length on the wheel, advance along
+    the line of action), both [m], any shape that broadcasts; the advance is 0 for rho = s and
+    grows with the square of the distance.
+    """
+    r1, r2, length = pair.pinion.base_radius, pair.wheel.base_radius, pair.line_of_action
+    s_, rho_ = np.asarray(s, dtype=float), np.asarray(rho, dtype=float)
+    point = (r1 + 1j * rho_) * np.exp(1j * (s_ - rho_) / r1)
+    # seen from the wheel's centre, with its axes turned to meet its own string
+    seen = np.conj((r1 + r2 + 1j * length) - point)
+    string = np.sqrt(np.maximum(np.abs(seen) ** 2 - r2**2, 0.0))
+    turn = np.angle(seen / (r2 - 1j * string))
+    return string, s_ - (length - string + r2 * turn)
+
+
+def wheel_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats, Floats]:
+    """:func:`pinion_point` with the gears exchanged: a point of the wheel's flank.
+
+    Returns (string length on the pinion, advance), both [m].
+    """
+    r1, r2, length = pair.pinion.base_radius, pair.wheel.base_radius, pair.line_of_action
+    s_, rho_ = np.asarray(s, dtype=float), np.asarray(rho, dtype=float)
+    own = np.conj((r2 - 1j * rho_) * np.exp(1j * (s_ - (length - rho_)) / r2))
+    point = (r1 + r2 + 1j * length) - own
+    string = np.sqrt(np.maximum(np.abs(point) ** 2 - r1**2, 0.0))
+    turn = np.angle(point / (r1 + 1j * string))
+    return string, string + r1 * turn - s_
+
+
+def flank_ends(pair: GearPair) -> tuple[tuple[float, float], tuple[float, float]]:
+    """String lengths [m] of form circle and tip, of pinion and wheel."""
+    return (
+        (pair.pinion.base_radius * pair.pinion.junction[1], pair.path.e),
+        (pair.wheel.base_radius * pair.wheel.junction[1], pair.line_of_action - pair.path.a),
+    )
+
+
 def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> ContactPoint:
     """Contact of a pair whose involutes would meet at ``s`` [m] on the line of action.
 
@@ -45,33 +92,18 @@ def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> Contac
     shape = np.shape(s)
     s_ = np.atleast_1d(np.asarray(s, dtype=float))
     path, length = pair.path, pair.line_of_action
-    r1, r2 = pair.pinion.base_radius, pair.wheel.base_radius
-    slack = 1e-12 * pair.base_pitch
-    late, early = s_ > path.e + slack, s_ < path.a - slack
+    early, late = off_path(pair, s_)
     rho1, rho2, gap = s_.copy(), length - s_, np.zeros_like(s_)
     if not extended:
         gap[late | early] = np.inf
         return ContactPoint(rho1.reshape(shape), rho2.reshape(shape), gap.reshape(shape))
-
-    past = s_[late]
-    corner = (r1 + 1j * path.e) * np.exp(1j * (past - path.e) / r1)
-    # seen from the wheel's centre, with its axes turned to meet its own string
-    seen = np.conj((r1 + r2 + 1j * length) - corner)
-    string = np.sqrt(np.maximum(np.abs(seen) ** 2 - r2**2, 0.0))
-    turn = np.angle(seen / (r2 - 1j * string))
-    rho1[late], rho2[late] = path.e, string
-    gap[late] = past - (length - string + r2 * turn)
-    lowest, highest = r2 * pair.wheel.junction[1], length - path.a
-    gap[late] = np.where((string < lowest) | (string > highest), np.inf, gap[late])
-
-    before = s_[early]
-    tip = length - path.a
-    wheel_tip = np.conj((r2 - 1j * tip) * np.exp(1j * (before - path.a) / r2))
-    corner = (r1 + r2 + 1j * length) - wheel_tip
-    string = np.sqrt(np.maximum(np.abs(corner) ** 2 - r1**2, 0.0))
-    turn = np.angle(corner / (r1 + 1j * string))
-    rho1[early], rho2[early] = string, tip
-    gap[early] = string + r1 * turn - before
-    lowest, highest = r1 * pair.pinion.junction[1], path.e
-    gap[early] = np.where((string < lowest) | (string > highest), np.inf, gap[early])
+    first, second = flank_ends(pair)
+    for here, corner, own, other, (lowest, highest) in (
+        (late, pinion_point, rho1, rho2, second),
+        (early, wheel_point, rho2, rho1, first),
+    ):
+        tip = path.e if corner is pinion_point else length - path.a
+        string, advance = corner(pair, s_[here], rho=tip)
+        own[here], other[here] = tip, string
+        gap[here] = np.where((string < lowest) | (string > highest), np.inf, advance)
     return ContactPoint(rho1.reshape(shape), rho2.reshape(shape), gap.reshape(shape))

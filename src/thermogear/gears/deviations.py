@@ -2,18 +2,21 @@
 
 Signs: S > 0 is added material on a flank, measured along the line of action; the gap of a
 tooth pair is e = -(S_1 + S_2), so that relief makes a positive gap. A deviation answers for
-every tooth pair of a mesh at once; several add up.
+every tooth pair of a mesh at once; several add up. What is a shape of one flank says so as a
+:class:`FlankShape`: flanks that deviate touch beside the nominal point of contact.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import KW_ONLY, dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import bounds
 from thermogear.base.errors import GeometryError, InputError, nearest
 from thermogear.gears.geometry import Gear, GearPair
 
@@ -48,12 +51,13 @@ class Contacts(NamedTuple):
         """rho [m] on the named gear."""
         return self.pinion if name == "pinion" else self.wheel
 
-    def active_profile(self, name: str) -> tuple[float, float, float]:
-        """rho [m] of the named gear at the start of contact, the pitch point and the tip."""
-        path, length = self.pair.path, self.pair.line_of_action
-        if name == "pinion":
-            return path.a, path.c, path.e
-        return length - path.e, length - path.c, length - path.a
+
+def active_profile(pair: GearPair, name: str) -> tuple[float, float, float]:
+    """rho [m] of the named gear at the start of contact, the pitch point and the tip."""
+    path, length = pair.path, pair.line_of_action
+    if name == "pinion":
+        return path.a, path.c, path.e
+    return length - path.e, length - path.c, length - path.a
 
 
 class Deviation(Protocol):
@@ -71,12 +75,33 @@ def _choice(field: str, value: str, known: tuple[str, ...]) -> None:
         )
 
 
-def _applies(own: str, at: Contacts) -> bool:
-    return own in ("both", at.flank)
+class FlankShape(ABC):
+    """A deviation that is the shape of one gear's flanks, on the side ``flank``."""
+
+    gear: str
+    flank: str
+
+    def acts_on(self, flank: str) -> bool:
+        """Whether the flanks of that side, "drive" or "back", have this shape."""
+        return self.flank in ("both", flank)
+
+    @abstractmethod
+    def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
+        """e [m] at the string lengths ``rho`` [m] of the gear, any shape: (..., *rho.shape)."""
+
+    def finest(self, pair: GearPair) -> float:
+        """Shortest length of string [m] over which the shape may turn; inf for a straight one."""
+        return math.inf
+
+    def gap(self, at: Contacts) -> Floats:
+        """e [m] at the points named; 0 on the other side's flanks."""
+        rho = at.string(self.gear)
+        found = self.taken_off(at.pair, rho)
+        return found if self.acts_on(at.flank) else np.zeros_like(rho)
 
 
 @dataclass(frozen=True)
-class Relief:
+class Relief(FlankShape):
     """Material taken off one gear's flanks towards the tip or the root.
 
     amount: at the very tip (at the start of active profile) [m], >= 0; length: how far it
@@ -85,6 +110,7 @@ class Relief:
     """
 
     gear: str
+    _: KW_ONLY
     amount: float
     length: float
     end: str = "tip"
@@ -96,14 +122,12 @@ class Relief:
         _choice("relief.end", self.end, ("tip", "root"))
         _choice("relief.shape", self.shape, ("linear", "parabolic"))
         _choice("relief.flank", self.flank, FLANKS)
-        if not (math.isfinite(self.amount) and self.amount >= 0.0):
-            raise InputError("relief.amount", f"{1e6 * self.amount:g} um", allowed=">= 0, finite")
-        if not (math.isfinite(self.length) and self.length > 0.0):
-            raise InputError("relief.length", f"{1e3 * self.length:g} mm", allowed="> 0, finite")
+        bounds.RELIEF_AMOUNT.require("relief.amount", self.amount)
+        bounds.RELIEF_LENGTH.require("relief.length", self.length)
 
-    def gap(self, at: Contacts) -> Floats:
+    def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = C x or C x^2; GeometryError for a relief longer than the active profile."""
-        start, _, tip = at.active_profile(self.gear)
+        start, _, tip = active_profile(pair, self.gear)
         if self.length > (tip - start) * (1.0 + 1e-12):
             raise GeometryError(
                 f"{self.gear}.relief.length",
@@ -111,12 +135,13 @@ class Relief:
                 allowed=f"<= {1e3 * (tip - start):.6g} mm",
                 why=f"the {self.end} relief is longer than the active profile",
             )
-        rho = at.string(self.gear)
-        if not _applies(self.flank, at):
-            return np.zeros_like(rho)
         depth = rho - (tip - self.length) if self.end == "tip" else start + self.length - rho
         x = np.clip(depth / self.length, 0.0, 1.0)
         return self.amount * (x if self.shape == "linear" else x * x)
+
+    def finest(self, pair: GearPair) -> float:
+        """Its own length."""
+        return self.length
 
 
 @dataclass(frozen=True)
@@ -133,8 +158,7 @@ class PitchError:
     def __post_init__(self) -> None:
         _choice("pitch_error.gear", self.gear, GEARS)
         object.__setattr__(self, "errors", tuple(float(e) for e in self.errors))
-        if not np.all(np.isfinite(self.errors)):
-            raise InputError("pitch_error.errors", self.errors, allowed="finite numbers [m]")
+        bounds.PITCH_ERROR.require("pitch_error.errors", self.errors)
 
     def gap(self, at: Contacts) -> Floats:
         """e = -error on the drive flank, +error on the back flank."""
@@ -151,7 +175,7 @@ class PitchError:
 
 
 @dataclass(frozen=True)
-class PressureAngleError:
+class PressureAngleError(FlankShape):
     """A flank cut with a pressure angle that is off by ``error`` [rad].
 
     Its base radius is r_b (1 - tan(alpha) error): S = -tan(alpha) error (rho - rho_C), 0 at the
@@ -165,22 +189,16 @@ class PressureAngleError:
     def __post_init__(self) -> None:
         _choice("pressure_angle_error.gear", self.gear, GEARS)
         _choice("pressure_angle_error.flank", self.flank, FLANKS)
-        if not (math.isfinite(self.error) and abs(self.error) < 0.02):
-            raise InputError(
-                "pressure_angle_error.error", f"{self.error:g} rad", allowed="-0.02 .. 0.02 rad"
-            )
+        bounds.ANGLE_ERROR.require("pressure_angle_error.error", self.error)
 
-    def gap(self, at: Contacts) -> Floats:
+    def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = tan(alpha) error (rho - rho_C)."""
-        rho = at.string(self.gear)
-        if not _applies(self.flank, at):
-            return np.zeros_like(rho)
-        _, pitch, _ = at.active_profile(self.gear)
-        return math.tan(at.gear(self.gear).pressure_angle) * self.error * (rho - pitch)
+        _, pitch, _ = active_profile(pair, self.gear)
+        return math.tan(pair.pinion.pressure_angle) * self.error * (rho - pitch)
 
 
 @dataclass(frozen=True, eq=False)
-class FlankTable:
+class FlankTable(FlankShape):
     """Added material S over the radius of one gear's flank: wear, measured profiles, heat.
 
     radius [m]: rising, shape (n,); added [m]: S, shape (..., n), leading axes are operating
@@ -188,6 +206,7 @@ class FlankTable:
     """
 
     gear: str
+    _: KW_ONLY
     radius: ArrayLike
     added: ArrayLike
     flank: str = "both"
@@ -196,22 +215,25 @@ class FlankTable:
         _choice("flank_table.gear", self.gear, GEARS)
         _choice("flank_table.flank", self.flank, FLANKS)
         radius, added = _table("flank_table", "radius", self.radius, self.added)
+        bounds.PROFILE_RADIUS.require("flank_table.radius", radius)
         object.__setattr__(self, "radius", radius)
         object.__setattr__(self, "added", added)
 
-    def gap(self, at: Contacts) -> Floats:
+    def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
         """e = -S(r), r = sqrt(r_b^2 + rho^2)."""
-        rho = at.string(self.gear)
-        if not _applies(self.flank, at):
-            return np.zeros_like(rho)
-        return -_interpolate(
-            np.hypot(at.gear(self.gear).base_radius, rho),
-            np.asarray(self.radius),
-            np.asarray(self.added),
-        )
+        gear = pair.pinion if self.gear == "pinion" else pair.wheel
+        radius = np.hypot(gear.base_radius, rho)
+        return -_interpolate(radius, np.asarray(self.radius), np.asarray(self.added))
+
+    def finest(self, pair: GearPair) -> float:
+        """Least distance between two of its points above the base circle."""
+        gear = pair.pinion if self.gear == "pinion" else pair.wheel
+        radius = np.maximum(np.asarray(self.radius), gear.base_radius)
+        steps = np.diff(np.sqrt((radius - gear.base_radius) * (radius + gear.base_radius)))
+        return float(np.min(steps[steps > 0.0], initial=math.inf))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class PathTable:
     """Added material S of a pair over its position on the path of contact.
 
@@ -231,7 +253,7 @@ class PathTable:
 
     def gap(self, at: Contacts) -> Floats:
         """e = -S(s)."""
-        if not _applies(self.flank, at):
+        if self.flank not in ("both", at.flank):
             return np.zeros_like(at.s)
         return -_interpolate(at.s, np.asarray(self.s), np.asarray(self.added))
 
@@ -254,7 +276,7 @@ class BasePitchDifference:
 
 def _table(kind: str, axis: str, knots: ArrayLike, added: ArrayLike) -> tuple[Floats, Floats]:
     """Checked float arrays of a table: knots (n,) that rise, values (..., n) that are finite."""
-    at, values = np.asarray(knots, dtype=float), np.asarray(added, dtype=float)
+    at, values = np.array(knots, dtype=float), np.array(added, dtype=float)
     if at.ndim != 1 or at.size < 2 or not np.all(np.diff(at) > 0.0):
         raise InputError(
             f"{kind}.{axis}", f"{at.size} values", allowed="two or more, strictly rising"
@@ -263,6 +285,10 @@ def _table(kind: str, axis: str, knots: ArrayLike, added: ArrayLike) -> tuple[Fl
         raise InputError(
             f"{kind}.added", f"shape {values.shape}", allowed=f"(..., {at.size}), finite"
         )
+    bounds.ADDED.require(f"{kind}.added", values)
+    # the table's own, for good: gaps are remembered by it
+    at.setflags(write=False)
+    values.setflags(write=False)
     return at, values
 
 

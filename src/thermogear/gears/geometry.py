@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import bounds
+from thermogear.base.bounds import Bounds
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.gears.trochoid import Trochoid
@@ -26,6 +28,9 @@ Floats = NDArray[np.float64]
 DEFAULT_FACE_WIDTH = 5.0  # in modules
 DEFAULT_BORE = 0.4  # of the pitch radius
 _SMALL_ANGLE = 0.1
+_TEETH = f"{bounds.LEAST_TEETH}..{bounds.MOST_TEETH}"
+LEFT_OUT = float("nan")
+"""Stands for a size left out; any other nan is refused."""
 
 
 def involute(angle: ArrayLike) -> Floats:
@@ -69,15 +74,13 @@ def _mm(value: float) -> str:
     return f"{1e3 * value:.6g} mm"
 
 
-def _require(name: str, value: float, positive: bool = True, unit: str = "mm") -> None:
+def _require(name: str, value: float, allowed: Bounds) -> None:
     if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
-        raise InputError(name, repr(value), allowed=f"a number [{unit}]")
-    if not math.isfinite(value) or (value <= 0.0 if positive else value < 0.0):
-        shown = f"{1e3 * value:.6g} mm" if unit == "mm" else f"{value:.6g}"
-        raise InputError(name, shown, allowed="> 0, finite" if positive else ">= 0, finite")
+        raise InputError(name, repr(value), allowed=f"a number [{allowed.si}]")
+    allowed.require(name, value)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Rack:
     """Basic rack profile [modules]: addendum h_aP, dedendum h_fP, tip radius rho_fP (ISO 53)."""
 
@@ -86,9 +89,11 @@ class Rack:
     fillet_radius: float = 0.38
 
     def __post_init__(self) -> None:
+        for name in ("addendum", "dedendum", "fillet_radius"):
+            _require(f"rack.{name}", getattr(self, name), bounds.RACK)
         for name in ("addendum", "dedendum"):
-            _require(f"rack.{name}", getattr(self, name), unit="modules")
-        _require("rack.fillet_radius", self.fillet_radius, positive=False, unit="modules")
+            if getattr(self, name) == 0.0:
+                raise InputError(f"rack.{name}", "0 modules", allowed="> 0")
 
     def largest_fillet_radius(self, pressure_angle: float) -> float:
         """Tip radius [modules] at which the rack's tip becomes one full round.
@@ -108,20 +113,22 @@ _UNSTATED = Rack()
 class Gear:
     """A spur gear as it is drawn, at the reference temperature (SI).
 
-    ``profile_shift`` x in modules, ``roughness`` Ra of the flanks. ``tip_radius`` left out is
-    pitch radius + (h_aP + x) m; ``face_width`` left out is 5 modules and ``bore_radius`` 0.4
-    pitch radii (our choices). ``rack`` left out is that of ISO 53, with a full round where a
-    steep pressure angle leaves no room for its fillet. An undercut tooth is refused unless
-    ``allow_undercut``.
+    ``teeth`` z, ``module`` [m], ``pressure_angle`` [rad], ``profile_shift`` x [modules],
+    ``face_width``, ``bore_radius``, ``tip_radius`` [m], ``roughness`` Ra [m] of the flanks.
+    ``tip_radius`` left out is pitch radius + (h_aP + x) m; ``face_width`` left out is 5 modules
+    and ``bore_radius`` 0.4 pitch radii (our choices). ``rack`` left out is that of ISO 53, with a
+    full round where a steep pressure angle leaves no room for its fillet. An undercut tooth is
+    refused unless ``allow_undercut``.
     """
 
     teeth: int
     module: float
+    _: KW_ONLY
     pressure_angle: float = math.radians(20.0)
     profile_shift: float = 0.0
-    face_width: float = math.nan
-    bore_radius: float = math.nan
-    tip_radius: float = math.nan
+    face_width: float = LEFT_OUT
+    bore_radius: float = LEFT_OUT
+    tip_radius: float = LEFT_OUT
     rack: Rack = _UNSTATED
     material: Material = MATERIALS["steel"]
     roughness: float = 0.4e-6
@@ -129,15 +136,12 @@ class Gear:
 
     def __post_init__(self) -> None:
         if isinstance(self.teeth, bool) or not isinstance(self.teeth, int | np.integer):
-            raise InputError("teeth", repr(self.teeth), allowed="a whole number >= 5")
-        if self.teeth < 5:
-            raise InputError("teeth", self.teeth, allowed="a whole number >= 5")
-        _require("module", self.module)
-        degrees = math.degrees(self.pressure_angle)
-        if not 10.0 <= degrees <= 35.0:
-            raise InputError("pressure_angle", f"{degrees:.6g} deg", allowed="10 .. 35 deg")
-        if not math.isfinite(self.profile_shift):
-            raise InputError("profile_shift", self.profile_shift, allowed="finite")
+            raise InputError("teeth", repr(self.teeth), allowed=f"a whole number, {_TEETH}")
+        if not bounds.LEAST_TEETH <= self.teeth <= bounds.MOST_TEETH:
+            raise InputError("teeth", self.teeth, allowed=_TEETH)
+        _require("module", self.module, bounds.MODULE)
+        _require("pressure_angle", self.pressure_angle, bounds.PRESSURE_ANGLE)
+        _require("profile_shift", self.profile_shift, bounds.PROFILE_SHIFT)
         largest = self.rack.largest_fillet_radius(self.pressure_angle)
         if self.rack is _UNSTATED and 0.0 <= largest < self.rack.fillet_radius:
             object.__setattr__(self, "rack", replace(self.rack, fillet_radius=largest))
@@ -155,19 +159,24 @@ class Gear:
             "tip_radius",
             self.pitch_radius + (self.rack.addendum + self.profile_shift) * self.module,
         )
-        for name in ("face_width", "tip_radius", "roughness"):
-            _require(name, getattr(self, name))
+        for name, allowed in (
+            ("face_width", bounds.LENGTH),
+            ("bore_radius", bounds.LENGTH),
+            ("tip_radius", bounds.TIP_RADIUS),
+            ("roughness", bounds.ROUGHNESS),
+        ):
+            _require(name, getattr(self, name), allowed)
         self._check_tooth()
-        if not (math.isfinite(self.bore_radius) and 0.0 < self.bore_radius < self.root_radius):
+        if self.bore_radius >= self.root_radius:
             raise GeometryError(
                 "bore_radius",
                 _mm(self.bore_radius),
-                allowed=f"0 < bore radius < root radius {_mm(self.root_radius)}",
+                allowed=f"< root radius {_mm(self.root_radius)}",
                 why="the body must be a ring",
             )
 
     def _default(self, name: str, value: float) -> None:
-        if isinstance(getattr(self, name), float) and math.isnan(getattr(self, name)):
+        if getattr(self, name) is LEFT_OUT:
             object.__setattr__(self, name, value)
 
     def _check_tooth(self) -> None:
@@ -180,11 +189,11 @@ class Gear:
                 why=f"needs x >= {needed:.3f}",
                 fix=f"use x >= {advised:.2f} or >= {self.minimum_teeth} teeth",
             )
-        if self.root_radius <= 0.0:
+        if not self.root_radius > 0.0:
             raise GeometryError(
                 "profile_shift", f"{self.profile_shift:g}", why="the root circle vanishes"
             )
-        if self.tip_radius <= self.form_radius:
+        if not self.tip_radius > self.form_radius:
             raise GeometryError(
                 "tip_radius",
                 _mm(self.tip_radius),
@@ -194,14 +203,14 @@ class Gear:
         if self.profile_shift < needed - 1e-12:
             # how much of the tooth the cutter leaves at the neck
             neck = self.fillet.point(np.linspace(self.junction[0], 0.5 * math.pi, 200))[0]
-            if float(neck.min()) <= 0.0:
+            if not float(neck.min()) > 0.0:
                 raise GeometryError(
                     "profile_shift",
                     f"{self.profile_shift:g} for {self.teeth} teeth",
                     why="the undercut cuts the tooth off",
                     fix=f"raise the profile shift (no undercut from {needed:.3f})",
                 )
-        if self.tip_thickness <= 0.0:
+        if not self.tip_thickness > 0.0:
             pointed = self.pointed_radius
             raise GeometryError(
                 "tip_radius",
@@ -252,10 +261,15 @@ class Gear:
         """Tooth thickness along the tip circle [m]; negative beyond the point of the tooth."""
         return 2.0 * self.tip_radius * float(self.half_thickness_angle(self.tip_radius))
 
+    @cached_property
+    def pointed_tangent(self) -> float:
+        """t = tan(alpha_k) at which the two flanks of a tooth meet: inv(alpha_k) = theta_b."""
+        return math.tan(float(inverse_involute(self.base_half_angle)))
+
     @property
     def pointed_radius(self) -> float:
-        """Radius [m] at which the two flanks of a tooth meet: inv(alpha_k) = theta_b."""
-        return self.base_radius / math.cos(float(inverse_involute(self.base_half_angle)))
+        """Radius [m] of that point."""
+        return self.base_radius * math.hypot(1.0, self.pointed_tangent)
 
     @property
     def minimum_profile_shift(self) -> float:
@@ -361,7 +375,7 @@ class GearPair:
 
     pinion: Gear
     wheel: Gear
-    centre_distance: float = math.nan
+    centre_distance: float = LEFT_OUT
 
     def __post_init__(self) -> None:
         if self.wheel is self.pinion:
@@ -382,10 +396,10 @@ class GearPair:
                     why="both gears come from one rack",
                 )
         tightest = self._zero_backlash_distance()
-        if isinstance(self.centre_distance, float) and math.isnan(self.centre_distance):
+        if self.centre_distance is LEFT_OUT:
             object.__setattr__(self, "centre_distance", tightest)
-        _require("centre_distance", self.centre_distance)
-        if self.centre_distance < tightest * (1.0 - 1e-12):
+        _require("centre_distance", self.centre_distance, bounds.CENTRE_DISTANCE)
+        if not self.centre_distance >= tightest * (1.0 - 1e-12):
             raise GeometryError(
                 "centre_distance",
                 _mm(self.centre_distance),
@@ -394,7 +408,7 @@ class GearPair:
             )
         self._check_tips()
         ratio = self.contact_ratio
-        if ratio < 1.0:
+        if not ratio >= 1.0:
             raise GeometryError(
                 "contact_ratio",
                 f"{ratio:.4f}",
@@ -417,7 +431,7 @@ class GearPair:
         value = float(involute(p.pressure_angle)) + 2.0 * math.tan(p.pressure_angle) * shift / (
             p.teeth + w.teeth
         )
-        if value <= 0.0:
+        if not value > 0.0:
             raise GeometryError(
                 "wheel.profile_shift",
                 f"{w.profile_shift:g}",
@@ -438,7 +452,7 @@ class GearPair:
             lowest = other.base_radius * other.junction[1]
             # the tip may come down to the other's form circle, and never past its tangent point
             longest = length - lowest
-            if reach > longest * (1.0 + 1e-9):
+            if not reach <= longest * (1.0 + 1e-9):
                 where = "tangent point" if reach > length else "form circle"
                 raise GeometryError(
                     f"{name}.tip_radius",
@@ -448,7 +462,7 @@ class GearPair:
                     fix=f"lower the tip radius or raise {other_name}.profile_shift",
                 )
             gap = self.centre_distance - mine.tip_radius - other.root_radius
-            if gap <= 0.0:
+            if not gap > 0.0:
                 raise GeometryError(
                     f"{name}.tip_radius",
                     _mm(mine.tip_radius),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import ValidityWarning
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.geometry import Gear, GearPair
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class IsoStiffness(NamedTuple):
 
 
 def theoretical_single_stiffness(
-    teeth1: ArrayLike, teeth2: ArrayLike, shift1: ArrayLike, shift2: ArrayLike
+    *, teeth1: ArrayLike, teeth2: ArrayLike, shift1: ArrayLike, shift2: ArrayLike
 ) -> Floats:
     """c'_th = 1/q' [N/m^2] of one tooth pair of steel solid discs.
 
@@ -62,7 +62,7 @@ def theoretical_single_stiffness(
     return np.asarray(1e9 / flexibility)
 
 
-def virtual_teeth(teeth: ArrayLike, helix_angle: float, pressure_angle: float) -> Floats:
+def virtual_teeth(teeth: ArrayLike, *, helix_angle: float, pressure_angle: float) -> Floats:
     """z_n = z/(cos^2(beta_b) cos(beta)), sin(beta_b) = sin(beta) cos(alpha_n) (ISO 21771-1).
 
     Angles in [rad]; z itself for a spur gear.
@@ -73,6 +73,7 @@ def virtual_teeth(teeth: ArrayLike, helix_angle: float, pressure_angle: float) -
 
 def single_stiffness(
     theoretical: ArrayLike,
+    *,
     dedendum: float,
     pressure_angle: float,
     helix_angle: float = 0.0,
@@ -95,29 +96,45 @@ def iso6336_stiffness(pair: GearPair, line_load: ArrayLike = 200e3) -> IsoStiffn
     """c'_th, c' and c_gamma_alpha = c' (0.75 eps_alpha + 0.25) of a spur pair [N/m^2].
 
     line_load: F_t K_A/b [N/m], any shape; below 100 N/mm c' falls with its fourth root, and
-    0 gives 0. Moduli scale by 2 E1 E2/(E1 + E2) over that of steel. The gear with the larger
-    shift takes the place of the first. Warns outside the source's shifts.
+    0 gives 0. Moduli scale by 2 E1 E2/(E1 + E2) over that of steel. The source's first gear is
+    the pinion: the one with fewer teeth, whichever drives. Of two with equally many teeth it is
+    the one with the larger shift, the only order inside the source's range. So c is continuous
+    in both shifts, and exchanging the gears changes nothing. Warns outside the source's shifts,
+    x1 >= x2 and -0.5 <= x1 + x2 <= 2.
     Source: ISO 6336-1:2006, method B, clause 9.
     """
-    first, second = pair.pinion, pair.wheel
-    if second.profile_shift > first.profile_shift:
-        first, second = second, first
-    total = first.profile_shift + second.profile_shift
-    if not -0.5 <= total <= 2.0:
-        warnings.warn(
-            f"profile_shift: the sum is {total:g}; range of ISO 6336-1 -0.5 .. 2.0",
-            ValidityWarning,
-            stacklevel=2,
-        )
+    first, second = sorted(
+        (pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift)
+    )
+    _warn_of_shifts(first, second)
     theory = theoretical_single_stiffness(
-        first.teeth, second.teeth, first.profile_shift, second.profile_shift
+        teeth1=first.teeth,
+        teeth2=second.teeth,
+        shift1=first.profile_shift,
+        shift2=second.profile_shift,
     )
     e1, e2 = first.material.youngs_modulus, second.material.youngs_modulus
     single = single_stiffness(
         theory * (2.0 * e1 * e2 / (e1 + e2) / _STEEL),
-        0.5 * (first.rack.dedendum + second.rack.dedendum),
-        first.pressure_angle,
+        dedendum=0.5 * (first.rack.dedendum + second.rack.dedendum),
+        pressure_angle=first.pressure_angle,
     )
     load = np.asarray(line_load, dtype=float)
     single = single * np.minimum(load / _LOW_LOAD, 1.0) ** 0.25
     return IsoStiffness(theory, single, single * (0.75 * pair.contact_ratio + 0.25))
+
+
+def _warn_of_shifts(first: Gear, second: Gear) -> None:
+    """One warning for each range of the source that the shifts leave."""
+    one, two = first.profile_shift, second.profile_shift
+    given = f"x1 = {one:g} ({first.teeth} teeth), x2 = {two:g} ({second.teeth} teeth)"
+    for holds, found, valid in (
+        (one >= two, "x1 < x2", "x1 >= x2"),
+        (-0.5 <= one + two <= 2.0, f"x1 + x2 = {one + two:g}", "-0.5 <= x1 + x2 <= 2"),
+    ):
+        if not holds:
+            warnings.warn(
+                f"profile_shift: {given}: {found}; range of ISO 6336-1 {valid}",
+                ValidityWarning,
+                stacklevel=3,
+            )

@@ -8,113 +8,46 @@ of positions, loads and temperatures in one call.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError, nearest
-from thermogear.gears.candidates import MeshPoints, mesh_points
-from thermogear.gears.contact import hertz_pressure, reduced_modulus
-from thermogear.gears.contact_compliance import (
-    CONTACT_LAWS,
-    palmgren_approach,
-    yang_sun_stiffness,
-)
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.vocabulary import STATUS, edge_attributes, status_attributes
+from thermogear.gears.candidates import MeshPoints
+from thermogear.gears.contact import hertz_pressure
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import Gear, GearPair
-from thermogear.gears.ring import body_matrices, foot_load
+from thermogear.gears.geometry import GearPair
+from thermogear.gears.mesh_system import BODIES, LoadedModel, MeshSystem, flat
 from thermogear.gears.stiffness import Moduli
-from thermogear.gears.tooth import STARTS, flank_point, tooth_compliances
 
 if TYPE_CHECKING:
     import xarray as xr
 
+__all__ = [
+    "BODIES",
+    "LEAST_LINE_LOAD",
+    "LoadedMesh",
+    "LoadedModel",
+    "loaded_contact",
+    "mesh_force",
+    "solve_mesh",
+]
+
 Floats = NDArray[np.float64]
 
-BODIES = {
-    "bore_clamped": "ring held at the bore: statics",
-    "rim": "the same without its wind-up against the bore: for a lumped dynamic model",
-}
 LEAST_LINE_LOAD = 1e3
 """Line load [N/m] below which stiffness and shares are those at this load (1 N/mm)."""
-
-_DEGREE = 48
-
-
-@dataclass(frozen=True)
-class LoadedModel:
-    """The choices of the loaded contact.
-
-    body: reading of the hub, see :data:`BODIES`; contact: see :data:`CONTACT_LAWS`; start: of
-    the tooth's beam, see :data:`STARTS`; extended: contact on tip corners off the path;
-    coupled: a tooth moves under its neighbours' load.
-    """
-
-    body: str = "bore_clamped"
-    contact: str = "weber-banaschek"
-    start: str = "30-degree"
-    extended: bool = True
-    coupled: bool = True
-
-    def __post_init__(self) -> None:
-        for name, known in (("body", BODIES), ("contact", CONTACT_LAWS), ("start", STARTS)):
-            value = getattr(self, name)
-            if value not in known:
-                raise InputError(
-                    f"loaded.{name}",
-                    repr(value),
-                    allowed=" | ".join(known),
-                    fix=nearest(str(value), known),
-                )
-
-
-@lru_cache(maxsize=256)
-def _tooth_series(gear: Gear, start: str) -> tuple[Floats, tuple[float, float]]:
-    """Chebyshev series of the beam compliance for unit modulus and width over the flank."""
-    low = gear.junction[1]
-    high = float(np.tan(gear.pressure_angle_at(gear.tip_radius)))
-    # 0.5 % beyond the flank's ends, where rounding may put a tip corner
-    margin = 5e-3 * (high - low)
-    span = (max(low - margin, 0.0), high + margin)
-
-    nodes = chebyshev.chebpts1(_DEGREE + 1)
-    t = 0.5 * (span[0] + span[1]) + 0.5 * (span[1] - span[0]) * nodes
-    values = tooth_compliances(gear, t, start, modulus=1.0, face_width=1.0).total
-    return np.asarray(chebyshev.chebfit(nodes, values, _DEGREE)), span
-
-
-def _tooth_unit(gear: Gear, t: Floats, start: str) -> Floats:
-    series, (low, high) = _tooth_series(gear, start)
-    x = np.clip((2.0 * t - low - high) / (high - low), -1.0, 1.0)
-    return np.asarray(chebyshev.chebval(x, series))
-
-
-def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Floats:
-    """Ring compliance between the candidates for unit modulus and width, (position, pair, pair).
-
-    ``direction`` +1: teeth farther on the path stand ahead in the direction of their load.
-    """
-    table, centre = body_matrices(gear, windup=model.body == "bore_clamped")
-    load = foot_load(gear, t)
-    count = t.shape[1]
-    out = np.zeros((*t.shape, count))
-    for j in range(count):
-        for k in range(count):
-            if j == k or model.coupled:
-                by = load[:, k] @ table[centre + direction * (j - k)].T
-                out[:, j, k] = np.einsum("pa,pa->p", load[:, j], by)
-    return out
 
 
 class LoadedMesh(NamedTuple):
     """Solution arrays: lead is the broadcast shape of load, moduli and deviations.
 
     deflection, unloaded [m], tangent, secant [N/m], settled: (*lead, position); force [N],
-    share, pressure [Pa]: (*lead, position, pair); points: the candidates.
+    share, pressure [Pa], edge: (*lead, position, pair); points: the candidates. ``edge`` is a
+    place in :data:`~thermogear.base.vocabulary.EDGE_CONTACT`; where it is not 0 the pressure is
+    nan: Hertz's formula for two involutes says nothing about a corner.
     """
 
     deflection: Floats
@@ -125,132 +58,22 @@ class LoadedMesh(NamedTuple):
     force: Floats
     share: Floats
     pressure: Floats
+    edge: NDArray[np.int8]
     points: MeshPoints
 
+    @property
+    def edge_share(self) -> Floats:
+        """Share of the positions at which a tip corner carries load, shape ``lead``."""
+        return np.asarray((self.edge > 0).any(axis=-1).mean(axis=-1))
 
-@dataclass(frozen=True, eq=False)
-class MeshSystem:
-    """The compliances and gaps of a mesh at its positions: what the kernel solves.
-
-    Built once for a pair, its phases, moduli and deviations; ``lead`` is the shape those (and
-    ``shape``, that of the loads) broadcast to.
-    """
-
-    pair: GearPair
-    points: MeshPoints
-    lead: tuple[int, ...]
-    gaps: Floats
-    tooth: Floats
-    body: Floats
-    depth: Floats
-    radius: Floats
-    tooth_modulus: Floats
-    body_modulus: Floats
-    reduced: Floats
-    law: str
-
-    @classmethod
-    def of(
-        cls,
-        pair: GearPair,
-        shape: tuple[int, ...],
-        phase: ArrayLike,
-        moduli: tuple[Moduli, Moduli],
-        deviations: Sequence[Deviation],
-        model: LoadedModel,
-        flank: str,
-    ) -> MeshSystem:
-        """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments."""
-        points = mesh_points(pair, phase, flank, model.extended)
-        positions, count = points.s.shape
-        gears = (pair.pinion, pair.wheel)
-        gap = points.point.gap
-        for deviation in deviations:
-            gap = gap + deviation.gap(points.contacts)
-        lead = np.broadcast_shapes(
-            shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
-        )
-        cases = int(np.prod(lead, dtype=np.int64))
-        if gap.ndim == 2:
-            gaps = gap[None]
-        else:
-            gaps = np.broadcast_to(gap, (*lead, positions, count)).reshape(cases, positions, count)
-
-        strings = (points.point.pinion, points.point.wheel)
-        parameters = [rho / gear.base_radius for gear, rho in zip(gears, strings, strict=True)]
-        nu = [gear.material.poisson_ratio for gear in gears]
-        depth = np.empty((2, positions, count))
-        for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
-            at = flank_point(gear, t)
-            # a candidate whose corner misses the flank has no depth; it never carries
-            h = np.maximum(at.x / np.cos(at.beta), 1e-3 * gear.module)
-            depth[i] = np.log(2.0 * h) - nu[i] / (2.0 * (1.0 - nu[i]))
-        tooth_modulus = np.stack([_flat(m.tooth, lead) for m in moduli], axis=-1)
-        return cls(
-            pair=pair,
-            points=points,
-            lead=lead,
-            gaps=np.ascontiguousarray(gaps),
-            tooth=np.stack(
-                [_tooth_unit(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
-            ),
-            # the pinion's load points against its rotation, the wheel's along it
-            body=np.stack(
-                [
-                    _body_unit(g, t, sign, model)
-                    for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
-                ]
-            ),
-            depth=depth,
-            radius=np.maximum(
-                strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
-            ),
-            tooth_modulus=tooth_modulus,
-            body_modulus=np.stack([_flat(m.body, lead) for m in moduli], axis=-1),
-            reduced=reduced_modulus(tooth_modulus[:, 0], nu[0], tooth_modulus[:, 1], nu[1]),
-            law=model.contact,
-        )
-
-    def solve(
-        self, asked: Floats, by_load: bool
-    ) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
-        """(force, deflection, tangent stiffness, settled) for loads > 0 or for deflections.
-
-        asked: one value a case, shape (case,). Returns shapes (case, position[, pair]).
-        """
-        from thermogear.gears.sharing_kernel import share_many
-
-        width = self.pair.face_width
-        nu = [g.material.poisson_ratio for g in (self.pair.pinion, self.pair.wheel)]
-        cases, (positions, count) = asked.size, self.points.s.shape
-        force = np.empty((cases, positions, count))
-        delta = np.empty((cases, positions))
-        stiffness = np.empty((cases, positions))
-        settled = np.empty((cases, positions), dtype=np.bool_)
-        share_many(
-            asked,
-            by_load,
-            self.gaps,
-            self.tooth,
-            self.body,
-            self.depth,
-            np.log(4.0 * self.radius),
-            1.0 / (self.tooth_modulus * width),
-            1.0 / (self.body_modulus * width),
-            _contact_coefficients(self.law, self.tooth_modulus, nu, self.reduced, width),
-            force,
-            delta,
-            stiffness,
-            settled,
-        )
-        return force, delta, stiffness, settled
-
-
-def _flat(values: ArrayLike, lead: tuple[int, ...]) -> Floats:
-    """``values`` broadcast to ``lead``, one axis of cases."""
-    return np.ascontiguousarray(
-        np.broadcast_to(np.asarray(values, dtype=float), lead).reshape(-1), dtype=float
-    )
+    def checked(self) -> LoadedMesh:
+        """The same where every position settled; raises ConvergenceError where one did not."""
+        lost = int(np.count_nonzero(~self.settled))
+        if lost:
+            raise ConvergenceError(
+                f"loaded contact: {lost} of {self.settled.size} positions did not settle"
+            )
+        return self
 
 
 def solve_mesh(
@@ -270,19 +93,28 @@ def solve_mesh(
         raise InputError("normal_force", f"{load} N", allowed=">= 0, finite")
     moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
     system = MeshSystem.of(
-        pair, load.shape, phase, moduli, deviations, model or LoadedModel(), flank
+        pair,
+        shape=load.shape,
+        phase=phase,
+        moduli=moduli,
+        deviations=deviations,
+        model=model or LoadedModel(),
+        flank=flank,
     )
     lead, width = system.lead, pair.face_width
-    asked = _flat(load, lead)
+    asked = flat(load, lead=lead)
     carried = np.where(asked == 0.0, LEAST_LINE_LOAD * width, asked)
     force, delta, stiffness, settled = system.solve(carried, by_load=True)
 
     share = force / carried[:, None, None]
-    force[asked == 0.0] = 0.0
+    idle = settled & (asked == 0.0)[:, None]
+    force[idle] = 0.0
     unloaded = np.broadcast_to(system.gaps.min(axis=-1), delta.shape)
     secant = carried[:, None] / (delta - unloaded)
-    delta = np.where(asked[:, None] == 0.0, unloaded, delta)
+    delta = np.where(idle, unloaded, delta)
+    edge = system.edges * (force > 0.0)
     pressure = hertz_pressure(force / width, system.radius, system.reduced[:, None, None])
+    pressure[edge > 0] = np.nan
 
     def shaped(values: Floats) -> Floats:
         return values.reshape(*lead, *values.shape[1:])
@@ -296,6 +128,7 @@ def solve_mesh(
         shaped(force),
         shaped(share),
         shaped(pressure),
+        edge.reshape(*lead, *edge.shape[1:]),
         system.points,
     )
 
@@ -330,32 +163,20 @@ def mesh_force(
         raise InputError("deflection", f"{delta} m", allowed="finite")
     moduli = (pinion or Moduli.of(pair.pinion), wheel or Moduli.of(pair.wheel))
     system = MeshSystem.of(
-        pair, delta.shape, phase, moduli, deviations, model or LoadedModel(body="rim"), flank
+        pair,
+        shape=delta.shape,
+        phase=phase,
+        moduli=moduli,
+        deviations=deviations,
+        model=model or LoadedModel(body="rim"),
+        flank=flank,
     )
-    force, _, stiffness, settled = system.solve(_flat(delta, system.lead), by_load=False)
+    force, _, stiffness, settled = system.solve(flat(delta, lead=system.lead), by_load=False)
     total = np.where(settled, force.sum(axis=-1), np.nan)
     return (
         total.reshape(*system.lead, *total.shape[1:]),
         stiffness.reshape(*system.lead, *total.shape[1:]),
     )
-
-
-def _contact_coefficients(
-    law: str, modulus: Floats, nu: Sequence[float], reduced: Floats, width: float
-) -> Floats:
-    """[case, 6]: depth factors of both gears, C, ln(pi b E*), K, constant compliance."""
-    out = np.zeros((modulus.shape[0], 6))
-    if law == "weber-banaschek":
-        for i in range(2):
-            out[:, i] = 2.0 * (1.0 - nu[i] ** 2) / (np.pi * modulus[:, i] * width)
-        # half of the two factors: a grows with the root of the force
-        out[:, 2] = 1.0 / (np.pi * reduced * width)
-        out[:, 3] = np.log(np.pi * width * reduced)
-    elif law == "palmgren":
-        out[:, 4] = palmgren_approach(1.0, reduced, width)
-    else:
-        out[:, 5] = 1.0 / yang_sun_stiffness(reduced, width)
-    return out
 
 
 DIMENSIONS = ((), ("operating",), ("temperature", "load"))
@@ -365,10 +186,13 @@ _MEANING = {
     "tangent_stiffness": ("N/m", "tangent mesh stiffness dF/d(deflection)"),
     "secant_stiffness": ("N/m", "secant mesh stiffness, load over elastic deflection"),
     "contact_pairs": ("1", "number of tooth pairs that carry load"),
-    "status": ("1", "status of the point: 0 ok, 2 not converged"),
     "pair_force": ("N", "normal force of the tooth pair"),
     "load_share": ("1", "share of the normal force on the tooth pair"),
-    "contact_pressure": ("Pa", "greatest Hertzian pressure of the tooth pair"),
+    "contact_pressure": (
+        "Pa",
+        "greatest Hertzian pressure of the tooth pair; not valid (nan) in edge contact",
+    ),
+    "edge_contact_share": ("1", "share of the mesh period in which a tip corner carries load"),
     "pair_position": ("m", "distance of the pair from the pinion's tangent point"),
     "mean_stiffness": ("N/m", "tangent mesh stiffness, mean over the positions"),
     "double_contact_length": ("m", "length of path on which two or more pairs carry"),
@@ -410,7 +234,12 @@ def loaded_contact(
     ``tangent_stiffness`` 1^T J^-1 1 over the loaded pairs, J the Jacobian of the left side;
     ``secant_stiffness`` F_n/(delta - min e_j); shares, forces, pressures per pair. A load of 0
     leaves forces and pressures 0 and delta unloaded, with stiffness and shares those at
-    1 N/mm. A position that does not settle has status 2 and nan values.
+    1 N/mm. A position that does not settle has status not_converged and nan values.
+
+    Where a tip corner carries, ``edge_contact`` says whose it is and the
+    pressure is nan: Hertz's curvature of two involutes does not hold on an edge, whose pressure
+    is several times higher. ``edge_contact_share`` is the share of the positions with such a
+    corner. Forces and stiffness there take the corner for a flank of the involute's curvature.
 
     Plane stress body and plane strain contact; the band between all plane stress and all plane
     strain is -2.6 .. +4.3 % in stiffness.
@@ -451,7 +280,7 @@ def loaded_contact(
         names = tuple(dimensions)
     if len(names) != len(lead):
         raise InputError("dimensions", names, allowed=f"{len(lead)} names, one for each axis")
-    loaded = (mesh.share > 0.0).sum(axis=-1)
+    loaded, settled = (mesh.share > 0.0).sum(axis=-1), mesh.settled.all(axis=-1)
     along, by_pair = (*names, "mesh_phase"), (*names, "mesh_phase", "pair")
     values: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "transmission_error": (along, mesh.deflection),
@@ -459,12 +288,15 @@ def loaded_contact(
         "tangent_stiffness": (along, mesh.tangent),
         "secant_stiffness": (along, mesh.secant),
         "contact_pairs": (along, loaded),
-        "status": (along, np.where(mesh.settled, 0, 2).astype(np.int8)),
         "pair_force": (by_pair, mesh.force),
         "load_share": (by_pair, mesh.share),
         "contact_pressure": (by_pair, mesh.pressure),
         "mean_stiffness": (names, mesh.tangent.mean(axis=-1)),
-        "double_contact_length": (names, (loaded > 1).mean(axis=-1) * pair.base_pitch),
+        "double_contact_length": (
+            names,
+            np.where(settled, (loaded > 1).mean(axis=-1), np.nan) * pair.base_pitch,
+        ),
+        "edge_contact_share": (names, np.where(settled, mesh.edge_share, np.nan)),
         "pair_position": (("mesh_phase", "pair"), mesh.points.s),
     }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
@@ -476,8 +308,13 @@ def loaded_contact(
         units, words = _MEANING[name]
         return {"units": units, "long_name": words}
 
+    status = np.where(mesh.settled, STATUS.index("ok"), STATUS.index("not_converged"))
+    flags = {
+        "status": xr.Variable(along, status.astype(np.int8), status_attributes()),
+        "edge_contact": xr.Variable(by_pair, mesh.edge, edge_attributes()),
+    }
     return xr.Dataset(
-        {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in values.items()},
+        {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in values.items()} | flags,
         {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in coordinates.items()},
         {
             "body": choice.body,

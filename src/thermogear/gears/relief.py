@@ -24,7 +24,7 @@ MOST_EVALUATIONS = 400
 """Evaluations of the mesh period from one start, at most."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ReliefDesign:
     """The relief found and the peak-to-peak transmission error [m] without and with it."""
 
@@ -67,7 +67,7 @@ def optimise_tip_relief(
     phase = np.arange(positions) / positions
 
     def error(extra: Sequence[Deviation]) -> Floats:
-        return solve_mesh(
+        solved = solve_mesh(
             pair,
             normal_force,
             phase,
@@ -75,7 +75,8 @@ def optimise_tip_relief(
             wheel=wheel,
             deviations=[*deviations, *extra],
             model=model,
-        ).deflection
+        )
+        return solved.checked().deflection
 
     plain = error(())
     unrelieved = float(np.ptp(plain))
@@ -87,8 +88,8 @@ def optimise_tip_relief(
         amount = most * np.clip(x[:2], 0.0, 1.0)
         length = shortest + (longest - shortest) * np.clip(x[2:], 0.0, 1.0)
         return (
-            Relief("pinion", float(amount[0]), float(length[0]), shape=shape),
-            Relief("wheel", float(amount[1]), float(length[1]), shape=shape),
+            Relief("pinion", amount=float(amount[0]), length=float(length[0]), shape=shape),
+            Relief("wheel", amount=float(amount[1]), length=float(length[1]), shape=shape),
         )
 
     def full(x: Floats) -> Floats:
@@ -115,4 +116,6 @@ def optimise_tip_relief(
         if found.fun < best:
             best, best_x = float(found.fun), full(np.asarray(found.x))
     one, two = reliefs(best_x)
-    return ReliefDesign(one, two, unrelieved, best, evaluations)
+    return ReliefDesign(
+        pinion=one, wheel=two, unrelieved=unrelieved, relieved=best, evaluations=evaluations
+    )

@@ -24,7 +24,7 @@ _MATES = 6  # farthest coupled teeth, in pitches
 
 
 def rim_compliance(
-    orders: ArrayLike, outer: float, inner: float, poisson: float
+    orders: ArrayLike, *, outer: float, inner: float, poisson: float
 ) -> tuple[Floats, Floats, Floats]:
     """Rim displacement of a clamped annulus under rim tractions of circular order n >= 1.
 
@@ -86,7 +86,7 @@ def _foot_matrices(
     n = 0 (the hub's wind-up) apart.
     """
     n = np.arange(1, harmonics + 1)
-    g_rr, g_rt, g_tt = rim_compliance(n, outer, inner, poisson)
+    g_rr, g_rt, g_tt = rim_compliance(n, outer=outer, inner=inner, poisson=poisson)
     width = 2.0 * outer * theta_f
     flat = np.sin(n * theta_f) / (np.pi * n) / width
     tilt = (
@@ -158,6 +158,7 @@ def body_matrices(
 def ring_compliance(
     gear: Gear,
     t: ArrayLike,
+    *,
     other: ArrayLike | None = None,
     pitches: int = 0,
     modulus: ArrayLike | None = None,

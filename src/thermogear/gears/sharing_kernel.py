@@ -5,10 +5,11 @@ Minimises the elastic energy of the mesh over F_j >= 0 with sum F_j = F_n: the c
     sum_k C_jk F_k + delta_H(F_j) + e_j = delta   where F_j > 0,
     sum_k C_jk F_k + e_j >= delta                 where F_j = 0
 
-(or, for a prescribed delta, over F_j >= 0 alone, with the same conditions),
-delta_H(F) = F (A_j - C ln F) + K F^0.9. Pairs enter one by one where they would overlap and
+(or, for a prescribed delta, over F_j >= 0 alone, with the same conditions). The approach
+delta_H(F) rises with F whatever the law. Pairs enter one by one where they would overlap and
 leave where Newton's step would pull (Lawson and Hanson's scheme); the energy is convex, so
-the answer is unique and does not depend on the order.
+the answer is unique and does not depend on the order. Each test is worded so that a NaN fails
+it: nothing settles that is not a number.
 """
 
 from __future__ import annotations
@@ -58,19 +59,51 @@ def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
 
 
 @_compiled
+def _approach(force: float, first: float, second: float, law: Floats) -> tuple[float, float]:
+    """delta_H [m] at ``force`` > 0 and its slope [m/N]; ``first``, ``second``: (h_i/a)^2 F [N].
+
+    ``law``: factors of both gears' logarithmic approach, their nu/(1 - nu), K of K F^0.9 and a
+    constant compliance.
+    """
+    mean, slope = law[5], law[5]
+    if law[4] != 0.0:
+        tenth = law[4] * force**-0.1
+        mean += tenth
+        slope += 0.9 * tenth
+    for i in range(2):
+        if law[i] != 0.0:
+            eta = np.sqrt((first if i == 0 else second) / force)
+            root = np.sqrt(1.0 + eta * eta)
+            narrow = 1.0 / (root + eta)
+            bracket = np.arcsinh(eta) - law[2 + i] * eta * narrow
+            mean += law[i] * bracket
+            # eta falls with the root of the force
+            slope += law[i] * (bracket - 0.5 * eta * (1.0 - law[2 + i] * narrow * narrow) / root)
+    return force * mean, slope
+
+
+@_compiled
+def _unsettled(force: Floats) -> tuple[float, float, bool]:
+    """What a position gives that has no answer."""
+    force[:] = np.nan
+    return np.nan, np.nan, False
+
+
+@_compiled
 def _share_one(
     asked: float,
     by_load: bool,
     gap: Floats,
     compliance: Floats,
-    linear: Floats,
-    logarithm: float,
-    power: float,
+    reach: Floats,
+    law: Floats,
     force: Floats,
 ) -> tuple[float, float, bool]:
     """Forces of one position into ``force``; returns (delta, tangent stiffness, settled).
 
-    ``asked`` is the load F_n > 0, or delta where ``by_load`` is false.
+    ``asked`` is the load F_n > 0, or delta where ``by_load`` is false; ``reach`` [2, pair] and
+    ``law`` as :func:`_approach` takes them. A gap of inf never closes. nan everywhere and not
+    settled where a gap is nan or the steps find no balance of finite numbers.
     """
     count = gap.size
     force[:] = 0.0
@@ -79,18 +112,23 @@ def _share_one(
     matrix = np.empty((count, count))
     right = np.empty((count, 2))
     first = 0
-    for j in range(1, count):
+    for j in range(count):
+        if np.isnan(gap[j]):
+            return _unsettled(force)
         if gap[j] < gap[first]:
             first = j
-    # gaps are counted from the nearest pair: a common shift changes no bit of the forces
+    # gaps are counted from the nearest pair, before anything is added to them: a common shift
+    # would round the balance at its own size
     origin = gap[first]
     load, delta, stiffness = asked, 0.0, 0.0
     if not by_load:
         delta = asked - origin
-        if not delta > 0.0:
+        if delta <= 0.0:
             return asked, 0.0, True
         # a first guess, and the scale of the tolerances
-        load = delta / (compliance[first, first] + abs(linear[first]))
+        load = delta / compliance[first, first]
+        contact, _ = _approach(load, reach[0, first], reach[1, first], law)
+        load = delta / (compliance[first, first] + contact / load)
     active[first] = True
     force[first] = load
     least = 1e-14 * load
@@ -110,12 +148,10 @@ def _share_one(
                 k = index[b]
                 body += compliance[j, k] * force[k]
                 matrix[a, b] = compliance[j, k]
-            log_f = np.log(f)
-            tenth = f**-0.1
-            matrix[a, a] += linear[j] - logarithm * (log_f + 1.0) + 0.9 * power * tenth
+            contact, slope = _approach(f, reach[0, j], reach[1, j], law)
+            matrix[a, a] += slope
             compliant = max(compliant, matrix[a, a])
-            contact = f * (linear[j] - logarithm * log_f + power * tenth)
-            right[a, 0] = delta - (body + contact + gap[j] - origin)
+            right[a, 0] = delta - (body + contact + (gap[j] - origin))
             right[a, 1] = 1.0
         _solve_spd(matrix, size, right)
         stiffness, slack = 0.0, load - total
@@ -123,11 +159,11 @@ def _share_one(
             stiffness += right[a, 1]
             slack -= right[a, 0]
         advance = slack / stiffness if by_load else 0.0
-        step, leaving, largest = 1.0, -1, 0.0
+        step, leaving, at_rest = 1.0, -1, True
         for a in range(size):
             j = index[a]
             right[a, 0] += advance * right[a, 1]
-            largest = max(largest, abs(right[a, 0]))
+            at_rest = at_rest and abs(right[a, 0]) <= _TOLERANCE * load
             if force[j] + right[a, 0] < least:
                 part = (force[j] - least) / -right[a, 0]
                 if part < step:
@@ -139,23 +175,23 @@ def _share_one(
             active[leaving] = False
             force[leaving] = 0.0
             continue
-        if largest > _TOLERANCE * load:
+        if not at_rest:
             continue
         # settled on these pairs: does one of the others overlap?
         worst, entering = _TOLERANCE * load * compliant, -1
         for j in range(count):
-            if not active[j] and np.isfinite(gap[j]):
+            if not active[j] and gap[j] < np.inf:
                 overlap = delta - (gap[j] - origin)
                 for a in range(size):
                     overlap -= compliance[j, index[a]] * force[index[a]]
-                if overlap > worst:
+                if not overlap <= worst:
                     worst, entering = overlap, j
         if entering < 0:
             return delta + origin, stiffness, True
         active[entering] = True
         # enough to give the contact a finite slope, too little to matter
         force[entering] = min(1e-3 * load, 0.5 * worst / compliant)
-    return np.nan, np.nan, False
+    return _unsettled(force)
 
 
 @_compiled
@@ -166,10 +202,10 @@ def share_many(
     tooth: Floats,
     body: Floats,
     depth: Floats,
-    curvature: Floats,
     tooth_softness: Floats,
     body_softness: Floats,
-    contact: Floats,
+    flattening: Floats,
+    law: Floats,
     force: Floats,
     delta: Floats,
     stiffness: Floats,
@@ -179,13 +215,13 @@ def share_many(
 
     asked [case]: loads, or deflections where ``by_load`` is false; gap [case or 1, position,
     pair]; tooth [2, position, pair] and body [2, position, pair, pair]: compliances of both
-    gears for unit modulus and width; depth [2, position, pair]: ln(2 h_i) - nu/(2 (1 - nu));
-    curvature [position, pair]: ln(4 rho*); tooth_softness, body_softness [case, 2]: 1/(E b);
-    contact [case, 6]: factors of the two depths, C, ln(pi b E*), K, and a constant compliance.
+    gears for unit modulus and width; depth [2, position, pair]: h_i^2/(4 rho*) [m];
+    tooth_softness, body_softness [case, 2]: 1/(E b); flattening [case]: pi b E* [N/m], so that
+    their product is (h_i/a)^2 F; law [case, 6]: see :func:`_approach`.
     """
     cases, positions, count = force.shape
     compliance = np.empty((count, count))
-    linear = np.empty(count)
+    reach = np.empty((2, count))
     for c in range(cases):
         own = c if gap.shape[0] > 1 else 0
         for p in range(positions):
@@ -198,19 +234,14 @@ def share_many(
                 compliance[j, j] += (
                     tooth[0, p, j] * tooth_softness[c, 0] + tooth[1, p, j] * tooth_softness[c, 1]
                 )
-                linear[j] = (
-                    depth[0, p, j] * contact[c, 0]
-                    + depth[1, p, j] * contact[c, 1]
-                    - contact[c, 2] * (curvature[p, j] - contact[c, 3])
-                    + contact[c, 5]
-                )
+                reach[0, j] = depth[0, p, j] * flattening[c]
+                reach[1, j] = depth[1, p, j] * flattening[c]
             delta[c, p], stiffness[c, p], settled[c, p] = _share_one(
                 asked[c],
                 by_load,
                 gap[own, p],
                 compliance,
-                linear,
-                contact[c, 2],
-                contact[c, 4],
+                reach,
+                law[c],
                 force[c, p],
             )

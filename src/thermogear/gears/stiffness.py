@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError
+from thermogear.base.bounds import YOUNGS_MODULUS
 from thermogear.gears.body import sainsot_compliance
 from thermogear.gears.contact import curvature_radii, pair_positions, reduced_modulus
 from thermogear.gears.contact_compliance import yang_sun_stiffness
@@ -24,7 +24,7 @@ from thermogear.gears.tooth import ToothCompliances, tooth_compliances
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Moduli:
     """Young's moduli [Pa] of one gear's teeth and body; arrays broadcast with the positions.
 
@@ -37,20 +37,18 @@ class Moduli:
 
     def __post_init__(self) -> None:
         for name in ("tooth", "body"):
-            values = np.asarray(getattr(self, name), dtype=float)
-            if not np.all(np.isfinite(values) & (values > 0.0)):
-                raise InputError(f"modulus.{name}", f"{values} Pa", allowed="> 0, finite")
+            YOUNGS_MODULUS.require(f"modulus.{name}", getattr(self, name))
 
     @classmethod
     def of(cls, gear: Gear) -> Moduli:
         """Both at the reference temperature."""
-        return cls(gear.material.youngs_modulus, gear.material.youngs_modulus)
+        return cls(tooth=gear.material.youngs_modulus, body=gear.material.youngs_modulus)
 
     @classmethod
-    def at(cls, gear: Gear, tooth: ArrayLike, body: ArrayLike) -> Moduli:
+    def at(cls, gear: Gear, *, tooth: ArrayLike, body: ArrayLike) -> Moduli:
         """E(T) of the gear's material at the two temperatures [K]."""
         material = gear.material
-        return cls(material.youngs_modulus_at(tooth), material.youngs_modulus_at(body))
+        return cls(tooth=material.youngs_modulus_at(tooth), body=material.youngs_modulus_at(body))
 
 
 class GearCompliances(NamedTuple):

@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
@@ -25,7 +26,10 @@ STARTS = {
 SHEAR_FACTOR = 1.2  # rectangle
 _CRITICAL_SLOPE = np.radians(30.0)
 _FILLET_NODES = np.polynomial.legendre.leggauss(40)
-_FLANK_NODES = np.polynomial.legendre.leggauss(20)
+_FLANK_NODES = np.polynomial.legendre.leggauss(24)
+_NEAREST = 1e-9
+"""Least distance, in t, of a force from the tooth's point: rounding of a tip radius."""
+_DEGREE = 48
 
 
 class ToothCompliances(NamedTuple):
@@ -57,10 +61,19 @@ def flank_point(gear: Gear, t: ArrayLike) -> FlankPoint:
 
     Any shape.
     """
-    t_ = np.asarray(t, dtype=float)
-    psi = gear.base_half_angle - (t_ - np.arctan(t_))
-    r = gear.base_radius * np.sqrt(1.0 + t_ * t_)
-    return FlankPoint(r * np.sin(psi), r * np.cos(psi), t_ - gear.base_half_angle)
+    return _below_point(gear, gear.pointed_tangent - np.asarray(t, dtype=float))
+
+
+def _below_point(gear: Gear, short: Floats) -> FlankPoint:
+    """The flank's point at t = t_0 - ``short``, t_0 that of the pointed tooth.
+
+    psi = int_t^t_0 u^2/(1 + u^2) du = short - arctan(short/(1 + t t_0)): a tooth of any thinness
+    keeps its digits.
+    """
+    t = gear.pointed_tangent - short
+    psi = short - np.arctan(short / (1.0 + t * gear.pointed_tangent))
+    r = gear.base_radius * np.sqrt(1.0 + t * t)
+    return FlankPoint(r * np.sin(psi), r * np.cos(psi), t - gear.base_half_angle)
 
 
 def start_angle(gear: Gear, start: str) -> float:
@@ -112,23 +125,37 @@ def tooth_compliances(
 
     t: tan of the pressure angle at the loaded point, at or above the form circle, any shape;
     start: see :data:`STARTS`; modulus: E [Pa], default the material's, broadcasts with t;
-    face_width: b [m], default the gear's. Returns the broadcast shape. Raises InputError for
-    an unknown start. Slender-beam theory on a stub: the sum with body and contact is meant.
+    face_width: b [m], default the gear's. Returns the broadcast shape, nan where t is nan.
+    Raises InputError for an unknown start and for a t beyond the point in which the flanks meet.
+
+    Towards that point bending and shear grow as the logarithm of the thickness that is left, as
+    the line-loaded wedge of elasticity does: finite on every tooth with a tip land, and taken
+    1e-9 (in t) short of the point itself. With body and contact it is within 3 % of finite
+    elements, as near to a tip of 1e-3 modules as a contact fits.
+    Slender-beam theory on a stub: the sum with body and contact is meant.
     Source: Weber 1949; Weber & Banaschek 1953; Yang & Sun 1985.
     """
-    t_ = np.asarray(t, dtype=float)
-    point = flank_point(gear, t_[..., None])
+    short = gear.pointed_tangent - np.asarray(t, dtype=float)[..., None]
+    if np.any(short < -_NEAREST):
+        raise InputError(
+            "t",
+            f"{gear.pointed_tangent - float(np.nanmin(short)):g}",
+            allowed=f"<= {gear.pointed_tangent:g}",
+            why="the tooth ends in a point there",
+        )
+    short = np.maximum(short, _NEAREST)
+    point = _below_point(gear, short)
     bending, shear, axial = _moments(*_fillet_sections(gear, start), point)
 
-    # flank sections from the form circle to the force, equally split in t
-    lowest = gear.junction[1]
-    half = 0.5 * (t_[..., None] - lowest)
+    # flank sections from the force to the form circle, their distances from the tooth's point
+    # equally split in logarithm: 1/x there is steepest
     nodes, weights = _FLANK_NODES
-    at = lowest + half * (1.0 + nodes)
-    section = flank_point(gear, at)
+    half = 0.5 * np.log((gear.pointed_tangent - gear.junction[1]) / short)
+    away = short * np.exp(half * (1.0 + nodes))
+    section = _below_point(gear, away)
     # dy/dt = r_b t cos(t - theta_b)
-    rate = gear.base_radius * at * np.cos(section.beta)
-    more = _moments(section.x, section.y, rate * half * weights, point)
+    rate = gear.base_radius * (gear.pointed_tangent - away) * np.cos(section.beta)
+    more = _moments(section.x, section.y, rate * away * half * weights, point)
 
     young = np.asarray(gear.material.youngs_modulus if modulus is None else modulus, dtype=float)
     stiff = young * (gear.face_width if face_width is None else face_width)
@@ -138,3 +165,28 @@ def tooth_compliances(
         shear_ratio * (shear + more[1]) / stiff,
         (axial + more[2]) / stiff,
     )
+
+
+def unit_compliance(gear: Gear, t: ArrayLike, start: str = "30-degree") -> Floats:
+    """Total of :func:`tooth_compliances` for unit modulus and width, from a stored series.
+
+    A Chebyshev series of degree 48 in the logarithm of the distance from the tooth's point,
+    where the compliance is smooth however thin the tip: within 1e-9 of the integrals down to
+    tips of 1e-4 modules. ``t`` is clipped to the flank, form circle to tip. Shape of ``t``.
+    """
+    series, (low, high) = _unit_series(gear, start)
+    away = gear.pointed_tangent - np.asarray(t, dtype=float)
+    x = (2.0 * np.log(np.clip(away, np.exp(low), np.exp(high))) - low - high) / (high - low)
+    return np.asarray(chebyshev.chebval(x, series))
+
+
+@lru_cache(maxsize=256)
+def _unit_series(gear: Gear, start: str) -> tuple[Floats, tuple[float, float]]:
+    """Coefficients and the range of ln(t_0 - t) from tip to form circle."""
+    lowest, tip = gear.junction[1], float(np.tan(gear.pressure_angle_at(gear.tip_radius)))
+    low, high = np.log([max(gear.pointed_tangent - tip, _NEAREST), gear.pointed_tangent - lowest])
+    nodes = chebyshev.chebpts1(_DEGREE + 1)
+    t = gear.pointed_tangent - np.exp(0.5 * (low + high) + 0.5 * (high - low) * nodes)
+    values = tooth_compliances(gear, t, start, modulus=1.0, face_width=1.0).total
+    series = np.asarray(chebyshev.chebfit(nodes, values, _DEGREE), dtype=float)
+    return series, (float(low), float(high))

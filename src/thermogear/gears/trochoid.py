@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Trochoid:
     """Envelope of a circle of ``radius`` rho whose centre rides on the rolling rack.
 

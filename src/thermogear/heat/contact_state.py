@@ -12,7 +12,7 @@ from thermogear.base.errors import InputError
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class PitchPoint:
     """The pair at its operating pitch circle (SI), what laws of mean friction are stated for.
 
@@ -35,7 +35,7 @@ class PitchPoint:
                 raise InputError(f"pitch point.{name}", values, allowed="positive, finite")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ContactState:
     """The contact of one tooth pair (SI), every field a number or an array that broadcasts.
 

@@ -13,7 +13,7 @@ from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_bvp, solve_ivp
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import ConvergenceError, InputError
 
 Floats = NDArray[np.float64]
 
@@ -56,12 +56,14 @@ def _flow() -> tuple[object, tuple[float, float], float]:
     decay = np.exp(-0.9 * z)
     guess = np.vstack([0.5 * z * decay, 0.5 * decay, decay, -0.6 * decay, -0.88 * (1 - decay)])
     solved = solve_bvp(slope, ends, z, guess, tol=1e-9, max_nodes=50000)
+    if not solved.success:
+        raise ConvergenceError(f"flow over a rotating disc: {solved.message}")
     wall = float(solved.sol(0.0)[1]), float(solved.sol(0.0)[3])
     return solved.sol, wall, float(-solved.sol(_FAR)[4])
 
 
 @cache
-def rotating_disc_gradient(prandtl: float, exponent: float) -> float:
+def rotating_disc_gradient(prandtl: float, *, exponent: float) -> float:
     """-theta'(0) of the energy equation over a rotating disc [-].
 
     theta'' = Pr (m F theta + H theta'),  theta(0) = 1, theta -> 0; the wall's excess
@@ -84,7 +86,10 @@ def rotating_disc_gradient(prandtl: float, exponent: float) -> float:
     solved = solve_ivp(
         slope, (0.0, _FAR), [prandtl * inflow], method="LSODA", rtol=1e-9, atol=1e-11
     )
-    return float(solved.y[0, -1])
+    found = float(solved.y[0, -1])
+    if not (solved.success and found > 0.0):
+        raise ConvergenceError(f"rotating disc, Pr = {prandtl:g}: {found:g}, {solved.message}")
+    return found
 
 
 @cache
@@ -92,14 +97,16 @@ def _gradient_table(exponent: float) -> Chebyshev:
     """ln(-theta'(0)) over ln Pr: smooth, so that a low degree gives six digits."""
 
     def logarithm(ln_pr: Floats) -> Floats:
-        values = [np.log(rotating_disc_gradient(float(np.exp(p)), exponent)) for p in ln_pr]
+        values = [
+            np.log(rotating_disc_gradient(float(np.exp(p)), exponent=exponent)) for p in ln_pr
+        ]
         return np.asarray(values)
 
     ends = [np.log(_PRANDTL[0]), np.log(_PRANDTL[1])]
     return Chebyshev.interpolate(logarithm, 26, domain=ends)
 
 
-def disc_nusselt(prandtl: ArrayLike, exponent: float = 2.0) -> Floats:
+def disc_nusselt(prandtl: ArrayLike, *, exponent: float = 2.0) -> Floats:
     """Nu/sqrt(Re) of a laminar rotating face [-], for arrays of Prandtl numbers.
 
     ``prandtl`` Pr [-] 0.1..1e6 of any shape, ``exponent`` m of the wall's excess temperature
@@ -119,6 +126,7 @@ def rotating_face_convection(
     viscosity: ArrayLike,
     conductivity: ArrayLike,
     prandtl: ArrayLike,
+    *,
     exponent: float = 2.0,
 ) -> Floats:
     """Heat transfer coefficient of a rotating face at ``radius`` [W/(m^2 K)].
@@ -138,7 +146,7 @@ def rotating_face_convection(
         np.asarray(a, dtype=float) for a in (speed, radius, viscosity, conductivity, prandtl)
     )
     reynolds = omega * r**2 / nu
-    laminar = disc_nusselt(pr, exponent) * np.sqrt(reynolds)
+    laminar = disc_nusselt(pr, exponent=exponent) * np.sqrt(reynolds)
     turbulent = 0.0197 * (exponent + 2.6) ** 0.2 * reynolds**0.8 * pr**0.6
     return np.asarray(k / r * np.where(reynolds < TRANSITION, laminar, turbulent))
 

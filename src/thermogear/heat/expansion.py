@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import ConvergenceError, InputError, nearest
 from thermogear.base.materials import Material
 from thermogear.heat.temperature import radial_temperature
 
@@ -68,7 +68,7 @@ class GearLike(Protocol):
     def half_thickness_angle(self, radius: ArrayLike) -> Floats: ...
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RadialField:
     """T(r) of a gear body, logarithmic between bore and addendum circle.
 
@@ -93,10 +93,16 @@ class RadialField:
 
     @classmethod
     def uniform(
-        cls, bore_radius: float, tip_radius: float, temperature: ArrayLike, reference: float
+        cls, *, bore_radius: float, tip_radius: float, temperature: ArrayLike, reference: float
     ) -> RadialField:
         """The same temperature everywhere."""
-        return cls(bore_radius, tip_radius, temperature, temperature, reference)
+        return cls(
+            bore_radius=bore_radius,
+            tip_radius=tip_radius,
+            bore_temperature=temperature,
+            addendum_temperature=temperature,
+            reference=reference,
+        )
 
     @property
     def bore_rise(self) -> Floats:
@@ -113,10 +119,10 @@ class RadialField:
         """T(r) [K] for r_x <= r <= r_a; raises outside."""
         return radial_temperature(
             radius,
-            self.bore_radius,
-            self.tip_radius,
-            self.bore_temperature,
-            self.addendum_temperature,
+            bore_radius=self.bore_radius,
+            tip_radius=self.tip_radius,
+            bore_temperature=self.bore_temperature,
+            addendum_temperature=self.addendum_temperature,
         )
 
     def rise(self, radius: ArrayLike) -> Floats:
@@ -194,6 +200,7 @@ def _annulus_excess(
 def annulus_displacement(
     field: RadialField,
     radius: ArrayLike,
+    *,
     outer_radius: float,
     expansion: float,
     poisson: float,
@@ -244,6 +251,7 @@ def _excess(
 def radial_displacement(
     field: RadialField,
     radius: ArrayLike,
+    *,
     root_radius: float,
     expansion: float,
     poisson: float,
@@ -274,11 +282,11 @@ def base_circle_growth(
     return radial_displacement(
         field,
         gear.base_radius,
-        gear.root_radius,
-        gear.material.thermal_expansion,
-        gear.material.poisson_ratio,
-        bore,
-        plane,
+        root_radius=gear.root_radius,
+        expansion=gear.material.thermal_expansion,
+        poisson=gear.material.poisson_ratio,
+        bore=bore,
+        plane=plane,
     )
 
 
@@ -286,6 +294,7 @@ def flank_normal_growth(
     field: RadialField,
     radius: ArrayLike,
     half_thickness_angle: ArrayLike,
+    *,
     base_radius: float,
     root_radius: float,
     expansion: float,
@@ -340,18 +349,22 @@ def flank_growth(
         field,
         radius,
         gear.half_thickness_angle(radius),
-        gear.base_radius,
-        gear.root_radius,
-        gear.material.thermal_expansion,
-        gear.material.poisson_ratio,
-        bore,
-        plane,
-        strain_taken_off,
+        base_radius=gear.base_radius,
+        root_radius=gear.root_radius,
+        expansion=gear.material.thermal_expansion,
+        poisson=gear.material.poisson_ratio,
+        bore=bore,
+        plane=plane,
+        strain_taken_off=strain_taken_off,
     )
 
 
 def centre_distance_growth(
-    centre_distance: ArrayLike, expansion: ArrayLike, temperature: ArrayLike, reference: ArrayLike
+    centre_distance: ArrayLike,
+    expansion: ArrayLike,
+    *,
+    temperature: ArrayLike,
+    reference: ArrayLike,
 ) -> Floats:
     """Da = lambda_h (T_h - T0) a [m]: how far a housing at ``temperature`` moves the axes.
 
@@ -364,6 +377,7 @@ def centre_distance_growth(
 
 def hot_half_backlash(
     half_backlash: ArrayLike,
+    *,
     growth_1: ArrayLike,
     growth_2: ArrayLike,
     axis_opening: ArrayLike = 0.0,
@@ -383,23 +397,33 @@ def hot_half_backlash(
 
 
 def jam_temperature(
-    half_backlash: Callable[[float], float], low: float, high: float, scan: int = 65
+    half_backlash: Callable[[float], float], *, low: float, high: float, scan: int = 65
 ) -> float:
     """The lowest temperature [K] in [low, high] at which the half backlash reaches 0.
 
     ``half_backlash`` gives b' [m] at a temperature [K] of a one-parameter family (the least
     along the path). The interval is scanned at ``scan`` points and the first change of sign
     refined to 1e-9 K; nan when b' stays positive, ``low`` when it is jammed there already.
+    Raises ConvergenceError where b' is no number.
     """
     if not 0.0 < low < high:
         raise InputError("temperature range", f"{low} .. {high} K", allowed="0 K < low < high")
     if scan < 2:
         raise InputError("scan", scan, allowed=">= 2 points")
+
+    def known(kelvin: float) -> float:
+        left = half_backlash(kelvin)
+        if np.isnan(left):
+            raise ConvergenceError(
+                f"half backlash at {kelvin:g} K: nan, so nobody can say where it is used up"
+            )
+        return left
+
     before = low
-    if half_backlash(low) <= 0.0:
+    if known(low) <= 0.0:
         return low
     for after in np.linspace(low, high, scan)[1:]:
-        if half_backlash(float(after)) <= 0.0:
-            return float(brentq(half_backlash, before, float(after), xtol=1e-9))
+        if known(float(after)) <= 0.0:
+            return float(brentq(known, before, float(after), xtol=1e-9))
         before = float(after)
     return float("nan")

@@ -216,8 +216,8 @@ def iso_15144_film(
     """Local film of ISO/TR 15144-1, h = 1.6 R G^0.6 U^0.7 W^-0.13 S^0.22 [m].
 
     Arguments as :func:`dowson_higginson_minimum`, viscosity and alpha at the gear's bulk
-    temperature; ``sliding_parameter`` S = alpha eta at the contact temperature over alpha eta
-    at the bulk temperature (1 without sliding). Source: ISO/TR 15144-1 eq. 4 (1600 with R in
+    temperature; ``sliding_parameter`` S [-] = alpha eta at the contact temperature over alpha
+    eta at the bulk temperature (1 without sliding). Source: ISO/TR 15144-1 eq. 4 (1600 with R in
     mm and h in um; its W = 2 pi p^2/E'^2 is the same group).
     """
     u, g, w, radius = _groups(
@@ -282,14 +282,16 @@ def thermal_reduction(
     return np.asarray(1.0 / (1.0 + 0.1 * sliding * heating**0.64))
 
 
-def film_parameter(thickness: ArrayLike, roughness_1: ArrayLike, roughness_2: ArrayLike) -> Floats:
+def film_parameter(
+    thickness: ArrayLike, *, roughness_1: ArrayLike, roughness_2: ArrayLike
+) -> Floats:
     """Lambda = h_min/sqrt(Rq1^2 + Rq2^2) [-].
 
     ``thickness`` [m], ``roughness_1``, ``roughness_2`` rms Rq [m] (about 1.25 Ra for ground
     flanks). Any shape. Raises when both flanks are given as perfectly smooth.
     """
     both = np.hypot(np.asarray(roughness_1, dtype=float), np.asarray(roughness_2, dtype=float))
-    if np.any(both <= 0.0):
+    if not np.all(both > 0.0):
         raise InputError("roughness", both.min(), allowed="> 0 m on one flank at least")
     return np.asarray(np.asarray(thickness) / both)
 
@@ -298,7 +300,7 @@ REGIMES = ("boundary", "mixed", "elastohydrodynamic")
 
 
 def regime(
-    film_parameter: ArrayLike, boundary_below: float = 1.0, full_film_above: float = 3.0
+    film_parameter: ArrayLike, *, boundary_below: float = 1.0, full_film_above: float = 3.0
 ) -> NDArray[np.int64]:
     """Lubrication regime as an index into :data:`REGIMES` (0, 1, 2).
 
@@ -311,17 +313,20 @@ def regime(
             f"{boundary_below} and {full_film_above}",
             allowed="0 < boundary_below < full_film_above",
         )
-    index = np.digitize(np.asarray(film_parameter), [boundary_below, full_film_above])
+    thickness = np.asarray(film_parameter, dtype=float)
+    if np.any(np.isnan(thickness)):
+        raise InputError("film parameter", "nan", allowed="a number, or inf without load")
+    index = np.digitize(thickness, [boundary_below, full_film_above])
     return np.asarray(index, dtype=np.int64)
 
 
 def regime_shares(
-    film_parameter: ArrayLike, boundary_below: float = 1.0, full_film_above: float = 3.0
+    film_parameter: ArrayLike, *, boundary_below: float = 1.0, full_film_above: float = 3.0
 ) -> Floats:
     """Share of the path (the last axis) spent in each of :data:`REGIMES` [-].
 
     ``film_parameter`` Lambda (..., position), positions evenly spaced; limits as
     :func:`regime`. Returns (..., 3), each row adding up to 1.
     """
-    index = regime(film_parameter, boundary_below, full_film_above)
+    index = regime(film_parameter, boundary_below=boundary_below, full_film_above=full_film_above)
     return np.stack([np.mean(index == k, axis=-1) for k in range(len(REGIMES))], axis=-1)

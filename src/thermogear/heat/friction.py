@@ -90,6 +90,7 @@ _ANY: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
 def benedict_kelley(
     line_load: ArrayLike,
+    *,
     sliding_speed: ArrayLike,
     sum_speed: ArrayLike,
     viscosity: ArrayLike,
@@ -139,6 +140,7 @@ def benedict_kelley(
 
 def benedict_kelley_as_printed(
     line_load: ArrayLike,
+    *,
     sliding_speed: ArrayLike,
     entrainment_speed: ArrayLike,
     viscosity: ArrayLike,
@@ -166,7 +168,7 @@ def benedict_kelley_as_printed(
 def constant_dry(sliding_speed: ArrayLike, coefficient: float = 0.2) -> Floats:
     """Dry friction, one constant everywhere [-].
 
-    ``sliding_speed`` [m/s] gives the shape only; ``coefficient`` 0.1..0.5 in the thesis.
+    ``sliding_speed`` [m/s] gives the shape only; ``coefficient`` [-] 0.1..0.5 in the thesis.
     Raises outside 0 < mu <= 1.
     """
     if not 0.0 < coefficient <= 1.0:
@@ -174,7 +176,7 @@ def constant_dry(sliding_speed: ArrayLike, coefficient: float = 0.2) -> Floats:
     return np.full(np.shape(sliding_speed), float(coefficient))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class BenedictKelley:
     """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`."""
 
@@ -190,12 +192,12 @@ class BenedictKelley:
     def __call__(self, state: ContactState) -> Floats:
         mu = benedict_kelley(
             state.line_load,
-            state.sliding,
-            state.sum_speed,
-            state.viscosity,
-            state.roughness,
-            self.pitch_floor,
-            self.ceiling,
+            sliding_speed=state.sliding,
+            sum_speed=state.sum_speed,
+            viscosity=state.viscosity,
+            roughness=state.roughness,
+            pitch_floor=self.pitch_floor,
+            ceiling=self.ceiling,
         )
         return _spread(mu, state)
 
@@ -207,7 +209,7 @@ class ConstantDry:
     coefficient: float = 0.2
     name: ClassVar[str] = "dry"
     regime: ClassVar[str] = "dry"
-    source: ClassVar[str] = "constant 0.1..0.5, the thesis's range"
+    source: ClassVar[str] = "a constant, as the case gives it"
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
 
     def __post_init__(self) -> None:
@@ -234,7 +236,7 @@ class Boundary:
         return _spread(constant_dry(state.sliding, self.coefficient), state)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class XuKahraman:
     """Xu and Kahraman 2007, local; see :func:`laws.xu_kahraman`.
 
@@ -255,13 +257,13 @@ class XuKahraman:
     def __call__(self, state: ContactState) -> Floats:
         mu = xu_kahraman(
             state.pressure,
-            state.sliding,
-            state.entrainment,
-            state.viscosity,
-            state.reduced_radius,
-            0.0 if self.smooth else state.roughness,
-            self.pitch_floor,
-            self.ceiling,
+            sliding_speed=state.sliding,
+            entrainment=state.entrainment,
+            viscosity=state.viscosity,
+            reduced_radius=state.reduced_radius,
+            roughness=0.0 if self.smooth else state.roughness,
+            pitch_floor=self.pitch_floor,
+            ceiling=self.ceiling,
         )
         return _spread(mu, state)
 
@@ -292,7 +294,7 @@ class LambdaBlend:
         return _spread(mu, state)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Schlenk:
     """Mean friction of ISO/TR 14179-2; ``factor`` None takes X_L by the base oil."""
 
@@ -313,13 +315,13 @@ class Schlenk:
             at.reduced_radius,
             state.viscosity,
             state.roughness,
-            factor,
-            self.ceiling,
+            factor=factor,
+            ceiling=self.ceiling,
         )
         return _spread(mu, state)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Iso13989Flash:
     """Mean friction of ISO/TR 13989-1; ``factor`` None takes c by the base oil."""
 
@@ -340,13 +342,13 @@ class Iso13989Flash:
             at.reduced_radius,
             state.viscosity,
             state.roughness,
-            factor,
-            self.ceiling,
+            factor=factor,
+            ceiling=self.ceiling,
         )
         return _spread(mu, state)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Iso13989Integral:
     """Mean friction of ISO/TR 13989-2 and 15144-1 (Michaelis); ``factor`` X_L."""
 
@@ -365,13 +367,13 @@ class Iso13989Integral:
             at.reduced_radius,
             state.viscosity,
             state.roughness,
-            self.factor,
-            self.ceiling,
+            factor=self.factor,
+            ceiling=self.ceiling,
         )
         return _spread(mu, state)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Fernandes:
     """Mean friction by Fernandes 2016; ``factor`` None takes X_L by the base oil."""
 
@@ -394,8 +396,8 @@ class Fernandes:
             state.roughness,
             state.needed("pressure_viscosity", self.name),
             at.face_width,
-            factor,
-            self.ceiling,
+            factor=factor,
+            ceiling=self.ceiling,
         )
         return _spread(mu, state)
 

@@ -14,6 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Lubricant, Material
 from thermogear.heat.convection import rotating_face_convection
@@ -50,7 +51,7 @@ class BodyLike(GearLike, Protocol):
     def tip_radius(self) -> float: ...
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Surroundings:
     """Housing, oil bath, shafts and ambient of a gear pair; every default is ours.
 
@@ -77,6 +78,8 @@ class Surroundings:
     supply_temperature: float = 333.15
 
     def __post_init__(self) -> None:
+        for name in ("ambient", "supply_temperature"):
+            BODY.require(f"surroundings.{name}", getattr(self, name))
         for entry in fields(self):
             values = np.asarray(getattr(self, entry.name), dtype=float)
             least = values >= 0.0 if entry.name == "oil_flow" else values > 0.0
@@ -86,7 +89,7 @@ class Surroundings:
             raise InputError("surroundings.wetted_share", self.wetted_share, allowed="0 < x <= 1")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Losses:
     """Heat sources [W], numbers or arrays over operating points.
 
@@ -119,6 +122,7 @@ def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
 
 def face_conductance(
     speed: ArrayLike,
+    *,
     inner_radius: float,
     outer_radius: float,
     lubricant: Lubricant,
@@ -220,7 +224,11 @@ def thermal_network(
             omega, gear.pitch_radius, nu, lubricant.thermal_conductivity, prandtl
         )
         faces = 2.0 * face_conductance(
-            omega, gear.bore_radius, gear.root_radius, lubricant, oil_temperature
+            omega,
+            inner_radius=gear.bore_radius,
+            outer_radius=gear.root_radius,
+            lubricant=lubricant,
+            oil_temperature=oil_temperature,
         )
         steel, bore = gear.material, gear.bore_radius
         along = steel.thermal_conductivity * np.pi * bore**2 / around.shaft_length

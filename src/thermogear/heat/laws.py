@@ -87,6 +87,7 @@ def schlenk(
     reduced_radius: ArrayLike,
     viscosity: ArrayLike,
     roughness: ArrayLike,
+    *,
     factor: float = FZG_LUBRICANT_FACTOR["mineral"],
     ceiling: float = CEILING,
 ) -> Floats:
@@ -110,6 +111,7 @@ def iso_13989_1(
     reduced_radius: ArrayLike,
     viscosity: ArrayLike,
     roughness: ArrayLike,
+    *,
     factor: float = ISO_LUBRICANT_FACTOR["mineral"],
     ceiling: float = CEILING,
 ) -> Floats:
@@ -135,6 +137,7 @@ def iso_13989_2(
     reduced_radius: ArrayLike,
     viscosity: ArrayLike,
     roughness: ArrayLike,
+    *,
     factor: float = 1.0,
     ceiling: float = CEILING,
 ) -> Floats:
@@ -165,6 +168,7 @@ def fernandes(
     roughness: ArrayLike,
     pressure_viscosity: ArrayLike,
     face_width: ArrayLike,
+    *,
     factor: float = FZG_LUBRICANT_FACTOR["mineral"],
     ceiling: float = CEILING,
 ) -> Floats:
@@ -203,6 +207,7 @@ _XU = (
 
 def xu_kahraman(
     pressure: ArrayLike,
+    *,
     sliding_speed: ArrayLike,
     entrainment: ArrayLike,
     viscosity: ArrayLike,

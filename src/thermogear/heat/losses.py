@@ -22,7 +22,7 @@ __all__ = [
 
 
 def gear_loss_factor(
-    teeth_1: ArrayLike, ratio: ArrayLike, approach: ArrayLike, recess: ArrayLike
+    *, teeth_1: ArrayLike, ratio: ArrayLike, approach: ArrayLike, recess: ArrayLike
 ) -> Floats:
     """Gear loss factor H_V of spur gears under rigid load sharing (Ohlendorf) [-].
 
@@ -98,7 +98,7 @@ def bearing_loss(
     return np.asarray(0.5 * moment * np.asarray(speed))
 
 
-def efficiency(power: ArrayLike, loss: ArrayLike) -> Floats:
+def efficiency(*, power: ArrayLike, loss: ArrayLike) -> Floats:
     """1 - loss/power [-]; nan where no power is transmitted."""
     p, lost = np.broadcast_arrays(np.asarray(power, dtype=float), np.asarray(loss, dtype=float))
     share = np.divide(lost, p, out=np.full(p.shape, np.nan), where=p > 0.0)

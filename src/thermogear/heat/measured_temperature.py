@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.constants import Boltzmann, Planck, speed_of_light
 from scipy.optimize import brentq
 
+from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH
 from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -59,6 +60,7 @@ def band_radiance(temperature: ArrayLike, band: Band = None) -> Floats:
 
 def infrared_signal(
     temperature: ArrayLike,
+    *,
     emissivity: ArrayLike,
     transmission: ArrayLike,
     surroundings: ArrayLike,
@@ -92,6 +94,7 @@ def _invert(radiance: float, band: Band) -> float:
 
 def infrared_temperature(
     indicated: ArrayLike,
+    *,
     emissivity: float,
     transmission: float,
     surroundings: float,
@@ -133,7 +136,14 @@ def _corrected(
     band: Band,
     set_to: float = 1.0,
 ) -> float:
-    signal = infrared_signal(indicated, set_to, 1.0, surroundings, path, band)
+    signal = infrared_signal(
+        indicated,
+        emissivity=set_to,
+        transmission=1.0,
+        surroundings=surroundings,
+        path=path,
+        band=band,
+    )
     mirrored = (1.0 - emissivity) * transmission * band_radiance(surroundings, band)
     window = (1.0 - transmission) * band_radiance(path, band)
     return _invert(float((signal - mirrored - window) / (emissivity * transmission)), band)
@@ -167,7 +177,7 @@ def _propagate(
     return float(np.sqrt(sum(p**2 for p in parts.values()))), parts
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class InfraredReading:
     """One infrared reading with what is known of its circumstances; ``u_...`` are sigmas.
 
@@ -192,6 +202,8 @@ class InfraredReading:
         for name in ("emissivity", "transmission"):
             if not 0.0 < getattr(self, name) <= 1.0:
                 raise InputError(name, getattr(self, name), allowed="0 < value <= 1")
+        for name in ("indicated", "surroundings", "path"):
+            BODY.require(f"infrared.{name}", getattr(self, name))
         self.temperature()
 
     def _value(self, **changed: float) -> float:
@@ -211,7 +223,7 @@ class InfraredReading:
         return _propagate(self._value, self._inputs(), spread)[0]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ThermocoupleReading:
     """One embedded thermocouple: ``indicated`` [K] at ``depth`` [m] under ``flux`` [W/m^2]."""
 
@@ -224,12 +236,9 @@ class ThermocoupleReading:
     u_depth: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.depth >= 0.0 and self.conductivity > 0.0 and self.indicated > 0.0):
-            raise InputError(
-                "thermocouple",
-                f"{self.indicated} K at {self.depth} m",
-                allowed="> 0 K, depth >= 0, conductivity > 0",
-            )
+        BODY.require("thermocouple.indicated", self.indicated)
+        DEPTH.require("thermocouple.depth", self.depth)
+        CONDUCTIVITY.require("thermocouple.conductivity", self.conductivity)
 
     def temperature(self) -> float:
         """Surface temperature [K]."""
@@ -248,6 +257,7 @@ class ThermocoupleReading:
 
 def field_uncertainty(
     function: Callable[[float, float], float],
+    *,
     addendum: tuple[float, float],
     bore: tuple[float, float],
 ) -> float:

@@ -63,7 +63,9 @@ def _tanh_sinh() -> tuple[Floats, Floats, Floats]:
     return front, back, 0.06 * np.pi * np.cosh(t) * front * back
 
 
-def moving_source_rise(position: ArrayLike, peclet: float, distribution: str = "ellipse") -> Floats:
+def moving_source_rise(
+    position: ArrayLike, *, peclet: float, distribution: str = "ellipse"
+) -> Floats:
     """Surface rise under one moving band source, T k sqrt(Pe)/Q [-].
 
     ``position`` x/B in -1..1 of any shape (the trailing edge is +1), ``peclet`` Pe > 0,
@@ -98,7 +100,7 @@ _STILL = 1e-8
 @cache
 def _peak(peclet: float, distribution: str) -> float:
     def minus(x: float) -> float:
-        return -float(moving_source_rise(x, peclet, distribution))
+        return -float(moving_source_rise(x, peclet=peclet, distribution=distribution))
 
     found = minimize_scalar(minus, bounds=(-0.2, 1.0), method="bounded", options={"xatol": 1e-7})
     return max(-float(found.fun), -minus(1.0))
@@ -144,6 +146,7 @@ def _carrying(
 
 
 def peclet_partition(
+    *,
     speed_1: ArrayLike,
     speed_2: ArrayLike,
     half_width: ArrayLike,
@@ -164,6 +167,7 @@ def peclet_partition(
 
 def peclet_flash(
     heat: ArrayLike,
+    *,
     speed_1: ArrayLike,
     speed_2: ArrayLike,
     half_width: ArrayLike,
@@ -197,6 +201,7 @@ def _kernel_integral(distance: Floats, peclet: float) -> Floats:
 
 
 def exact_two_body(
+    *,
     peclet_1: float,
     peclet_2: float,
     distribution: str = "ellipse",
@@ -232,6 +237,7 @@ def exact_two_body(
 def flash_temperature(
     friction: ArrayLike,
     line_load: ArrayLike,
+    *,
     speed_1: ArrayLike,
     speed_2: ArrayLike,
     half_width: ArrayLike,
@@ -247,21 +253,27 @@ def flash_temperature(
     "peclet" (default) or "exact" (one linear system per point: a reference, slow). Any shape;
     0 at the pitch point, at no load and at rest.
     """
-    heat = frictional_heat(friction, line_load, speed_1, speed_2)
+    heat = frictional_heat(friction, line_load, speed_1=speed_1, speed_2=speed_2)
     if method == "blok":
         return blok_flash(
             friction,
             line_load,
-            speed_1,
-            speed_2,
-            half_width,
-            material_1.thermal_contact_coefficient,
-            material_2.thermal_contact_coefficient,
-            flash_factor(distribution),
+            speed_1=speed_1,
+            speed_2=speed_2,
+            half_width=half_width,
+            contact_coefficient_1=material_1.thermal_contact_coefficient,
+            contact_coefficient_2=material_2.thermal_contact_coefficient,
+            factor=flash_factor(distribution),
         )
     if method == "peclet":
         return peclet_flash(
-            heat, speed_1, speed_2, half_width, material_1, material_2, distribution
+            heat,
+            speed_1=speed_1,
+            speed_2=speed_2,
+            half_width=half_width,
+            material_1=material_1,
+            material_2=material_2,
+            distribution=distribution,
         )
     if method != "exact":
         raise InputError("method", repr(method), allowed=" | ".join(METHODS))
@@ -279,6 +291,8 @@ def flash_temperature(
         pe_1, pe_2 = (
             max(float(v[at] * b[at] / a), _STILL) for v, a in ((v1, spread_1), (v2, spread_2))
         )
-        peak, _ = exact_two_body(pe_1, pe_2, distribution, ratio)
+        peak, _ = exact_two_body(
+            peclet_1=pe_1, peclet_2=pe_2, distribution=distribution, conductivity_ratio=ratio
+        )
         result[at] = q[at] / one * peak
     return result

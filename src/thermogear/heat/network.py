@@ -75,6 +75,10 @@ class ThermalNetwork:
             for name in group:
                 if name not in names:
                     raise InputError("thermal node", repr(name), fix=nearest(name, names))
+        for name, value in self.sources.items():
+            watts = np.asarray(value, dtype=float)
+            if not np.all(np.isfinite(watts)):
+                raise InputError(f"source of {name}", f"{watts} W", allowed="finite")
         for name, value in self.fixed.items():
             kelvin = np.asarray(value, dtype=float)
             if not np.all(np.isfinite(kelvin) & (kelvin > 0.0)):
@@ -137,6 +141,10 @@ class ThermalNetwork:
         for name, value in self.sources.items():
             heat[..., index[name]] += np.asarray(value, dtype=float)
         given = np.zeros((*shape, len(names)))
+        for name, value in self.sources.items():
+            watts = np.asarray(value, dtype=float)
+            if not np.all(np.isfinite(watts)):
+                raise InputError(f"source of {name}", f"{watts} W", allowed="finite")
         for name, value in self.fixed.items():
             given[..., index[name]] = value
         return laplacian, heat, given
@@ -187,6 +195,15 @@ class ThermalNetwork:
             missing = [names[i] for i in free if names[i] not in group]
             if missing:
                 raise InputError(f"{label} of", ", ".join(missing), why="the warm-up needs it")
+        t = np.asarray(times, dtype=float)
+        if not np.all(np.isfinite(t) & (t >= 0.0)):
+            raise InputError("times", f"{t} s", allowed=">= 0, finite")
+        for name in (names[i] for i in free):
+            kelvin = np.asarray(initial[name], dtype=float)
+            if not np.all(np.isfinite(kelvin) & (kelvin > 0.0)):
+                raise InputError(
+                    f"initial temperature of {name}", f"{kelvin} K", allowed="> 0 K, finite"
+                )
         inner, steady, _, _ = self._solve()
         root = np.sqrt(np.array([self.capacities[names[i]] for i in free], dtype=float))
         if not np.all(root > 0.0):
@@ -196,7 +213,6 @@ class ThermalNetwork:
             [np.broadcast_to(np.asarray(initial[names[i]], float), self.shape) for i in free], -1
         )
         away = np.einsum("...ji,...j->...i", modes, root * (start - steady[..., free]))
-        t = np.asarray(times, dtype=float)
         decay = np.exp(-rates[..., None] * t)
         back = np.einsum("...ij,...j,...jt->...it", modes, away, decay) / root[:, None]
         out = {names[i]: steady[..., i, None] + np.zeros(t.shape) for i in held}

@@ -48,7 +48,7 @@ def thermo_elastic_factor(reduced_modulus: ArrayLike, contact_coefficient: Array
     return np.asarray(1000.0 * modulus**0.25 / coefficient)
 
 
-def angle_factor(pressure_angle: ArrayLike, operating_angle: ArrayLike) -> Floats:
+def angle_factor(*, pressure_angle: ArrayLike, operating_angle: ArrayLike) -> Floats:
     """X_alpha = 1.22 (sin a_w cos a)^0.25 / sqrt(cos a_w cos a) of spur gears [-].
 
     ``pressure_angle`` a, ``operating_angle`` a_w [rad], any shape. Source: ISO/TR 13989-2 eq. 13.
@@ -58,7 +58,7 @@ def angle_factor(pressure_angle: ArrayLike, operating_angle: ArrayLike) -> Float
 
 
 def load_sharing_13989(
-    position: ArrayLike, a: float, b: float, d: float, e: float, grade: int = 7
+    position: ArrayLike, *, a: float, b: float, d: float, e: float, grade: int = 7
 ) -> Floats:
     """X_Gamma of unmodified spur gears along the path [-].
 
@@ -79,6 +79,7 @@ def flash_13989_1(
     friction: ArrayLike,
     line_load: ArrayLike,
     pinion_speed: ArrayLike,
+    *,
     curvature_1: ArrayLike,
     curvature_2: ArrayLike,
     ratio: ArrayLike,
@@ -104,7 +105,7 @@ def flash_13989_1(
     return np.asarray(factor * w**0.75 * np.sqrt(turns) * slip / relative**0.25)
 
 
-def geometry_factor(curvature_1: ArrayLike, curvature_2: ArrayLike, ratio: ArrayLike) -> Floats:
+def geometry_factor(*, curvature_1: ArrayLike, curvature_2: ArrayLike, ratio: ArrayLike) -> Floats:
     """X_BE at the pinion's tip [-].
 
     0.51 sqrt(u + 1) (sqrt(rho1) - sqrt(rho2/u))/(rho1 rho2)^0.25 at E.
@@ -117,7 +118,7 @@ def geometry_factor(curvature_1: ArrayLike, curvature_2: ArrayLike, ratio: Array
     return np.asarray(0.51 * np.sqrt(u + 1.0) * slip / (one * two) ** 0.25)
 
 
-def contact_ratio_factor(recess: float, approach: float) -> float:
+def contact_ratio_factor(*, recess: float, approach: float) -> float:
     """X_epsilon: mean flash temperature of the path over that at E [-].
 
     ``recess`` eps_1 (pinion), ``approach`` eps_2 (wheel) [-], eps_alpha = eps_1 + eps_2 < 2. The
@@ -136,7 +137,7 @@ def contact_ratio_factor(recess: float, approach: float) -> float:
     return bracket / (2.0 * total * one)
 
 
-def rotation_factor(approach: float, recess: float) -> float:
+def rotation_factor(*, approach: float, recess: float) -> float:
     """X_Q of the driving direction [-].
 
     1 for eps_f/eps_a <= 1.5, 1.40 - (4/15) eps_f/eps_a to 3, 0.6 beyond; ``approach`` eps_f is
@@ -152,6 +153,7 @@ def flash_at_tip_13989_2(
     line_load: ArrayLike,
     pitch_speed: ArrayLike,
     centre_distance: ArrayLike,
+    *,
     geometry: ArrayLike,
     angle: ArrayLike,
     rotation: ArrayLike = 1.0,
@@ -174,6 +176,7 @@ def flash_at_tip_13989_2(
 
 
 def body_temperature_13989_1(
+    *,
     oil_temperature: ArrayLike,
     mean_flash: ArrayLike,
     lubrication: ArrayLike = 1.0,
@@ -189,6 +192,7 @@ def body_temperature_13989_1(
 
 
 def body_temperature_13989_2(
+    *,
     oil_temperature: ArrayLike,
     integral_flash: ArrayLike,
     lubrication: ArrayLike = 1.0,
@@ -206,6 +210,7 @@ def body_temperature_13989_2(
 def body_temperature_15144(
     oil_temperature: ArrayLike,
     loss: ArrayLike,
+    *,
     centre_distance: ArrayLike,
     face_width: ArrayLike,
     lubrication: ArrayLike = 1.0,
@@ -222,7 +227,7 @@ def body_temperature_15144(
     return np.asarray(np.asarray(oil_temperature, dtype=float) + rise)
 
 
-def integral_temperature(body_temperature: ArrayLike, integral_flash: ArrayLike) -> Floats:
+def integral_temperature(*, body_temperature: ArrayLike, integral_flash: ArrayLike) -> Floats:
     """theta_int = theta_M + 1.5 theta_flaint [K]. Source: ISO/TR 13989-2 eq. 17."""
     return np.asarray(np.asarray(body_temperature, dtype=float) + 1.5 * np.asarray(integral_flash))
 
@@ -233,7 +238,7 @@ def fzg_torque(load_stage: ArrayLike) -> Floats:
 
 
 def scuffing_temperature(
-    load_stage: ArrayLike, structure: ArrayLike = 1.0, lubricant_factor: ArrayLike = 1.0
+    load_stage: ArrayLike, *, structure: ArrayLike = 1.0, lubricant_factor: ArrayLike = 1.0
 ) -> Floats:
     """Contact temperature at which the oil scuffs, flash method [K].
 
@@ -250,6 +255,7 @@ def scuffing_temperature(
 def scuffing_integral_temperature(
     load_stage: ArrayLike,
     viscosity_40: ArrayLike,
+    *,
     structure: ArrayLike = 1.0,
     lubricant_factor: ArrayLike = 1.0,
 ) -> Floats:
@@ -258,7 +264,7 @@ def scuffing_integral_temperature(
     theta_intS = theta_MT + 1.5 X_WrelT theta_flaintT,  theta_MT = 80 C + 0.23 T1T X_L,
     theta_flaintT = 0.2 T1T (100/nu40)^0.02 X_L,  T1T = 3.726 S_FZG^2.
 
-    ``load_stage`` S_FZG, ``viscosity_40`` nu [m^2/s] at 40 C, ``structure`` X_WrelT,
+    ``load_stage`` S_FZG [-], ``viscosity_40`` nu [m^2/s] at 40 C, ``structure`` X_WrelT,
     ``lubricant_factor`` X_L. Source: ISO/TR 13989-2 eq. 94-97.
     """
     torque = fzg_torque(load_stage) * np.asarray(lubricant_factor)
@@ -267,7 +273,9 @@ def scuffing_integral_temperature(
     return np.asarray(ZERO_CELSIUS + 80.0 + 0.23 * torque + 1.5 * np.asarray(structure) * flash)
 
 
-def scuffing_safety(limit: ArrayLike, temperature: ArrayLike, oil_temperature: ArrayLike) -> Floats:
+def scuffing_safety(
+    *, limit: ArrayLike, temperature: ArrayLike, oil_temperature: ArrayLike
+) -> Floats:
     """S_B = (Theta_S - theta_oil)/(Theta_Bmax - theta_oil) [-]; infinite without a rise.
 
     ``limit``, greatest contact ``temperature`` and ``oil_temperature`` [K]. Source:
@@ -278,6 +286,6 @@ def scuffing_safety(limit: ArrayLike, temperature: ArrayLike, oil_temperature: A
     return np.asarray(np.divide(above, below, out=np.full(above.shape, np.inf), where=below > 0.0))
 
 
-def scuffing_margin(limit: ArrayLike, temperature: ArrayLike) -> Floats:
+def scuffing_margin(*, limit: ArrayLike, temperature: ArrayLike) -> Floats:
     """Theta_S - Theta_Bmax [K]: what is left; 50 K and more is advised, < 0 scuffs."""
     return np.asarray(np.asarray(limit, dtype=float) - np.asarray(temperature))

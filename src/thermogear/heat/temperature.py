@@ -60,7 +60,7 @@ def _over(numerator: Floats, denominator: Floats) -> Floats:
 
 
 def frictional_heat(
-    friction: ArrayLike, line_load: ArrayLike, speed_1: ArrayLike, speed_2: ArrayLike
+    friction: ArrayLike, line_load: ArrayLike, *, speed_1: ArrayLike, speed_2: ArrayLike
 ) -> Floats:
     """Frictional power per face width of one tooth pair, q = |mu| w |v1 - v2| [W/m].
 
@@ -73,6 +73,7 @@ def frictional_heat(
 
 
 def heat_partition(
+    *,
     speed_1: ArrayLike,
     speed_2: ArrayLike,
     contact_coefficient_1: ArrayLike,
@@ -119,6 +120,7 @@ def flank_flash(
 def blok_flash(
     friction: ArrayLike,
     line_load: ArrayLike,
+    *,
     speed_1: ArrayLike,
     speed_2: ArrayLike,
     half_width: ArrayLike,
@@ -137,7 +139,7 @@ def blok_flash(
     High-speed limit: always on the safe side, by <= 1 % when the slower flank's Peclet number
     v B/a >= 10. Source: Blok 1937; u from the moving-source integral.
     """
-    heat = frictional_heat(friction, line_load, speed_1, speed_2)
+    heat = frictional_heat(friction, line_load, speed_1=speed_1, speed_2=speed_2)
     v1, v2, b = (np.asarray(a, dtype=float) for a in (speed_1, speed_2, half_width))
     carried = np.asarray(contact_coefficient_1) * np.sqrt(v1)
     carried = carried + np.asarray(contact_coefficient_2) * np.sqrt(v2)
@@ -147,6 +149,7 @@ def blok_flash(
 def blok_as_printed(
     friction: ArrayLike,
     line_load: ArrayLike,
+    *,
     speed_1: ArrayLike,
     speed_2: ArrayLike,
     half_width: ArrayLike,
@@ -171,7 +174,7 @@ def blok_as_printed(
 
 
 def contact_temperature(
-    flash: ArrayLike, partition_1: ArrayLike, bulk_1: ArrayLike, bulk_2: ArrayLike
+    flash: ArrayLike, partition_1: ArrayLike, *, bulk_1: ArrayLike, bulk_2: ArrayLike
 ) -> Floats:
     """Greatest contact temperature when the two bodies differ [K].
 
@@ -201,6 +204,7 @@ def _check_annulus(bore_radius: ArrayLike, tip_radius: ArrayLike) -> tuple[Float
 
 def radial_temperature(
     radius: ArrayLike,
+    *,
     bore_radius: ArrayLike,
     tip_radius: ArrayLike,
     bore_temperature: ArrayLike,
@@ -235,6 +239,7 @@ def radial_temperature(
 
 
 def conduction_power(
+    *,
     bore_radius: ArrayLike,
     tip_radius: ArrayLike,
     bore_temperature: ArrayLike,

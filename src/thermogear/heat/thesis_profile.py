@@ -52,7 +52,7 @@ def thesis_flank_growth(gear: GearLike, field: RadialField, radius: ArrayLike) -
 
 
 def thesis_half_backlash(
-    half_backlash: ArrayLike, deformation_1: ArrayLike, deformation_2: ArrayLike
+    half_backlash: ArrayLike, *, deformation_1: ArrayLike, deformation_2: ArrayLike
 ) -> Floats:
     """b' = (2 b - Delta f1 - Delta f2)/2 [m], as printed.
 
@@ -118,7 +118,12 @@ def deformed_profile(
     r = np.asarray(radius, dtype=float)
     body = gear.material
     moved = _radial_displacement(
-        field, r, gear.root_radius, body.thermal_expansion, body.poisson_ratio, bore
+        field,
+        r,
+        root_radius=gear.root_radius,
+        expansion=body.thermal_expansion,
+        poisson=body.poisson_ratio,
+        bore=bore,
     )
     psi = gear.half_thickness_angle(r)
     angle = psi + psi * (body.thermal_expansion * field.rise(r) - moved / r)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 METHODS = {
     "frequency": "FIR band pass, then division by omega^2 in the frequency domain",
     "line": "acceleration line over omega^2, no filter",
-    "trapezoid": "as in the thesis: FIR band pass, then two running trapezoidal sums",
+    "trapezoid": "FIR band pass, then two running trapezoidal sums",
 }
 
 
@@ -35,6 +35,7 @@ class Chain:
 
     method: str = "frequency"
     band: tuple[float, float] | None = None
+    _: KW_ONLY
     taps: int | None = None
     low_cut: float | None = None
     window: str = "flattop"
@@ -44,14 +45,14 @@ class Chain:
             raise InputError("method", repr(self.method), fix=nearest(self.method, METHODS))
         Window(self.window)
 
-    def settled(self, rate: float, samples: int, mesh: float) -> Chain:
+    def settled(self, *, rate: float, samples: int, mesh: float) -> Chain:
         """The chain with every number it leaves open chosen for this rate, length and line."""
         if self.method == "line":
             return self
         low, high = 0.5 * mesh, 0.45 * rate
         band = self.band or ((low, high) if low < 0.9 * high else (0.5 * low, 0.49 * rate))
         most = max(3, (samples // 4 - 1) // 2 * 2 + 1)
-        taps = self.taps or min(most, taps_for(rate, 0.4 * mesh))
+        taps = self.taps or min(most, taps_for(rate, transition=0.4 * mesh))
         return replace(self, band=band, taps=taps, low_cut=self.low_cut or 0.4 * mesh)
 
     def filter(self, rate: float) -> BandPass | None:
@@ -61,7 +62,7 @@ class Chain:
         return BandPass(rate, self.band, self.taps)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Turning:
     """The angle of each sample, by which a record is resampled before lines are read.
 
@@ -84,10 +85,12 @@ class Turning:
         first = max(self.dropped, offset)
         last = min(self.dropped + self.cycles.size, offset + values.shape[-1])
         angle = self.cycles[first - self.dropped : last - self.dropped]
-        return resample_by_angle(values[first - offset : last - offset], angle, self.per_cycle)
+        return resample_by_angle(
+            values[first - offset : last - offset], angle, samples_per_turn=self.per_cycle
+        )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Reduced:
     """One channel through the chain: what lines are read from.
 
@@ -103,7 +106,7 @@ class Reduced:
     displacement_spectrum: LineSpectrum | None
     axis: float = 1.0
 
-    def read(self, near: float, half_width: float) -> tuple[Line, float]:
+    def read(self, near: float, *, half_width: float) -> tuple[Line, float]:
         """The line near a frequency in the unfiltered record, and its displacement (nan: none).
 
         The filter's gain at the line is divided out of the displacement, except in the thesis's
@@ -111,9 +114,9 @@ class Reduced:
         """
         line = line_in(
             self.spectrum,
-            near / self.axis,
-            half_width / self.axis,
-            self.chain.window,
+            near=near / self.axis,
+            half_width=half_width / self.axis,
+            window=self.chain.window,
         )
         frequency = line.frequency * self.axis
         real = replace(line, frequency=frequency, frequency_error=line.frequency_error * self.axis)
@@ -123,9 +126,9 @@ class Reduced:
             return real, float("nan")
         found = line_in(
             self.displacement_spectrum,
-            line.frequency,
-            1.5 * self.displacement_spectrum.bin_width,
-            self.chain.window,
+            near=line.frequency,
+            half_width=1.5 * self.displacement_spectrum.bin_width,
+            window=self.chain.window,
         ).amplitude
         band = self.chain.filter(self.rate)
         gain = float(band.gain(frequency)) if band else 1.0
@@ -150,7 +153,7 @@ def reduced(
         if chain.method == "trapezoid":
             displacement = without_trend(integrate_twice_trapezoid(filtered, rate))
         else:
-            displacement = integrate_twice(filtered, rate, chain.low_cut)
+            displacement = integrate_twice(filtered, rate, low_cut=chain.low_cut)
     own, axis = rate, 1.0
     if turning is not None:
         centred = turning.resampled(centred, 0)
@@ -158,11 +161,11 @@ def reduced(
             displacement = turning.resampled(displacement, offset)
         own, axis = float(turning.per_cycle), turning.mean * rate
     return Reduced(
-        rate,
-        centred,
-        displacement,
-        chain,
-        line_spectrum(centred, own),
-        None if displacement is None else line_spectrum(displacement, own),
-        axis,
+        rate=rate,
+        acceleration=centred,
+        displacement=displacement,
+        chain=chain,
+        spectrum=line_spectrum(centred, own),
+        displacement_spectrum=None if displacement is None else line_spectrum(displacement, own),
+        axis=axis,
     )

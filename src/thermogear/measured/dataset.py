@@ -29,7 +29,7 @@ def tree_of(found: Measurement, version: str) -> xr.DataTree:
 
     stop = found.start + min(found.samples, _LONGEST)
     channels = [found.record.channel(name) for name in found.channels]
-    table = np.stack([c.values(found.start, stop) for c in channels])
+    table = np.stack([c.values(found.start, stop=stop) for c in channels])
     spectrum = amplitude_spectrum(table - table.mean(axis=-1, keepdims=True), 1.0, "hann")
     place, peaks = _peaks(spectrum.frequencies, spectrum.amplitudes)
     excerpt = min(_DRAWN, table.shape[-1])

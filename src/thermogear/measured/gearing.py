@@ -36,7 +36,7 @@ _MOST_FROM_SIDEBANDS = 3.2  # scores of sidebands stay below this
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Shaft:
     """A shaft seen by its sidebands: ``teeth`` = mesh line over shaft line, whole by law.
 
@@ -52,7 +52,7 @@ class Shaft:
     lines: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Mesh:
     """A further mesh: ``order`` of the first shaft, teeth on its two shafts, how sure.
 
@@ -75,7 +75,7 @@ WEAK = 0.2
 """Margin (of mean log prominence) below which a further mesh is called weak."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Gearing:
     """What a record's lines tell: mesh line [cycles/sample], shafts (first = tooth number of the
     first shaft), further meshes, and the evidence in words."""
@@ -124,7 +124,7 @@ class _Prominence:
         top = low + int(np.argmax(self.level[low:high]))
         if top + 1 >= self.level.size:
             return place, 0.0
-        shift = hann_offset(*(float(a) for a in self.amplitude[top - 1 : top + 2]))
+        shift = hann_offset(self.amplitude[top - 1 : top + 2])
         return (top + shift) / self.per_unit, float(self.level[top])
 
 
@@ -229,12 +229,21 @@ def _of_family(table: Floats, family: _Family) -> tuple[float, Gearing]:
     angle_of = _angle(table, mesh)
     if angle_of is None:
         error = 0.5 / table.shape[-1]
-        return family.score, Gearing(mesh, error, heights, (), (), tuple(evidence))
+        return family.score, Gearing(
+            mesh_frequency=mesh,
+            mesh_frequency_error=error,
+            harmonics=heights,
+            shafts=(),
+            meshes=(),
+            evidence=tuple(evidence),
+        )
     cycles, dropped, mesh, error = angle_of
     kept = table[:, dropped : dropped + cycles.size]
     top = max(1, min(_HARMONICS, int(0.45 / mesh)))
     per_cycle = int(2 ** np.ceil(np.log2(1.0 / mesh)))
-    sharp = _prominence(resample_by_angle(kept, cycles, per_cycle), float(per_cycle))
+    sharp = _prominence(
+        resample_by_angle(kept, cycles, samples_per_turn=per_cycle), float(per_cycle)
+    )
     shafts = _shafts(sharp, top, evidence)
     meshes: tuple[Mesh, ...] = ()
     if not shafts:
@@ -246,7 +255,14 @@ def _of_family(table: Floats, family: _Family) -> tuple[float, Gearing]:
     score = family.score
     if shafts:  # sidebands of one harmonic alone prove less
         score += (shafts[0].score + _LAW_KEPT) * min(1.0, top / 3.0)
-    return score, Gearing(mesh, error, heights, shafts, meshes, tuple(evidence))
+    return score, Gearing(
+        mesh_frequency=mesh,
+        mesh_frequency_error=error,
+        harmonics=heights,
+        shafts=shafts,
+        meshes=meshes,
+        evidence=tuple(evidence),
+    )
 
 
 def _families(raw: _Prominence, near: float | None) -> list[_Family]:
@@ -315,7 +331,7 @@ def _angle(table: Floats, mesh: float) -> tuple[Floats, int, float, float] | Non
         for c in table
     ]
     best = table[int(np.argmax(heights))]
-    cycles, dropped = line_angle(best, mesh, half)
+    cycles, dropped = line_angle(best, frequency=mesh, half_width=half)
     place = np.arange(cycles.size)
     slope, offset = np.polyfit(place, cycles, 1)
     wander = float(np.std(cycles - slope * place - offset))
@@ -451,7 +467,14 @@ def _refined(
     # a gear's ratio is whole; what only comes near a whole number is another lattice of lines
     if abs(ratio - whole) > _WHOLE * max(1.0, whole / 50.0) or whole < _TEETH[0]:
         return None
-    return Shaft(whole, ratio, error, 1.0, score, int(np.count_nonzero(good)))
+    return Shaft(
+        teeth=whole,
+        ratio=ratio,
+        ratio_error=error,
+        order=1.0,
+        score=score,
+        lines=int(np.count_nonzero(good)),
+    )
 
 
 def _second_mesh(

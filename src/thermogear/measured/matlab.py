@@ -85,7 +85,7 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
                 packed = engine.decompress(bytes(body), left + 1)
                 left -= len(packed)
                 if left < 0:
-                    raise too_large(path, options.limit - left, options.limit)
+                    raise too_large(path, becomes=options.limit - left, limit=options.limit)
                 for inner, content in _Buffer(memoryview(packed), order).elements():
                     if inner == _MATRIX:
                         arrays += _matrix(content, order, "", 0)

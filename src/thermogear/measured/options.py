@@ -36,7 +36,7 @@ def refused(path: Path, as_what: str, reason: object) -> InputError:
     return InputError("file", path.name, why=f"cannot be read as {as_what}: {text}")
 
 
-def too_large(path: Path, becomes: int, limit: int) -> InputError:
+def too_large(path: Path, *, becomes: int, limit: int) -> InputError:
     """A packed file that would become larger than the limit."""
     return InputError(
         "file",

@@ -30,7 +30,7 @@ def read_npz(path: Path, options: ReadOptions) -> Record:
                 raise refused(path, "NPZ", f"it holds {len(members)} arrays")
             total = sum(m.file_size for m in members)
             if total > options.limit:
-                raise too_large(path, total, options.limit)
+                raise too_large(path, becomes=total, limit=options.limit)
             arrays = []
             for member in members:
                 if member.flag_bits & 0x1:

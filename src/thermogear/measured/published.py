@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import decoded
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.measured.layout import NUMBER, cells_of
 from thermogear.measured.traps import split_unit
@@ -17,7 +18,7 @@ from thermogear.signals.integration import trapezoid_factor
 from thermogear.signals.windows import Window
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SpeedLine:
     """The main line at one speed: ``speed`` [rad/s] of the pinion (nominal), ``frequency`` [Hz],
     ``displacement`` [m] peak; ``uncertainty`` relative standard uncertainty, None: not stated."""
@@ -81,7 +82,7 @@ class Printed:
 
 
 def _table(name: str, rows: tuple[tuple[float, float, float], ...]) -> LineTable:
-    lines = tuple(SpeedLine(n * RPM, f, x * 1e-6) for n, f, x in rows)
+    lines = tuple(SpeedLine(speed=n * RPM, frequency=f, displacement=x * 1e-6) for n, f, x in rows)
     return LineTable(name, lines, 25, "thesis, section 5.2")
 
 
@@ -114,7 +115,7 @@ THESIS_5_2 = Printed(
 PUBLISHED: dict[str, Printed] = {"thesis-5.2": THESIS_5_2}
 
 
-def unstated_processing(frequency: float, highest: float) -> dict[str, float]:
+def unstated_processing(frequency: float, *, highest: float) -> dict[str, float]:
     """Relative standard uncertainties of a line whose processing is not stated.
 
     A loss anywhere between 0 and L, all alike likely, has the standard deviation L/sqrt(12).
@@ -123,14 +124,14 @@ def unstated_processing(frequency: float, highest: float) -> dict[str, float]:
     times it; 0 for a processing that does not use sums cannot be told apart.
     """
     window = Window("hann").scalloping / np.sqrt(12.0)
-    loss = 1.0 - float(trapezoid_factor(frequency, 2.56 * highest))
+    loss = 1.0 - float(trapezoid_factor(frequency, rate=2.56 * highest))
     return {"window": float(window), "integration": float(loss / np.sqrt(12.0))}
 
 
 def read_lines(path: Path, teeth: int | None = None) -> LineTable:
     """A table of lines from a CSV: speed [rpm], frequency [Hz], displacement [um], and if known
     uncertainty [%]; the first row names the columns with their units."""
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    text = decoded(path.read_bytes(), "replace")
     rows = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if len(rows) < 2:
         raise InputError("table", path.name, why="it needs a row of names and one of numbers")
@@ -160,10 +161,10 @@ def read_lines(path: Path, teeth: int | None = None) -> LineTable:
         }
         lines.append(
             SpeedLine(
-                values["speed"] * 2.0 * np.pi,
-                values["frequency"],
-                values["displacement"],
-                values["uncertainty"] / 100.0 if "uncertainty" in values else None,
+                speed=values["speed"] * 2.0 * np.pi,
+                frequency=values["frequency"],
+                displacement=values["displacement"],
+                uncertainty=values["uncertainty"] / 100.0 if "uncertainty" in values else None,
             )
         )
     return LineTable(path.stem, tuple(lines), teeth, path.name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -44,6 +44,7 @@ class Channel:
     name: str
     samples: Samples = field(repr=False)
     unit: str | None = None
+    _: KW_ONLY
     scale: float = 1.0
     offset: float = 0.0
     needs_scale: bool = False  # integer full scale: a unit alone does not calibrate it
@@ -51,7 +52,7 @@ class Channel:
     def __len__(self) -> int:
         return len(self.samples)
 
-    def values(self, start: int = 0, stop: int | None = None) -> Floats:
+    def values(self, start: int = 0, *, stop: int | None = None) -> Floats:
         """Samples start..stop in the channel's own unit, as floats."""
         raw = np.asarray(self.samples[start : len(self) if stop is None else stop], dtype=float)
         if self.scale == 1.0 and self.offset == 0.0:
@@ -61,7 +62,7 @@ class Channel:
     def blocks(self, size: int = BLOCK) -> Iterator[Floats]:
         """The whole channel block by block: no more than ``size`` samples in memory."""
         for start in range(0, len(self), size):
-            yield self.values(start, min(start + size, len(self)))
+            yield self.values(start, stop=min(start + size, len(self)))
 
     @property
     def si_factor(self) -> float:

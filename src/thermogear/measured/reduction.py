@@ -45,7 +45,7 @@ _FACTORS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MeasuredLine:
     """One line of one channel. What the record does not allow is nan, never guessed.
 
@@ -157,7 +157,7 @@ def measure(
         notices.append(Notice("info", turning[1]))
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
-    wanted = (chain or Chain()).settled(rate, table.shape[-1], mesh)
+    wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
     lines: list[MeasuredLine] = []
     for channel, values in zip(chosen, table, strict=True):
         lines += _lines(
@@ -185,11 +185,12 @@ def measure(
         )
     band = wanted.filter(rate)
     if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
+        kept = "not divided out" if wanted.method == "trapezoid" else "divided out"
         notices.append(
             Notice(
                 "warning",
                 f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
-                "line (divided out, but in the thesis's own way)",
+                f"line ({kept})",
             )
         )
     return Measurement(
@@ -232,7 +233,7 @@ def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]
 def _stretch(channels: list[Channel], notices: list[Notice]) -> tuple[int, Floats]:
     """The longest stretch in which no channel has a gap, at most LONGEST samples of it."""
     count = len(channels[0])
-    table = np.stack([c.values(0, min(count, LONGEST)) for c in channels])
+    table = np.stack([c.values(0, stop=min(count, LONGEST)) for c in channels])
     start = 0
     bad = np.flatnonzero(~np.all(np.isfinite(table), axis=0))
     if bad.size:
@@ -370,13 +371,13 @@ def _turning(
         return None
     per_cycle = int(2 ** np.ceil(np.log2(1.0 / gearing.mesh_frequency)))
     if record.tacho is not None and pulses_per_turn and teeth and record.rate is not None:
-        pulses = record.channel(record.tacho).values(start, start + table.shape[-1])
+        pulses = record.channel(record.tacho).values(start, stop=start + table.shape[-1])
         times = tacho_times(pulses, record.rate)
         angle = teeth * tacho_angle(
             times, pulses_per_turn, np.arange(table.shape[-1]) / record.rate
         )
         inside = np.flatnonzero(np.isfinite(angle))
-        turning = Turning(angle[inside], int(inside[0]), per_cycle)
+        turning = Turning(cycles=angle[inside], dropped=int(inside[0]), per_cycle=per_cycle)
         return turning, f"lines are read in angle, by the tacho {record.tacho!r}"
     found = mesh_angle(list(table), gearing.mesh_frequency)
     if found is None:
@@ -385,7 +386,7 @@ def _turning(
     if wander * harmonics <= _STEADY or cycles.size < 0.5 * table.shape[-1]:
         return None
     return (
-        Turning(cycles, dropped, per_cycle),
+        Turning(cycles=cycles, dropped=dropped, per_cycle=per_cycle),
         f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by that "
         "phase",
     )
@@ -461,7 +462,7 @@ def _lines(
     ]
     found = []
     for want in wanted:
-        line, displacement = through.read(want.position * rate, want.half_width * rate)
+        line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
         scatter = _scatter(quarters, through.axis, line.frequency, want.half_width * rate)
         parts = [line.amplitude_error / line.amplitude, scatter, sensor_tolerance or 0.0]
         position = line.frequency / rate

@@ -21,17 +21,17 @@ class FileTable:
     """
 
     def __init__(
-        self, file: IO[bytes], dtype: DTypeLike, offset: int, frames: int, columns: int = 1
+        self, file: IO[bytes], dtype: DTypeLike, *, offset: int, frames: int, columns: int = 1
     ) -> None:
         self._file, self._dtype, self._offset = file, np.dtype(dtype), offset
         self.shape = (frames, columns)
 
     @classmethod
     def of(
-        cls, path: Path, dtype: DTypeLike, offset: int, frames: int, columns: int = 1
+        cls, path: Path, dtype: DTypeLike, *, offset: int, frames: int, columns: int = 1
     ) -> FileTable:
         """The table in a file that stays open as long as the table lives."""
-        return cls(path.open("rb"), dtype, offset, frames, columns)
+        return cls(path.open("rb"), dtype, offset=offset, frames=frames, columns=columns)
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -90,7 +90,7 @@ class ColumnStore:
             found = []
             for file in self._files:
                 file.flush()
-                found.append(FileTable(file, np.float64, 0, self.rows))
+                found.append(FileTable(file, np.float64, offset=0, frames=self.rows))
             return found
         result = []
         for parts in self._parts:

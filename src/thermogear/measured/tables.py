@@ -39,7 +39,7 @@ class Named:
 class Column:
     """One column or row of a stored 2-D array, read slice by slice."""
 
-    def __init__(self, data: Any, index: int, axis: int) -> None:
+    def __init__(self, data: Any, index: int, *, axis: int) -> None:
         self._data, self._index, self._axis = data, index, axis
 
     def __len__(self) -> int:
@@ -119,7 +119,7 @@ def record_of(
             continue
         for index in range(min(sizes)):
             name = f"{bare}[{index + 1}]"
-            channels.append(Channel(name, Column(array.data, index, axis), said))
+            channels.append(Channel(name, Column(array.data, index, axis=axis), said))
     if not channels:
         raise refused(path, kind, "it holds no array of numbers as long as a record")
     longest = max(len(c) for c in channels)
@@ -173,7 +173,7 @@ def _flat(array: Named) -> Samples:
         return array.data  # type: ignore[no-any-return]
     if len(array.shape) == 2:
         axis = 0 if array.shape[0] != 1 else 1
-        return Column(array.data, 0, axis)
+        return Column(array.data, 0, axis=axis)
     return np.asarray(array.data).reshape(-1)
 
 

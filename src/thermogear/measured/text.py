@@ -69,7 +69,7 @@ class _Counted(io.RawIOBase):
         data = self._stream.read(len(buffer))
         self._count += len(data)
         if self._count > self._limit:
-            raise too_large(self._path, self._count, self._limit)
+            raise too_large(self._path, becomes=self._count, limit=self._limit)
         buffer[: len(data)] = data
         return len(data)
 

@@ -54,7 +54,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
     return text, None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TimeBase:
     """What a time column says: rate [1/s] (None: it cannot be told), start, rows to drop."""
 
@@ -78,11 +78,11 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
         notes.append(
             Notice("important", f"{label} states no unit: no rate is taken from it (give --rate)")
         )
-        return TimeBase(None, 0.0, "", (), tuple(notes))
+        return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
     seconds = t * factor_of(unit_name)
     if t.size < 3 or not np.all(np.isfinite(seconds)):
         notes.append(Notice("important", f"{label} holds gaps: no rate is taken from it"))
-        return TimeBase(None, 0.0, "", (), tuple(notes))
+        return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
     steps = np.diff(seconds)
     twice = {int(i) + 1 for i in np.flatnonzero(steps == 0.0)}
     drop = tuple(sorted(twice & rows_equal))
@@ -104,7 +104,9 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
         notes.append(
             Notice("important", f"{label} does not rise (row {place}): no rate is taken from it")
         )
-        return TimeBase(None, float(seconds[0]), "", drop, tuple(notes))
+        return TimeBase(
+            rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
+        )
     # stamps written with few digits wander by half a digit around a straight line; anything
     # more than half a step off is a missing, extra or irregular sample
     line = seconds[0] + mean * np.arange(seconds.size)
@@ -122,13 +124,21 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
         notes.append(
             Notice("important", f"{label}: {what}; no rate is taken from it (give --rate)")
         )
-        return TimeBase(None, float(seconds[0]), "", drop, tuple(notes))
+        return TimeBase(
+            rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
+        )
     if unit_name != "s":
         notes.append(Notice("info", f"{label} is in {unit_name}"))
-    return TimeBase(float(1.0 / mean), float(seconds[0]), label, drop, tuple(notes))
+    return TimeBase(
+        rate=float(1.0 / mean),
+        start=float(seconds[0]),
+        origin=label,
+        drop=drop,
+        notices=tuple(notes),
+    )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Health:
     """Facts about one channel found in a single pass: gaps, zeros, constancy, clipping."""
 

@@ -65,6 +65,10 @@ _SPELLINGS = {
     "khz": "kHz",
     "1/min": "rpm",
     "r/min": "rpm",
+    "rev/min": "rpm",
+    "u/min": "rpm",
+    "min-1": "rpm",
+    "min^-1": "rpm",
     "n m": "N m",
     "nm(torque)": "N m",
     "n*m": "N m",
@@ -72,7 +76,9 @@ _SPELLINGS = {
     "°c": "degC",
     "deg c": "degC",
 }
-_SIGNS = str.maketrans({"²": "2", "µ": "u", "μ": "u", "−": "-", "\u00a0": " ", "⁻": "-", "㎡": "2"})
+_SIGNS = str.maketrans(
+    {"²": "2", "µ": "u", "μ": "u", "−": "-", "\u00a0": " ", "⁻": "-", "¹": "1", "㎡": "2"}
+)
 
 
 def unit(text: str) -> str | None:

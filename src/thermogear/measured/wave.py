@@ -82,7 +82,7 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
     data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
     names = [f"channel {i + 1}" for i in range(channels)]
     found = tuple(
-        Channel(name, Column(data, i, 0), None, scale, shift, integer)
+        Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
         for i, name in enumerate(names)
         if not options.keep or name in options.keep or str(i + 1) in options.keep
     )
@@ -95,13 +95,28 @@ def _samples(
     """Stored samples with scale and offset to fractions of full scale, and whether integer."""
     if code == _FLOAT and bits in (32, 64):
         kind = "<f4" if bits == 32 else "<f8"
-        return FileTable.of(path, kind, offset, frames, channels), 1.0, 0.0, False
+        return (
+            FileTable.of(path, kind, offset=offset, frames=frames, columns=channels),
+            1.0,
+            0.0,
+            False,
+        )
     if code == _PCM and bits == 8:  # unsigned, 128 is zero
-        return FileTable.of(path, "u1", offset, frames, channels), 1 / 128, -1.0, True
+        return (
+            FileTable.of(path, "u1", offset=offset, frames=frames, columns=channels),
+            1 / 128,
+            -1.0,
+            True,
+        )
     if code == _PCM and bits in (16, 32):
         kind = "<i2" if bits == 16 else "<i4"
-        return FileTable.of(path, kind, offset, frames, channels), 2.0 ** (1 - bits), 0.0, True
+        return (
+            FileTable.of(path, kind, offset=offset, frames=frames, columns=channels),
+            2.0 ** (1 - bits),
+            0.0,
+            True,
+        )
     if code == _PCM and bits == 24:
-        raw = FileTable.of(path, "u1", offset, frames, 3 * channels)
+        raw = FileTable.of(path, "u1", offset=offset, frames=frames, columns=3 * channels)
         return _Packed24(raw, channels), 2.0**-23, 0.0, True
     raise refused(path, "WAV", f"format {code} with {bits} bits is not supported")

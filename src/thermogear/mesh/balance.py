@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.gears.contact import path_of_contact
@@ -35,7 +36,7 @@ HOTTEST = 700.0
 """Iterates [K] are held below it; a point that ends there has no steady state worth a name."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Gearbox:
     """What heats and cools the pair besides its mesh; every default is ours.
 
@@ -57,9 +58,11 @@ class Gearbox:
             raise InputError(
                 "gearbox.bearing_coefficient", self.bearing_coefficient, allowed="0 .. 0.1"
             )
+        for node, values in self.measured.items():
+            BODY.require(f"gearbox.measured.{node}", values)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class HeatBalance:
     """A settled (or not) thermal state of every operating point, arrays (count,).
 
@@ -112,7 +115,7 @@ def heat_balance(
     ``settled`` False, and so does one that would run above 700 K; nothing is raised for it. Warns
     once, at the result, where the oil leaves its viscosity line's range.
     """
-    if tolerance <= 0.0:
+    if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
     if most_iterations < 1:
         raise InputError("most_iterations", most_iterations, allowed=">= 1")
@@ -136,18 +139,20 @@ def heat_balance(
             lubricant,
             t["oil"],
             Temperatures(
-                reference,
-                t["pinion_tooth"],
-                t["pinion_shaft"],
-                t["wheel_tooth"],
-                t["wheel_shaft"],
-                t["housing"],
+                reference=reference,
+                pinion_addendum=t["pinion_tooth"],
+                pinion_bore=t["pinion_shaft"],
+                wheel_addendum=t["wheel_tooth"],
+                wheel_bore=t["wheel_shaft"],
+                housing=t["housing"],
             ),
             half_backlash,
             housing,
         )
 
-    def respond(at: Floats, index: Indices) -> tuple[ThermalNetwork, SteadyState, Losses, Floats]:
+    def respond(
+        at: Floats, index: Indices
+    ) -> tuple[ThermalNetwork, SteadyState, Losses, Floats, NDArray[np.bool_]]:
         here = operating(at, index)
         hot = HotPair(pair, here, choice)
         elastic = elastic_pair(hot, deviations)
@@ -165,7 +170,8 @@ def heat_balance(
         )
         steady = network.steady()
         found = [np.broadcast_to(steady[name], (index.size,)) for name in NODES]
-        return network, steady, losses, np.minimum(np.stack(found, axis=1), HOTTEST)
+        reached = np.minimum(np.stack(found, axis=1), HOTTEST)
+        return network, steady, losses, reached, path.settled
 
     everything = np.arange(count)
     factor = np.ones(count)
@@ -189,16 +195,22 @@ def heat_balance(
             if not going.size:
                 break
             moved = nodes[going] + (factor[going, None] * change[still])
-            nodes[going] = np.maximum(moved, 200.0)
+            nodes[going] = np.clip(moved, BODY.least, BODY.most)
     settled = residual <= tolerance
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", ValidityWarning)
-        network, steady, losses, _ = respond(nodes, everything)
+        network, steady, losses, _, contact = respond(nodes, everything)
     for text in dict.fromkeys(str(one.message) for one in told):
         warnings.warn(text, ValidityWarning, stacklevel=2)
-    settled = settled & (nodes < HOTTEST).all(axis=1)
+    settled = settled & contact & (nodes < HOTTEST).all(axis=1)
     return HeatBalance(
-        operating(nodes, everything), network, steady, losses, iterations, residual, settled
+        operating=operating(nodes, everything),
+        network=network,
+        steady=steady,
+        losses=losses,
+        iterations=iterations,
+        residual=residual,
+        settled=settled,
     )
 
 
@@ -232,4 +244,6 @@ def pair_losses(pair: GearPair, operating: Operating, path: FrictionPath, box: G
         2.0 * bearing_loss(half, 2.0 * gear.bore_radius, omega, box.bearing_coefficient)
         for gear, omega in ((pair.pinion, operating.speed), (pair.wheel, wheel_speed))
     )
-    return Losses(mesh, share, churning, first, second)
+    return Losses(
+        mesh=mesh, partition_1=share, churning=churning, bearing_1=first, bearing_2=second
+    )

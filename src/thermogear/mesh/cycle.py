@@ -23,11 +23,12 @@ from thermogear.gears.geometry import GearPair
 from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.losses import efficiency
 from thermogear.heat.temperature import conduction_power, contact_temperature
+from thermogear.mesh.clearance import clearance
 from thermogear.mesh.elastic import ElasticPair, elastic_pair, mean_stiffness_of_body
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.mesh.thermal import HotPair, hot_backlash, thesis_thermal_stiffness
+from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
 
 Floats = NDArray[np.float64]
 Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
@@ -52,13 +53,16 @@ def mesh_cycle(
     tangent point): rolling and sliding velocities, load share, line load, Hertz contact,
     friction, flash and contact temperature, thermal growth of both flanks, and the springs of
     the pair. Over the mesh phase (0 where a pair enters at A): mesh stiffness, half backlash,
-    thermal error. Per operating point: normal force, mean and extreme stiffness, half backlash,
-    jam temperature (the pinion's addendum when both gears warm alike), and ``status``: ``ok``;
-    ``jammed`` where the least half backlash over the phase is <= 0 (the values stay, for they
-    say how far it is jammed); ``not_converged`` where the loaded contact did not settle.
+    kinematic error. Per operating point: normal force, mean and extreme stiffness, half backlash,
+    jam temperature (the pinion's addendum, once when both gears warm alike beside a housing as it
+    is, once when shafts and housing rise in proportion to them; nan where that never jams), and
+    ``status``: ``ok``; ``jammed`` where the least half backlash over the phase is <= 0 (the values
+    stay, for they say how far it is jammed); ``not_converged`` where the loaded contact did not
+    settle.
 
-    ``deviations`` of the flanks (relief, profile, ...) enter the loaded contact; heat's own is
-    added there. The cycle is one mesh period: pitch errors, which differ from tooth to tooth,
+    ``deviations`` of the flanks (relief, profile, ...) enter the loaded contact and the clearance
+    (:func:`~thermogear.mesh.clearance.clearance`); the cold half backlash is that of the flanks
+    without them. The cycle is one mesh period: pitch errors, which differ from tooth to tooth,
     enter with the teeth of the first period alone, and a warning says so. ``model`` defaults to
     :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
     zero flash; the pitch point has its limit values. Warns outside the ranges of the sources;
@@ -80,11 +84,14 @@ def mesh_cycle(
     phase = np.arange(mesh_positions) / mesh_positions
 
     variables: Variables = {}
-    variables |= _contact(FrictionPath(elastic, s))
+    path = FrictionPath(elastic, s)
+    variables |= _contact(path)
     variables |= _deformation(hot, s)
     variables |= {name: (PATH, k) for name, k in elastic.parts(s).items()}
     variables["pair_stiffness"] = (PATH, elastic.pair_stiffness(s))
     variables |= _mesh(hot, elastic, phase)
+    status = np.where(path.settled, variables["status"][1], STATUS.index("not_converged"))
+    variables["status"] = (POINT, status)
 
     r1, r2 = flank_radii(pair, s)
     points = pair.path
@@ -132,22 +139,28 @@ def _contact(path: FrictionPath) -> Variables:
         "flash_temperature_mixed": path.flash(path.mixed),
         "flash_temperature_dry": path.flash(path.dry),
         "pinion_heat_share": path.heat_share,
-        "contact_temperature": contact_temperature(flash, path.heat_share, first, second),
+        "contact_temperature": contact_temperature(
+            flash, path.heat_share, bulk_1=first, bulk_2=second
+        ),
         "pinion_body_temperature": first,
         "wheel_body_temperature": second,
     }
-    shape = (hot.count, s.size)
+    shape, known = (hot.count, s.size), path.settled[:, None]
     variables: Variables = {
-        name: (PATH, np.broadcast_to(np.asarray(values), shape)) for name, values in found.items()
+        name: (PATH, np.where(known, np.broadcast_to(np.asarray(values), shape), np.nan))
+        for name, values in found.items()
     }
-    power, share = path.power()
+    power, share = (np.where(path.settled, values, np.nan) for values in path.power())
     variables |= {
         "reduced_radius": (("path_position",), path.radius),
         "normal_force": (POINT, path.elastic.force),
         "dynamic_viscosity": (POINT, path.viscosity[:, 0]),
         "frictional_power": (POINT, power),
         "pinion_share_of_heat": (POINT, share),
-        "mesh_efficiency": (POINT, efficiency(hot.operating.speed * hot.operating.torque, power)),
+        "mesh_efficiency": (
+            POINT,
+            efficiency(power=hot.operating.speed * hot.operating.torque, loss=power),
+        ),
     }
     return variables
 
@@ -169,12 +182,12 @@ def _deformation(hot: HotPair, s: Floats) -> Variables:
         growth = base_circle_growth(gear, hot.field(gear), hot.model.bore)
         variables[f"{name}_base_growth"] = (POINT, np.broadcast_to(growth.ravel(), (hot.count,)))
         power = conduction_power(
-            gear.bore_radius,
-            gear.tip_radius,
-            bore,
-            tip,
-            gear.material.thermal_conductivity,
-            gear.face_width,
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            bore_temperature=bore,
+            addendum_temperature=tip,
+            conductivity=gear.material.thermal_conductivity,
+            face_width=gear.face_width,
         )
         variables[f"{name}_shaft_heat"] = (POINT, np.broadcast_to(power, (hot.count,)))
     return variables
@@ -189,30 +202,31 @@ def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
         else np.zeros_like(k)
     )
     total = k + thermal
-    backlash = hot_backlash(hot, phase, elastic.pair_stiffness)
+    backlash = clearance(hot, phase, elastic.deviations)
     least = backlash.half_backlash.min(axis=1)
-    addendum = np.broadcast_to(
-        np.asarray(hot.temperatures.pinion_addendum, dtype=float), (hot.count,)
-    )
     status = np.where(least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))
-    status[~np.isfinite(total).all(axis=1)] = STATUS.index("not_converged")
+    rim, clamped = (mean_stiffness_of_body(elastic, phase, b) for b in ("rim", "bore-clamped"))
+    known = np.isfinite(total).all(axis=1) & np.isfinite(rim) & np.isfinite(clamped)
+    status[~known] = STATUS.index("not_converged")
     highest, lowest = total.max(axis=1), total.min(axis=1)
     return {
         "elastic_stiffness": (PHASE, k),
         "thermal_stiffness": (PHASE, thermal),
         "mesh_stiffness": (PHASE, total),
         "half_backlash_curve": (PHASE, backlash.half_backlash),
-        "thermal_error": (PHASE, backlash.error),
+        "kinematic_error": (PHASE, backlash.error),
         "spring_error": (PHASE, backlash.error if error is None else error),
         "transmission_error": (PHASE, loaded_error),
         "mean_stiffness": (POINT, total.mean(axis=1)),
-        "rim_stiffness": (POINT, mean_stiffness_of_body(elastic, phase, "rim")),
-        "bore_clamped_stiffness": (POINT, mean_stiffness_of_body(elastic, phase, "bore-clamped")),
+        "rim_stiffness": (POINT, rim),
+        "bore_clamped_stiffness": (POINT, clamped),
         "peak_to_peak_stiffness": (POINT, highest - lowest),
         "mid_range_stiffness": (POINT, 0.5 * (highest + lowest)),
         # counted from the least, so that a constant gap keeps its last bit
         "half_backlash": (POINT, least + (backlash.half_backlash - least[:, None]).mean(axis=1)),
         "cold_half_backlash": (POINT, np.full(hot.count, hot.operating.half_backlash)),
-        "jam_temperature": (POINT, addendum + backlash.jam_rise),
+        "least_half_backlash": (POINT, least),
+        "jam_temperature": (POINT, backlash.jam_temperature),
+        "proportional_jam_temperature": (POINT, backlash.proportional_jam_temperature),
         "status": (POINT, status),
     }

@@ -19,8 +19,8 @@ from thermogear.gears.geometry import GearPair
 from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, LoadedModel, solve_mesh
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.sharing import equal_share, stiffness_share
-from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances, pair_stiffness
-from thermogear.gears.tooth import flank_point
+from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances
+from thermogear.gears.tooth import ToothCompliances, flank_point, tooth_compliances
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 Floats = NDArray[np.float64]
@@ -65,8 +65,8 @@ class ElasticPair(ABC):
         """Of pinion and wheel, arrays (count, 1)."""
         first, second = (self.hot.moduli(gear) for gear in (self.pair.pinion, self.pair.wheel))
         return (
-            Moduli(first[0][:, None], first[1][:, None]),
-            Moduli(second[0][:, None], second[1][:, None]),
+            Moduli(tooth=first[0][:, None], body=first[1][:, None]),
+            Moduli(tooth=second[0][:, None], body=second[1][:, None]),
         )
 
     @property
@@ -86,8 +86,8 @@ class ElasticPair(ABC):
         return np.asarray(self.hot.operating.torque / self.pair.pinion.base_radius)
 
     def pair_stiffness(self, s: Floats) -> Floats:
-        """Textbook stiffness of one tooth pair at ``s`` [m], [N/m]: the weight of a flank."""
-        return pair_stiffness(self.pair, s, self.start, *self.moduli)
+        """Stiffness of one tooth pair at ``s`` [m], [N/m]: its :meth:`parts` in series."""
+        return np.asarray(1.0 / sum(1.0 / k for k in self.parts(s).values()))
 
     def share(self, s: Floats) -> Floats:
         """Share of the load on the pair at ``s`` [m], by the model's rule."""
@@ -97,18 +97,6 @@ class ElasticPair(ABC):
             return stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
         return loaded_share(self, s)
 
-    def textbook_parts(self, s: Floats) -> dict[str, Floats]:
-        """Compliances [m/N] of one textbook pair at ``s`` [m], by the stored name."""
-        found = pair_compliances(self.pair, s, self.start, *self.moduli)
-        parts = {"hertz_stiffness": found.contact}
-        for name, gear in (("pinion", found.pinion), ("wheel", found.wheel)):
-            parts[f"{name}_bending_stiffness"] = gear.tooth.bending
-            parts[f"{name}_shear_stiffness"] = gear.tooth.shear
-            parts[f"{name}_axial_stiffness"] = gear.tooth.axial
-            parts[f"{name}_body_stiffness"] = gear.foundation
-        shape = (self.hot.count, s.size)
-        return {name: np.broadcast_to(c, shape) for name, c in parts.items()}
-
     @abstractmethod
     def parts(self, s: Floats) -> dict[str, Floats]:
         """Every spring of one tooth pair at ``s`` [m], [N/m], by its stored name."""
@@ -117,13 +105,31 @@ class ElasticPair(ABC):
     def over(self, phase: Floats) -> MeshCurves:
         """Stiffness and errors at mesh ``phase``."""
 
+    def _stiffnesses(self, compliances: dict[str, Floats], s: Floats) -> dict[str, Floats]:
+        shape = (self.hot.count, s.size)
+        return {name: np.broadcast_to(1.0 / c, shape) for name, c in compliances.items()}
+
+
+def _named(gear: str, tooth: ToothCompliances, body: Floats) -> dict[str, Floats]:
+    """The compliances of one gear by the stored names of their springs."""
+    return {
+        f"{gear}_bending_stiffness": tooth.bending,
+        f"{gear}_shear_stiffness": tooth.shear,
+        f"{gear}_axial_stiffness": tooth.axial,
+        f"{gear}_body_stiffness": body,
+    }
+
 
 @dataclass(frozen=True, eq=False)
 class TextbookPair(ElasticPair):
     """Uncoupled springs of the teeth in contact, in parallel; deviations are not felt."""
 
     def parts(self, s: Floats) -> dict[str, Floats]:
-        return {name: 1.0 / c for name, c in self.textbook_parts(s).items()}
+        found = pair_compliances(self.pair, s, self.start, *self.moduli)
+        parts = {"hertz_stiffness": found.contact}
+        for name, gear in (("pinion", found.pinion), ("wheel", found.wheel)):
+            parts |= _named(name, gear.tooth, gear.foundation)
+        return self._stiffnesses(parts, s)
 
     def over(self, phase: Floats) -> MeshCurves:
         k = mesh_stiffness(self.pair, phase[None, :], self.start, *self.moduli)
@@ -142,7 +148,7 @@ class LoadedPair(ElasticPair):
 
     def solve(self, phase: Floats) -> LoadedMesh:
         """The loaded contact at ``phase``, lead axis (count,)."""
-        moduli = [Moduli(np.ravel(m.tooth), np.ravel(m.body)) for m in self.moduli]
+        moduli = [Moduli(tooth=np.ravel(m.tooth), body=np.ravel(m.body)) for m in self.moduli]
         return solve_mesh(
             self.pair,
             self.force,
@@ -154,7 +160,7 @@ class LoadedPair(ElasticPair):
         )
 
     def parts(self, s: Floats) -> dict[str, Floats]:
-        compliances = self.textbook_parts(s)
+        compliances: dict[str, Floats] = {}
         pair, width = self.pair, self.pair.face_width
         carried = self.share(s) * self.force[:, None]
         load = np.maximum(carried, LEAST_LINE_LOAD * width)
@@ -172,17 +178,18 @@ class LoadedPair(ElasticPair):
             point = flank_point(gear, t)
             approach += weber_approach(
                 load,
-                point.x / np.cos(point.beta),
-                half_width,
-                moduli.tooth,
-                gear.material.poisson_ratio,
-                width,
+                depth=point.x / np.cos(point.beta),
+                half_width=half_width,
+                modulus=moduli.tooth,
+                poisson=gear.material.poisson_ratio,
+                face_width=width,
             )
-            compliances[f"{name}_body_stiffness"] = ring_compliance(
-                gear, t, modulus=moduli.body, face_width=width, windup=windup
+            compliances |= _named(
+                name,
+                tooth_compliances(gear, t, self.start, moduli.tooth, width),
+                ring_compliance(gear, t, modulus=moduli.body, face_width=width, windup=windup),
             )
-        compliances["hertz_stiffness"] = approach / load
-        return {name: 1.0 / c for name, c in compliances.items()}
+        return self._stiffnesses(compliances | {"hertz_stiffness": approach / load}, s)
 
     def over(self, phase: Floats) -> MeshCurves:
         solved = self.solve(phase)
@@ -200,12 +207,16 @@ class LoadedPair(ElasticPair):
 
 
 def loaded_share(elastic: ElasticPair, s: Floats) -> Floats:
-    """Share of the pair at ``s`` [m] from the loaded contact, (count, positions)."""
+    """Share of the pair at ``s`` [m] from the loaded contact, (count, positions).
+
+    nan where the contact does not settle.
+    """
     pair = elastic.pair
     steps = (s - pair.path.a) / pair.base_pitch
     rank = np.floor(steps + 1e-9).astype(int)
     # rounding below a whole step would be the phase's other end
-    solved = LoadedPair(elastic.hot, elastic.deviations).solve(np.maximum(steps - rank, 0.0))
+    phase = np.maximum(steps - rank, 0.0)
+    solved = LoadedPair(elastic.hot, elastic.deviations).solve(phase)
     # the candidates begin one pair before the one that entered last
     places = np.broadcast_to((rank + 1)[:, None], (elastic.hot.count, s.size, 1))
     return np.take_along_axis(solved.share, places, axis=-1)[..., 0]

@@ -15,7 +15,7 @@ from thermogear.gears.geometry import Gear, GearPair
 NO_ERROR = Periodic(0.0)
 
 
-def disc_inertia(gear: Gear, radius: float, bore_radius: float = 0.0) -> float:
+def disc_inertia(gear: Gear, *, radius: float, bore_radius: float = 0.0) -> float:
     """I = pi rho b (R^4 - r_x^4)/2 [kg m^2] of a disc of the gear's material and face width.
 
     ``radius`` R [m] of the disc (pitch or tip radius), ``bore_radius`` r_x [m], 0 for a solid
@@ -58,8 +58,8 @@ def excitation(
         )
     if inertias is None:
         inertias = (
-            disc_inertia(pair.pinion, pair.pinion.pitch_radius),
-            disc_inertia(pair.wheel, pair.wheel.pitch_radius),
+            disc_inertia(pair.pinion, radius=pair.pinion.pitch_radius),
+            disc_inertia(pair.wheel, radius=pair.wheel.pitch_radius),
         )
     found: list[Excitation | None] = []
     for point, speed in enumerate(speeds):

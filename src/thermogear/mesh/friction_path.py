@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.errors import ConvergenceError
 from thermogear.gears.contact import (
     flank_radii,
     hertz_half_width,
@@ -15,6 +16,7 @@ from thermogear.gears.contact import (
     reduced_radius,
     rolling_velocities,
 )
+from thermogear.gears.sharing import equal_share
 from thermogear.heat.contact_state import ContactState, PitchPoint
 from thermogear.heat.film import (
     film_parameter,
@@ -70,9 +72,27 @@ class FrictionPath:
         return rolling_velocities(self.hot.pair, self.hot.operating.speed[:, None], self.s)
 
     @cached_property
-    def share(self) -> Floats:
-        """Share of the normal force."""
+    def _solved(self) -> Floats:
         return self.elastic.share(self.s)
+
+    @cached_property
+    def settled(self) -> NDArray[np.bool_]:
+        """Whether the shares of an operating point are known, (count,)."""
+        return np.asarray(np.isfinite(self._solved).all(axis=1))
+
+    @cached_property
+    def share(self) -> Floats:
+        """Share of the normal force; equal shares, which are no result, where not ``settled``."""
+        return np.where(self.settled[:, None], self._solved, equal_share(self.hot.pair, self.s))
+
+    def checked(self) -> FrictionPath:
+        """The same where every point is settled; raises ConvergenceError where one is not."""
+        if not np.all(self.settled):
+            raise ConvergenceError(
+                f"loaded contact: {int((~self.settled).sum())} of {self.hot.count} operating "
+                "points did not settle"
+            )
+        return self
 
     @cached_property
     def line_load(self) -> Floats:
@@ -121,8 +141,11 @@ class FrictionPath:
     def film_parameter(self) -> Floats:
         """Lambda = h_min over the flanks' combined rms roughness."""
         pair = self.hot.pair
-        rough = (RMS_OF_MEAN_ROUGHNESS * gear.roughness for gear in (pair.pinion, pair.wheel))
-        return film_parameter(self.film, *rough)
+        return film_parameter(
+            self.film,
+            roughness_1=RMS_OF_MEAN_ROUGHNESS * pair.pinion.roughness,
+            roughness_2=RMS_OF_MEAN_ROUGHNESS * pair.wheel.roughness,
+        )
 
     @cached_property
     def regime(self) -> NDArray[np.int64]:
@@ -185,13 +208,13 @@ class FrictionPath:
         return flash_temperature(
             1.0,
             self.line_load,
-            v1,
-            v2,
-            self.half_width,
-            pair.pinion.material,
-            pair.wheel.material,
-            model.heat_distribution,
-            model.flash,
+            speed_1=v1,
+            speed_2=v2,
+            half_width=self.half_width,
+            material_1=pair.pinion.material,
+            material_2=pair.wheel.material,
+            distribution=model.heat_distribution,
+            method=model.flash,
         )
 
     def flash(self, friction: Floats) -> Floats:
@@ -202,10 +225,13 @@ class FrictionPath:
     def heat_share(self) -> Floats:
         """Share of the frictional heat into the pinion."""
         pair = self.hot.pair
-        coefficients = (
-            gear.material.thermal_contact_coefficient for gear in (pair.pinion, pair.wheel)
+        v1, v2 = self.velocities
+        return heat_partition(
+            speed_1=v1,
+            speed_2=v2,
+            contact_coefficient_1=pair.pinion.material.thermal_contact_coefficient,
+            contact_coefficient_2=pair.wheel.material.thermal_contact_coefficient,
         )
-        return heat_partition(*self.velocities, *coefficients)
 
     @cached_property
     def body_temperatures(self) -> tuple[Floats, Floats]:
@@ -220,7 +246,8 @@ class FrictionPath:
     @cached_property
     def heat(self) -> Floats:
         """Frictional heat of this pair per width [W/m]."""
-        return frictional_heat(self.friction, self.line_load, *self.velocities)
+        v1, v2 = self.velocities
+        return frictional_heat(self.friction, self.line_load, speed_1=v1, speed_2=v2)
 
     def power(self) -> tuple[Floats, Floats]:
         """(frictional power [W], share of it into the pinion), time means over all pairs.

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.errors import InputError
 from thermogear.base.pair_springs import PairSprings
+from thermogear.gears.candidates import mesh_points
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
 from thermogear.gears.stiffness import Moduli
+from thermogear.gears.touch import first_touch
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
@@ -42,7 +45,10 @@ def pair_springs(
     carries its exact share with its exact slope, and their sum is the mesh's tangent
     stiffness. A pair that the mean load leaves free takes touch and slope from the first
     greater load that reaches it. Heat and ``deviations`` are in S_j with their mean, so that
-    the backlash beside them is the cold one.
+    the backlash beside them is the cold one. The force begins where the tightest pair touches
+    (:func:`~thermogear.gears.touch.first_touch`), halfway to the mean load's deflection the
+    springs take over: free play and jam are those of
+    :func:`~thermogear.mesh.clearance.clearance`.
 
     ``operating`` the place of the operating point in ``hot``, ``flank`` "drive" or "back",
     ``positions`` samples of the mesh phase. Raises InputError for a torque of 0, where no load
@@ -57,23 +63,27 @@ def pair_springs(
             "operating.torque", "0 N m", allowed="> 0 N m", why="a contact without load is soft"
         )
     local = np.arange(positions) / positions
-    # back flanks run against the path: their own phase is the mirror's less the mesh phase
+    # back flanks run against the path: their own phase is the mirror's less the mesh phase, its
+    # whole samples alone, so that samples of both flanks fall on the same mesh phases
     offset = (mirror_position(pair) - 2.0 * pair.path.a) / pair.base_pitch
+    offset = math.floor(offset * positions) / positions
     phase = local if flank == "drive" else offset - local
     # away from whole phases, where rounding decides which pair enters
     phase = phase + (1e-12 if flank == "drive" else -1e-12)
     small = np.array([1.0 - RELATIVE_STEP, 1.0, 1.0 + RELATIVE_STEP])
     loads = mean * np.concatenate([small, LADDER])
     solved = contact_at(hot, operating, loads, phase, deviations, flank=flank)
-    if not np.all(solved.settled):
-        raise ConvergenceError(
-            f"loaded contact: {int((~solved.settled).sum())} of {solved.settled.size} positions "
-            f"did not settle between {loads.min():.4g} and {loads.max():.4g} N"
-        )
-    stiffness, added = _springs(solved)
-    if flank == "drive":
-        return PairSprings.from_samples(stiffness.T, added.T)
-    return PairSprings.from_samples(stiffness.T, added.T, offset=offset, direction=-1)
+    stiffness, added = _springs(solved.checked())
+    springs = (
+        PairSprings.from_samples(stiffness.T, added.T)
+        if flank == "drive"
+        else PairSprings.from_samples(stiffness.T, added.T, offset=offset, direction=-1)
+    )
+    heat = ThermalDeviation(replace(hot, operating=hot.operating.point(operating)))
+    touch = first_touch(mesh_points(pair, local, flank), (*deviations, heat)).gap[0].min(axis=-1)
+    rest = springs.deflection(mean, local)
+    knee = 0.5 * (np.maximum(touch, springs.touch(local)) + rest)
+    return replace(springs, foot=np.stack([touch, knee]))
 
 
 def contact_at(
@@ -86,8 +96,10 @@ def contact_at(
     flank: str = "drive",
 ) -> LoadedMesh:
     """The loaded contact of one operating point's moduli and heat under any ``loads`` [N]."""
-    one = _one_point(hot, operating)
-    moduli = [Moduli(np.ravel(m.tooth)[0], np.ravel(m.body)[0]) for m in LoadedPair(one).moduli]
+    one = replace(hot, operating=hot.operating.point(operating))
+    moduli = [
+        Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in LoadedPair(one).moduli
+    ]
     return solve_mesh(
         hot.pair,
         loads,
@@ -120,30 +132,3 @@ def _springs(solved: LoadedMesh) -> tuple[Floats, Floats]:
         added[reached] = touch[reached]
         waiting &= ~reached
     return stiffness, np.maximum(added, OUT_OF_REACH)
-
-
-def _one_point(hot: HotPair, operating: int) -> HotPair:
-    """The same pair at one operating point, as its deviation must be without leading axes."""
-
-    def at(values: ArrayLike) -> ArrayLike:
-        array = np.asarray(values, dtype=float)
-        return array[operating : operating + 1] if array.ndim and array.size > 1 else values
-
-    point = hot.operating
-    heat = point.temperatures
-    temperatures = replace(
-        heat,
-        pinion_addendum=at(heat.pinion_addendum),
-        pinion_bore=at(heat.pinion_bore),
-        wheel_addendum=at(heat.wheel_addendum),
-        wheel_bore=at(heat.wheel_bore),
-        housing=at(heat.housing),
-    )
-    slim = replace(
-        point,
-        speed=point.speed[operating : operating + 1],
-        torque=point.torque[operating : operating + 1],
-        oil_temperature=at(point.oil_temperature),
-        temperatures=temperatures,
-    )
-    return replace(hot, operating=slim)

@@ -12,7 +12,7 @@ from thermogear.base.errors import InputError, nearest
 
 CHOICES: dict[str, dict[str, str]] = {
     "friction": {
-        "benedict-kelley": "mixed lubrication, Benedict and Kelley 1961",
+        "benedict-kelley": "law for mixed lubrication, Benedict and Kelley 1961",
         "dry": "constant coefficient, `dry_coefficient`",
         "boundary": "boundary lubrication, one constant",
         "xu-kahraman": "elastohydrodynamic, local, Xu and Kahraman 2007",

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Temperatures:
     """Given body temperatures [K]; each a number or an array over operating points.
 
@@ -29,20 +31,23 @@ class Temperatures:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            values = np.asarray(getattr(self, field.name), dtype=float)
-            if not np.all(np.isfinite(values) & (values > 0.0)):
-                raise InputError(
-                    f"temperatures.{field.name}", f"{values} K", allowed="> 0 K, finite"
-                )
+            bounds.BODY.require(f"temperatures.{field.name}", getattr(self, field.name))
 
     @classmethod
-    def uniform(cls, temperature: ArrayLike, reference: float) -> Temperatures:
+    def uniform(cls, temperature: ArrayLike, *, reference: float) -> Temperatures:
         """Gears and housing all at ``temperature``: nothing but size changes."""
-        return cls(reference, *([temperature] * 5))
+        bodies = [field.name for field in fields(cls) if field.name != "reference"]
+        return cls(reference=reference, **dict.fromkeys(bodies, temperature))
 
     def cold(self) -> Temperatures:
         """Everything at the reference temperature."""
-        return Temperatures.uniform(self.reference, self.reference)
+        return Temperatures.uniform(self.reference, reference=self.reference)
+
+    @property
+    def bodies(self) -> dict[str, Floats]:
+        """Every body's temperature [K] by its field's name; the reference is no body."""
+        names = (f.name for f in fields(self) if f.name != "reference")
+        return {name: np.asarray(getattr(self, name), dtype=float) for name in names}
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ class Operating:
         t = self.temperatures
         shapes = {name: np.shape(getattr(self, name)) for name in ("speed", "torque")}
         shapes["oil_temperature"] = np.shape(self.oil_temperature)
-        shapes |= {f.name: np.shape(getattr(t, f.name)) for f in fields(t) if f.name != "reference"}
+        shapes |= {name: np.shape(body) for name, body in t.bodies.items()}
         try:
             shape = np.broadcast_shapes((1,), *shapes.values())
         except ValueError:
@@ -83,14 +88,57 @@ class Operating:
         )
         object.__setattr__(self, "speed", speed)
         object.__setattr__(self, "torque", torque)
-        if not np.all(np.isfinite(speed) & (speed >= 0.0)):
-            raise InputError("operating.speed", f"{speed} rad/s", allowed=">= 0, finite")
-        oil = np.asarray(self.oil_temperature, dtype=float)
-        if not np.all(np.isfinite(oil) & (oil > 0.0)):
-            raise InputError("operating.oil_temperature", f"{oil} K", allowed="> 0 K, finite")
-        if not np.all(np.isfinite(torque) & (torque >= 0.0)):
-            raise InputError("operating.torque", f"{torque} N m", allowed=">= 0, finite")
-        if not (np.isfinite(self.half_backlash) and self.half_backlash > 0.0):
+        bounds.SPEED.require("operating.speed", speed)
+        bounds.BODY.require("operating.oil_temperature", self.oil_temperature)
+        bounds.TORQUE.require("operating.torque", torque)
+        bounds.HALF_BACKLASH.require("operating.half_backlash", self.half_backlash)
+
+    def point(self, place: int) -> Operating:
+        """The operating point ``place`` alone."""
+
+        def at(values: ArrayLike) -> ArrayLike:
+            array = np.asarray(values, dtype=float)
+            return array[place : place + 1] if array.ndim and array.size > 1 else values
+
+        bodies: dict[str, Any] = {n: at(body) for n, body in self.temperatures.bodies.items()}
+        return replace(
+            self,
+            speed=self.speed[place : place + 1],
+            torque=self.torque[place : place + 1],
+            oil_temperature=at(self.oil_temperature),
+            temperatures=replace(self.temperatures, **bodies),
+        )
+
+    def with_gears_at(self, gear_temperature: float) -> Operating:
+        """The same points with both addenda at ``gear_temperature`` [K], the rest in proportion.
+
+        Every excess over the reference scales with the gears': a bore's with its own addendum's,
+        housing's and oil's with the mean of both addenda. At the reference all is as it is drawn.
+        Raises InputError where the gears stand at the reference: they give no proportion.
+        """
+        t, base = self.temperatures, self.temperatures.reference
+        bodies = t.bodies
+        pinion, wheel = bodies["pinion_addendum"] - base, bodies["wheel_addendum"] - base
+        followed = {"pinion_bore": pinion, "wheel_bore": wheel, "housing": 0.5 * (pinion + wheel)}
+        rise = gear_temperature - base
+        if rise != 0.0 and any(np.any(excess == 0.0) for excess in followed.values()):
             raise InputError(
-                "operating.half_backlash", f"{self.half_backlash} m", allowed="> 0, finite"
+                "gear temperature",
+                f"{gear_temperature:.6g} K",
+                allowed=f"{base:.6g} K",
+                why="the gears stand at the reference temperature: they give no proportion",
+                fix="give the addenda other temperatures",
             )
+
+        def beside(temperature: Floats, excess: Floats) -> Floats:
+            beyond = np.where(excess == 0.0, 0.0, temperature - base - excess)
+            # counted from the gears, so that what is as warm as they are stays so to the last bit
+            return np.asarray(
+                gear_temperature + rise * (beyond / np.where(excess == 0.0, 1.0, excess))
+            )
+
+        changed: dict[str, Any] = {n: beside(bodies[n], excess) for n, excess in followed.items()}
+        for name in ("pinion_addendum", "wheel_addendum"):
+            changed[name] = np.full_like(bodies[name], gear_temperature)
+        oil = beside(np.asarray(self.oil_temperature, dtype=float), followed["housing"])
+        return replace(self, oil_temperature=oil, temperatures=replace(t, **changed))

@@ -1,4 +1,4 @@
-"""Where heat joins the mesh: added flank material, hot backlash, jam, moduli.
+"""Where heat joins the mesh: added flank material and moduli.
 
 Positions s [m] are measured from the pinion's tangent point; the last axis is the position,
 the first the operating point.
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.gears.contact import back_flank_position, flank_radii, pair_positions
+from thermogear.gears.contact import flank_radii, pair_positions
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.geometry import Gear, GearPair
 from thermogear.heat.expansion import RadialField, centre_distance_growth, flank_growth
@@ -56,12 +56,17 @@ class HotPair:
             else (t.wheel_bore, t.wheel_addendum)
         )
         return RadialField(
-            gear.bore_radius,
-            gear.tip_radius,
-            _column(bore, self.count),
-            _column(tip, self.count),
-            t.reference,
+            bore_radius=gear.bore_radius,
+            tip_radius=gear.tip_radius,
+            bore_temperature=_column(bore, self.count),
+            addendum_temperature=_column(tip, self.count),
+            reference=t.reference,
         )
+
+    def drawn(self) -> HotPair:
+        """The same pair at one operating point with everything at the reference temperature."""
+        cold = replace(self.operating.point(0), temperatures=self.temperatures.cold())
+        return replace(self, operating=cold)
 
     def warmed(self, rise: float) -> HotPair:
         """The same pair with both gears hotter by ``rise`` [K] everywhere, housing as it is."""
@@ -79,7 +84,7 @@ class HotPair:
     def growth(self, s: ArrayLike, taken_off: ArrayLike = 0.0) -> tuple[Floats, Floats]:
         """Normal growth [m] of pinion and wheel flank at ``s`` [m], (count, positions).
 
-        ``taken_off`` is a uniform strain that is not counted (flank growth only).
+        ``taken_off`` [-] is a uniform strain that is not counted (flank growth only).
         """
         p, w = self.pair.pinion, self.pair.wheel
         r1, r2 = flank_radii(self.pair, s)
@@ -101,8 +106,10 @@ class HotPair:
         opened = centre_distance_growth(
             self.pair.centre_distance,
             self.operating.housing.thermal_expansion,
-            np.broadcast_to(np.asarray(self.temperatures.housing, dtype=float), (self.count,)),
-            self.temperatures.reference,
+            temperature=np.broadcast_to(
+                np.asarray(self.temperatures.housing, dtype=float), (self.count,)
+            ),
+            reference=self.temperatures.reference,
         )
         return np.asarray(opened * np.sin(self.pair.operating_pressure_angle))
 
@@ -158,20 +165,6 @@ class ThermalDeviation:
         return np.asarray(-added.reshape(self.hot.count, *s.shape))
 
 
-@dataclass(frozen=True, eq=False)
-class HotBacklash:
-    """Half backlash over the mesh phase and what heat makes of the kinematic error.
-
-    ``half_backlash`` b'(phi) and ``error`` e_th(phi) [m], (count, phases);
-    ``jam_rise`` [K], (count,): further common rise of both gears at which the least b' is 0
-    (negative when jammed already, nan when heat does not close the gap).
-    """
-
-    half_backlash: Floats
-    error: Floats
-    jam_rise: Floats
-
-
 def _carried(
     positions: Floats, values: Callable[[Floats], Floats], weights: Callable[[Floats], Floats]
 ) -> Floats:
@@ -185,45 +178,16 @@ def _carried(
     return np.asarray((k * s).sum(axis=-1) / k.sum(axis=-1))
 
 
-def hot_backlash(hot: HotPair, phase: Floats, weights: Callable[[Floats], Floats]) -> HotBacklash:
-    """b'(phi) = b - (S + S^c)/2 and e_th(phi) = -(S - S^c)/2 of the one-spring form.
-
-    S is the added material of the drive flanks, weighted by the pair stiffnesses
-    ``weights`` (positions -> (count, positions)), S^c that of the back flanks, which touch at
-    the mirrored positions. Added material is linear in the temperatures, so the jam rise
-    follows from one further evaluation 1 K hotter, exactly. With the thesis's flank b' is its
-    b' of the drive flanks and no error arises.
-    """
-    pair = hot.pair
-    drive = pair_positions(pair, phase)
-    back = back_flank_position(pair, drive[:, :1])
-    back = back + np.arange(drive.shape[1]) * pair.base_pitch
-    back = np.where(back < pair.path.e, back, np.nan)
-
-    def half(of: HotPair) -> tuple[Floats, Floats]:
-        front = _carried(drive, of.added_material, weights)
-        if of.model.flank == "thesis":
-            return front, np.zeros_like(front)
-        behind = _carried(back, of.added_material, weights)
-        return 0.5 * (front + behind), 0.5 * (front - behind)
-
-    lost, tilt = half(hot)
-    left = hot.operating.half_backlash - lost
-    slope = half(hot.warmed(1.0))[0] - lost
-    with np.errstate(divide="ignore"):
-        rise = np.where(slope > 0.0, left / slope, np.inf).min(axis=1)
-    return HotBacklash(left, -tilt, np.where(np.isfinite(rise), rise, np.nan))
-
-
 def thesis_thermal_stiffness(
     hot: HotPair, phase: Floats, weights: Callable[[Floats], Floats]
 ) -> Floats:
     """The thesis's k_T over the mesh phase [N/m], (count, phases).
 
     k_Ti = F_n/Delta f_i (the printed division by the face width would leave N/m^2),
-    k_T = k_T1 k_T2/(k_T1 + k_T2) = F_n/(Delta f_1 + Delta f_2), Delta f weighted over the pairs
-    in contact as in :func:`hot_backlash`. Where nothing has grown the print tends to infinity;
-    0 is returned there. It grows with load and falls as the gear heats: heat is no spring.
+    k_T = k_T1 k_T2/(k_T1 + k_T2) = F_n/(Delta f_1 + Delta f_2), Delta f the mean over the pairs
+    in contact by their stiffness ``weights`` (positions -> (count, positions)). Where nothing has
+    grown the print tends to infinity; 0 is returned there. It grows with load and falls as the
+    gear heats: heat is no spring.
     """
     force = hot.operating.torque / hot.pair.pinion.base_radius
     drive = pair_positions(hot.pair, phase)

@@ -75,9 +75,16 @@ def warm_up(
             here = replace(
                 operating,
                 oil_temperature=at["oil"],
-                temperatures=Temperatures(reference, *(at[name] for name in _STATE[:-1])),
+                temperatures=Temperatures(
+                    reference=reference,
+                    pinion_addendum=at["pinion_tooth"],
+                    pinion_bore=at["pinion_shaft"],
+                    wheel_addendum=at["wheel_tooth"],
+                    wheel_bore=at["wheel_shaft"],
+                    housing=at["housing"],
+                ),
             )
-            path = FrictionPath(elastic_pair(HotPair(pair, here, choice), deviations), s)
+            path = FrictionPath(elastic_pair(HotPair(pair, here, choice), deviations), s).checked()
             sources = pair_losses(pair, here, path, box)
             network = thermal_network(
                 pair.pinion,
@@ -102,4 +109,4 @@ def warm_up(
 
 
 _STATE = ("pinion_tooth", "pinion_shaft", "wheel_tooth", "wheel_shaft", "housing", "oil")
-"""The nodes that losses depend on, in the order of :class:`Temperatures`, the oil last."""
+"""The nodes that losses depend on."""

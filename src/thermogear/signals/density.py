@@ -16,7 +16,7 @@ from thermogear.signals.windows import Window
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Density:
     """One-sided power density [unit^2 per unit of rate] averaged over ``averages`` segments."""
 
@@ -47,7 +47,8 @@ def welch(
     P(f) = mean over segments of 2 |sum w x exp|^2 / (rate sum w^2); 0 Hz and Nyquist single; the
     mean of each segment is taken away.
 
-    Raises InputError when all blocks together are shorter than one segment.
+    Raises InputError when all blocks together are shorter than one segment, and for a sample
+    that is not finite.
     Source: Welch 1967, IEEE Trans. Audio Electroacoust. 15, 70-73.
     """
     per_second, chosen = positive_rate(rate), windows.window(window)
@@ -57,7 +58,10 @@ def welch(
     total = np.zeros(segment // 2 + 1)
     averages, rest, hop = 0, np.empty(0), segment - segment // 2
     for block in blocks:
-        rest = np.concatenate([rest, np.asarray(block, dtype=float)])
+        values = np.asarray(block, dtype=float)
+        if not np.all(np.isfinite(values)):
+            raise InputError("record", "a non-finite sample", allowed="finite")
+        rest = np.concatenate([rest, values])
         start = 0
         while rest.size - start >= segment:
             piece = rest[start : start + segment]

@@ -79,7 +79,7 @@ class BandPass:
         return np.asarray(signal.oaconvolve(values, kernel, mode="valid", axes=-1))
 
 
-def taps_for(rate: float, transition: float) -> int:
+def taps_for(rate: float, *, transition: float) -> int:
     """Odd number of taps of a Hamming design for a ``transition`` band: 3.3 rate/transition.
 
     Source: Oppenheim and Schafer, Discrete-Time Signal Processing, window design, table of

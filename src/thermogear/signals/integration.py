@@ -12,7 +12,7 @@ from thermogear.signals.spectra import finite_record, positive_rate
 Floats = NDArray[np.float64]
 
 
-def trapezoid_factor(frequency: ArrayLike, rate: float) -> Floats:
+def trapezoid_factor(frequency: ArrayLike, *, rate: float) -> Floats:
     """Amplitude of a line after two trapezoidal integrations over its true amplitude.
 
     (u/tan u)^2,  u = pi f/rate.
@@ -32,8 +32,8 @@ def trapezoid_factor(frequency: ArrayLike, rate: float) -> Floats:
 def integrate_twice_trapezoid(x: ArrayLike, rate: float) -> Floats:
     """Two running trapezoidal sums from zero, as in the thesis: an offset grows with t^2.
 
-    Every line is read ``trapezoid_factor`` times too small. Not the default; kept to show what
-    it does.
+    ``x`` [any unit], time last; ``rate`` [samples/s]. Every line is read ``trapezoid_factor``
+    times too small. Not the default; kept to show what it does.
     """
     values, step = finite_record(x), 1.0 / positive_rate(rate)
     once = integrate.cumulative_trapezoid(values, dx=step, axis=-1, initial=0.0)
@@ -41,13 +41,16 @@ def integrate_twice_trapezoid(x: ArrayLike, rate: float) -> Floats:
 
 
 def integrate_twice_simpson(x: ArrayLike, rate: float) -> Floats:
-    """Two running Simpson sums from zero (``scipy.integrate.cumulative_simpson``)."""
+    """Two running Simpson sums from zero (``scipy.integrate.cumulative_simpson``).
+
+    ``x`` [any unit], time last; ``rate`` [samples/s].
+    """
     values, step = finite_record(x), 1.0 / positive_rate(rate)
     once = integrate.cumulative_simpson(values, dx=step, axis=-1, initial=0.0)
     return np.asarray(integrate.cumulative_simpson(once, dx=step, axis=-1, initial=0.0))
 
 
-def integrate_twice(x: ArrayLike, rate: float, low_cut: float) -> Floats:
+def integrate_twice(x: ArrayLike, rate: float, *, low_cut: float) -> Floats:
     """Displacement from acceleration by division by -omega^2, nothing below ``low_cut``.
 
     X(f) = -A(f)/(2 pi f)^2 for f >= low_cut, else 0; the mean of the result is zero.

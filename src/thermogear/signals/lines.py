@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 _RAYLEIGH_MEDIAN = float(np.sqrt(2.0 * np.log(2.0)))  # median of |noise line| over one component
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Line:
     """One line: ``frequency`` (unit of the rate), peak ``amplitude``, ``phase`` at sample 0 [rad].
 
@@ -41,26 +41,30 @@ class Line:
         return self.amplitude / self.floor if self.floor > 0 else float("inf")
 
 
-def hann_offset(left: float, peak: float, right: float) -> float:
-    """Offset of a line from its highest Hann bin [bins], from the three highest amplitudes.
+def hann_offset(around: Floats) -> float:
+    """Offset of a line from its highest Hann bin [bins], by the amplitudes ``around`` it.
+
+    ``around``: left neighbour, highest bin, right neighbour, any unit.
 
     d = 2 (right - left)/(left + 2 peak + right). Exact for one line in a long record: the main
     lobe of the Hann window is sin(pi d)/(pi d (1 - d^2)). Returns 0 where nothing stands.
     Source: Agrez 2002, IEEE Trans. Instrum. Meas. 51, 287-292, the three-point estimate.
     """
+    left, peak, right = (float(a) for a in around)
     total = left + 2.0 * peak + right
     return float(np.clip(2.0 * (right - left) / total, -0.5, 0.5)) if total > 0.0 else 0.0
 
 
 def line_at(
-    x: ArrayLike, rate: float, frequency: float, window: str | Window = "flattop"
+    x: ArrayLike, rate: float, *, frequency: float, window: str | Window = "flattop"
 ) -> complex:
     """Complex amplitude of the line at exactly ``frequency``: no bin, so no scalloping.
 
     c = 2 sum w_j x_j exp(-2 pi i f j/rate) / sum w_j;  |c| is the peak amplitude.
 
     A flat-top window makes |c| insensitive to an error of ``frequency`` (0.1 % half a bin off).
-    ``x`` is one channel. Raises InputError outside 0 < f < rate/2.
+    ``x`` [any unit] is one channel, ``rate`` [samples per unit of time]. Raises InputError
+    outside 0 < f < rate/2.
     """
     values, per_second = finite_record(x), positive_rate(rate)
     if values.ndim != 1:
@@ -74,7 +78,7 @@ def line_at(
     return complex(2.0 * np.dot(weights * centred, turn) / weights.sum())
 
 
-def floor_around(amplitudes: Floats, index: int, lobe: int, reach: int = 60) -> float:
+def floor_around(amplitudes: Floats, index: int, *, lobe: int, reach: int = 60) -> float:
     """Median amplitude of ``reach`` bins on each side, without the main lobe and without bin 0."""
     low, high = max(1, index - lobe - reach), min(amplitudes.size, index + lobe + reach + 1)
     beside = np.concatenate(
@@ -125,7 +129,10 @@ class LineSpectrum:
 
 
 def line_spectrum(x: ArrayLike, rate: float) -> LineSpectrum:
-    """The spectrum of one channel that ``line_in`` reads lines from; the mean is taken away."""
+    """The spectrum of one channel that ``line_in`` reads lines from; the mean is taken away.
+
+    ``x`` [any unit], ``rate`` [samples per unit of time].
+    """
     values, per_second = finite_record(x), positive_rate(rate)
     if values.ndim != 1 or values.size < 32:
         raise InputError("record", f"shape {values.shape}", allowed="one channel, >= 32 samples")
@@ -136,16 +143,20 @@ def line_spectrum(x: ArrayLike, rate: float) -> LineSpectrum:
 def find_line(
     x: ArrayLike,
     rate: float,
+    *,
     near: float,
     half_width: float,
     window: str | Window = "flattop",
 ) -> Line:
-    """The strongest line within ``near`` +- ``half_width`` of one channel: see ``line_in``."""
-    return line_in(line_spectrum(x, rate), near, half_width, window)
+    """The strongest line within ``near`` +- ``half_width`` of one channel: see ``line_in``.
+
+    ``x`` [any unit], ``rate`` [samples per unit of time].
+    """
+    return line_in(line_spectrum(x, rate), near=near, half_width=half_width, window=window)
 
 
 def line_in(
-    spectrum: LineSpectrum, near: float, half_width: float, window: str | Window = "flattop"
+    spectrum: LineSpectrum, *, near: float, half_width: float, window: str | Window = "flattop"
 ) -> Line:
     """The strongest line within ``near`` +- ``half_width``.
 
@@ -168,9 +179,9 @@ def line_in(
         )
     amplitudes = spectrum.hann
     peak = low + int(np.argmax(amplitudes[low : high + 1]))
-    offset = hann_offset(*(float(a) for a in amplitudes[peak - 1 : peak + 2]))
+    offset = hann_offset(amplitudes[peak - 1 : peak + 2])
     value = complex(spectrum.windowed(chosen)[peak]) / float(chosen.response(offset))
-    hann_floor = floor_around(amplitudes, peak, 4)
+    hann_floor = floor_around(amplitudes, peak, lobe=4)
     # noise of a line grows with the root of the window's noise bandwidth
     floor = hann_floor * float(np.sqrt(chosen.noise_bandwidth / 1.5))
     # left and right bin carry noise of correlation 1/6 (Hann weights -1/4, 1/2, -1/4), so that

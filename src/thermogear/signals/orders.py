@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> Floats:
     """Times [s] of the rising edges of a tacho signal, interpolated between samples.
 
+    ``pulses`` [any unit], ``rate`` [samples/s], ``level`` [unit of the pulses].
     An edge counts when the signal rises through ``level`` (default: midway between its 2nd and
     98th percentile) after it has been below the lower quarter of its swing: the hysteresis keeps
     noise at the level from counting twice. Raises InputError when fewer than two edges are found.
@@ -43,7 +44,8 @@ def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> F
 def tacho_angle(times: ArrayLike, pulses_per_turn: float, at: ArrayLike) -> Floats:
     """Angle [turns] of the shaft at the times ``at`` [s], 0 at the first pulse.
 
-    A cubic spline through (pulse time, pulse number/pulses per turn). Times outside the first and
+    ``times`` [s] of the pulses, ``pulses_per_turn`` [-]; a cubic spline through (pulse time, pulse
+    number/pulses per turn). Times outside the first and
     last pulse give NaN: no angle is extrapolated.
     """
     edges = finite_record(times, "tacho")
@@ -55,7 +57,7 @@ def tacho_angle(times: ArrayLike, pulses_per_turn: float, at: ArrayLike) -> Floa
     return np.asarray(spline(np.asarray(at, dtype=float), extrapolate=False))
 
 
-def line_angle(x: ArrayLike, frequency: float, half_width: float) -> tuple[Floats, int]:
+def line_angle(x: ArrayLike, *, frequency: float, half_width: float) -> tuple[Floats, int]:
     """Cycles of the line near ``frequency`` at each sample, from its phase; and samples dropped.
 
     The record is shifted by -frequency, low-passed to +-``half_width`` (a Hann-shaped FIR, delay
@@ -89,13 +91,13 @@ def line_angle(x: ArrayLike, frequency: float, half_width: float) -> tuple[Float
 
 
 def resample_by_angle(
-    x: ArrayLike, angle: ArrayLike, samples_per_turn: int, turns: int | None = None
+    x: ArrayLike, angle: ArrayLike, *, samples_per_turn: int, turns: int | None = None
 ) -> Floats:
     """The record at equal steps of angle, whole turns only, from the first whole turn on.
 
-    ``x`` time last, ``angle`` [turns] of each sample, rising. The record is first made four times
-    finer by its Fourier series, so that the cubic spline through it loses less than 0.1 % up to
-    0.8 of half the rate. Returns (..., turns x samples_per_turn).
+    ``x`` [any unit] time last, ``angle`` [turns] of each sample, rising. The record is first made
+    four times finer by its Fourier series, so that the cubic spline through it loses less than
+    0.1 % up to 0.8 of half the rate. Returns (..., turns x samples_per_turn).
     """
     values = finite_record(x)
     turned = finite_record(angle, "angle")
@@ -132,7 +134,8 @@ def _finer(values: Floats, factor: int) -> Floats:
 def synchronous_average(x: ArrayLike, samples_per_turn: int) -> tuple[Floats, Floats]:
     """Mean turn of an angle-sampled record and what is left over (same length, whole turns).
 
-    Noise falls with the root of the number of turns; lines at whole orders stay exactly.
+    ``x`` [any unit], angle last. Noise falls with the root of the number of turns; lines at whole
+    orders stay exactly.
     """
     values = finite_record(x)
     turns = values.shape[-1] // samples_per_turn
@@ -146,7 +149,7 @@ def synchronous_average(x: ArrayLike, samples_per_turn: int) -> tuple[Floats, Fl
     return np.asarray(mean), np.asarray((table - mean[..., None, :]).reshape(whole.shape))
 
 
-def sideband_orders(centre: float, spacing: float, count: int) -> Floats:
+def sideband_orders(*, centre: float, spacing: float, count: int) -> Floats:
     """Orders of ``count`` sidebands on each side of ``centre``, lowest first, centre included."""
     if count < 0 or not spacing > 0:
         raise InputError("spacing", f"{spacing:g} x {count}", allowed="> 0, count >= 0")

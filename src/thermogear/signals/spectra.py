@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Spectrum:
     """One-sided amplitude spectrum (peak, not rms); unpacks into frequencies, amplitudes.
 
@@ -118,7 +118,7 @@ def amplitude_spectrum(
 
 
 def order_lines(
-    x: ArrayLike, samples_per_period: int, periods: int, orders: ArrayLike
+    x: ArrayLike, *, samples_per_period: int, periods: int, orders: ArrayLike
 ) -> Complexes:
     """Complex lines of an exactly periodic record at given orders (cycles per period).
 
@@ -164,7 +164,11 @@ def order_lines(
 
 
 def order_amplitudes(
-    x: ArrayLike, samples_per_period: int, periods: int, orders: ArrayLike
+    x: ArrayLike, *, samples_per_period: int, periods: int, orders: ArrayLike
 ) -> Floats:
     """Peak amplitudes of an exactly periodic record at given orders: |``order_lines``|."""
-    return np.asarray(np.abs(order_lines(x, samples_per_period, periods, orders)))
+    return np.asarray(
+        np.abs(
+            order_lines(x, samples_per_period=samples_per_period, periods=periods, orders=orders)
+        )
+    )

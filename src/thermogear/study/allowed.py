@@ -83,7 +83,7 @@ def read_value(option: str, reader: Reader, text: str) -> float:
     return number
 
 
-def positive_stiffness(option: str, amplitude: ArrayLike, thermal: ArrayLike = 0.0) -> None:
+def positive_stiffness(option: str, amplitude: ArrayLike, *, thermal: ArrayLike = 0.0) -> None:
     """Refuse an amplitude eps at which the mesh stiffness 1 + eps_T + eps cos(.) is not positive.
 
     No tooth contact pulls: where eps reaches 1 + eps_T the equation is no gear pair's any more.
@@ -112,7 +112,7 @@ def require_numbers(numbers: Mapping[str, ArrayLike]) -> None:
         positive_stiffness(
             "stiffness_amplitude",
             numbers["stiffness_amplitude"],
-            numbers.get("thermal_stiffness", 0.0),
+            thermal=numbers.get("thermal_stiffness", 0.0),
         )
 
 

@@ -169,9 +169,9 @@ def case_map(
 
 def case_basins(
     case: Case,
+    *,
     x: Floats,
     v: Floats,
-    *,
     bundle: str = "",
     state: str | float = "hot",
     changes: Mapping[str, float] | None = None,
@@ -181,9 +181,9 @@ def case_basins(
         points = GearFamily(case, ("pinion_speed",), bundle, state)(np.array([[case.speeds[0]]]))
         if points.status[0] != 0:
             raise InputError("case", "jammed", why="a jammed pair has no motion")
-        return basin_plan(gear_point_model(points), x, v)
+        return basin_plan(gear_point_model(points), x=x, v=v)
     if isinstance(case, DimensionlessCase):
-        return basin_plan(base_model(case, changes), x, v)
+        return basin_plan(base_model(case, changes), x=x, v=v)
     raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
 
 
@@ -192,11 +192,11 @@ def gear_point_model(points: GearPoints) -> DeadZoneModel:
     lane = points.flat
     stiffness, force = lane.stiffness[0], lane.force[0]
     return DeadZoneModel(
-        0.5 * float(lane.damping[0]),
-        2.0 * np.pi / float(lane.period[0]),
-        Periodic(float(stiffness[0].real), tuple(stiffness[1:])),
-        Periodic(float(force[0].real), tuple(force[1:])),
-        float(lane.half_backlash[0]),
+        damping_ratio=0.5 * float(lane.damping[0]),
+        frequency=2.0 * np.pi / float(lane.period[0]),
+        stiffness=Periodic(float(stiffness[0].real), tuple(stiffness[1:])),
+        force=Periodic(float(force[0].real), tuple(force[1:])),
+        half_backlash=float(lane.half_backlash[0]),
     )
 
 

@@ -1,13 +1,21 @@
-"""The values that are ours: declared in the file's table ``[ours]``, or left to a default."""
+"""The values that are ours: declared in the file's table ``[ours]``, or left to a default.
+
+A declared reason holds for the value that stands beside it and for no other: where the case has
+another value, whoever edited, overrode or left it out, the entry is silent. A reason without a
+value, as older files have them, is left out with a warning.
+"""
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.study.alike import same
 from thermogear.study.complaints import dotted, table_at
 from thermogear.study.units import short
 
@@ -21,48 +29,88 @@ class Assumption:
     reason: str
 
 
-def assumptions(
-    data: dict[str, Any], file: BaseModel, overridden: tuple[str, ...]
-) -> tuple[Assumption, ...]:
-    """Declared assumptions in the file's order, then the defaults that were left to act.
-
-    A field the user has ``overridden`` is no longer ours.
-    """
-
-    def is_overridden(path: str) -> bool:
-        return any(path == o or path.startswith(f"{o}.") for o in overridden)
-
-    declared = _declared(data.get("ours", {}), data, type(file))
+def assumptions(data: dict[str, Any], file: BaseModel) -> tuple[Assumption, ...]:
+    """Declared assumptions that hold, in the file's order, then the defaults left to act."""
+    declared = _declared(data.get("ours", {}), data, file)
     covered = {a.field for a in declared}
     silent = [
         a
         for a in _defaults(file, ())
         if not any(a.field == c or a.field.startswith(f"{c}.") for c in covered)
     ]
-    return tuple(a for a in [*declared, *silent] if not is_overridden(a.field))
+    return (*declared, *silent)
 
 
-def _declared(
-    table: dict[str, Any], data: dict[str, Any], file: type[BaseModel]
-) -> list[Assumption]:
-    found = []
-    for path, reason in _leaves(table):
-        _require_field(path, file)
-        if not isinstance(reason, str) or not reason.strip():
-            raise InputError(
-                f"ours.{path}", short(reason), allowed="a text", why="an assumption has a reason"
-            )
-        found.append(Assumption(path, _value(data, path), " ".join(reason.split())))
+def _declared(table: dict[str, Any], data: dict[str, Any], file: BaseModel) -> list[Assumption]:
+    found, bare = [], []
+    for path, entry in _entries(table):
+        _require_field(path, type(file))
+        if isinstance(entry, str) and entry.strip():
+            bare.append(path)
+            continue
+        value, reason = _spoken(path, entry)
+        if _holds(path, value, data, file):
+            found.append(Assumption(path, _value(data, path), " ".join(reason.split())))
+    if bare:
+        warnings.warn(
+            f"ours: {len(bare)} reasons without the value they speak of are left out; write "
+            f'"{bare[0]}" = {{ value = ..., reason = "..." }}',
+            ValidityWarning,
+            stacklevel=4,
+        )
     return found
 
 
-def _leaves(table: dict[str, Any], above: str = "") -> list[tuple[str, Any]]:
-    """(dotted path, value) of every entry, nested or with a quoted dotted key alike."""
+def _entries(table: dict[str, Any], above: str = "") -> list[tuple[str, Any]]:
+    """(dotted path, entry), nested or with a quoted dotted key alike."""
     found: list[tuple[str, Any]] = []
     for key, value in table.items():
         path = f"{above}.{key}" if above else key
-        found += _leaves(value, path) if isinstance(value, dict) else [(path, value)]
+        nested = isinstance(value, dict) and not _is_entry(value)
+        found += _entries(value, path) if nested else [(path, value)]
     return found
+
+
+def _is_entry(table: dict[str, Any]) -> bool:
+    """Whether a table is an entry; a field may be named "value" too, its entry is a table."""
+    return "reason" in table or not isinstance(table.get("value", {}), dict)
+
+
+def _spoken(path: str, entry: Any) -> tuple[Any, str]:
+    """Value and reason of an entry."""
+    reason = entry.get("reason") if isinstance(entry, dict) else None
+    whole = isinstance(entry, dict) and set(entry) == {"value", "reason"}
+    if not (whole and isinstance(reason, str) and reason.strip()):
+        raise InputError(
+            f"ours.{path}",
+            short(entry),
+            why="a reason holds for one value: an entry needs a value and a reason",
+            fix=f'write "{path}" = {{ value = ..., reason = "..." }}',
+        )
+    return entry["value"], reason
+
+
+def _holds(path: str, value: Any, data: dict[str, Any], file: BaseModel) -> bool:
+    """Whether the case has the ``value`` that an entry speaks of, by value and not by text."""
+    parts = _split(path)
+    if _in_table(data, parts) == (True, value):
+        return True
+    found: Any = file
+    for part in parts:
+        found = found.get(part) if isinstance(found, dict) else getattr(found, part, None)
+    above = table_at(type(file), parts[:-1])
+    if found is None or above is None:
+        return False
+    try:
+        return same(_reader(above, parts[-1]).validate_python(value), found)
+    except (ValidationError, InputError):
+        return False
+
+
+@lru_cache(maxsize=512)
+def _reader(table: type[BaseModel], name: str) -> TypeAdapter[Any]:
+    """What reads one field of a table."""
+    return TypeAdapter(table.model_fields[name].rebuild_annotation())
 
 
 def _split(path: str) -> tuple[str, ...]:
@@ -101,13 +149,19 @@ def _require_field(path: str, file: type[BaseModel]) -> None:
     )
 
 
-def _value(data: dict[str, Any], path: str) -> str:
+def _in_table(data: dict[str, Any], parts: tuple[str, ...]) -> tuple[bool, Any]:
+    """Whether the file states a field, and what it states."""
     entry: Any = data
-    for part in _split(path):
+    for part in parts:
         if not isinstance(entry, dict) or part not in entry:
-            return "left out"
+            return False, None
         entry = entry[part]
-    return in_words(entry)
+    return True, entry
+
+
+def _value(data: dict[str, Any], path: str) -> str:
+    stated, entry = _in_table(data, _split(path))
+    return in_words(entry) if stated else "left out"
 
 
 def in_words(entry: Any) -> str:

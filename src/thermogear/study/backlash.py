@@ -9,7 +9,7 @@ from thermogear.base.errors import InputError
 from thermogear.gears.geometry import GearPair, involute
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Backlash:
     """Cold half backlash along the line of action [m], and the span its tolerances leave it.
 
@@ -73,7 +73,7 @@ def normal_from_distance(distance: float, pair: GearPair) -> float:
 
 
 def cold_from_soaked(half: float, rise: float, pair: GearPair, housing_expansion: float) -> float:
-    """Half backlash [m] at T0 of a pair measured with everything ``rise`` [K] above T0.
+    """Half backlash [m] at T0 of a pair: ``half`` [m] with everything ``rise`` [K] above T0.
 
     b_cold = b + [lambda_1 rho_C1 + lambda_2 rho_C2 - lambda_h a_w sin(alpha_w)] rise: uniform
     heat turns each flank into a larger involute, growing by lambda tau rho along its normal, taken
@@ -102,10 +102,11 @@ def from_value(
     origin = f"a {extent} {direction} backlash of {1e3 * value:.6g} mm"
     if rise:
         origin += f" measured {rise:+.6g} K from the reference temperature"
-    return Backlash(cold, cold, cold, origin)
+    return Backlash(half=cold, least=cold, most=cold, origin=origin)
 
 
 def from_tolerances(
+    *,
     pinion: tuple[float, ...],
     wheel: tuple[float, ...],
     distance: tuple[float, ...],
@@ -126,8 +127,8 @@ def from_tolerances(
         return 0.5 * (min(ends) + max(ends))
 
     return Backlash(
-        0.5 * total(middle(pinion) + middle(wheel), middle(distance)),
-        0.5 * total(max(pinion) + max(wheel), min(distance)),
-        0.5 * total(min(pinion) + min(wheel), max(distance)),
-        "tooth-thickness allowances and centre-distance tolerance",
+        half=0.5 * total(middle(pinion) + middle(wheel), middle(distance)),
+        least=0.5 * total(max(pinion) + max(wheel), min(distance)),
+        most=0.5 * total(min(pinion) + min(wheel), max(distance)),
+        origin="tooth-thickness allowances and centre-distance tolerance",
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, status_attributes
+from thermogear.heat.film import REGIMES
 from thermogear.mesh.balance import HeatBalance, heat_balance
-from thermogear.mesh.elastic import elastic_pair
-from thermogear.mesh.thermal import HotPair, hot_backlash
+from thermogear.mesh.clearance import clearance
+from thermogear.mesh.thermal import HotPair
 from thermogear.study.case import GearCase
 
 Floats = NDArray[np.float64]
@@ -33,6 +35,16 @@ _MEANING = {
 def dressed(dims: tuple[str, ...], values: ArrayLike, unit: str, words: str) -> xr.Variable:
     """A variable with its unit and long name."""
     return xr.Variable(dims, np.asarray(values), {"units": unit, "long_name": words})
+
+
+def regime_attributes() -> dict[str, Any]:
+    """CF flag attributes of a lubrication regime."""
+    return {
+        "units": "1",
+        "long_name": "lubrication regime by the film parameter",
+        "flag_values": np.arange(len(REGIMES), dtype=np.int8),
+        "flag_meanings": " ".join(REGIMES),
+    }
 
 
 def status_of(balance: HeatBalance) -> xr.Variable:
@@ -124,7 +136,7 @@ def carried_uncertainty(case: GearCase) -> Floats:
                 deviations=case.deviations,
             )
             hot = HotPair(case.pair, moved.operating, model)
-            gap = hot_backlash(hot, phase, elastic_pair(hot, case.deviations).pair_stiffness)
+            gap = clearance(hot, phase, case.deviations)
             ends.append(gap.half_backlash.mean(axis=1))
         square += (0.5 * (ends[0] - ends[1])) ** 2
     return np.sqrt(square)

@@ -54,7 +54,7 @@ def body_estimates(
             float(reduced_radius(pair, np.array([pair.path.c]))[0]),
             dynamic_viscosity(operating.lubricant, oil),
             0.5 * (pair.pinion.roughness + pair.wheel.roughness),
-            ISO_LUBRICANT_FACTOR.get(operating.lubricant.kind, 1.0),
+            factor=ISO_LUBRICANT_FACTOR.get(operating.lubricant.kind, 1.0),
         )
     path = pair.path
     approach = (path.c - path.a) / pair.base_pitch
@@ -62,12 +62,20 @@ def body_estimates(
     loss = mesh_loss(
         operating.speed * operating.torque,
         friction,
-        gear_loss_factor(pair.pinion.teeth, pair.ratio, approach, recess),
+        gear_loss_factor(
+            teeth_1=pair.pinion.teeth, ratio=pair.ratio, approach=approach, recess=recess
+        ),
     )
-    first = body_temperature_13989_1(oil, mean_flash, supply)
-    third = body_temperature_15144(oil, loss, pair.centre_distance, pair.face_width, supply)
+    first = body_temperature_13989_1(oil_temperature=oil, mean_flash=mean_flash, lubrication=supply)
+    third = body_temperature_15144(
+        oil,
+        loss,
+        centre_distance=pair.centre_distance,
+        face_width=pair.face_width,
+        lubrication=supply,
+    )
     try:
-        factor = contact_ratio_factor(approach, recess)
+        factor = contact_ratio_factor(recess=recess, approach=approach)
     except InputError:
         return np.stack([first, np.full_like(first, np.nan), third])
     rho_1, rho_2 = (float(r[0]) for r in curvature_radii(pair, np.array([path.e])))
@@ -81,10 +89,18 @@ def body_estimates(
         tangential,
         speed,
         pair.centre_distance,
-        geometry_factor(rho_1, rho_2, pair.ratio),
-        angle_factor(alpha, working),
-        rotation_factor(approach, recess),
-        1.0,
-        thermo_elastic_factor(modulus, contact),
+        geometry=geometry_factor(curvature_1=rho_1, curvature_2=rho_2, ratio=pair.ratio),
+        angle=angle_factor(pressure_angle=alpha, operating_angle=working),
+        rotation=rotation_factor(approach=approach, recess=recess),
+        tip_relief=1.0,
+        thermo_elastic=thermo_elastic_factor(modulus, contact),
     )
-    return np.stack([first, body_temperature_13989_2(oil, tip * factor, supply), third])
+    return np.stack(
+        [
+            first,
+            body_temperature_13989_2(
+                oil_temperature=oil, integral_flash=tip * factor, lubrication=supply
+            ),
+            third,
+        ]
+    )

@@ -223,7 +223,7 @@ def heats() -> tuple[Heat, ...]:
     return (COLD, *found_heats)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Sweep:
     """A row of a cascade table: the parameter from ``first`` to ``last`` on a base set."""
 
@@ -248,7 +248,13 @@ def sweeps_of(case: DimensionlessCase, row: str | None = None) -> tuple[Sweep, .
             why="a cascade runs through a number of the equation",
         )
     return tuple(
-        Sweep(name, own[0].parameter, own[0].value, own[-1].value, own[0].model_arguments())
+        Sweep(
+            row=name,
+            parameter=own[0].parameter,
+            first=own[0].value,
+            last=own[-1].value,
+            base=own[0].model_arguments(),
+        )
         for name, own in rows.items()
     )
 
@@ -403,7 +409,7 @@ def _mother(
     return branch.orbit(-1), float(branch.values[-1])
 
 
-def sweep_of_subject(subject: Subject, parameter: str, first: float, last: float) -> Sweep:
+def sweep_of_subject(subject: Subject, parameter: str, *, first: float, last: float) -> Sweep:
     """One sweep on the numbers of a dimensionless subject."""
     if not isinstance(subject.model, TorsionalModel):
         raise InputError(
@@ -412,4 +418,10 @@ def sweep_of_subject(subject: Subject, parameter: str, first: float, last: float
             why="cascades are tabled for the dimensionless equation",
             fix="use --switch to follow doubled branches of a gear pair",
         )
-    return Sweep(parameter, parameter, first, last, {**subject.parameters, parameter: first})
+    return Sweep(
+        row=parameter,
+        parameter=parameter,
+        first=first,
+        last=last,
+        base={**subject.parameters, parameter: first},
+    )

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from thermogear.base.errors import InputError
@@ -35,6 +36,7 @@ from thermogear.study.rows import Point, points_of
 from thermogear.study.schema import PICTURES, DimensionlessFile, GearFile
 from thermogear.study.source import case_text, overridden, pairs, tables
 from thermogear.study.surroundings import Reading, gearbox
+from thermogear.study.units import shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,7 +59,7 @@ MOST_POINTS = 1_000_000
 """Speeds times torques, at most."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Simulation:
     """How long and how finely the motion is followed; periods are mesh periods.
 
@@ -97,7 +99,8 @@ class GearCase(Case):
     ``stated`` holds every speed with every torque, the speed the slow axis, in the hot state;
     where the temperatures are left out (``computed``) it is all at the reference temperature, and
     :meth:`operating_of` computes the hot state from the heat balance of ``gearbox``.
-    ``gear_temperatures`` [K] is the row of addendum temperatures of both gears.
+    ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
+    the other temperatures go along with it (:data:`~thermogear.study.fields.FOLLOW`).
     ``deviations`` of the flanks; ``readings`` of thermometers; ``scuffing_load_stage`` of the oil
     in the FZG test, None where unknown. ``inertias`` [kg m^2];
     ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
@@ -126,6 +129,7 @@ class GearCase(Case):
     readings: tuple[Reading, ...] = ()
     scuffing_load_stage: float | None = None
     computed: bool = False
+    follow: str = "proportional"
     _balances: dict[tuple[MeshModel, float | None], HeatBalance] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
@@ -194,15 +198,48 @@ class GearCase(Case):
     def operating_at(self, gear_temperature: float, model: MeshModel | None = None) -> Operating:
         """The operating points with both addenda at ``gear_temperature`` [K].
 
-        What else is left out follows from the heat balance under ``model`` (default: the first).
+        ``follow`` "proportional": every excess over the drawing temperature keeps its proportion
+        to the gears' in the hot state under ``model`` (default: the first), so that at the drawing
+        temperature all is as it is drawn. "fixed": distances in kelvins and temperatures given
+        outright stay, and the heat balance computes what is left out. Raises InputError where a
+        body or the oil would leave the range of a case file.
         """
+        chosen = model or self.models[0]
+        if self.follow == "proportional":
+            return _in_proportion(self.operating_of(chosen), gear_temperature)
         if self.temperature_rule is None:
-            return self.balance(model or self.models[0], gear_temperature).operating
+            return self.balance(chosen, gear_temperature).operating
         return replace(
             self.stated,
             oil_temperature=self.temperature_rule.oil_at(gear_temperature),
-            temperatures=self.temperature_rule.at(gear_temperature, gear_temperature),
+            temperatures=self.temperature_rule.at(
+                pinion_addendum=gear_temperature, wheel_addendum=gear_temperature
+            ),
         )
+
+    def settled_at(self, gear_temperature: float | None, model: MeshModel) -> NDArray[np.bool_]:
+        """Whether the heat balance behind :meth:`operating_at` (None: hot) settled, per point."""
+        if not self.computed:
+            return np.ones(self.stated.speed.size, dtype=np.bool_)
+        held = None if self.follow == "proportional" else gear_temperature
+        return self.balance(model, held).settled
+
+
+def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
+    """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
+    why = "in the hot state the gears stand at the reference temperature, which gives no proportion"
+    try:
+        return hot.with_gears_at(gear_temperature)
+    except InputError as error:
+        if error.field != "gear temperature":
+            name = error.field.rpartition(".")[2]
+            why = f"{name} in proportion to it would be at {error.got}; allowed {error.allowed}"
+        raise InputError(
+            "gear temperature",
+            shown(gear_temperature, "temperature"),
+            why=why,
+            fix='give the addenda other temperatures, or write temperatures.follow = "fixed"',
+        ) from error
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -234,7 +271,7 @@ def load_case(
         "title": read.title,
         "text": text,
         "simulation": Simulation(**read.simulation.model_dump()),
-        "assumptions": assumptions(data, read, tuple(path for path, _ in changes)),
+        "assumptions": assumptions(data, read),
         "overrides": changes,
     }
     if isinstance(read, DimensionlessFile):
@@ -269,9 +306,11 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     given = file.temperatures
     if rule is None or given.pinion_addendum is None or given.wheel_addendum is None:
         cold = given.reference
-        temperatures, oil = Temperatures.uniform(cold, cold), file.oil.temperature or cold
+        temperatures, oil = Temperatures.uniform(cold, reference=cold), file.oil.temperature or cold
     else:
-        temperatures = rule.at(given.pinion_addendum, given.wheel_addendum)
+        temperatures = rule.at(
+            pinion_addendum=given.pinion_addendum, wheel_addendum=given.wheel_addendum
+        )
         oil = rule.oil_at(given.pinion_addendum)
     box, readings = gearbox(file, pair)
     backlash = parts.cold_backlash(file, pair, housing)
@@ -316,6 +355,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         readings=readings,
         scuffing_load_stage=file.oil.scuffing_load_stage,
         computed=rule is None,
+        follow=given.follow,
         **common,
     )
     warn_of_torque(pair, torques)

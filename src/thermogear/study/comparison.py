@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.files import decoded
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.base.vocabulary import label
 from thermogear.measured.published import (
@@ -41,7 +42,7 @@ _IMPLAUSIBLE_G = 50.0
 _DEEPEST_SUBHARMONIC = 16
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Row:
     """One quantity at one speed. ``errors``: (simulated - measured)/measured per model.
 
@@ -65,7 +66,7 @@ class Row:
         return float(np.sqrt(self.u_num**2 + self.u_input**2 + self.u_data**2))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Implied:
     """What a measured line says if taken at its word."""
 
@@ -186,7 +187,7 @@ def is_table(path: str | Path) -> bool:
     if not path.is_file():
         return False
     with path.open("rb") as file:
-        head = file.read(400).decode("utf-8", "replace").lower()
+        head = decoded(file.read(400), "replace").lower()
     first = head.splitlines()[0] if head else ""
     return all(name in first for name in ("speed", "frequency", "displacement"))
 
@@ -208,7 +209,14 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
         raise InputError("speed", "none", why="no tooth number is known", fix="--teeth or --speed")
     return LineTable(
         f"{found.record.source}, {line.channel}",
-        (SpeedLine(nominal, line.frequency, line.displacement, line.uncertainty),),
+        (
+            SpeedLine(
+                speed=nominal,
+                frequency=line.frequency,
+                displacement=line.displacement,
+                uncertainty=line.uncertainty,
+            ),
+        ),
         found.teeth,
         found.record.source,
         (found.record.rate or 1.0) / found.samples,
@@ -240,7 +248,7 @@ def _simulated(
                 return CaseLines(tree_lines(tree.load()), u_num or 0.0, {}, ())
     if hasattr(simulated, "children"):
         return CaseLines(tree_lines(simulated), u_num or 0.0, {}, ())
-    return case_lines(simulated, tolerances, samples, seed, u_num)  # type: ignore[arg-type]
+    return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
 
 
 def _compared(
@@ -275,30 +283,30 @@ def _compared(
         frequency = tuple(s.frequency / line.frequency - 1.0 for s in simulated)
         rows.append(
             Row(
-                line.speed,
-                "frequency",
-                line.frequency,
-                tuple(s.frequency for s in simulated),
-                frequency,
-                0.0,
-                0.0,
-                (table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
-                _frequency_verdict(simulated, line, table, names),
-                _printed(printed, names, "frequency", number),
+                speed=line.speed,
+                quantity="frequency",
+                measured=line.frequency,
+                simulated=tuple(s.frequency for s in simulated),
+                errors=frequency,
+                u_num=0.0,
+                u_input=0.0,
+                u_data=(table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
+                verdict=_frequency_verdict(simulated, line, table, names),
+                printed=_printed(printed, names, "frequency", number),
             )
         )
         rows.append(
             Row(
-                line.speed,
-                "displacement",
-                line.displacement,
-                tuple(s.displacement for s in simulated),
-                displacement,
-                u_num,
-                entered,
-                u_d,
-                verdict(displacement, names, u_val),
-                _printed(printed, names, "displacement", number),
+                speed=line.speed,
+                quantity="displacement",
+                measured=line.displacement,
+                simulated=tuple(s.displacement for s in simulated),
+                errors=displacement,
+                u_num=u_num,
+                u_input=entered,
+                u_data=u_d,
+                verdict=verdict(displacement, names, u_val),
+                printed=_printed(printed, names, "displacement", number),
             )
         )
     if not rows:
@@ -321,7 +329,7 @@ def _data_uncertainty(
         return line.uncertainty, ""
     if table.processing_stated:
         return 0.0, "the measurement states no uncertainty: u_D is taken as 0"
-    parts = unstated_processing(line.frequency, highest)
+    parts = unstated_processing(line.frequency, highest=highest)
     return (
         float(np.sqrt(sum(part**2 for part in parts.values()))),
         "window, rate and integration of the measurement are not stated: u_D holds a Hann "
@@ -392,14 +400,20 @@ def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[tuple[str, str
 
 def _implied(line: SpeedLine, table: LineTable) -> Implied:
     if table.teeth is None:
-        return Implied(line.speed, line.acceleration_g, None, None, None)
+        return Implied(
+            speed=line.speed,
+            acceleration_g=line.acceleration_g,
+            shaft_speed=None,
+            offset_hertz=None,
+            offset_bins=None,
+        )
     offset = line.frequency - table.teeth * line.speed / (2.0 * np.pi)
     return Implied(
-        line.speed,
-        line.acceleration_g,
-        line.shaft_speed(table.teeth),
-        offset,
-        offset / table.bin_width if table.bin_width else None,
+        speed=line.speed,
+        acceleration_g=line.acceleration_g,
+        shaft_speed=line.shaft_speed(table.teeth),
+        offset_hertz=offset,
+        offset_bins=offset / table.bin_width if table.bin_width else None,
     )
 
 

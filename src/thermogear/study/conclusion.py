@@ -29,6 +29,10 @@ STRONG = 0.8
 """A rank correlation from which on this program calls it strong; ours."""
 
 
+FEWEST = 3
+"""Fewer points have no rank correlation worth a name."""
+
+
 def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Rank correlations and monotonicity of each quantity, for each lubrication of ``grids``.
 
@@ -43,6 +47,8 @@ def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """
     names = list(grids)
     first = grids[names[0]]
+    points = np.zeros(len(names), dtype=int)
+    changes = np.zeros((len(names), len(QUANTITIES)), dtype=np.int8)
     speed, torque = first["pinion_speed"].values, first["pinion_torque"].values
     columns = {"speed": speed[:, None] + 0.0 * torque, "torque": torque + 0.0 * speed[:, None]}
     others = [*columns, *QUANTITIES]
@@ -53,7 +59,10 @@ def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
     for i, grid in enumerate(grids.values()):
         valid = grid["within_oil_range"].values == 1
         values = {name: np.where(valid, grid[of].values, np.nan) for name, of in QUANTITIES.items()}
+        points[i] = int(valid.sum())
         for j, mine in enumerate(values.values()):
+            known = mine[np.isfinite(mine)]
+            changes[i, j] = known.size > 0 and not _constant(known)
             rank[i, j, :2] = [
                 _rank_along(mine, columns[name], axis) for axis, name in enumerate(columns)
             ]
@@ -86,6 +95,10 @@ def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
                 "1",
                 "share of steps in torque with which it rises, at one speed",
             ),
+            "valid_points": dressed(("lubrication",), points, "1", "points that are compared"),
+            "changes": dressed(
+                ("lubrication", "quantity"), changes, "1", "1 where the quantity varies at all"
+            ),
             "mixed_below_dry": dressed(
                 ("quantity",), below, "1", "share of points where mixed lies below dry"
             ),
@@ -107,7 +120,7 @@ def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
 def _rank(first: Floats, second: Floats) -> float:
     known = np.isfinite(first) & np.isfinite(second)
     a, b = first[known], second[known]
-    if a.size < 3 or _constant(a) or _constant(b):
+    if a.size < FEWEST or _constant(a) or _constant(b):
         return float("nan")
     return float(spearmanr(a, b).statistic)
 
@@ -156,7 +169,11 @@ def _below(grids: Mapping[str, xr.Dataset]) -> tuple[Floats, Floats]:
 
 
 def verdicts(checked: xr.Dataset) -> list[dict[str, str]]:
-    """What holds of the conclusion and what does not, one row each."""
+    """What holds of the conclusion and what does not, one row each.
+
+    What the points leave nothing to compare for has no row: no neighbour along an axis, fewer
+    than :data:`FEWEST` points for a correlation.
+    """
     found = []
     names = {"friction": "friction coefficient", "flash": "flash temperature", "growth": "growth"}
     for lubrication in checked["lubrication"].values:
@@ -164,16 +181,21 @@ def verdicts(checked: xr.Dataset) -> list[dict[str, str]]:
             here = checked.sel(lubrication=lubrication, quantity=quantity)
             for axis in ("speed", "torque"):
                 share = float(here["rising_share"].sel(axis=axis))
+                if not np.isfinite(share):
+                    continue
                 rank = float(here["rank_correlation"].sel(with_what=axis))
+                text = f"{100 * share:.0f} % of steps rise"
+                if np.isfinite(rank):
+                    text += f"; rank correlation {rank:+.2f}"
                 found.append(
                     {
                         "claim": f"{names[str(quantity)]} rises with {axis}, {lubrication}",
-                        "found": f"{100 * share:.0f} % of steps rise; rank correlation {rank:+.2f}"
-                        if np.isfinite(rank)
-                        else "it does not change",
+                        "found": text if int(here["changes"]) else "it does not change",
                         "verdict": _verdict(share),
                     }
                 )
+        if int(checked["valid_points"].sel(lubrication=lubrication)) < FEWEST:
+            continue
         for one, two in (("friction", "flash"), ("flash", "growth"), ("friction", "growth")):
             rank = float(
                 checked["rank_correlation"].sel(
@@ -186,13 +208,15 @@ def verdicts(checked: xr.Dataset) -> list[dict[str, str]]:
                     f"{lubrication}",
                     "found": f"rank correlation {rank:+.2f}"
                     if np.isfinite(rank)
-                    else f"{names[one]} does not change",
+                    else "one of them does not change",
                     "verdict": "holds" if rank >= STRONG else "does not hold",
                 }
             )
     for quantity in checked["quantity"].values:
         share = float(checked["mixed_below_dry"].sel(quantity=quantity))
         along = float(checked["mixed_below_dry_along"].sel(quantity=quantity))
+        if not np.isfinite(share):
+            continue
         text = f"{100 * share:.1f} % of points"
         if np.isfinite(along):
             text += f", {100 * along:.1f} % of all positions of their paths"

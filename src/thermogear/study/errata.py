@@ -58,12 +58,31 @@ def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:
     v1, v2 = float(path["pinion_rolling_velocity"]), float(path["wheel_rolling_velocity"])
     load, width = float(path["line_load"]), float(path["hertz_half_width"])
     friction = float(path["friction_coefficient_mixed"])
-    contact = [g.material.thermal_contact_coefficient for g in (pair.pinion, pair.wheel)]
     rough = 0.5 * (pair.pinion.roughness + pair.wheel.roughness)
     printed_friction = float(
-        np.abs(benedict_kelley_as_printed(load, v1 - v2, 0.5 * (v1 + v2), oil, rough))
+        np.abs(
+            benedict_kelley_as_printed(
+                load,
+                sliding_speed=v1 - v2,
+                entrainment_speed=0.5 * (v1 + v2),
+                viscosity=oil,
+                roughness=rough,
+            )
+        )
     )
-    printed_flash = abs(float(blok_as_printed(friction, load, v1, v2, width, *contact)))
+    printed_flash = abs(
+        float(
+            blok_as_printed(
+                friction,
+                load,
+                speed_1=v1,
+                speed_2=v2,
+                half_width=width,
+                contact_coefficient_1=pair.pinion.material.thermal_contact_coefficient,
+                contact_coefficient_2=pair.wheel.material.thermal_contact_coefficient,
+            )
+        )
+    )
     hot = HotPair(pair, case.operating, MeshModel.consistent())
     tip = pair.pinion.tip_radius
     field = hot.field(pair.pinion)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.gears.geometry import Gear
+from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.study.case import Case, DimensionlessCase, GearCase
 from thermogear.study.schema import PARAMETERS
 
@@ -31,6 +33,7 @@ def facts(case: Case) -> tuple[Fact, ...]:
             *_gear("pinion", case.pair.pinion),
             *_gear("wheel", case.pair.wheel),
             *_dynamics(case),
+            *_oil(case.operating.lubricant),
             *_operating(case),
             *_held(case),
         )
@@ -85,6 +88,15 @@ def _dynamics(case: GearCase) -> list[Fact]:
         Fact(group, "wheel", second, "kg m^2"),
         Fact(group, "equivalent mass on the line of action", case.equivalent_mass, "kg"),
         Fact(group, "model", case.inertia_kind),
+    ]
+
+
+def _oil(oil: Lubricant) -> list[Fact]:
+    nu = 1e6 * kinematic_viscosity(oil, ZERO_CELSIUS + np.array([40.0, 100.0]))
+    return [
+        Fact("oil", "name", f"{oil.name}, {LUBRICANT_KINDS[oil.kind]}"),
+        Fact("oil", "viscosity at 40 degC", float(nu[0]), "mm^2/s"),
+        Fact("oil", "viscosity at 100 degC", float(nu[1]), "mm^2/s"),
     ]
 
 

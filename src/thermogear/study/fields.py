@@ -8,12 +8,14 @@ with an :class:`InputError` whose field is still empty: where it stood is filled
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from thermogear.base import bounds
+from thermogear.base.bounds import Bounds
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.study.units import KINDS, read_quantity, short, shown
@@ -126,7 +128,13 @@ class Measure(Reader):
         }
 
 
-@dataclass(frozen=True)
+def measure(kind: str, allowed: Bounds, why: str | None = None, example: str = "") -> Measure:
+    """The field of a quantity that has its bounds in Python too."""
+    low, high = allowed.ends
+    return Measure(kind, low, high, why, example)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Number(Reader):
     """A pure number within [low, high]."""
 
@@ -168,7 +176,7 @@ class Number(Reader):
         return {"type": "number"} | {k: v for k, v in limits.items() if math.isfinite(v)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Count(Reader):
     """A whole number within [low, high]."""
 
@@ -239,6 +247,7 @@ class Several(Reader):
     """A list of what ``one`` reads; with ``single`` one alone may stand without brackets."""
 
     one: Reader
+    _: KW_ONLY
     least: int = 1
     most: int = MOST
     single: bool = True
@@ -283,9 +292,14 @@ class Several(Reader):
         return {"anyOf": [item, many]} if self.single else many
 
 
-BODY = Measure("temperature", "-70 degC", "600 degC")
-"""The temperature of gears, oil or housing. The bounds are ours: wide enough for any gearbox,
-narrow enough to notice degrees Celsius written as kelvins."""
+FOLLOW = {
+    "proportional": "every excess over the reference scales with that of the gears' addenda",
+    "fixed": "distances in kelvins stay, and what is given outright stays where it is",
+}
+"""How shafts, housing and oil follow where the gears' temperature is varied."""
+
+BODY = measure("temperature", bounds.BODY)
+"""The temperature of gears, oil or housing."""
 
 
 @dataclass(frozen=True)

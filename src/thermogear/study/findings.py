@@ -1,4 +1,4 @@
-"""What a run found, in words and single figures: notices, facts, citations, summary."""
+"""What a run found, in words and single figures: notices, facts, summary."""
 
 from __future__ import annotations
 
@@ -16,12 +16,14 @@ import xarray as xr
 import thermogear
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import DIMENSIONLESS, STATUS
+from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
 from thermogear.study.balances import celsius
-from thermogear.study.case import Case, GearCase
+from thermogear.study.case import GearCase
 from thermogear.study.facts import Fact
 from thermogear.study.facts import facts as case_facts
+from thermogear.study.thesis_cases import of_the_thesis
 
 Notice = dict[str, str]
 
@@ -48,33 +50,14 @@ def _rpm(speed: float) -> float:
 def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     """What a reader should know before the pictures, most important first."""
     mesh = groups["mesh"]
-    found = _computed(case, groups) + _jammed(mesh) + _regime(case, mesh) + _deviations(case)
+    found = _computed(case, groups) + _jammed(mesh) + _deviations(case)
+    if of_the_thesis(case):
+        found += _regime(case, mesh)
     if "motion" in groups:
         found += _motion(groups["motion"])
     if "temperature" in groups:
         found += _row_jams(groups["temperature"])
-    names = [str(name) for name in mesh["bundle"].values]
-    textbook = [m.name for m in case.models if m.stiffness.startswith("textbook")]
-    if textbook:
-        found.append(
-            _notice(
-                "warning",
-                f"{', '.join(textbook)}: the mesh stiffness is the textbook sum of uncoupled tooth "
-                "pairs. Against finite elements of a comparable pair (bores 20/60 mm) it is about "
-                "14 % too stiff in single and 46 to 49 % in double contact.",
-            )
-        )
-    if any(model.stiffness == "loaded" for model in case.models):
-        found.append(
-            _notice(
-                "info",
-                "The loaded contact takes plane-stress bodies; between plane stress and plane "
-                "strain the stiffness lies in a band of -2.6 to +4.3 %. Contact on tip corners and "
-                "relief stand without a finite-element check. For the vibration the body's wind-up "
-                "against its bore is left to the inertia (the reading named "
-                "rim); both readings are among the figures.",
-            )
-        )
+    found += _stiffness(case, mesh)
     if any(model.thermal_stiffness == "thesis" for model in case.models):
         found.append(
             _notice(
@@ -86,21 +69,69 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     found.append(
         _notice(
             "info",
-            "Cold and hot differ in the temperatures of gears and housing alone; the oil entering "
-            "the mesh is equally warm in both, so that friction and flash can be compared.",
+            "Undeformed and hot differ in the temperatures of gears and housing alone; the oil "
+            "that enters the mesh is equally warm in both: friction and flash can be compared.",
         )
     )
-    found.append(
-        _notice(
-            "info",
-            "Benedict and Kelley's friction diverges where nothing slides; near the pitch point "
-            "the sliding speed is held above 1 % of the entrainment speed, and the coefficient "
-            "is 0 where the logarithm's argument falls below 1.",
+    if np.isfinite(groups["path"]["friction_coefficient_mixed"].values).any():
+        found.append(
+            _notice(
+                "info",
+                "Benedict and Kelley's friction diverges where nothing slides; near the pitch "
+                "point the sliding speed is held above 1 % of the entrainment speed, and the "
+                "coefficient is 0 where the logarithm's argument falls below 1.",
+            )
         )
-    )
-    if len(names) > 1:
+    if case.base_sets and not of_the_thesis(case):
+        found.append(
+            _notice(
+                "info",
+                "draw.base_sets: left out. These sets belong to the ready-made case, and this "
+                "case has other values.",
+            )
+        )
+    if mesh.sizes["bundle"] > 1:
         found.append(_difference(mesh))
     return found
+
+
+def _stiffness(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+    """How the models of the mesh stiffness stand to each other, in this case."""
+    found = []
+    for place, model in enumerate(case.models):
+        if not model.stiffness.startswith("textbook"):
+            continue
+        cold = mesh.isel(bundle=place, state=0, operating=0)
+        over = [
+            float(cold["mean_stiffness"]) / float(cold[f"{body}_stiffness"]) - 1.0
+            for body in ("rim", "bore_clamped")
+        ]
+        found.append(
+            _notice(
+                "warning",
+                f"{model.name}: the mesh stiffness is the textbook sum of tooth pairs that do not "
+                f"feel each other. For this pair its mean without heat lies {_above(over[0])} "
+                f"that of the loaded contact, {_above(over[1])} it with the bodies clamped at "
+                "their bores.",
+            )
+        )
+    if any(model.stiffness == "loaded" for model in case.models):
+        found.append(
+            _notice(
+                "info",
+                "The loaded contact takes plane-stress bodies. Contact on tip corners and relief "
+                "stand without a finite-element check; `thermogear verify stiffness` holds the "
+                "rest of this pair's contact against finite elements. For the vibration the "
+                "body's wind-up against its bore is left to the inertia (the reading named "
+                "rim); both readings are among the figures.",
+            )
+        )
+    return found
+
+
+def _above(part: float) -> str:
+    """A relative difference as so many per cent above or below."""
+    return f"{100.0 * abs(part):.0f} % {'above' if part > 0.0 else 'below'}"
 
 
 def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
@@ -108,6 +139,7 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     if "balance" not in groups:
         return []
     balance, found = groups["balance"], []
+    ours = sum(one.field.startswith("gearbox.") for one in case.assumptions)
     limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
     for place, bundle in enumerate(balance["bundle"].values):
         here = balance.isel(bundle=place)
@@ -131,11 +163,12 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
             f"{celsius(float(teeth.min()))} to {celsius(float(teeth.max()))}, oil "
             f"{celsius(float(oil.min()))} to {celsius(float(oil.max()))}, settled within "
             f"{int(steady['iterations'].max())} iterations to {float(steady['residual'].max()):.1g}"
-            " K. They rest on the gearbox's values, most of them ours unless the case gives them."
+            f" K. They rest on the gearbox's values; {ours or 'none'} of them "
+            f"{'is' if ours == 1 else 'are'} ours."
         )
         hot = float(teeth.max()) > limit
         if hot:
-            text += f" The teeth pass {celsius(limit)}, where the steel is tempered."
+            text += f" The teeth pass {celsius(limit)}, where their material is tempered."
         found.append(_notice("important" if hot else "info", text))
     return found
 
@@ -145,14 +178,25 @@ def _deviations(case: GearCase) -> list[Notice]:
     if not case.deviations:
         return []
     deaf = [m.name for m in case.models if m.stiffness != "loaded"]
+    count = len(case.deviations)
     text = (
-        f"{len(case.deviations)} deviations of the flanks act in the loaded contact, in stiffness, "
-        "load shares and error; the kinematic error of [transmission_error] comes on top, so that "
-        "what the deviations cause should not stand there again."
+        f"{count} deviation{'s' if count > 1 else ''} of the flanks: in clearance, jam and error, "
+        "and in stiffness and load shares of the loaded contact. The kinematic error of "
+        "[transmission_error] comes on top: what the deviations cause should not stand there again."
     )
     if deaf:
         text += f" The textbook sum of {', '.join(deaf)} does not feel them."
-    return [_notice("warning" if deaf else "info", text)]
+    found = [_notice("warning" if deaf else "info", text)]
+    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in case.deviations):
+        found.append(
+            _notice(
+                "warning",
+                "Pitch errors: a run holds the teeth of one mesh period. Other teeth may leave "
+                "less clearance and jam earlier; `loaded_contact` takes phases of whole "
+                "revolutions.",
+            )
+        )
+    return found
 
 
 def _jammed(mesh: xr.Dataset) -> list[Notice]:
@@ -160,28 +204,41 @@ def _jammed(mesh: xr.Dataset) -> list[Notice]:
     found = []
     for place, bundle in enumerate(mesh["bundle"].values):
         here = hot.isel(bundle=place)
+        bare = mesh.isel(state=0, bundle=place)["status"] == STATUS.index("jammed")
+        if bool(bare.any()):
+            found.append(
+                _notice(
+                    "important",
+                    f"{bundle}: {int(bare.sum())} of {here.sizes['operating']} operating points "
+                    "are jammed without heat: the deviations of the flanks take more than the "
+                    "cold backlash. Jammed points have no motion.",
+                )
+            )
+            continue
         jammed = int((here["status"] == STATUS.index("jammed")).sum())
-        jam = float(here["jam_temperature"].min())
-        at = f"{jam - ZERO_CELSIUS:.0f} °C" if math.isfinite(jam) else "no temperature"
+        alone, together = (
+            float(here[name].min()) for name in ("jam_temperature", "proportional_jam_temperature")
+        )
+        words = (
+            f"at {_degrees(alone)} of the pinion's addendum where both gears rise alike with the "
+            f"housing as it is, at {_degrees(together)} where shafts and housing rise in "
+            "proportion to the gears"
+        )
         if jammed:
             found.append(
                 _notice(
                     "important",
                     f"{bundle}: {jammed} of {here.sizes['operating']} operating points are jammed "
-                    f"when hot. With both gears rising alike and the housing as it is, the "
-                    f"backlash is used up at {at} of the pinion's addendum. Jammed points have "
-                    "no motion.",
+                    f"when hot. The backlash is used up {words}. Jammed points have no motion.",
                 )
             )
-        elif math.isfinite(jam) and jam < ZERO_CELSIUS + 400.0:
-            found.append(
-                _notice(
-                    "info",
-                    f"{bundle}: the pair would jam at {at} of the pinion's addendum, both gears "
-                    "rising alike with the housing as it is.",
-                )
-            )
+        elif math.isfinite(alone) and alone < ZERO_CELSIUS + 400.0:
+            found.append(_notice("info", f"{bundle}: the pair would jam {words}."))
     return found
+
+
+def _degrees(kelvin: float) -> str:
+    return f"{kelvin - ZERO_CELSIUS:.0f} °C" if math.isfinite(kelvin) else "no temperature"
 
 
 def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
@@ -198,8 +255,8 @@ def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
             "important",
             f"Two regimes: the speeds of this case lie at frequency ratios "
             f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
-            f"of the cold mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation study at "
-            f"{low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
+            f"of the undeformed mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation "
+            f"study at {low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
             "Nothing found in one speaks for the other.",
         )
     ]
@@ -287,14 +344,14 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
         natural = float(mesh["natural_frequency"].isel(bundle=place, state=0, operating=0))
         resonance = 60.0 * natural / case.pair.pinion.teeth
         table.append(
-            Fact("natural frequency of the cold mean stiffness", str(bundle), natural, "Hz")
+            Fact("natural frequency of the undeformed mean stiffness", str(bundle), natural, "Hz")
         )
         table.append(Fact("pinion speed of the mesh resonance", str(bundle), resonance, "rpm"))
     cold = mesh.isel(bundle=0, state=0, operating=0)
     for body, words in (("rim", "rim"), ("bore_clamped", "bore clamped")):
         k = float(cold[f"{body}_stiffness"])
         natural = math.sqrt(k / case.equivalent_mass) / (2.0 * math.pi)
-        table.append(Fact("loaded contact, cold, two readings of the bore", words, k, "N/m"))
+        table.append(Fact("loaded contact, undeformed, two readings of the bore", words, k, "N/m"))
         table.append(Fact("natural frequency of the loaded contact", words, natural, "Hz"))
     for place in range(mesh.sizes["operating"]):
         load = float(mesh["normal_force"].isel(bundle=0, state=0, operating=place))
@@ -376,53 +433,6 @@ def environment(python: str) -> dict[str, str]:
     return found
 
 
-# --- citations ----------------------------------------------------------------------------
-
-
-def citations(case: Case) -> list[dict[str, str]]:
-    """The sources that this case's results rest on."""
-    found = [
-        (
-            "thesis",
-            "Dynamic Modeling and Analysis of Spur Gear Transmission Systems Considering Thermal "
-            "Deformation (web summary of a thesis)",
-            "the model under study",
-        )
-    ]
-    if isinstance(case, GearCase):
-        found += [
-            (
-                "blok",
-                "H. Blok (1937), flash temperature of a moving heat source",
-                "flash temperature",
-            ),
-            (
-                "benedict-kelley",
-                "G. H. Benedict, B. W. Kelley, ASLE Transactions 4 (1961) 59-70",
-                "friction in mixed lubrication",
-            ),
-            ("johnson", "K. L. Johnson, Contact Mechanics, eqs. 4.43 and 4.45", "Hertzian contact"),
-            (
-                "sainsot",
-                "P. Sainsot, P. Velex, O. Duverger, J. Mech. Design 126 (2004) 748-752",
-                "stiffness of the gear body",
-            ),
-            (
-                "yang-sun",
-                "D. C. H. Yang, Z. S. Sun, J. Mech. Trans. Autom. Des. 107 (1985) 529-535",
-                "contact stiffness and energy method",
-            ),
-            ("walther", "ASTM D341", "viscosity over temperature"),
-            ("oil", case.operating.lubricant.source, f"oil {case.operating.lubricant.name}"),
-            (
-                "material",
-                case.pair.pinion.material.source,
-                f"material {case.pair.pinion.material.name}",
-            ),
-        ]
-    return [{"key": key, "text": text, "used_for": use} for key, text, use in found]
-
-
 # --- summary ------------------------------------------------------------------------------
 
 
@@ -458,6 +468,7 @@ FIGURES = (
     "half_backlash",
     "cold_half_backlash",
     "jam_temperature",
+    "proportional_jam_temperature",
     "natural_frequency",
     *DIMENSIONLESS[1:],
 )

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.measured.published import LineTable
 from thermogear.study.simulated import override_of, tree_lines
 
@@ -28,7 +28,7 @@ _VAGUE = 0.5  # standard deviation of a log factor: beyond it the data hardly te
 _PARALLEL = 0.99  # correlation beyond which two parameters cannot be told apart
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Fit:
     """``factors`` on the stated values, their relative standard uncertainties and correlations.
 
@@ -48,6 +48,7 @@ class Fit:
 def fit(
     simulate: Callable[[Floats], Floats],
     names: Sequence[str],
+    *,
     measured: Floats,
     uncertainty: Floats,
     most: int = 60,
@@ -57,18 +58,27 @@ def fit(
     min over p of sum ((y(exp p) - m)/u)^2;  covariance (J^T J)^-1 of the log factors p.
 
     ``measured``, ``uncertainty`` (standard, > 0) and what ``simulate`` returns share a unit.
-    Raises InputError for no data or uncertainties that are not positive. A parameter is called
-    undetermined when there are fewer data than parameters, when its uncertainty exceeds 50 %, or
-    when it moves the data as another one does.
+    Raises InputError for no data or uncertainties that are not positive, ConvergenceError where
+    the simulation gives no number. A parameter is called undetermined when there are fewer data
+    than parameters, when its uncertainty exceeds 50 %, or when it moves the data as another one
+    does.
     """
     m, u = np.asarray(measured, dtype=float), np.asarray(uncertainty, dtype=float)
-    if m.size == 0 or m.shape != u.shape or not np.all(u > 0):
-        raise InputError("uncertainty", u.tolist(), allowed="> 0, one for each measured value")
+    if not np.all(np.isfinite(m)):
+        raise InputError("measured", m.tolist(), allowed="finite")
+    if m.size == 0 or m.shape != u.shape or not np.all(np.isfinite(u) & (u > 0)):
+        raise InputError(
+            "uncertainty", u.tolist(), allowed="> 0, finite, one for each measured value"
+        )
     if not names:
         raise InputError("parameters", "none", allowed="one or more fields")
 
     def residual(p: Floats) -> Floats:
-        return np.asarray((simulate(np.exp(p)) - m) / u)
+        found = np.asarray((simulate(np.exp(p)) - m) / u)
+        if not np.all(np.isfinite(found)):
+            at = ", ".join(f"{n} = {f:.6g}" for n, f in zip(names, np.exp(p), strict=True))
+            raise ConvergenceError(f"fit: no finite line at the factors {at}")
+        return found
 
     done = optimize.least_squares(
         residual, np.zeros(len(names)), method="trf", diff_step=1e-3, max_nfev=most
@@ -102,13 +112,13 @@ def fit(
     if done.status <= 0:
         notices.append(("warning", f"the fit did not settle in {done.nfev} evaluations"))
     return Fit(
-        tuple(names),
-        tuple(float(f) for f in np.exp(done.x)),
-        tuple(float(s) for s in spread),
-        correlation,
-        np.asarray(done.fun),
-        int(done.nfev),
-        tuple(notices),
+        names=tuple(names),
+        factors=tuple(float(f) for f in np.exp(done.x)),
+        uncertainties=tuple(float(s) for s in spread),
+        correlation=correlation,
+        residuals=np.asarray(done.fun),
+        evaluations=int(done.nfev),
+        notices=tuple(notices),
     )
 
 
@@ -162,4 +172,4 @@ def fit_case(
         found = [table.near(line.speed) for line in lines]
         return np.array([0.0 if line is None else line.displacement for line in found])
 
-    return fit(simulate, names, values, errors)
+    return fit(simulate, names, measured=values, uncertainty=errors)

@@ -6,7 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from thermogear.study.fields import Choice, Measure, Several
+from thermogear.base import bounds
+from thermogear.study.fields import Choice, Several, measure
 from thermogear.study.table import Table
 
 Flank = Annotated[str, Choice("drive", "back", "both")]
@@ -15,16 +16,10 @@ Flank = Annotated[str, Choice("drive", "back", "both")]
 class ReliefTable(Table):
     """Material taken off towards the tip or the root."""
 
-    amount: Annotated[float, Measure("length", "0 um", "1000 um", example="20 um")]
+    amount: Annotated[float, measure("length", bounds.RELIEF_AMOUNT, example="20 um")]
     length: Annotated[
         float,
-        Measure(
-            "length",
-            "0.01 mm",
-            "1000 mm",
-            "measured along the line of action",
-            example="3 mm",
-        ),
+        measure("length", bounds.RELIEF_LENGTH, "measured along the line of action", "3 mm"),
     ]
     shape: Annotated[str, Choice("linear", "parabolic")] = Field(
         default="linear", description="linear relief"
@@ -37,10 +32,15 @@ class ProfileTable(Table):
 
     radius: Annotated[
         tuple[float, ...],
-        Several(Measure("length", "0.1 mm", "10000 mm", example="62 mm"), 2, 5000, single=False),
+        Several(
+            measure("length", bounds.PROFILE_RADIUS, example="62 mm"),
+            least=2,
+            most=5000,
+            single=False,
+        ),
     ]
     added: Annotated[
         tuple[float, ...],
-        Several(Measure("length", "-2 mm", "2 mm", example="-3 um"), 2, 5000, single=False),
+        Several(measure("length", bounds.ADDED, example="-3 um"), least=2, most=5000, single=False),
     ]
     flank: Flank = Field(default="both", description="drive and back flanks alike")

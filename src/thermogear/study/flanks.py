@@ -57,11 +57,21 @@ def _given(gear: str, table: GearTable) -> Iterator[tuple[str, Callable[[], Devi
         yield "pressure_angle_error", partial(PressureAngleError, gear, table.pressure_angle_error)
     if table.profile is not None:
         flank = table.profile
-        yield "profile", partial(FlankTable, gear, flank.radius, flank.added, flank.flank)
+        yield (
+            "profile",
+            partial(FlankTable, gear, radius=flank.radius, added=flank.added, flank=flank.flank),
+        )
 
 
 def _relief(gear: str, end: str, table: ReliefTable) -> Relief:
-    return Relief(gear, table.amount, table.length, end, table.shape, table.flank)
+    return Relief(
+        gear,
+        amount=table.amount,
+        length=table.length,
+        end=end,
+        shape=table.shape,
+        flank=table.flank,
+    )
 
 
 def relief_text(gear: str, relief: Relief) -> str:

@@ -19,7 +19,7 @@ from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
-from thermogear.study.balances import dressed
+from thermogear.study.balances import dressed, regime_attributes
 from thermogear.study.case import GearCase
 
 Floats = NDArray[np.float64]
@@ -30,7 +30,8 @@ KIND = "friction"
 def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
     """The lubricated contact of every operating point of ``case``, hot."""
     hot = HotPair(case.pair, case.operating_of(model), model)
-    return FrictionPath(elastic_pair(hot, case.deviations), path_of_contact(case.pair, positions))
+    s = path_of_contact(case.pair, positions)
+    return FrictionPath(elastic_pair(hot, case.deviations), s).checked()
 
 
 def law_of(name: str, model: MeshModel) -> FrictionLaw:
@@ -95,7 +96,7 @@ def friction_survey(case: GearCase) -> xr.DataTree:
                 np.broadcast_to(path.film, shape),
                 attributes("film_thickness"),
             ),
-            "regime": dressed(along, regime(film), "1", "index of the lubrication regime"),
+            "regime": (along, regime(film).astype(np.int8), regime_attributes()),
             "regime_share": dressed(
                 ("operating", "regime_name"), regime_shares(film), "1", "share of the path"
             ),

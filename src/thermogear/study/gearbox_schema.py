@@ -6,10 +6,11 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.heat.gearbox import Surroundings
 from thermogear.mesh.balance import Gearbox
-from thermogear.study.fields import Choice, Measure, Number, Several
+from thermogear.study.fields import Choice, Measure, Number, Several, measure
 from thermogear.study.table import Body, Table
 
 _AROUND, _BOX = Surroundings(), Gearbox()
@@ -39,16 +40,18 @@ class ReadingTable(Table):
     kind: Annotated[str, Choice("infrared", "thermocouple")]
     indicated: Body
     indicated_uncertainty: _Sigma = Field(default=0.0, description="the reading taken as exact")
-    emissivity: Annotated[float | None, Number(0.01, 1.0, "0.95")] = None
-    emissivity_uncertainty: Annotated[float | None, Number(0.0, 0.5, "0.02")] = None
+    emissivity: Annotated[float | None, Number(low=0.01, high=1.0, example="0.95")] = None
+    emissivity_uncertainty: Annotated[float | None, Number(low=0.0, high=0.5, example="0.02")] = (
+        None
+    )
     surroundings: Body | None = None
-    transmission: Annotated[float | None, Number(0.01, 1.0, "0.93")] = None
+    transmission: Annotated[float | None, Number(low=0.01, high=1.0, example="0.93")] = None
     window_temperature: Body | None = None
     wavelengths: Annotated[
         tuple[float, ...] | None,
-        Several(Measure("length", "0.5 um", "50 um", example="8 um"), 2, 2),
+        Several(Measure("length", "0.5 um", "50 um", example="8 um"), least=2, most=2),
     ] = None
-    depth: Annotated[float | None, Measure("length", "0 mm", "50 mm", example="1 mm")] = None
+    depth: Annotated[float | None, measure("length", bounds.DEPTH, example="1 mm")] = None
     depth_uncertainty: Annotated[
         float | None, Measure("length", "0 mm", "10 mm", example="0.2 mm")
     ] = None
@@ -122,9 +125,9 @@ class GearboxTable(Table):
             example="200 W/(m^2 K)",
         ),
     ] = Field(default=_AROUND.oil_housing_coefficient, description="200 W/(m^2 K), splashed walls")
-    wetted_share: Annotated[tuple[float, ...], Several(Number(0.001, 1.0, "0.3"), 1, 2)] = Field(
-        default=_AROUND.wetted_share, description="oil covers 0.3 of both gears' surface"
-    )
+    wetted_share: Annotated[
+        tuple[float, ...], Several(Number(low=0.001, high=1.0, example="0.3"), least=1, most=2)
+    ] = Field(default=_AROUND.wetted_share, description="oil covers 0.3 of both gears' surface")
     shaft_length: Annotated[float, Measure("length", "0.1 mm", "10000 mm", example="60 mm")] = (
         Field(default=_AROUND.shaft_length, description="60 mm from the gear to each bearing")
     )
@@ -137,19 +140,19 @@ class GearboxTable(Table):
     housing_mass: Annotated[float, Measure("mass", "0.01 kg", "1e6 kg", example="40 kg")] = Field(
         default=_AROUND.housing_mass, description="40 kg; decides the warm-up time alone"
     )
-    housing_specific_heat: Annotated[
-        float, Measure("specific heat", "10 J/(kg K)", "10000 J/(kg K)")
-    ] = Field(default=_AROUND.housing_specific_heat, description="steel, 470 J/(kg K)")
+    housing_specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)] = Field(
+        default=_AROUND.housing_specific_heat, description="steel, 470 J/(kg K)"
+    )
     oil_flow: Annotated[float, Measure("volume flow", "0 l/min", "10000 l/min")] = Field(
         default=_AROUND.oil_flow, description="a closed bath, no oil cooler"
     )
     supply_temperature: Body = Field(
         default=_AROUND.supply_temperature, description="60 degC; without effect in a closed bath"
     )
-    immersion: Annotated[float, Number(0.0, 1.0, "0.3")] = Field(
+    immersion: Annotated[float, Number(low=0.0, high=1.0, example="0.3")] = Field(
         default=_BOX.immersion, description="the wheel dips 0.3 of its tip radius; 0 is spray"
     )
-    bearing_coefficient: Annotated[float, Number(0.0, 0.099, "0.0015")] = Field(
+    bearing_coefficient: Annotated[float, Number(low=0.0, high=0.099, example="0.0015")] = Field(
         default=_BOX.bearing_coefficient, description="0.0015, deep-groove ball bearings"
     )
     measured: MeasuredTable | None = Field(default=None, title="no node is held")

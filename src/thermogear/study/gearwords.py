@@ -8,7 +8,7 @@ the dimensionless results back into micrometres, hertz and newtons.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 from itertools import product
 from typing import Any
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import STATES, STATUS, UNDEFORMED
 from thermogear.dynamics.models import TorsionalModel, from_excitation
 from thermogear.dynamics.tables import Lanes
 from thermogear.mesh.excite import excitation
@@ -42,17 +42,26 @@ class Word:
 
     unit: str
     shown: str
+    _: KW_ONLY
     factor: float
     zero: float
     words: str
 
 
 WORDS: dict[str, Word] = {
-    "pinion_speed": Word("rad/s", "rpm", 1.0 / RPM, 0.0, "pinion speed"),
-    "pinion_torque": Word("N m", "N m", 1.0, 0.0, "pinion torque"),
-    "gear_temperature": Word("K", "degC", 1.0, ZERO_CELSIUS, "addendum temperature of both gears"),
-    "cold_half_backlash": Word("m", "um", 1e6, 0.0, "cold half backlash on the line of action"),
-    "damping_ratio": Word("1", "1", 1.0, 0.0, "damping ratio"),
+    "pinion_speed": Word("rad/s", "rpm", factor=1.0 / RPM, zero=0.0, words="pinion speed"),
+    "pinion_torque": Word("N m", "N m", factor=1.0, zero=0.0, words="pinion torque"),
+    "gear_temperature": Word(
+        "K",
+        "degC",
+        factor=1.0,
+        zero=ZERO_CELSIUS,
+        words="addendum temperature of both gears",
+    ),
+    "cold_half_backlash": Word(
+        "m", "um", factor=1e6, zero=0.0, words="cold half backlash on the line of action"
+    ),
+    "damping_ratio": Word("1", "1", factor=1.0, zero=0.0, words="damping ratio"),
 }
 SHORT = {
     "rpm": "pinion_speed",
@@ -151,8 +160,8 @@ class GearPoints:
 class GearFamily:
     """Gear parameters -> lanes, for one ``case`` and one bundle of it, ``bundle``.
 
-    ``state`` "hot" (as the case says), "cold" (everything at the reference temperature) or the
-    addendum temperature [K] of both gears; a parameter gear_temperature overrules it.
+    ``state`` "hot" (as the case says), "undeformed" (everything at the reference temperature) or
+    the addendum temperature [K] of both gears; a parameter gear_temperature overrules it.
     Parameters that are not named stay as in the case, at its first speed and torque. A dotted
     name is a field of the case file, so that every value there can be swept; each of its
     values reads the case again.
@@ -172,8 +181,8 @@ class GearFamily:
             object.__setattr__(self, "bundle", known[0])
         if self.bundle not in known:
             raise InputError("bundle", repr(self.bundle), fix=nearest(self.bundle, known))
-        if isinstance(self.state, str) and self.state not in ("hot", "cold"):
-            raise InputError("state", repr(self.state), allowed="'hot' | 'cold' | kelvins")
+        if isinstance(self.state, str) and self.state not in STATES:
+            raise InputError("state", repr(self.state), allowed="'hot' | 'undeformed' | kelvins")
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -265,7 +274,7 @@ class GearFamily:
         here = replace(case, stated=stated)
         if heat != 0.0:
             operating = here.operating_at(heat, model)
-        elif self.state == "cold":
+        elif self.state == UNDEFORMED:
             operating = replace(stated, temperatures=stated.temperatures.cold())
         else:
             operating = here.operating_of(model)
@@ -298,7 +307,13 @@ def _points_of(case: GearCase, cycle: xr.Dataset, damping: Floats) -> GearPoints
     count = len(found)
     nan = np.full(count, np.nan)
     if not moving:
-        idle = TorsionalModel(0.1, np.ones(count), 0.0, 0.1, 0.0).lanes()
+        idle = TorsionalModel(
+            damping_ratio=0.1,
+            frequency=np.ones(count),
+            stiffness_amplitude=0.0,
+            mean_force=0.1,
+            force_amplitude=0.0,
+        ).lanes()
         status = np.full(count, STATUS.index("jammed"), np.int8)
         none = np.full((count, 1), np.nan, complex)
         return GearPoints(idle, status, nan, nan, nan, nan, none, nan, nan)
@@ -357,13 +372,13 @@ def _joined(parts: Sequence[tuple[NDArray[np.int64], GearPoints]], count: int) -
 
     none = (None,) * count
     flat = Lanes(
-        flat_of("period"),
-        flat_of("damping"),
-        flat_of("half_backlash"),
-        flat_of("stiffness"),
-        flat_of("force"),
-        none,
-        none,
+        period=flat_of("period"),
+        damping=flat_of("damping"),
+        half_backlash=flat_of("half_backlash"),
+        stiffness=flat_of("stiffness"),
+        force=flat_of("force"),
+        stiffness_pieces=none,
+        force_pieces=none,
     )
     return GearPoints(
         flat,
@@ -429,13 +444,13 @@ class Tabulated:
         push[:, 0] = force / (stiffness * length)
         status = np.maximum(a.status, b.status)
         flat = Lanes(
-            2.0 * np.pi / frequency,
-            mix(a.flat.damping, b.flat.damping),
-            mix(a.flat.half_backlash, b.flat.half_backlash),
-            mix(a.flat.stiffness, b.flat.stiffness),
-            push,
-            a.flat.stiffness_pieces,
-            a.flat.force_pieces,
+            period=2.0 * np.pi / frequency,
+            damping=mix(a.flat.damping, b.flat.damping),
+            half_backlash=mix(a.flat.half_backlash, b.flat.half_backlash),
+            stiffness=mix(a.flat.stiffness, b.flat.stiffness),
+            force=push,
+            stiffness_pieces=a.flat.stiffness_pieces,
+            force_pieces=a.flat.force_pieces,
         )
         hot = mix(a.half_backlash, b.half_backlash)
         return GearPoints(flat, status, length, rate, stiffness, force, error, mesh, hot)

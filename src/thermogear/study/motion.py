@@ -23,7 +23,7 @@ HIGHEST_ORDER = 20.0
 """Spectral lines are kept up to this order of the mesh frequency."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Motion:
     """Settled motion of ``points`` lanes; numbers are dimensionless (X = x/b_c, omega_n t).
 
@@ -92,7 +92,9 @@ def follow(
         "section_displacement": data["section_x"].values[:, 1:],
         "section_velocity": data["section_v"].values[:, 1:],
         "line_amplitude": spectrum.amplitudes[:, kept],
-        "half_order_amplitude": order_amplitudes(x, simulation.samples, periods, [0.5])[..., 0],
+        "half_order_amplitude": order_amplitudes(
+            x, samples_per_period=simulation.samples, periods=periods, orders=[0.5]
+        )[..., 0],
         "peak_to_peak_displacement": x.max(axis=1) - x.min(axis=1),
         "contact_loss_share": missing if share is None else np.maximum(1.0 - share, 0.0),
         "back_impacts": missing if impacts is None else impacts,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from thermogear.base.units import RPM
 from thermogear.study.case import GearCase
@@ -30,6 +31,12 @@ def back_side_notice(data: xr.Dataset) -> list[str]:
     return []
 
 
+def _reach(values: NDArray[np.float64]) -> str:
+    """Least and greatest, or the one there is."""
+    low, high = (f"{v:.3f}" for v in (values.min(), values.max()))
+    return low if low == high else f"{low} .. {high}"
+
+
 def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
     """Notices as an attribute: the back side, and where the case's speeds lie."""
     found = back_side_notice(data)
@@ -44,10 +51,10 @@ def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
         tests = case.pair.pinion.teeth * speeds / (2.0 * math.pi) / natural
         shown = ", ".join(f"{s / RPM:.4g}" for s in speeds)
         found.append(
-            f"the range covers omega_h {ratio.min():.3f} .. {ratio.max():.3f}; the mesh meets the "
+            f"the range covers omega_h {_reach(ratio)}; the mesh meets the "
             f"natural frequency of the mean stiffness, {natural:.0f} Hz, at "
             f"{natural * turns:.0f} rpm; the case's own speeds ({shown} rpm) lie at omega_h "
-            f"{tests.min():.3f} .. {tests.max():.3f}"
+            f"{_reach(tests)}"
         )
     jammed = int(np.count_nonzero(data["status"].values == 1))
     if jammed:

@@ -6,17 +6,17 @@ What the floors below find impossible comes back under the field of the file it 
 from __future__ import annotations
 
 import cmath
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
+from thermogear.base import materials
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
-from thermogear.base.materials import LUBRICANTS, Lubricant, Material
+from thermogear.base.materials import Lubricant, Material
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.gears.geometry import Gear, GearPair, Rack
+from thermogear.gears.geometry import LEFT_OUT, Gear, GearPair, Rack
 from thermogear.heat.friction import ROUGHNESS_LIMIT
 from thermogear.mesh.excite import disc_inertia
 from thermogear.mesh.model import MeshModel
@@ -68,15 +68,15 @@ class TemperatureRule:
     housing: Follows
     oil: Follows
 
-    def at(self, pinion_addendum: float, wheel_addendum: float) -> Temperatures:
+    def at(self, *, pinion_addendum: float, wheel_addendum: float) -> Temperatures:
         """All body temperatures beside the two addenda [K]."""
         return Temperatures(
-            self.reference,
-            pinion_addendum,
-            self.pinion_bore.checked(pinion_addendum, "temperatures.pinion_bore"),
-            wheel_addendum,
-            self.wheel_bore.checked(wheel_addendum, "temperatures.wheel_bore"),
-            self.housing.checked(pinion_addendum, "temperatures.housing"),
+            reference=self.reference,
+            pinion_addendum=pinion_addendum,
+            pinion_bore=self.pinion_bore.checked(pinion_addendum, "temperatures.pinion_bore"),
+            wheel_addendum=wheel_addendum,
+            wheel_bore=self.wheel_bore.checked(wheel_addendum, "temperatures.wheel_bore"),
+            housing=self.housing.checked(pinion_addendum, "temperatures.housing"),
         )
 
     def oil_at(self, pinion_addendum: float) -> float:
@@ -128,7 +128,7 @@ def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
 
 def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Material]) -> Gear:
     gears = file.gears
-    tip = math.nan if table.tip_diameter is None else 0.5 * table.tip_diameter
+    tip = LEFT_OUT if table.tip_diameter is None else 0.5 * table.tip_diameter
     material = named_material(table.material, f"{prefix}.material", known)
     # a rack left out is the gear's own to choose, with a fillet that fits its pressure angle
     rack = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
@@ -156,7 +156,7 @@ def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
     pinion = _gear(file.gears.pinion, file, "gears.pinion", known)
     wheel = _gear(file.gears.wheel, file, "gears.wheel", known)
     return _under(
-        "gears", lambda: GearPair(pinion, wheel, math.nan if distance is None else distance)
+        "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)
     )
 
 
@@ -182,15 +182,16 @@ def lubricant(file: GearFile) -> Lubricant:
     """The named oil, or the one through the two viscosities."""
     oil = file.oil
     if oil.viscosity_40 is None or oil.viscosity_100 is None:
-        if oil.name not in LUBRICANTS:
+        try:
+            return materials.lubricant(oil.name)
+        except InputError as error:
+            own = "give viscosity_40, viscosity_100 and density_15"
             raise InputError(
                 "oil.name",
                 short(oil.name),
-                allowed=" | ".join(LUBRICANTS),
-                fix=f"{nearest(oil.name, LUBRICANTS)} Or give viscosity_40, viscosity_100 and "
-                "density_15",
-            )
-        return LUBRICANTS[oil.name]
+                allowed=" | ".join(materials.LUBRICANTS),
+                fix=f"{error.fix}, or {own}",
+            ) from error
     cold, hot = (
         (ZERO_CELSIUS + 40.0, oil.viscosity_40),
         (ZERO_CELSIUS + 100.0, oil.viscosity_100),
@@ -207,7 +208,10 @@ def cold_backlash(file: GearFile, pair: GearPair, housing: Material) -> Backlash
     if table.tolerances is not None:
         parts = table.tolerances
         return from_tolerances(
-            parts.pinion_tooth_thickness, parts.wheel_tooth_thickness, parts.centre_distance, pair
+            pinion=parts.pinion_tooth_thickness,
+            wheel=parts.wheel_tooth_thickness,
+            distance=parts.centre_distance,
+            pair=pair,
         )
     rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
     assert table.value is not None  # the schema holds exactly one of the two
@@ -231,7 +235,7 @@ def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
     def disc(gear: Gear) -> float:
         outer = gear.pitch_radius if radius == "pitch" else gear.tip_radius
         inner = gear.bore_radius if bored else 0.0
-        return disc_inertia(gear, outer, inner)
+        return disc_inertia(gear, radius=outer, bore_radius=inner)
 
     words = f"solid discs of {radius} radius, {'bored' if bored else 'unbored'}"
     return (disc(pair.pinion), disc(pair.wheel)), words

@@ -1,4 +1,4 @@
-"""The tooth's flank cold, as the thesis prints it hot, and consistently hot."""
+"""The tooth's flank cold and consistently hot; for the thesis's rig also as printed, hot."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.study.case import GearCase
+from thermogear.study.thesis_cases import of_the_thesis
 
 Floats = NDArray[np.float64]
 
@@ -19,27 +20,27 @@ POINTS = 61
 def profiles(case: GearCase) -> xr.Dataset:
     """One flank of each gear, form circle to tip: coordinates [m], y the tooth's centre line.
 
-    The first operating point's temperatures hold. ``printed`` is the profile with the angle as
-    printed (whose second term carries 1/K), ``consistent`` the repaired one.
+    The first operating point's temperatures hold. ``consistent`` is the hot profile; ``printed``,
+    for the thesis's rig alone, the one with the angle as printed (whose second term carries 1/K).
     """
     hot = HotPair(case.pair, case.operating, MeshModel.consistent())
+    printed = of_the_thesis(case)
     columns: dict[str, list[Floats]] = {}
     for gear in (case.pair.pinion, case.pair.wheel):
         r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_radius, POINTS)
         psi = gear.half_thickness_angle(r)
         field = hot.field(gear)
-        drawn = {
-            "involute": (r, psi),
-            "printed": tuple(np.atleast_2d(v)[0] for v in profile_as_printed(gear, field, r)),
-            "consistent": tuple(np.atleast_2d(v)[0] for v in deformed_profile(gear, field, r)),
-        }
-        for name, (radius, angle) in drawn.items():
+        drawn = {"involute": (r, psi), "consistent": deformed_profile(gear, field, r)}
+        if printed:
+            drawn["printed"] = profile_as_printed(gear, field, r)
+        for name, curve in drawn.items():
+            radius, angle = (np.atleast_2d(v)[0] for v in curve)
             columns.setdefault(f"{name}_x", []).append(radius * np.sin(angle))
             columns.setdefault(f"{name}_y", []).append(radius * np.cos(angle))
     words = {
         "involute": "cold involute",
         "printed": "hot profile as printed",
-        "consistent": "hot profile, repaired",
+        "consistent": "hot profile",
     }
     data = xr.Dataset(
         {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
+from thermogear.base.vocabulary import edge_attributes
 from thermogear.gears.deviations import Contacts, Relief
 from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
 from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
@@ -28,6 +30,8 @@ KIND = "relief"
 LOADS = tuple(np.arange(0.1, 1.75, 0.1))
 """Loads, as parts of the one designed for, at which the pairs are compared."""
 PHASES = 200
+EDGE_SHARE = "share of the mesh period in which a tip corner carries load"
+EDGE_WORDS = "The Hertzian pressure is not valid on a corner (edge contact): it is left out there."
 
 
 def relief_survey(
@@ -48,7 +52,8 @@ def relief_survey(
     case stay; tip reliefs it has already are replaced.
 
     Groups: ``error`` over (pair_kind, mesh_phase) at the design load; ``loads`` the peak-to-peak
-    error over other loads; attributes carry the relief and its lines for the case file.
+    error over other loads; attributes carry the relief and its lines for the case file. Where a
+    tip corner carries (``edge_contact``) the ``greatest_pressure`` is nan.
     """
     if not case.torques:
         raise InputError("operating.torque", "nothing", allowed="one torque")
@@ -63,7 +68,7 @@ def relief_survey(
     )
     hot = HotPair(case.pair, one_point(found, moment), model)
     elastic = LoadedPair(hot)
-    moduli = [Moduli(np.ravel(m.tooth)[0], np.ravel(m.body)[0]) for m in elastic.moduli]
+    moduli = [Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in elastic.moduli]
     kept = [d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")]
     deviations = [*kept, FirstPoint(ThermalDeviation(hot))]
     loaded = LoadedModel(body="bore_clamped")
@@ -93,12 +98,12 @@ def relief_survey(
             wheel=moduli[1],
             deviations=[*deviations, *reliefs],
             model=loaded,
-        )
+        ).checked()
 
     pairs = {"unrelieved": (), "relieved": (design.pinion, design.wheel)}
     loads = force * np.asarray(LOADS)
     curves = [mesh(reliefs, np.array([force])) for reliefs in pairs.values()]
-    ranges = [np.ptp(mesh(reliefs, loads).deflection, axis=-1) for reliefs in pairs.values()]
+    laddered = [mesh(reliefs, loads) for reliefs in pairs.values()]
     by = ("pair_kind", "mesh_phase")
     error = xr.Dataset(
         {
@@ -115,7 +120,15 @@ def relief_survey(
                 by,
                 np.stack([c.pressure[0].max(axis=-1) for c in curves]),
                 "Pa",
-                "greatest Hertzian pressure of any pair",
+                "greatest Hertzian pressure of any pair; not valid (nan) in edge contact",
+            ),
+            "edge_contact": xr.Variable(
+                by,
+                np.stack([np.bitwise_or.reduce(c.edge[0], axis=-1) for c in curves]),
+                edge_attributes(),
+            ),
+            "edge_contact_share": dressed(
+                ("pair_kind",), [float(c.edge_share[0]) for c in curves], "1", EDGE_SHARE
             ),
         },
         {
@@ -127,10 +140,16 @@ def relief_survey(
         {
             "peak_to_peak_error": dressed(
                 ("pair_kind", "load"),
-                np.stack(ranges),
+                np.stack([np.ptp(c.deflection, axis=-1) for c in laddered]),
                 "m",
                 "transmission error, peak to peak",
-            )
+            ),
+            "edge_contact_share": dressed(
+                ("pair_kind", "load"),
+                np.stack([c.edge_share for c in laddered]),
+                "1",
+                EDGE_SHARE,
+            ),
         },
         {
             "pair_kind": list(pairs),
@@ -162,23 +181,14 @@ def relief_survey(
             }
         ),
         "paste": lines,
-        "notices": json.dumps(_notices(case)),
+        "notices": json.dumps(_notices(case, [float(c.edge_share[0]) for c in curves])),
     }
     return tree
 
 
 def one_point(operating: Operating, torque: float) -> Operating:
     """The first point of ``operating`` alone, under ``torque`` [N m]."""
-    t = operating.temperatures
-    names = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore", "housing")
-    first = replace(t, **{name: float(np.ravel(getattr(t, name))[0]) for name in names})
-    return replace(
-        operating,
-        speed=operating.speed[:1],
-        torque=np.array([torque]),
-        oil_temperature=float(np.ravel(operating.oil_temperature)[0]),
-        temperatures=first,
-    )
+    return replace(operating.point(0), torque=np.array([torque]))
 
 
 class FirstPoint:
@@ -192,7 +202,7 @@ class FirstPoint:
         return np.asarray(self.deviation.gap(at)[0])
 
 
-def _notices(case: GearCase) -> list[dict[str, str]]:
+def _notices(case: GearCase, edges: Sequence[float]) -> list[dict[str, str]]:
     found = [
         {
             "level": "info",
@@ -201,10 +211,19 @@ def _notices(case: GearCase) -> list[dict[str, str]]:
         },
         {
             "level": "info",
-            "text": "The relief is best at the load and temperature it is made for; the second "
-            "picture says what it costs at others.",
+            "text": "The relief is best at the load and temperature it is made for; the picture "
+            "over the load says what it costs at other loads.",
         },
     ]
+    if any(edges):
+        found.append(
+            {
+                "level": "important",
+                "text": "At the design load tip corners carry during "
+                f"{100 * edges[0]:.3g} % of the mesh period without the relief and "
+                f"{100 * edges[1]:.3g} % with it. {EDGE_WORDS}",
+            }
+        )
     if any(isinstance(d, Relief) and d.end == "tip" for d in case.deviations):
         found.append({"level": "warning", "text": "The case's own tip relief is replaced."})
     return found

@@ -30,7 +30,7 @@ VALUES: dict[str, tuple[str, str]] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Recording:
     """How a settled motion is recorded: ``periods`` of ``samples`` points each.
 
@@ -87,12 +87,12 @@ def respond(
         found["dte_line"] = np.full((count, record.orders.size), np.nan)
     moving = np.flatnonzero((points.status == 0) & np.isfinite(state).all(axis=1))
     phase = np.arange(record.samples) / record.samples
-    for part, borders, marks in exact.layouts(points.flat.take(moving), record.samples):
+    for part, borders, marks in exact.layouts(points.flat.take(moving), samples=record.samples):
         alive()
         index = moving[part]
         lanes = points.flat.take(index)
         maps = exact.prepare_maps(lanes, borders, marks)
-        run = exact.State.start(state[index, 0], state[index, 1], lanes.half_backlash)
+        run = exact.State.start(x=state[index, 0], y=state[index, 1], backlash=lanes.half_backlash)
         _, _, samples = exact.advance(maps, run, record.periods, sampled=True)
         for row, lane in enumerate(index):
             one = _figures(points, int(lane), samples[:, 0, row], phase, record, lines)
@@ -128,5 +128,7 @@ def _figures(
         "dynamic_factor": np.max(np.abs(force)) / mean if mean > 0.0 else np.inf,
     }
     if lines:
-        row["dte_line"] = order_amplitudes(dte, record.samples, record.periods, record.orders)
+        row["dte_line"] = order_amplitudes(
+            dte, samples_per_period=record.samples, periods=record.periods, orders=record.orders
+        )
     return row

@@ -10,7 +10,7 @@ from thermogear.study.allowed import dimensionless_reader, positive_stiffness, w
 from thermogear.study.schema import PARAMETERS, DimensionlessFile, RowTable
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Point:
     """One point of a dimensionless row: the swept ``parameter`` at ``value``, and the whole set.
 
@@ -78,7 +78,7 @@ def _row(name: str, row: RowTable, file: DimensionlessFile) -> list[Point]:
         positive_stiffness(
             f"{where}, point {place + 1}, stiffness_amplitude",
             columns["stiffness_amplitude"][place],
-            columns["thermal_stiffness"][place],
+            thermal=columns["thermal_stiffness"][place],
         )
     expected: tuple[str, ...] = ("",) * count
     if row.expected:

@@ -24,18 +24,19 @@ import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import STATUS, attributes, label
+from thermogear.base.vocabulary import STATES, STATUS, attributes, label
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.heat.film import regime
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.study import errata, findings
-from thermogear.study.balances import balances
+from thermogear.study.balances import balances, regime_attributes
 from thermogear.study.case import Case, DimensionlessCase, GearCase, load_example
+from thermogear.study.citations import citations
 from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
 from thermogear.study.results import claim_directory, write_results, write_summary
-
-STATES = ("cold", "hot")
+from thermogear.study.thesis_cases import of_the_thesis
 
 
 def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
@@ -52,7 +53,7 @@ def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
         groups = _gear_groups(case, progress)
         notices = findings.notices(case, groups)
         own = {
-            "errata": json.dumps(errata.errata(case, groups)),
+            "errata": json.dumps(errata.errata(case, groups) if of_the_thesis(case) else []),
             "facts": json.dumps(findings.facts(case, groups)),
             "bundles": json.dumps({m.name: m.choices() for m in case.models}),
             "choices": json.dumps(findings.choice_meanings()),
@@ -64,6 +65,7 @@ def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
         "thermogear": thermogear.__version__,
         "title": case.title,
         "kind": case.kind,
+        "thesis_case": int(of_the_thesis(case)),
         "case": case.text,
         "overrides": json.dumps([list(pair) for pair in case.overrides]),
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
@@ -72,7 +74,7 @@ def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
             [{"field": a.field, "value": a.value, "reason": a.reason} for a in case.assumptions]
         ),
         "notices": json.dumps(notices),
-        "citations": json.dumps(findings.citations(case)),
+        "citations": json.dumps(citations(case)),
         **own,
     }
     return tree
@@ -131,7 +133,7 @@ def _gear_groups(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
         groups["motion"] = _motion(case, cycles, "state", progress)
     if "temperature" in wanted and case.gear_temperatures:
         groups["temperature"] = _temperature_row(case, progress)
-    if "base-sets" in wanted:
+    if "base-sets" in wanted and of_the_thesis(case):
         for name in case.base_sets:
             base = load_example(name)
             if isinstance(base, DimensionlessCase):
@@ -145,14 +147,14 @@ def _bundle_axis(case: GearCase) -> xr.DataArray:
 
 
 def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
-    """Bundle -> the cycle cold and hot, with everything but the gears' temperatures alike."""
+    """Bundle -> the cycle undeformed and hot, everything but the bodies' temperatures alike."""
     found: dict[str, xr.Dataset] = {}
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
         hot = case.operating_of(model)
-        cold = replace(hot, temperatures=hot.temperatures.cold())
+        undeformed = replace(hot, temperatures=hot.temperatures.cold())
         states = [
-            case.cycle(cold, model),
+            case.cycle(undeformed, model),
             _with_status(case, model, case.cycle(hot, model)),
         ]
         found[model.name] = _with_numbers(
@@ -166,9 +168,7 @@ def _with_status(
     case: GearCase, model: MeshModel, cycle: xr.Dataset, gear_temperature: float | None = None
 ) -> xr.Dataset:
     """``cycle``, its points not_converged where its temperatures did not settle."""
-    if not case.computed:
-        return cycle
-    settled = case.balance(model, gear_temperature).settled
+    settled = case.settled_at(gear_temperature, model)
     status = cycle["status"]
     values = np.where(settled, status.values, STATUS.index("not_converged")).astype(np.int8)
     return cycle.assign(status=(status.dims, values, status.attrs))
@@ -177,8 +177,8 @@ def _with_status(
 def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
     """``cycle`` with the dimensionless numbers of the equation of motion beside it.
 
-    The leading axis is the state, "cold" first, or the gear temperature; thermal stiffness
-    counts from the first of the axis unless the cycle carries its own cold mean.
+    The leading axis is the state, "undeformed" first, or the gear temperature; thermal stiffness
+    counts from the first of the axis unless the cycle carries the undeformed mean itself.
     """
     mass = case.equivalent_mass
     mean = cycle["mean_stiffness"].values
@@ -229,6 +229,8 @@ def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
     ]
     rest = [str(n) for n in whole.data_vars if n not in along]
     path = whole[along].drop_vars("mesh_phase", errors="ignore")
+    film = path["film_parameter"]
+    path["regime"] = (film.dims, regime(film.values).astype(np.int8), regime_attributes())
     return {"path": path, "mesh": whole[rest]}
 
 
@@ -354,7 +356,17 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
         ["path_position", "mesh_phase", "pinion_radius", "wheel_radius"], errors="ignore"
     )
     kept.attrs = {}
-    return xr.merge([kept, motion], combine_attrs="override").assign_attrs(motion.attrs)
+    joined = xr.merge([kept, motion], combine_attrs="override")
+    return joined.assign_attrs(motion.attrs, housing=_housing(case))
+
+
+def _housing(case: GearCase) -> str:
+    """How the housing goes along with the gears: a name of ``views.captions.FOLLOWS``."""
+    if case.follow == "proportional":
+        return "proportional"
+    if case.temperature_rule is not None:
+        return "follows" if case.temperature_rule.housing.below else "stays"
+    return "stays" if "housing" in case.gearbox.measured else "computed"
 
 
 # --- dimensionless cases ------------------------------------------------------------------

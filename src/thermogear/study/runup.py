@@ -1,4 +1,4 @@
-"""A run-up: speed up and down, cold and hot, what is felt and heard, and where it jumps."""
+"""A run-up: speed up and down, undeformed and hot, what is felt and heard, and where it jumps."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from thermogear.analysis.outcome import (
 from thermogear.analysis.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.study.case import GearCase, gear_case
 from thermogear.study.gearwords import GearFamily, Tabulated
 from thermogear.study.notices import range_notices
@@ -42,7 +43,7 @@ STEEP = 3.0
 """... when that is so many times what it changes by between the speeds beside."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RunUpPlan:
     """A run-up over ``speeds`` [rad/s]; see :func:`run_up`."""
 
@@ -75,7 +76,7 @@ class RunUpPlan:
         return {
             "model": self.family(0).inputs(),
             "speeds": list(self.speeds),
-            "temperatures": ["cold" if t is None else t for t in self.temperatures],
+            "temperatures": [UNDEFORMED if t is None else t for t in self.temperatures],
             "torque": self.torque,
             "rule": rule_inputs(self.rule),
             "record": {f.name: getattr(self.record, f.name) for f in fields(self.record)},
@@ -88,7 +89,7 @@ class RunUpPlan:
         temperature = self.temperatures[state]
         case = replace(self.case, torques=(self.torque,))
         return GearFamily(
-            case, ("pinion_speed",), self.bundle, "cold" if temperature is None else temperature
+            case, ("pinion_speed",), self.bundle, UNDEFORMED if temperature is None else temperature
         )
 
     def variables(self) -> dict[str, Variable]:
@@ -320,12 +321,12 @@ def run_up_plan(
     hot_states = [t for t in states if t is not None]
     family.require({"pinion_speed": axis, "pinion_torque": load, "gear_temperature": hot_states})
     return RunUpPlan(
-        case,
-        tuple(axis.tolist()),
-        states,
-        family.bundle,
-        load,
-        rule,
+        case=case,
+        speeds=tuple(axis.tolist()),
+        temperatures=states,
+        bundle=family.bundle,
+        torque=load,
+        rule=rule,
         branch_period=branch_period,
     )
 
@@ -344,10 +345,10 @@ def run_up(
     scheduler: str | None = None,
     report: Report | None = None,
 ) -> xr.Dataset:
-    """Run the gears up and down over ``speeds`` [rad/s], cold and hot.
+    """Run the gears up and down over ``speeds`` [rad/s], undeformed and hot.
 
-    ``temperatures`` [K] of both addenda, None for the cold state (default: cold, and as hot as
-    the case is); bores, housing and oil go along by the case's rule. Each speed starts from the
+    ``temperatures`` [K] of both addenda, None for undeformed gears (default: these, and as hot
+    as the case is); bores, housing and oil go along by the case's rule. Each speed starts from the
     motion at the speed before. Over (state, direction, pinion_speed): dynamic transmission
     error (mean, rms, peak to peak), dynamic mesh force, dynamic factor, contact loss, label and
     multipliers; ``dte_line`` over order as well, the waterfall. ``jump_...``: where the motion

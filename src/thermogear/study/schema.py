@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field, StrictBool, create_model, model_validator
 from pydantic.json_schema import models_json_schema
 
+from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.mesh.model import CHOICES
 from thermogear.study.fields import (
     BODY,
+    FOLLOW,
     Choice,
     Count,
     Measure,
@@ -22,6 +24,7 @@ from thermogear.study.fields import (
     NumberOrTemperature,
     Several,
     Words,
+    measure,
 )
 from thermogear.study.flank_schema import ProfileTable, ReliefTable
 from thermogear.study.gearbox_schema import GearboxTable
@@ -40,10 +43,10 @@ PARAMETERS = (
 )
 """The numbers of the dimensionless equation, in the order of its keywords."""
 
-Shape = Annotated[float, Number(0.0, 5.0, "1.25")]
+Shape = Annotated[float, Number(low=bounds.RACK.low, high=bounds.RACK.high, example="1.25")]
 Allowance = Annotated[
     tuple[float, ...],
-    Several(Measure("length", "-10 mm", "10 mm", example="-0.08 mm"), 1, 2),
+    Several(Measure("length", "-10 mm", "10 mm", example="-0.08 mm"), least=1, most=2),
 ]
 Inertia = Annotated[float, Measure("moment of inertia", "1e-9 kg m^2", "1e6 kg m^2")]
 
@@ -61,25 +64,26 @@ class RackTable(Table):
 class GearTable(Table):
     """One gear."""
 
-    teeth: Annotated[int, Count(5, 2000)]
+    teeth: Annotated[int, Count(low=bounds.LEAST_TEETH, high=bounds.MOST_TEETH)]
     face_width: Length
     bore_radius: Length
-    profile_shift: Annotated[float, Number(-2.0, 2.0, "0.2")] = Field(
-        default=0.0, description="no profile shift"
-    )
+    profile_shift: Annotated[
+        float,
+        Number(low=bounds.PROFILE_SHIFT.low, high=bounds.PROFILE_SHIFT.high, example="0.2"),
+    ] = Field(default=0.0, description="no profile shift")
     tip_diameter: Annotated[
         float | None, Measure("length", "0.1 mm", "20000 mm", example="135 mm")
     ] = Field(default=None, description="pitch diameter + 2 (addendum + profile shift) modules")
     material: Annotated[str, Words('"steel"')]
-    roughness: Annotated[float, Measure("length", "0.001 um", "100 um", example="0.4 um")]
+    roughness: Annotated[float, measure("length", bounds.ROUGHNESS, example="0.4 um")]
     tip_relief: ReliefTable | None = Field(default=None, title="no tip relief")
     root_relief: ReliefTable | None = Field(default=None, title="no root relief")
     pitch_errors: Annotated[
         tuple[float, ...] | None,
-        Several(Measure("length", "-1000 um", "1000 um", example="3 um"), 1, 2000),
+        Several(measure("length", bounds.PITCH_ERROR, example="3 um"), least=1, most=2000),
     ] = Field(default=None, title="one for each tooth; none")
     pressure_angle_error: Annotated[
-        float | None, Measure("angle", "-1.1 deg", "1.1 deg", example="0.02 deg")
+        float | None, measure("angle", bounds.ANGLE_ERROR, example="0.02 deg")
     ] = Field(default=None, title="none")
     profile: ProfileTable | None = Field(default=None, title="no table of added material")
     allow_undercut: StrictBool = Field(
@@ -90,10 +94,10 @@ class GearTable(Table):
 class GearsTable(Table):
     """What both gears share, and the two of them."""
 
-    module: Annotated[float, Measure("length", "0.05 mm", "100 mm")]
-    pressure_angle: Annotated[float, Measure("angle", "10 deg", "35 deg")]
+    module: Annotated[float, measure("length", bounds.MODULE)]
+    pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)]
     centre_distance: Annotated[
-        float | None, Measure("length", "0.1 mm", "20000 mm", example="250 mm")
+        float | None, measure("length", bounds.CENTRE_DISTANCE, example="250 mm")
     ] = Field(default=None, title="left out: the mesh of the profile shifts without backlash")
     rack: RackTable | None = Field(
         default=None, description="left out: basic rack of ISO 53, its fillet as round as fits"
@@ -105,19 +109,17 @@ class GearsTable(Table):
 class MaterialTable(Table):
     """A material of the user's own."""
 
-    youngs_modulus: Annotated[float, Measure("pressure", "0.01 GPa", "2000 GPa")]
-    poisson_ratio: Annotated[float, Number(0.0, 0.499, "0.3")]
-    density: Annotated[float, Measure("density", "100 kg/m^3", "30000 kg/m^3")]
-    thermal_conductivity: Annotated[
-        float, Measure("thermal conductivity", "0.01 W/(m K)", "3000 W/(m K)")
-    ]
-    specific_heat: Annotated[float, Measure("specific heat", "10 J/(kg K)", "10000 J/(kg K)")]
-    thermal_expansion: Annotated[float, Measure("thermal expansion", "-1e-5 1/K", "5e-4 1/K")]
+    youngs_modulus: Annotated[float, measure("pressure", bounds.YOUNGS_MODULUS)]
+    poisson_ratio: Annotated[float, Number(low=0.0, high=0.499, example="0.3")]
+    density: Annotated[float, measure("density", bounds.DENSITY)]
+    thermal_conductivity: Annotated[float, measure("thermal conductivity", bounds.CONDUCTIVITY)]
+    specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)]
+    thermal_expansion: Annotated[float, measure("thermal expansion", bounds.EXPANSION)]
     modulus_slope: Annotated[
-        float, Measure("thermal expansion", "-0.01 1/K", "0.01 1/K", example="3.3e-4 1/K")
+        float, measure("thermal expansion", bounds.MODULUS_SLOPE, example="3.3e-4 1/K")
     ] = Field(default=0.0, description="Young's modulus taken as independent of temperature")
     tempering_temperature: Annotated[
-        float | None, Measure("temperature", "-70 degC", "3000 degC", example="180 degC")
+        float | None, measure("temperature", bounds.TEMPERING, example="180 degC")
     ] = Field(default=None, description="no limit known")
 
 
@@ -139,12 +141,13 @@ class OilTable(Table):
         Measure("kinematic viscosity", "0.8 mm^2/s", "10000 mm^2/s", example="11 mm^2/s"),
     ] = Field(default=None, title="from the named set")
     density_15: Annotated[
-        float | None, Measure("density", "500 kg/m^3", "2500 kg/m^3", example="885 kg/m^3")
+        float | None, measure("density", bounds.OIL_DENSITY, example="885 kg/m^3")
     ] = Field(default=None, title="from the named set")
     temperature: Body | None = None
     temperature_below_addendum: Below | None = None
     scuffing_load_stage: Annotated[
-        float | None, Number(1.0, 14.0, "12", "load stages of the FZG test A/8.3/90")
+        float | None,
+        Number(low=1.0, high=14.0, example="12", why="load stages of the FZG test A/8.3/90"),
     ] = Field(default=None, title="unknown: no scuffing margin")
 
     @model_validator(mode="after")
@@ -211,7 +214,7 @@ class OperatingTable(Table):
             Measure("rotational speed", "0.1 rpm", "500000 rpm", "a gear at rest has no motion")
         ),
     ]
-    torque: Annotated[tuple[float, ...], Several(Measure("torque", "0 N m", "1e7 N m"))]
+    torque: Annotated[tuple[float, ...], Several(measure("torque", bounds.TORQUE))]
 
 
 class TemperaturesTable(Table):
@@ -232,8 +235,13 @@ class TemperaturesTable(Table):
     housing_below_addendum: Below | None = None
     row: Annotated[
         tuple[float, ...],
-        Several(BODY, 0, 1000, distinct=True),
+        Several(BODY, least=0, most=1000, distinct=True),
     ] = Field(default=(), description="no row of gear temperatures")
+    follow: Annotated[str, Choice(*FOLLOW)] = Field(
+        default="proportional",
+        description="where the gears' temperature is varied, every excess over the reference is "
+        "scaled with the gears', as in a linear heat network",
+    )
 
     @property
     def computed(self) -> bool:
@@ -320,13 +328,13 @@ class BacklashTable(Table):
 class DynamicsTable(Table):
     """What vibration needs beside the mesh."""
 
-    damping_ratio: Annotated[float, Number(0.0, 2.0, "0.07")]
+    damping_ratio: Annotated[float, Number(low=0.0, high=2.0, example="0.07")]
 
 
 class HarmonicTable(Table):
     """One harmonic of the kinematic error: amplitude cos(2 pi order phi + phase)."""
 
-    order: Annotated[int, Count(1, 1000, "1")]
+    order: Annotated[int, Count(low=1, high=1000, example="1")]
     amplitude: Annotated[float, Measure("length", "0 um", "1000 um", example="5 um")]
     phase: Annotated[float, Measure("angle", "-360 deg", "360 deg")] = Field(
         default=0.0, description="in phase with the entry of a new tooth pair"
@@ -351,7 +359,7 @@ def _model_table() -> type[Table]:
     fields: dict[str, Any] = {
         "bundle": (Annotated[str, Choice("both", "consistent", "thesis")], ...),
         "dry_coefficient": (
-            Annotated[float | None, Number(0.001, 1.0, "0.2")],
+            Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
             Field(default=None, title="as the bundle has it"),
         ),
     }
@@ -373,27 +381,27 @@ else:
 class SimulationTable(Table):
     """How long and how finely the motion is followed."""
 
-    periods: Annotated[int, Count(8, 1_000_000, "256")] = Field(
+    periods: Annotated[int, Count(low=8, high=1_000_000, example="256")] = Field(
         default=256, description="mesh periods kept for section and spectrum"
     )
-    discard: Annotated[int, Count(0, 10_000_000, "400")] = Field(
+    discard: Annotated[int, Count(low=0, high=10_000_000, example="400")] = Field(
         default=400, description="mesh periods thrown away first, at least"
     )
-    most_discarded: Annotated[int, Count(0, 10_000_000, "4000")] = Field(
+    most_discarded: Annotated[int, Count(low=0, high=10_000_000, example="4000")] = Field(
         default=4000, description="mesh periods thrown away at most while a transient dies out"
     )
-    steps_per_period: Annotated[int, Count(16, 65536, "512")] = Field(
+    steps_per_period: Annotated[int, Count(low=16, high=65536, example="512")] = Field(
         default=512, description="Runge-Kutta steps per mesh period"
     )
-    samples: Annotated[int, Count(8, 4096, "128")] = Field(
+    samples: Annotated[int, Count(low=8, high=4096, example="128")] = Field(
         default=128, description="stored samples per mesh period"
     )
-    sample_periods: Annotated[int, Count(1, 10_000, "8")] = Field(
+    sample_periods: Annotated[int, Count(low=1, high=10_000, example="8")] = Field(
         default=8, description="mesh periods of stored time history"
     )
-    initial_state: Annotated[tuple[float, ...], Several(Number(-1e6, 1e6, "0.0"), 2, 2)] = Field(
-        default=(0.0, 0.0), description="start in the middle of the gap, at rest"
-    )
+    initial_state: Annotated[
+        tuple[float, ...], Several(Number(low=-1e6, high=1e6, example="0.0"), least=2, most=2)
+    ] = Field(default=(0.0, 0.0), description="start in the middle of the gap, at rest")
 
     @model_validator(mode="after")
     def _ordered(self) -> SimulationTable:
@@ -417,13 +425,13 @@ class SimulationTable(Table):
 class GridTable(Table):
     """How finely the path of contact and the mesh period are sampled."""
 
-    path_positions: Annotated[int, Count(11, 100_001, "201")] = Field(
+    path_positions: Annotated[int, Count(low=11, high=100_001, example="201")] = Field(
         default=201, description="positions along the path of contact, A to E"
     )
-    mesh_positions: Annotated[int, Count(16, 65536, "240")] = Field(
+    mesh_positions: Annotated[int, Count(low=16, high=65536, example="240")] = Field(
         default=240, description="phases of the mesh period"
     )
-    harmonics: Annotated[int, Count(1, 2000, "24")] = Field(
+    harmonics: Annotated[int, Count(low=1, high=2000, example="24")] = Field(
         default=24, description="harmonics of the stiffness kept for the motion"
     )
 
@@ -445,14 +453,11 @@ class DrawTable(Table):
     """What the report shows."""
 
     pictures: Annotated[
-        tuple[str, ...], Several(Choice(*PICTURES), 0, 20, single=False, distinct=True)
+        tuple[str, ...], Several(Choice(*PICTURES), least=0, most=20, single=False, distinct=True)
     ] = Field(default=PICTURES, description="every picture")
     base_sets: Annotated[
-        tuple[str, ...], Several(Choice(*BASE_SETS), 0, 2, single=False, distinct=True)
-    ] = Field(
-        default=BASE_SETS,
-        description="the ready-made dimensionless cases, beside the rig's numbers",
-    )
+        tuple[str, ...], Several(Choice(*BASE_SETS), least=0, most=2, single=False, distinct=True)
+    ] = Field(default=(), description="none; the thesis's, beside the numbers of its rig")
 
 
 class GearFile(Table):
@@ -498,14 +503,21 @@ class GearFile(Table):
         return self
 
 
-_Plain = Annotated[tuple[float, ...], Several(Number(-1e6, 1e6))]
-_Positive = Annotated[tuple[float, ...], Several(Number(1e-9, 1e6))]
-_NotNegative = Annotated[tuple[float, ...], Several(Number(0.0, 1e3, "0.15"))]
+_Plain = Annotated[tuple[float, ...], Several(Number(low=-1e6, high=1e6))]
+_Positive = Annotated[tuple[float, ...], Several(Number(low=1e-9, high=1e6))]
+_NotNegative = Annotated[tuple[float, ...], Several(Number(low=0.0, high=1e3, example="0.15"))]
 _Amplitude = Annotated[
     tuple[float, ...],
-    Several(Number(0.0, 0.999, "0.335", "the mesh stiffness 1 + eps cos would reach zero")),
+    Several(
+        Number(
+            low=0.0,
+            high=0.999,
+            example="0.335",
+            why="the mesh stiffness 1 + eps cos would reach zero",
+        )
+    ),
 ]
-_Stiffening = Annotated[tuple[float, ...], Several(Number(-0.999, 1e3, "0.02"))]
+_Stiffening = Annotated[tuple[float, ...], Several(Number(low=-0.999, high=1e3, example="0.02"))]
 
 
 class BaseTable(Table):
@@ -527,7 +539,7 @@ class RowTable(Table):
 
     parameter: Annotated[str, Choice(*PARAMETERS, "temperature")]
     values: Annotated[tuple[tuple[float, str], ...], Several(NumberOrTemperature())]
-    expected: Annotated[tuple[str, ...], Several(Words('"period-1"'), 0)] = Field(
+    expected: Annotated[tuple[str, ...], Several(Words('"period-1"'), least=0)] = Field(
         default=(), description="no label is expected"
     )
     damping_ratio: _NotNegative | None = None

@@ -12,7 +12,7 @@ import importlib
 import time
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,12 +36,16 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 from thermogear.study.case import GearCase
 from thermogear.study.results import write_results, write_summary
+from thermogear.study.thesis_cases import require_of_the_thesis
 
 Floats = NDArray[np.float64]
 PATH, PHASES, HARMONICS = 41, 64, 16
 DISCARD, PERIODS, SAMPLES = 300, 8, 64
 LANES = 1024
 COLD, HOT = 0, 1
+
+ABOUT = "the ranges and the conclusions of this study"
+"""What belongs to the thesis's rig alone."""
 
 FIXED = ("face_width", "viscosity", "roughness", "backlash")
 """Inputs of which a mesh cycle takes one value for all its operating points."""
@@ -57,6 +61,7 @@ class Input:
     name: str
     words: str
     unit: str
+    _: KW_ONLY
     low: float
     high: float
     scale: float = 1.0
@@ -71,17 +76,26 @@ class Input:
 
 
 INPUTS: tuple[Input, ...] = (
-    Input("face_width", "face width", "mm", 0.015, 0.040, 1e3),
-    Input("torque", "pinion torque", "N m", 50.0, 200.0),
-    Input("viscosity", "oil viscosity at 40 °C", "mm²/s", 46e-6, 320e-6, 1e6, 0.0, True),
-    Input("roughness", "roughness Ra", "µm", 0.2e-6, 0.8e-6, 1e6),
-    Input("backlash", "cold backlash (total, normal)", "mm", 0.20e-3, 0.40e-3, 1e3),
-    Input("damping", "damping ratio", "–", 0.03, 0.17),
-    Input("error", "kinematic error amplitude", "µm", 1e-6, 10e-6, 1e6),
-    Input("gear", "gear temperature", "°C", 373.15, 433.15, 1.0, ZERO_CELSIUS),
-    Input("housing", "housing below the gears", "K", 0.0, 60.0),
-    Input("shaft", "shafts below the gears", "K", 0.0, 40.0),
-    Input("oil", "oil below the gears", "K", 0.0, 60.0),
+    Input("face_width", "face width", "mm", low=0.015, high=0.040, scale=1e3),
+    Input("torque", "pinion torque", "N m", low=50.0, high=200.0),
+    Input(
+        "viscosity",
+        "oil viscosity at 40 °C",
+        "mm²/s",
+        low=46e-6,
+        high=320e-6,
+        scale=1e6,
+        zero=0.0,
+        logarithmic=True,
+    ),
+    Input("roughness", "roughness Ra", "µm", low=0.2e-6, high=0.8e-6, scale=1e6),
+    Input("backlash", "cold backlash (total, normal)", "mm", low=0.20e-3, high=0.40e-3, scale=1e3),
+    Input("damping", "damping ratio", "–", low=0.03, high=0.17),
+    Input("error", "kinematic error amplitude", "µm", low=1e-6, high=10e-6, scale=1e6),
+    Input("gear", "gear temperature", "°C", low=373.15, high=433.15, scale=1.0, zero=ZERO_CELSIUS),
+    Input("housing", "housing below the gears", "K", low=0.0, high=60.0),
+    Input("shaft", "shafts below the gears", "K", low=0.0, high=40.0),
+    Input("oil", "oil below the gears", "K", low=0.0, high=60.0),
 )
 """Every range is ours, as wide as rigs of this kind are; only the gear temperature's is stated."""
 
@@ -125,7 +139,7 @@ OUTPUTS: tuple[Output, ...] = (
 """What is watched; the conclusions are the thesis's, or what a reader would ask of it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Plan:
     """The study: ``samples`` base samples N (a power of two; N (inputs + 2) evaluations).
 
@@ -197,7 +211,7 @@ def grade(viscosity_40: float) -> Lubricant:
 def sensitivity(
     case: GearCase, plan: Plan | None = None, *, progress: Progress = silent
 ) -> xr.Dataset:
-    """Sobol' indices of every output for every input, with confidence intervals.
+    """Sobol' indices of every output for every input of the thesis's rig, with their intervals.
 
     First order: the share of the variance an input brings alone; total: with everything it does
     together with others. Inputs are independent and uniform in their ranges (viscosity in its
@@ -209,6 +223,7 @@ def sensitivity(
     width), per output ``mean``, ``low``, ``high`` (5 and 95 % of the samples), ``holds`` (share
     of samples in which the conclusion holds) in shown units; attributes: evaluations, seconds.
     """
+    require_of_the_thesis(case, ABOUT)
     chosen = Plan() if plan is None else plan
     sampler, analyser = salib("sample.sobol"), salib("analyze.sobol")
     problem = {
@@ -398,7 +413,7 @@ def _pair(case: GearCase, at: dict[str, float]) -> GearPair:
 def _inertias(case: GearCase, pair: GearPair) -> tuple[float, float]:
     """The case's inertias, of discs that are as wide as the gears."""
     first, second = (
-        disc_inertia(new, new.pitch_radius) / disc_inertia(old, old.pitch_radius)
+        disc_inertia(new, radius=new.pitch_radius) / disc_inertia(old, radius=old.pitch_radius)
         for new, old in (
             (pair.pinion, case.pair.pinion),
             (pair.wheel, case.pair.wheel),
@@ -444,7 +459,7 @@ def _operating(
         lubricant=grade(one["viscosity"]) if "viscosity" in one else case.operating.lubricant,
         oil_temperature=np.tile(oil, 2),
         temperatures=Temperatures(
-            reference, **{name: np.concatenate([cold, row]) for name, row in hot.items()}
+            reference=reference, **{name: np.concatenate([cold, row]) for name, row in hot.items()}
         ),
         half_backlash=0.5 * one["backlash"] if "backlash" in one else case.operating.half_backlash,
         housing=case.housing,

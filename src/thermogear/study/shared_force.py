@@ -60,10 +60,12 @@ def shared_results(
     here = gears.excitation()
     hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
     progress("springs", 0, 2)
-    drive = pair_springs(hot, positions=POSITIONS)
-    back = pair_springs(hot, flank="back", positions=POSITIONS)
+    drive, back = (
+        pair_springs(hot, 0, gears.case.deviations, flank=flank, positions=POSITIONS)
+        for flank in ("drive", "back")
+    )
     progress("springs", 2, 2)
-    data = at_rest(gears, here, drive)
+    data = at_rest(gears, here, drive).merge(free_play(gears, here, drive, back))
     resonance = here.natural_frequency / gears.case.pair.pinion.teeth
     low, high = speeds or (resonance / 3.0, 5.0 * resonance / 3.0)
     rows: dict[str, list[list[float]]] = {"shared_swing": [], "one_spring_swing": []}
@@ -100,7 +102,7 @@ def at_rest(gears: Gears, here: Excitation, drive: PairSprings) -> xr.Dataset:
     hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
     phase = np.arange(POSITIONS) / POSITIONS + 1e-12
     loads = FACTORS * here.mean_force
-    exact = contact_at(hot, 0, loads, phase)
+    exact = contact_at(hot, 0, loads, phase, gears.case.deviations)
     shared = drive.deflection(loads[:, None], phase)
     k = here.stiffness(phase)
     # the kinematic error is in neither of the static curves
@@ -123,6 +125,24 @@ def at_rest(gears: Gears, here: Excitation, drive: PairSprings) -> xr.Dataset:
             "load": ("load", loads, {"units": "N", "long_name": "normal force"}),
             "factor": ("load", FACTORS, {"units": "1", "long_name": "load over the mean load"}),
         },
+    )
+
+
+def free_play(gears: Gears, here: Excitation, drive: PairSprings, back: PairSprings) -> xr.Dataset:
+    """Free play 2 b' [m] over the mesh phase: of the pairs' springs and of the one spring.
+
+    Both from one gap function; in motion the one spring keeps its mean all along.
+    """
+    cycle = gears.cycle()
+    phase = cycle["mesh_phase"].values
+    shared = LoadSharedModel.from_excitation(here, drive, back)
+    values = {
+        "shared_clearance": shared.clearance(phase),
+        "one_spring_clearance": 2.0 * cycle["half_backlash_curve"].values[0],
+    }
+    return xr.Dataset(
+        {name: ("mesh_phase", play, METRES) for name, play in values.items()},
+        {"mesh_phase": ("mesh_phase", phase, {"units": "1", "long_name": "mesh phase"})},
     )
 
 
@@ -151,7 +171,12 @@ def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:
         return float(np.median(gap) if middle else gap.max())
 
     rested = rest.swap_dims(load="factor")
-    found_here: dict[str, float] = {}
+    play = rest["one_spring_clearance"].values
+    found_here = {
+        "least_clearance_m": float(play.min()),
+        "mean_clearance_m": float(play.mean()),
+        "clearance_apart_m": float(np.abs(rest["shared_clearance"].values - play).max()),
+    }
     for where, part in (("mean", 1.0), ("light", LIGHT)):
         found_here |= {
             f"stiffness_at_{where}_load": apart(rested, "stiffness", factor=part),

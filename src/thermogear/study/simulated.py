@@ -57,7 +57,7 @@ def tree_lines(tree: Any) -> dict[str, LineTable]:
                 x = float(amplitude.values[place])
                 f = float(np.asarray(frequency.values)[place])
                 if np.isfinite(x) and x > 0 and float(speed) not in lines:
-                    lines[float(speed)] = SpeedLine(float(speed), f, x)
+                    lines[float(speed)] = SpeedLine(speed=float(speed), frequency=f, displacement=x)
             if lines:
                 name = f"{bundle} {state}"
                 found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
@@ -69,6 +69,7 @@ def tree_lines(tree: Any) -> dict[str, LineTable]:
 def case_lines(
     case: Case | str | Path,
     tolerances: Mapping[str, float],
+    *,
     samples: int,
     seed: int,
     u_num: float | None,
@@ -189,7 +190,7 @@ def override_of(text: str, changes: Mapping[str, str], name: str, factor: float)
 
 
 def simulated_record(
-    displacement: Floats, periods: int, mesh_frequency: float, rate: float, samples: int
+    displacement: Floats, periods: int, *, mesh_frequency: float, rate: float, samples: int
 ) -> Record:
     """A periodic motion as the acceleration record that a sensor would give of it [m/s^2].
 

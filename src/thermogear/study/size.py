@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 
 from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import STATES
 from thermogear.study.case import Case, DimensionlessCase, GearCase
 
 _NUMBER = 8  # bytes of a float
 _PATH_CURVES = 30  # curves over the path of contact, working copies included
 _MESH_CURVES = 16  # curves over the mesh period, working copies included
-_STATES = 2  # cold and hot
 SHARE = 0.7
 """A run may take this share of the free memory."""
 
@@ -21,7 +21,7 @@ def estimated_bytes(case: Case) -> int:
     motion = 2 * sim.samples * (sim.periods + sim.sample_periods) + 10 * sim.periods
     if isinstance(case, GearCase):
         curves = _PATH_CURVES * case.path_positions + _MESH_CURVES * case.mesh_positions
-        states = len(case.models) * (_STATES + len(case.gear_temperatures))
+        states = len(case.models) * (len(STATES) + len(case.gear_temperatures))
         return _NUMBER * states * len(case.speeds) * len(case.torques) * (curves + motion)
     points = len(case.points) if isinstance(case, DimensionlessCase) else 1
     return _NUMBER * points * motion

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
+from thermogear.base.files import decoded
 from thermogear.study.ready import EXAMPLES, example_text
 from thermogear.study.units import short
 
@@ -44,13 +45,11 @@ def case_text(source: str | Path) -> tuple[str, str]:
         raise InputError(
             name, f"more than {LARGEST} bytes", allowed=f"0..{LARGEST} bytes", why="no case file"
         )
-    if b"\0" in raw:
-        raise InputError(
-            name, "binary data", allowed="UTF-8 text (TOML)", why="it holds zero bytes"
-        )
     try:
-        return name, raw.decode("utf-8-sig")
+        text = decoded(raw)
     except UnicodeDecodeError as cause:
+        if b"\0" in raw:
+            raise _binary(name) from cause
         line = raw.count(b"\n", 0, cause.start) + 1
         raise InputError(
             name,
@@ -59,6 +58,13 @@ def case_text(source: str | Path) -> tuple[str, str]:
             why="another encoding",
             fix="save the file as UTF-8",
         ) from cause
+    if "\0" in text:
+        raise _binary(name)
+    return name, text
+
+
+def _binary(name: str) -> InputError:
+    return InputError(name, "binary data", allowed="UTF-8 text (TOML)", why="it holds zero bytes")
 
 
 def _instead(path: Path) -> str:
@@ -72,7 +78,7 @@ def _instead(path: Path) -> str:
     if close:
         return f"did you mean {close[0]!r}?"
     example = path.stem if path.stem in EXAMPLES else "rig"
-    return f"`thermogear example {example} > {example}.toml` writes one"
+    return f"`thermogear example {example} -o {example}.toml` writes one"
 
 
 def tables(name: str, text: str) -> dict[str, Any]:

@@ -76,6 +76,7 @@ class Staging:
         self,
         name: str,
         dims: tuple[str, ...],
+        *,
         shape: tuple[int, ...],
         chunks: tuple[int, ...],
         dtype: np.dtype[Any],
@@ -146,7 +147,15 @@ class Store:
         for name, v in plan.variables().items():
             shape = tuple(int(plan.sizes[d]) for d in v.dims)
             chunks = tuple(int(plan.cuts.get(d, plan.sizes[d])) for d in v.dims)
-            self._staging.make(name, v.dims, shape, chunks, np.dtype(v.dtype), v.fill, v.attributes)
+            self._staging.make(
+                name,
+                v.dims,
+                shape=shape,
+                chunks=chunks,
+                dtype=np.dtype(v.dtype),
+                fill=v.fill,
+                attributes=v.attributes,
+            )
 
     # --- opening and closing ---------------------------------------------------------------
 
@@ -367,7 +376,15 @@ class Store:
             dims = tuple(str(d) for d in variable.dims)
             shape = values.shape
             chunks = tuple(max(1, n) for n in shape)
-            staging.make(name, dims, shape, chunks, values.dtype, None, variable.attrs)
+            staging.make(
+                name,
+                dims,
+                shape=shape,
+                chunks=chunks,
+                dtype=values.dtype,
+                fill=None,
+                attributes=variable.attrs,
+            )
             region = tuple(slice(0, n) for n in shape)
             files = staging.take(name, region, values) if values.size else {}
             for path, content in files.items():

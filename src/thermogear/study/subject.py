@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+import xarray as xr
 
 from thermogear.analysis.continuation import family_of
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Excitation
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import STATES, UNDEFORMED
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
@@ -61,7 +62,7 @@ MOTION = Simulation(
 """How the motion of plain numbers is followed."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Scale:
     """Dimensionless to SI: ``length`` b_c [m], ``rate`` omega_n [rad/s], ``mesh`` [Hz].
 
@@ -87,11 +88,14 @@ class Gears:
     operating: Operating
     state: str
 
+    def cycle(self) -> xr.Dataset:
+        """The mesh cycle there, a few positions along the path alone."""
+        return self.case.cycle(self.operating, self.bundle, path_positions=3)
+
     def excitation(self) -> Excitation:
         """k(t), e(t), backlash and force there; InputError where the pair is jammed."""
-        cycle = self.case.cycle(self.operating, self.bundle, path_positions=3)
         (found,) = excitation(
-            cycle,
+            self.cycle(),
             self.case.pair,
             damping_ratio=self.case.damping_ratio,
             inertias=self.case.inertias,
@@ -115,11 +119,18 @@ class Gears:
             return float(np.ravel(self.operating.torque)[0])
         return float(np.ravel(self.operating.temperatures.pinion_addendum)[0])
 
+    @cached_property
+    def _alone(self) -> GearCase:
+        """The case with this operating point as its only one."""
+        here = self.operating
+        return replace(
+            self.case, stated=replace(self.case.stated, speed=here.speed, torque=here.torque)
+        )
+
     def at(self, parameter: str, value: float) -> Gears:
         """The same pair with one of :data:`GEAR_PARAMETERS` changed; temperature of both gears."""
         if parameter == "temperature":
-            hot = self.case.operating_at(value)
-            operating = replace(hot, speed=self.operating.speed, torque=self.operating.torque)
+            operating = self._alone.operating_at(value, self.bundle)
         else:
             values = np.array([value])
             operating = (
@@ -189,7 +200,7 @@ def of_case(
     simulation = case.simulation if start is None else replace(case.simulation, initial_state=start)
     if isinstance(case, DimensionlessCase):
         points = rows_of(case)[named("--row", row, list(rows_of(case)))]
-        chosen = points[counted("--point", point, len(points))]
+        chosen = points[counted("--point", point, most=len(points))]
         given = {**chosen.model_arguments(), **(numbers or {})}
         require_numbers(given)
         model = TorsionalModel(**given)
@@ -203,13 +214,13 @@ def of_case(
             why="the gears decide the numbers of their equation",
             fix="use --set, for instance --set dynamics.damping_ratio=0.1",
         )
-    if state not in ("cold", "hot"):
-        raise InputError("--state", repr(state), allowed="cold | hot")
+    if state not in STATES:
+        raise InputError("--state", repr(state), allowed=" | ".join(STATES))
     names = [m.name for m in case.models]
     model_of = dict(zip(names, case.models, strict=True))[named("--bundle", bundle, names)]
-    here = counted("--operating", operating, len(case.speeds) * len(case.torques))
-    one = _one_point(case.operating, here)
-    if state == "cold":
+    here = counted("--operating", operating, most=len(case.speeds) * len(case.torques))
+    one = case.operating_of(model_of).point(here)
+    if state == UNDEFORMED:
         one = replace(one, temperatures=one.temperatures.cold())
     gears = Gears(case, model_of, one, state)
     return _of_gears(gears, simulation)
@@ -223,27 +234,11 @@ def _of_gears(gears: Gears, simulation: Simulation) -> Subject:
         f"{gears.bundle.name}, {gears.state}"
     )
     scale = Scale(
-        found.reference_half_backlash,
-        found.natural_frequency,
-        found.mesh_frequency / (2.0 * np.pi),
+        length=found.reference_half_backlash,
+        rate=found.natural_frequency,
+        mesh=found.mesh_frequency / (2.0 * np.pi),
     )
     return Subject(title, from_excitation(found), simulation, scale, gears)
-
-
-def _one_point(operating: Operating, place: int) -> Operating:
-    """The operating point ``place`` alone."""
-    speeds, torques = np.broadcast_arrays(operating.speed, operating.torque)
-
-    def at(values: ArrayLike) -> ArrayLike:
-        array = np.asarray(values, dtype=float)
-        return array[place : place + 1] if array.ndim and array.size == speeds.size > 1 else values
-
-    return replace(
-        operating,
-        speed=np.ravel(speeds)[place : place + 1],
-        torque=np.ravel(torques)[place : place + 1],
-        oil_temperature=at(operating.oil_temperature),
-    )
 
 
 def rows_of(case: DimensionlessCase) -> dict[str, list[Point]]:
@@ -263,7 +258,7 @@ def named(option: str, name: str | None, known: list[str]) -> str:
     return name
 
 
-def counted(option: str, number: int, most: int) -> int:
+def counted(option: str, number: int, *, most: int) -> int:
     """Place of the ``number``-th, counted from 1."""
     if not 1 <= number <= most:
         raise InputError(option, number, allowed=f"1..{most}")
@@ -292,7 +287,9 @@ def parameter_value(option: str, subject: Subject, parameter: str, text: str) ->
     numbers = subject.parameters | {parameter: value}
     if "stiffness_amplitude" in numbers:
         positive_stiffness(
-            "stiffness_amplitude", numbers["stiffness_amplitude"], numbers["thermal_stiffness"]
+            "stiffness_amplitude",
+            numbers["stiffness_amplitude"],
+            thermal=numbers["thermal_stiffness"],
         )
     return value
 
@@ -303,11 +300,11 @@ def family(subject: Subject, parameter: str) -> tuple[Family, float]:
     if gears is None or parameter not in GEAR_PARAMETERS:
         return family_of(subject.model, parameter)
 
-    if parameter == "temperature" and gears.state == "cold":
+    if parameter == "temperature" and gears.state == UNDEFORMED:
         raise InputError(
             "--state",
-            "cold, with a temperature to vary",
-            why="cold means everything at the reference temperature",
+            f"{UNDEFORMED}, with a temperature to vary",
+            why="that is everything at the reference temperature",
             fix="use --state hot and --from '20 degC'",
         )
     here = gears.excitation()

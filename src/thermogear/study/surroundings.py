@@ -25,7 +25,7 @@ ROOM = 293.15
 """Window temperature [K] of an infrared reading that gives none."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Reading:
     """A corrected thermometer reading [K] of one node with its standard uncertainty [K]."""
 
@@ -60,7 +60,12 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
         oil_flow=table.oil_flow,
         supply_temperature=table.supply_temperature,
     )
-    return Gearbox(around, table.immersion, table.bearing_coefficient, held), readings
+    return Gearbox(
+        surroundings=around,
+        immersion=table.immersion,
+        bearing_coefficient=table.bearing_coefficient,
+        measured=held,
+    ), readings
 
 
 def _stated(file: GearFile, held: Mapping[str, float]) -> dict[str, float]:
@@ -103,7 +108,15 @@ def _readings(table: GearboxTable, pair: GearPair) -> list[Reading]:
                 why=error.why or str(error),
                 fix=error.fix,
             ) from error
-        found.append(Reading(node, entry.kind, entry.indicated, temperature, sigma))
+        found.append(
+            Reading(
+                node=node,
+                kind=entry.kind,
+                indicated=entry.indicated,
+                temperature=temperature,
+                uncertainty=sigma,
+            )
+        )
     return found
 
 

@@ -41,7 +41,7 @@ SWEEP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 CHUNK_POINTS = 128
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SweepPlan:
     """A sweep over ``axes``; see :func:`sweep`."""
 
@@ -138,7 +138,9 @@ def sweep_plan(
     values = tuple(tuple(axis_values(n, v).tolist()) for n, v in named.items())
     family = GearFamily(case, tuple(named), bundle, state)
     family.require(named)
-    return SweepPlan(family, values, case.simulation.initial_state, rule, record)
+    return SweepPlan(
+        family=family, axes=values, start=case.simulation.initial_state, rule=rule, record=record
+    )
 
 
 def sweep(
@@ -158,7 +160,7 @@ def sweep(
     ``axes`` map names to SI values: pinion_speed [rad/s], pinion_torque [N m], gear_temperature
     [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file. Every point
     starts from the case's initial state. ``bundle`` one of the case's (the first by default),
-    ``state`` "hot" or "cold" where the temperature is no axis. With a ``store`` directory the
+    ``state`` "hot" or "undeformed" where the temperature is no axis. With a ``store`` directory the
     same call resumes; ``scheduler`` is a dask address. Jammed and diverged points are a status.
     """
     plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)

@@ -6,10 +6,11 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict
 
+from thermogear.base import bounds
 from thermogear.base.errors import InputError
-from thermogear.study.fields import BODY, Measure
+from thermogear.study.fields import BODY, Measure, measure
 
-Length = Annotated[float, Measure("length", "0.1 mm", "10000 mm")]
+Length = Annotated[float, measure("length", bounds.LENGTH)]
 Body = Annotated[float, BODY]
 Below = Annotated[float, Measure("temperature difference", "-400 K", "400 K")]
 

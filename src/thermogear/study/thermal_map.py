@@ -29,6 +29,7 @@ from thermogear.study.balances import balance_dataset, dressed
 from thermogear.study.body_estimates import ESTIMATES, body_estimates
 from thermogear.study.case import GearCase
 from thermogear.study.conclusion import QUANTITIES, conclusion, verdicts
+from thermogear.study.thesis_cases import of_the_thesis
 
 Floats = NDArray[np.float64]
 KIND = "temperature"
@@ -61,7 +62,8 @@ def thermal_map(
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
     not_converged) with ``iterations`` and ``residual``; ``conclusion`` (friction, flash and
-    growth, mixed and dry, with rank correlations); ``warm_up`` over time.
+    growth, mixed and dry, with rank correlations); ``warm_up`` over time. For the thesis's rig
+    ``verdicts`` (attribute) say what holds of the thesis's first conclusion.
     """
     began = time.perf_counter()
     model = case.models[0]
@@ -94,7 +96,7 @@ def thermal_map(
     tree.attrs = {
         "thermogear": thermogear.__version__,
         "kind": KIND,
-        "title": f"Temperatures over speed and torque: {case.title}",
+        "title": f"{_heading(chosen)}: {case.title}",
         "case": case.text,
         "overrides": json.dumps([list(pair) for pair in case.overrides]),
         "bundle": model.name,
@@ -106,10 +108,17 @@ def thermal_map(
         "scuffing_load_stage": json.dumps(case.scuffing_load_stage),
         "cold_half_backlash": case.cold_backlash.half,
         "seconds": seconds,
-        "verdicts": json.dumps(verdicts(checked)),
+        "verdicts": json.dumps(verdicts(checked) if of_the_thesis(case) else []),
         "notices": json.dumps(_notices(case, chosen, seconds)),
     }
     return tree
+
+
+def _heading(grid: xr.Dataset) -> str:
+    """What the page of a map, of a line or of one point of it is called."""
+    axes = {"pinion_speed": "speed", "pinion_torque": "torque"}
+    over = [words for name, words in axes.items() if grid.sizes[name] > 1]
+    return f"Temperatures over {' and '.join(over)}" if over else "Temperatures"
 
 
 def _points(case: GearCase, model: MeshModel, speed: Floats, torque: Floats) -> xr.Dataset:
@@ -160,7 +169,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     margin = (
         np.full(contact.shape, np.nan)
         if stage is None
-        else scuffing_margin(scuffing_temperature(stage), contact)
+        else scuffing_margin(limit=scuffing_temperature(stage), temperature=contact)
     )
     least = cycle["half_backlash_curve"].min("mesh_phase").values
     figures: Mapping[str, tuple[Any, str, str]] = {
@@ -197,7 +206,12 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     }
     along = ("operating",)
     variables = {name: dressed(along, *entry) for name, entry in figures.items()}
-    for name in ("jam_temperature", "mesh_efficiency", "mean_stiffness"):
+    for name in (
+        "jam_temperature",
+        "proportional_jam_temperature",
+        "mesh_efficiency",
+        "mean_stiffness",
+    ):
         variables[name] = cycle[name].variable
     variables["regime_share"] = dressed(
         ("operating", "regime_name"), regime_shares(share.values), "1", "share of the path"
@@ -299,6 +313,7 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
     status = grid["status"].values
     settled = status != STATUS.index("not_converged")
     count = status.size
+    told = f"{count} points have" if count > 1 else "1 point has"
     found = []
 
     def say(level: str, text: str) -> None:
@@ -307,8 +322,8 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
     if not settled.all():
         say(
             "important",
-            f"{int((~settled).sum())} of {count} points have no steady temperature; they are left "
-            "out of every picture.",
+            f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
+            "picture.",
         )
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
@@ -320,7 +335,7 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
             "a pair needs an oil cooler (gearbox.oil_flow). They are hatched, and left out of the "
             "rank correlations.",
         )
-    jam = grid["jam_temperature"].values
+    jam, together = (grid[n].values for n in ("jam_temperature", "proportional_jam_temperature"))
     least = grid["least_half_backlash"].values
     if (status == STATUS.index("jammed")).any():
         say("important", f"{int((status == STATUS.index('jammed')).sum())} points are jammed.")
@@ -329,13 +344,14 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
             "info",
             f"No point jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
             "backlash are left. Held against its housing as it is, the pair would jam from "
-            f"{float(np.nanmin(jam[settled])) - ZERO_CELSIUS:.0f} °C of the pinion's teeth.",
+            f"{_least(jam[settled])} of the pinion's teeth, with all bodies rising in proportion "
+            f"from {_least(together[settled])}.",
         )
     if case.scuffing_load_stage is None:
         say("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
     say(
         "info",
-        f"{count} points, mixed and dry, in {seconds:.2f} s; at most "
+        f"{count} point{'s' * (count > 1)}, lubricated and dry, in {seconds:.2f} s; at most "
         f"{int(grid['iterations'].max())} iterations, greatest residual of a settled point "
         f"{float(np.max(grid['residual'].values[settled], initial=0.0)):.1e} K.",
     )
@@ -343,3 +359,9 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
 
 
 __all__ = ["GRID", "KIND", "LUBRICATIONS", "QUANTITIES", "SPEEDS", "TORQUES", "thermal_map"]
+
+
+def _least(kelvin: NDArray[np.float64]) -> str:
+    """The least of some temperatures in words; "no temperature" where there is none."""
+    known = kelvin[np.isfinite(kelvin)]
+    return f"{known.min() - ZERO_CELSIUS:.0f} °C" if known.size else "no temperature"

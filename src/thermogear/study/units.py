@@ -76,22 +76,61 @@ _TEXT = re.compile(
 # as 9**9**9**9, for as long as that takes.
 _NAME = r"[A-Za-zµμ°Ω_]+(?:(?:\^|\*\*)?-?[0-9]{1,2}|[⁻¹²³]{1,2})?"
 _UNIT = re.compile(rf"(?:1\s*/\s*)?\(?{_NAME}(?:(?:\s*[/*·]\s*|\s+)\(?{_NAME}\)?){{0,5}}\)?")
-_HABITS = {("torque", "Nm"): "N m"}  # pint reads Nm as a yarn count
+_SIGNS = str.maketrans({"º": "°", "˚": "°", "℃": "°C", "℉": "°F", "⋅": "*", "∙": "*", "•": "*"})
+_OWN = (
+    "newton_metre = newton * meter = Nm",  # a yarn count else
+    "newton_centimetre = newton * centimeter = Ncm",
+    "newton_millimetre = newton * millimeter = Nmm",
+    "@alias turn = rev",
+    "@alias revolutions_per_minute = RPM = Rpm = Upm",
+)
+"""What pint is taught."""
+_SPELLINGS = {
+    "temperature": {
+        f"{degree} {name}": "degC"
+        for degree in ("deg", "degree", "degrees", "°")
+        for name in ("C", "Celsius", "celsius")
+    }
+    | {"Celsius": "degC"},
+    "rotational speed": {
+        f"{turn}/{time}": unit
+        for turn in ("r", "U", "tr", "rot", "revs")
+        for time, unit in (("min", "rpm"), ("s", "rps"))
+    },
+    "moment of inertia": {"kgm^2": "kg m^2", "kgm²": "kg m^2"},
+    "thermal conductivity": {"W/mK": "W/(m K)"},
+    "specific heat": {"J/kgK": "J/(kg K)"},
+    "heat transfer coefficient": dict.fromkeys(("W/m2K", "W/m^2K", "W/m²K"), "W/(m^2 K)"),
+}
+"""Spellings of one kind of quantity that mean something else, or nothing, elsewhere."""
+_DOUBTFUL = ("grad", "Grad", "grads", "gradi")
+"""A degree in one language, a gon in another."""
 _SLIPS = {
     "temperature": {"C": "degC", "c": "degC", "°": "degC", "F": "degF"},
     "temperature difference": {"C": "K", "degC": "K", "°C": "K", "°": "K"},
-    "angle": {"°C": "deg", "degC": "deg"},
-    "rotational speed": {"RPM": "rpm", "Rpm": "rpm", "U/min": "rpm", "1/min": "rpm"},
+    "angle": {"°C": "deg", "degC": "deg"} | dict.fromkeys(_DOUBTFUL, "deg"),
     "torque": {"nm": "N m", "J": "N m"},
     "kinematic viscosity": {"cst": "cSt", "CST": "cSt"},
 }
+
+
+def _spelled(unit: str, kind: Kind) -> str:
+    """``unit`` with other signs for degrees, products and powers put as pint reads them."""
+    plain = " ".join(unit.translate(_SIGNS).split())
+    plain = re.sub(r"^/", "1/", plain)
+    plain = re.sub(r"(?<=[A-Za-zµμ])[-.](?=[A-Za-z])", "*", plain)  # N-m, N.m
+    plain = re.sub(r"(?<=[A-Za-zµμ])(-?[1-4])(?![\w.])", r"^\1", plain)  # mm2/s, min-1
+    return _SPELLINGS.get(kind.name, {}).get(plain, plain)
 
 
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[float]:
     import pint
 
-    return pint.UnitRegistry()
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(on_redefinition="ignore")
+    for definition in _OWN:
+        registry.define(definition)
+    return registry
 
 
 def convert(number: float, unit: str, kind: Kind) -> float:
@@ -107,16 +146,22 @@ def convert(number: float, unit: str, kind: Kind) -> float:
     def refused(why: str, fix: str) -> InputError:
         return InputError("", f"{number:g} {unit}", why=why, fix=fix)
 
-    unit = _HABITS.get((kind.name, unit), unit)
-    if len(unit) > 40 or not _UNIT.fullmatch(unit):
-        raise refused(f"what follows the number is no unit of {kind.name}", example)
+    if unit in _DOUBTFUL:
+        raise refused(f"{unit!r} may be a degree or a gon", slip)
+    plain = _spelled(unit, kind)
+    if len(plain) > 40 or not _UNIT.fullmatch(plain):
+        raise refused(f"what follows the number is no unit of {kind.name}", slip)
     registry = _registry()
     try:
-        parsed = registry.parse_units(unit)
+        parsed = registry.parse_units(plain)
+        if kind.name == "rotational speed" and parsed == registry.parse_units("1/minute"):
+            parsed = registry.parse_units("rpm")
         fits = parsed.dimensionality == registry.parse_units(kind.si).dimensionality
     except Exception as cause:
         # pint answers nonsense with errors of many classes (lookup, syntax, tokens, arithmetic)
         raise refused(f"unit {unit!r} is not known", slip) from cause
+    if kind.name == "rotational speed" and str(parsed) in ("hertz", "1 / second"):
+        slip = f'did you mean "{number:g} rps" or "{number:g} rad/s"?'
     names = str(parsed)
     if kind.parts:
         fits = fits and any(part in names for part in kind.parts)
@@ -144,7 +189,7 @@ def read_quantity(text: object, kind_name: str) -> float:
     if not isinstance(text, str):
         raise refused(f"not a text with number and unit of {kind.name}")
     if re.match(r"\s*[+-]?\d+,\d", text):
-        raise refused("decimals follow a point, not a comma")
+        raise refused("decimals follow a point, not a comma", _with_point(text, kind))
     match = _TEXT.fullmatch(text)
     if match is None:
         raise refused("no number at its start")
@@ -157,6 +202,18 @@ def read_quantity(text: object, kind_name: str) -> float:
         return convert(number, unit, kind)
     except InputError as error:
         raise InputError("", short(text), why=error.why, fix=error.fix) from error
+
+
+def _with_point(text: str, kind: Kind) -> str:
+    """What a number with one comma may have meant: three places behind it may be thousands."""
+    match = re.fullmatch(r"\s*([+-]?\d+),(\d+)\s*([^\d,][^,]*)?", text)
+    if match is None:
+        return f'write for instance "{kind.example}"'
+    whole, places, unit = match[1], match[2], match[3] or kind.shown
+    pointed = f'"{whole}.{places} {unit}"'
+    if len(places) == 3:
+        return f'write {pointed} or "{whole}{places} {unit}"'
+    return f"did you mean {pointed}?"
 
 
 def shown(value: float, kind_name: str, digits: int = 6) -> str:

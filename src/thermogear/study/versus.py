@@ -34,8 +34,8 @@ OWN = "own bundle"
 """The bundle of cases that hold one each, under different names."""
 
 FIGURES = (
-    "half_backlash", "jam_temperature", "mean_stiffness", "thermal_stiffness_ratio",
-    "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
+    "half_backlash", "jam_temperature", "proportional_jam_temperature", "mean_stiffness",
+    "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
 )  # fmt: skip
 CURVES = {
     "path_position": ("friction_coefficient", "flash_temperature", "deformation_sum"),
@@ -72,7 +72,7 @@ class Stored:
 
     @property
     def states(self) -> list[str]:
-        """Its states, cold first."""
+        """Its states, undeformed first."""
         if self.kind == "dimensionless":
             return ["steady"]
         return [str(name) for name in self.groups["mesh"]["state"].values]

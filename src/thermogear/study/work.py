@@ -42,7 +42,7 @@ PATIENCE = 300.0
 """Seconds that a cluster may be without workers."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Step:
     """How far the work is: chunks ``done`` of ``total`` (``found`` of them were there before),
     ``elapsed`` and ``remaining`` seconds (NaN while unknown)."""
@@ -57,7 +57,7 @@ class Step:
 Report = Callable[[Step], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Estimate:
     """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds."""
 
@@ -109,7 +109,13 @@ def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Esti
         run = plan.pilot(pilot)
         each = (time.perf_counter() - begun) / max(run, 1)
         seconds = each * points_of(plan) / count
-    return Estimate(points_of(plan), chunks, 2 * size + count * WORKSPACE, size, seconds)
+    return Estimate(
+        points=points_of(plan),
+        chunks=chunks,
+        memory=2 * size + count * WORKSPACE,
+        disk=size,
+        seconds=seconds,
+    )
 
 
 def require_space(
@@ -198,7 +204,9 @@ class _Clock:
         elapsed = time.monotonic() - self.begun
         own = done - self.found
         left = elapsed / own * (self.total - done) if own > 0 else float("nan")
-        self.report(Step(done, self.total, self.found, elapsed, left))
+        self.report(
+            Step(done=done, total=self.total, found=self.found, elapsed=elapsed, remaining=left)
+        )
 
 
 def compute_chunk(plan: Plan, key: Key, before: Arrays | None) -> Arrays:

@@ -31,7 +31,7 @@ SPEEDS = (500.0, 3000.0)
 TORQUES = (50.0, 200.0)
 
 
-def operating_grid(case: GearCase, speeds: int = 6, torques: int = 5) -> xr.Dataset:
+def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.Dataset:
     """Friction, flash and growth over speed and torque, with two states of the bodies.
 
     ``given``: the case's temperatures at every point; ``balance``: what the closed loop of losses
@@ -148,14 +148,18 @@ def tip_displacement(case: GearCase, gear_temperature: float) -> tuple[float, fl
     gear = case.pair.pinion
     t = case.operating_at(gear_temperature).temperatures
     field = RadialField(
-        gear.bore_radius, gear.tip_radius, t.pinion_bore, t.pinion_addendum, t.reference
+        bore_radius=gear.bore_radius,
+        tip_radius=gear.tip_radius,
+        bore_temperature=t.pinion_bore,
+        addendum_temperature=t.pinion_addendum,
+        reference=t.reference,
     )
     radial = radial_displacement(
         field,
         gear.tip_radius,
-        gear.root_radius,
-        gear.material.thermal_expansion,
-        gear.material.poisson_ratio,
+        root_radius=gear.root_radius,
+        expansion=gear.material.thermal_expansion,
+        poisson=gear.material.poisson_ratio,
     )
     psi = float(gear.half_thickness_angle(gear.tip_radius))
     strain = gear.material.thermal_expansion * float(field.rise(gear.tip_radius))
@@ -175,7 +179,7 @@ def uniform_change(case: GearCase, temperature: float) -> tuple[float, float]:
             case.operating,
             speed=case.operating.speed[:1],
             torque=case.operating.torque[:1],
-            temperatures=Temperatures.uniform(at, reference),
+            temperatures=Temperatures.uniform(at, reference=reference),
             housing=case.housing,
         )
         cycle = mesh_cycle(case.pair, operating, model, path_positions=3, mesh_positions=64)
@@ -253,7 +257,7 @@ def two_gears_against_one(case: GearCase, periods: int = 6) -> dict[str, float]:
     found = gears.excitation()
     pair = PairModel.from_excitation(found)
     length, rate = found.reference_half_backlash, found.natural_frequency
-    start = pair.start(length, 0.0)
+    start = pair.start(x=length, v=0.0)
     whole = simulate(
         pair, periods=periods, discard=0, samples_per_period=64, initial_state=start,
         method="adaptive",

@@ -59,7 +59,7 @@ class Claim:
         return int(self.number.split(".")[0])
 
 
-def verdict_of(holds: bool, assumption: bool = False) -> Verdict:
+def verdict_of(holds: bool, *, assumption: bool = False) -> Verdict:
     """Reproduced (with an assumption, if there is one) where it ``holds``, else contradicted."""
     if not holds:
         return Verdict.CONTRADICTED

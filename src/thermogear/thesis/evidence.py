@@ -38,7 +38,7 @@ STAGES = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Size:
     """How much is computed; a small one answers every claim too, on coarser grids."""
 
@@ -99,7 +99,9 @@ class Evidence:
         with warnings.catch_warnings():
             # the closed loop's oil may leave its line's range at the corners; the page says so
             warnings.simplefilter("ignore", ValidityWarning)
-            return chain.operating_grid(self.case, self.size.speeds, self.size.torques)
+            return chain.operating_grid(
+                self.case, speeds=self.size.speeds, torques=self.size.torques
+            )
 
     @cached_property
     def diagrams(self) -> dict[str, xr.Dataset]:

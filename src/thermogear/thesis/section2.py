@@ -50,13 +50,25 @@ def contact_at_a(e: Evidence) -> dict[str, float]:
     }
 
 
+def _flash_arguments(a: dict[str, float], length: float = 1.0) -> dict[str, float]:
+    """The contact as the flash formulas take it; ``length``: units of length in a metre."""
+    return {
+        "friction": a["friction"],
+        "line_load": a["load"],
+        "speed_1": length * a["v1"],
+        "speed_2": length * a["v2"],
+        "half_width": length * a["width"],
+        "contact_coefficient_1": a["b1"],
+        "contact_coefficient_2": a["b2"],
+    }
+
+
 def _flash_formula(e: Evidence) -> Finding:
     a = contact_at_a(e)
-    speeds = (a["friction"], a["load"], a["v1"], a["v2"], a["width"], a["b1"], a["b2"])
-    lengths = (a["friction"], a["load"], MM * a["v1"], MM * a["v2"], MM * a["width"])
-    printed = [abs(float(blok_as_printed(*s))) for s in (speeds, (*lengths, a["b1"], a["b2"]))]
+    units = [_flash_arguments(a), _flash_arguments(a, length=MM)]
+    printed = [abs(float(blok_as_printed(**given))) for given in units]
     u = FLASH_FACTORS["parabola"]
-    right = [float(blok_flash(*s, u)) for s in (speeds, (*lengths, a["b1"], a["b2"]))]
+    right = [float(blok_flash(**given, factor=u)) for given in units]
     changed = printed[1] / printed[0]
     return Finding(
         f"{printed[0]:.3g} in SI at A; {changed:.4g} times that with lengths in mm",
@@ -136,8 +148,9 @@ def _half_width_symbols(e: Evidence) -> Finding:
 
 def _friction_matters(e: Evidence) -> Finding:
     a = contact_at_a(e)
-    rest = (a["load"], a["v1"], a["v2"], a["width"], a["b1"], a["b2"])
-    ratio = float(blok_flash(2.0 * a["friction"], *rest)) / float(blok_flash(a["friction"], *rest))
+    given = _flash_arguments(a)
+    twice = given | {"friction": 2.0 * a["friction"]}
+    ratio = float(blok_flash(**twice)) / float(blok_flash(**given))
     return Finding(
         f"doubled friction gives {ratio:.6g} times the flash",
         "the same",
@@ -165,9 +178,19 @@ def _mixed_formula(e: Evidence) -> Finding:
 
     def both(viscosity: float) -> tuple[float, float]:
         printed = benedict_kelley_as_printed(
-            a["load"], slide, 0.5 * total, viscosity, a["roughness"]
+            a["load"],
+            sliding_speed=slide,
+            entrainment_speed=0.5 * total,
+            viscosity=viscosity,
+            roughness=a["roughness"],
         )
-        right = benedict_kelley(a["load"], slide, total, viscosity, a["roughness"])
+        right = benedict_kelley(
+            a["load"],
+            sliding_speed=slide,
+            sum_speed=total,
+            viscosity=viscosity,
+            roughness=a["roughness"],
+        )
         return abs(float(printed)), float(right)
 
     (p0, r0), (p1, r1) = both(a["viscosity"]), both(2.0 * a["viscosity"])
@@ -184,10 +207,20 @@ def _mixed_formula(e: Evidence) -> Finding:
 def _mixed_symbols(e: Evidence) -> Finding:
     a = contact_at_a(e)
     slide, mean = a["v1"] - a["v2"], 0.5 * (a["v1"] + a["v2"])
-    si = abs(float(benedict_kelley_as_printed(
-        a["load"], slide, mean, a["viscosity"], a["roughness"])))  # fmt: skip
-    custom = abs(float(benedict_kelley_as_printed(
-        1e-3 * a["load"], slide, mean, 1e3 * a["viscosity"], 1e6 * a["roughness"])))  # fmt: skip
+    speeds = {"sliding_speed": slide, "entrainment_speed": mean}
+    si, custom = (
+        abs(
+            float(
+                benedict_kelley_as_printed(
+                    load * a["load"],
+                    viscosity=viscosity * a["viscosity"],
+                    roughness=roughness * a["roughness"],
+                    **speeds,
+                )
+            )
+        )
+        for load, viscosity, roughness in ((1.0, 1.0, 1.0), (1e-3, 1e3, 1e6))
+    )
     return Finding(
         f"{si:.3g} in SI; {custom:.3g} in N/mm, mPa s, µm",
         "the repaired law states its units",
@@ -199,8 +232,8 @@ def _mixed_symbols(e: Evidence) -> Finding:
 
 def _dry_range(e: Evidence) -> Finding:
     a = contact_at_a(e)
-    rest = (a["load"], a["v1"], a["v2"], a["width"], a["b1"], a["b2"])
-    flash = [float(blok_flash(mu, *rest)) for mu in (0.1, 0.5)]
+    given = _flash_arguments(a)
+    flash = [float(blok_flash(**given | {"friction": mu})) for mu in (0.1, 0.5)]
     own = e.case.models[0].dry_coefficient
     return Finding(
         f"flash {listed(flash)} K at A for 0.1 and 0.5",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.dynamics.models import dead_zone
 from thermogear.thesis import chain
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
@@ -19,7 +20,7 @@ def _by_heat(e: Evidence, name: str) -> list[float]:
     """Hot over cold at the first operating point [%]: thesis, consistent."""
     k = e.groups["mesh"][name].isel(operating=0)
     return [
-        100.0 * float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state="cold") - 1.0)
+        100.0 * float(k.sel(bundle=b, state="hot") / k.sel(bundle=b, state=UNDEFORMED) - 1.0)
         for b in ("thesis", "consistent")
     ]
 
@@ -78,7 +79,7 @@ def _gap_function(e: Evidence) -> Finding:
     b = float(_row(e, "half_backlash", "consistent")[0])
     x = np.linspace(-3.0 * b, 3.0 * b, 1201)
     printed = np.where(x < -b, x + b, np.where(x > b, x - b, 0.0))
-    off = float(np.max(np.abs(printed - dead_zone(x, b)))) / b
+    off = float(np.max(np.abs(printed - dead_zone(x, half_backlash=b)))) / b
     return Finding(
         f"differs from the dead zone computed with by {off:.1e} of b′",
         "the same function",
@@ -89,7 +90,7 @@ def _gap_function(e: Evidence) -> Finding:
 
 def _energy_method(e: Evidence) -> Finding:
     f = e.fit
-    loaded = e.bundle("mesh", "consistent", "cold").isel(operating=0)
+    loaded = e.bundle("mesh", "consistent", UNDEFORMED).isel(operating=0)
     k = loaded["mesh_stiffness"].values
     return Finding(
         f"{listed([1e-8 * f['minimum'], 1e-8 * f['maximum']], '.4g')}·10⁸ N/m, one and two pairs",
@@ -101,7 +102,7 @@ def _energy_method(e: Evidence) -> Finding:
 
 
 def _five_parts(e: Evidence) -> Finding:
-    mesh = e.bundle("mesh", "thesis", "cold").isel(operating=0)
+    mesh = e.bundle("mesh", "thesis", UNDEFORMED).isel(operating=0)
     middle = mesh.sizes["path_position"] // 2
     parts = [
         float(mesh[name].values[middle])
@@ -147,7 +148,9 @@ def _series(e: Evidence) -> Finding:
     return Finding(
         f"k1 k2/(k1 + k2) against 1/(1/k1 + 1/k2): {printed / ours - 1.0:+.1e}",
         f"that is the force over the sum of both deformations: {grown / ours - 1.0:+.1e}",
-        verdict_of(max(abs(printed / ours - 1.0), abs(grown / ours - 1.0)) < 1e-12, True),
+        verdict_of(
+            max(abs(printed / ours - 1.0), abs(grown / ours - 1.0)) < 1e-12, assumption=True
+        ),
         "Two springs in series, right if there were springs (and if the face width is left out, "
         "so that the unit is that of a stiffness).",
     )
@@ -164,7 +167,7 @@ def _sum_of_stiffness(e: Evidence) -> Finding:
 
 
 def _cold_stiffness(e: Evidence) -> Finding:
-    mesh = e.bundle("mesh", "thesis", "cold").isel(operating=0)
+    mesh = e.bundle("mesh", "thesis", UNDEFORMED).isel(operating=0)
     spring = float(np.abs(mesh["thermal_stiffness"].values).max())
     return Finding(
         f"k_T set to {spring:g} where nothing has grown",
@@ -256,7 +259,7 @@ def _relative(e: Evidence) -> Finding:
 
 
 def _static_error(e: Evidence) -> Finding:
-    mesh = e.bundle("mesh", "consistent", "cold").isel(operating=0)
+    mesh = e.bundle("mesh", "consistent", UNDEFORMED).isel(operating=0)
     loaded = 1e6 * float(np.ptp(mesh["transmission_error"].values))
     own = e.case.transmission_error.harmonics
     kinematic = 2e6 * (abs(own[0]) if own else 0.0)
@@ -302,7 +305,7 @@ def _dimensionless_symbols(e: Evidence) -> Finding:
 
 _ROWS = (
     ("3.1.1", "3.1", "statement", "Thermal deformation takes backlash away.", _reduces,
-     (f"{THERMAL}.hot_backlash", CYCLE), "gap-temperature"),
+     ("thermogear.mesh.clearance.clearance", CYCLE), "gap-temperature"),
     ("3.1.2", "3.1, half gap", "formula",
      "The hot half gap is the cold one less half the sum of both deformations.", _half_gap,
      ("thermogear.heat.thesis_profile.thesis_half_backlash",

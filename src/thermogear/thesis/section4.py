@@ -6,6 +6,7 @@ import numpy as np
 
 from thermogear.analysis.labels import label as settle
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.thesis import motions
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
@@ -55,7 +56,7 @@ def _four_views(e: Evidence) -> Finding:
     have = [name for name in needed if name in motion]
     return Finding(
         f"{len(have)} of {len(needed)} views stored for {motion['label'].size} motions of the rig",
-        "history, phase plane, section and spectrum, cold and hot",
+        "history, phase plane, section and spectrum, undeformed and hot",
         verdict_of(len(have) == len(needed)),
         "All four are drawn for both cases.",
     )
@@ -63,11 +64,11 @@ def _four_views(e: Evidence) -> Finding:
 
 def _cold_motion(e: Evidence) -> Finding:
     w = e.warming.sel(row="thesis").isel(temperature=0)
-    rig = e.groups["motion"]["label"].sel(state="cold").values.ravel()
+    rig = e.groups["motion"]["label"].sel(state=UNDEFORMED).values.ravel()
     return Finding(
         f"{w['label'].item()}, {int(w['section_points'])} section point, multiplier "
         f"{float(w['multiplier']):.4f}",
-        f"the rig cold: {', '.join(sorted(set(map(str, rig))))} at every speed",
+        f"the rig undeformed: {', '.join(sorted(set(map(str, rig))))} at every speed",
         verdict_of(w["label"].item() == "period-1", assumption=True),
         f"{SET} Both repeat with the mesh.",
     )
@@ -395,8 +396,8 @@ _ROWS = (
     ("4.3.1", "4.3", "statement",
      "Diagrams over ζ, ω_h and ε were drawn with and without heat.", _diagrams, (DIAGRAM,),
      "diagram-zeta"),
-    ("4.3.2", "4.3", "statement", "Heat acts on stability and not on the structure.", _structure,
-     (CASCADE, "thermogear.thesis.motions.flips"), "diagram-omega"),
+    ("4.3.2", "4.3", "statement", "Heat acts mainly on stability, and not on the structure.",
+     _structure, (CASCADE, "thermogear.thesis.motions.flips"), "diagram-omega"),
     ("4.3.3", "4.3", "statement", "Over ζ: one period is met.",
      lambda e: _zeta_sequence(e, "period-1"), (DIAGRAM,), "diagram-zeta"),
     ("4.3.4", "4.3", "statement", "Over ζ: two periods are met.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.measured.published import THESIS_5_2, SpeedLine, unstated_processing
 from thermogear.signals.integration import trapezoid_factor
 from thermogear.study.comparison import Row
@@ -45,7 +46,7 @@ def _platform(e: Evidence) -> Finding:
 def _tested_speeds(e: Evidence) -> Finding:
     speeds = [line.speed / RPM for line in _lines()]
     implied = [line.shaft_speed(_teeth()) / RPM for line in _lines()]
-    ratio = e.bundle("mesh", "consistent", "cold")["frequency_ratio"].values
+    ratio = e.bundle("mesh", "consistent", UNDEFORMED)["frequency_ratio"].values
     return Finding(
         f"nominal {listed(speeds, '.0f')} rpm",
         f"the measured lines imply {listed(implied, '.1f')} rpm; ω_h = {listed(ratio, '.2f')}",
@@ -59,7 +60,7 @@ def _integrated(e: Evidence) -> Finding:
     lines = _lines()
     highest = max(line.frequency for line in lines)
     rates = (5120.0, 25600.0)
-    lost = [100.0 * (float(trapezoid_factor(highest, rate)) - 1.0) for rate in rates]
+    lost = [100.0 * (float(trapezoid_factor(highest, rate=rate)) - 1.0) for rate in rates]
     g = [line.acceleration_g for line in lines]
     return Finding(
         f"two sums lose {listed(lost, '.1f')} % at {highest:g} Hz and {listed(rates, '.0f')} Hz",
@@ -94,7 +95,7 @@ def _measured_line(e: Evidence, number: int) -> Finding:
 
 def _measured_amplitude(e: Evidence, number: int) -> Finding:
     line = _lines()[number]
-    found = unstated_processing(line.frequency, max(one.frequency for one in _lines()))
+    found = unstated_processing(line.frequency, highest=max(one.frequency for one in _lines()))
     total = 100.0 * float(np.sqrt(sum(part**2 for part in found.values())))
     return Finding(
         f"{1e6 * line.displacement:g} µm",
@@ -123,7 +124,7 @@ def _simulated_line(e: Evidence, number: int, model: int) -> Finding:
 
 def _simulated_amplitude(e: Evidence, number: int, model: int) -> Finding:
     row = _row(e, number, "displacement")
-    state = "hot" if model == 0 else "cold"
+    state = "hot" if model == 0 else UNDEFORMED
     motion = e.groups["motion"].isel(operating=number).sel(state=state)
     swing = e.sensitivity.sel(output="swing")
     low, high = float(swing["low"]), float(swing["high"])

@@ -30,7 +30,7 @@ def inner_phases(pair: GearPair, each: int = 3) -> Floats:
     return np.concatenate([more * part, more + (1.0 - more) * part])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class StiffnessCheck:
     """Secant stiffness [N/m] and shares of the model and of the finite elements.
 
@@ -92,18 +92,18 @@ def check_stiffness(
     model = loaded_contact(pair, normal_force, phi, model=clamped)
     most = finite.share.shape[1]
     return StiffnessCheck(
-        phi,
-        model.secant_stiffness.to_numpy(),
-        finite.secant,
+        phase=phi,
+        model=model.secant_stiffness.to_numpy(),
+        finite=finite.secant,
         # the model's first candidate is the pair that has not yet entered
-        model.load_share.to_numpy()[:, 1 : 1 + most],
-        finite.share,
-        pair.face_width,
-        normal_force / pair.face_width,
+        model_share=model.load_share.to_numpy()[:, 1 : 1 + most],
+        finite_share=finite.share,
+        face_width=pair.face_width,
+        line_load=normal_force / pair.face_width,
     )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class GrowthCheck:
     """Normal growth [m] of one flank by the model (B) and by finite elements, at ``radius`` [m]."""
 
@@ -137,4 +137,4 @@ def check_growth(
     """
     r = np.atleast_1d(flank_radii(gear) if radius is None else np.asarray(radius, dtype=float))
     finite = finite_flank_growth(gear, field, r, bore, density)
-    return GrowthCheck(r, flank_growth(gear, field, r, bore), finite)
+    return GrowthCheck(radius=r, model=flank_growth(gear, field, r, bore), finite=finite)

@@ -55,7 +55,9 @@ class LoadedTooth:
         self._arc = profile.arc(t)
         self._room = min(self._arc - profile.ends[0], profile.ends[1] - self._arc)
         self._base = gear.base_radius
-        self._mesh = tooth_mesh(gear, across, contact_arcs(gear, t, half_width, density), density)
+        self._mesh = tooth_mesh(
+            gear, across=across, arcs=contact_arcs(gear, t, half_width, density), density=density
+        )
         at = flank_point(gear, t)
         # as far as the tooth's axis along the force
         depth = float(at.x / np.cos(at.beta)) if near == "strain" else -1.0
@@ -71,7 +73,7 @@ class LoadedTooth:
 
         p = 2/(pi a) sqrt(1 - (s/a)^2) along the flank, normal to it.
         """
-        if half_width > self._room:
+        if not half_width <= self._room:
             raise InputError(
                 "position",
                 f"{1e3 * self._room:.4g} mm from the end of the flank",
@@ -125,11 +127,18 @@ class ElasticGear:
         idle_foot = foot_mesh(self.gear, plain, self.density)
         idle = closed_sector(
             idle_foot,
-            tooth_mesh(self.gear, plain, plain_arcs(self.gear, self.density), self.density),
+            tooth_mesh(
+                self.gear,
+                across=plain,
+                arcs=plain_arcs(self.gear, self.density),
+                density=self.density,
+            ),
         )
         foot = foot_mesh(self.gear, self.across, self.density)
         others = chain(idle, self.gear.teeth - self.loaded)
-        return joint_stiffness(open_sector(foot), others, 2 * foot.left.size, self.loaded)
+        return joint_stiffness(
+            open_sector(foot), others=others, edge=2 * foot.left.size, teeth=self.loaded
+        )
 
     def tooth(self, t: float) -> LoadedTooth:
         """A tooth touched at t = tan(alpha_k)."""
@@ -137,7 +146,12 @@ class ElasticGear:
 
     @cached_property
     def _idle(self) -> Floats:
-        mesh = tooth_mesh(self.gear, self.across, plain_arcs(self.gear, self.density), self.density)
+        mesh = tooth_mesh(
+            self.gear,
+            across=self.across,
+            arcs=plain_arcs(self.gear, self.density),
+            density=self.density,
+        )
         return Condensed(mesh.patch, unknowns_of(mesh.joint)).stiffness
 
     def assembled(self, teeth: Sequence[LoadedTooth | None]) -> Floats:
@@ -156,6 +170,7 @@ class ElasticGear:
         self,
         teeth: Sequence[LoadedTooth | None],
         half_widths: Sequence[float],
+        *,
         assembled: Floats | None = None,
     ) -> Floats:
         """Matrix of the deflections along the flanks' normals under unit forces, times E b.

@@ -90,11 +90,11 @@ def finite_flank_growth(
             allowed=f"{1e3 * gear.form_radius:.6g} .. {1e3 * gear.tip_radius:.6g} mm",
             why="the flank lies between form circle and tip",
         )
-    mesh = density or Density(2)
+    mesh = density or Density(refinement=2)
     across = plain_across(mesh)
     foot = foot_mesh(gear, across, mesh)
     arcs, asked = _arcs(gear, r.ravel(), mesh)
-    tooth = tooth_mesh(gear, across, arcs, mesh)
+    tooth = tooth_mesh(gear, across=across, arcs=arcs, density=mesh)
     patch, of_tooth = _united(foot, tooth)
     expansion = gear.material.thermal_expansion
     moved = _displacement(patch, foot, field, expansion, bore)

@@ -30,7 +30,7 @@ _ROUNDS = 30
 _SETTLED = 1e-8
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FinitePair:
     """Secant stiffness [N/m] (position,) and shares (position, pair), pair 0 the last to enter.
 
@@ -110,7 +110,7 @@ def pair_stiffness(
         force, deflection = position.solve(normal_force)
         secant[i] = normal_force / deflection
         share[i, : s.size] = force / normal_force
-    return FinitePair(phi, secant, share)
+    return FinitePair(phase=phi, secant=secant, share=share)
 
 
 class _Position:
@@ -144,7 +144,9 @@ class _Position:
         for which, solid in enumerate(self._solids):
             widths = list(a) + [0.0] * (solid.loaded - self._count)
             order = slice(None, None, -1 if which else 1)
-            matrix = solid.compliance(self._teeth[which], widths[order], self._joints[which])
+            matrix = solid.compliance(
+                self._teeth[which], widths[order], assembled=self._joints[which]
+            )
             part = matrix[order, order][: self._count, : self._count]
             total += part / (solid.gear.material.youngs_modulus * self._width)
         return np.asarray(total)

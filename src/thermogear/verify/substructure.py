@@ -94,7 +94,7 @@ def closed_sector(foot: Foot, tooth: Tooth) -> Floats:
     return eliminate(sector, np.arange(sector.shape[0] - size, sector.shape[0]))
 
 
-def joined(first: Floats, second: Floats) -> Floats:
+def joined(*, first: Floats, second: Floats) -> Floats:
     """Two chains of sectors, the first's right edge on the second's left one."""
     n = first.shape[0] // 2
     whole = np.zeros((3 * n, 3 * n))
@@ -108,14 +108,14 @@ def chain(sector: Floats, count: int) -> Floats:
     power, result = sector, None
     while True:
         if count % 2:
-            result = power if result is None else joined(result, power)
+            result = power if result is None else joined(first=result, second=power)
         count //= 2
         if count == 0:
             return result if result is not None else power
-        power = joined(power, power)
+        power = joined(first=power, second=power)
 
 
-def joint_stiffness(sector: Floats, others: Floats, edge: int, teeth: int) -> Floats:
+def joint_stiffness(sector: Floats, *, others: Floats, edge: int, teeth: int) -> Floats:
     """Stiffness at the joints of ``teeth`` neighbours, the rest of the ring being ``others``.
 
     ``sector`` from :func:`open_sector` with ``edge`` unknowns on each side; the teeth stand in

@@ -20,7 +20,7 @@ from thermogear.verify.elements import Floats, Integers, Patch
 _FINE_SAMPLES = 2001
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Density:
     """How fine the mesh is: counts are multiplied by ``refinement``.
 
@@ -44,7 +44,7 @@ class Density:
 
 
 def graded(
-    low: float, high: float, centre: float, core: float, fine: float, rate: float, coarse: float
+    *, low: float, high: float, centre: float, core: float, fine: float, rate: float, coarse: float
 ) -> Floats:
     """Ascending nodes from ``low`` to ``high``: steps ``fine`` within ``core`` of ``centre``.
 
@@ -83,7 +83,7 @@ def halved(nodes: Floats) -> Floats:
     return out
 
 
-def cells_of(rows: int, columns: int) -> Integers:
+def cells_of(*, rows: int, columns: int) -> Integers:
     """Nine-node elements of a structured grid of (2 rows + 1, 2 columns + 1) nodes."""
     number = np.arange((2 * rows + 1) * (2 * columns + 1)).reshape(2 * rows + 1, -1)
     blocks = [
@@ -184,7 +184,15 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     top_phi = np.concatenate([-phi_side[::-1], phi_joint * middle[1:-1], phi_side])
 
     size = 0.35 * m / density.refinement
-    body = graded(gear.bore_radius, r_low, r_low, 0.0, size, density.rate, 0.25 * gear.bore_radius)
+    body = graded(
+        low=gear.bore_radius,
+        high=r_low,
+        centre=r_low,
+        core=0.0,
+        fine=size,
+        rate=density.rate,
+        coarse=0.25 * gear.bore_radius,
+    )
     body_rows = halved(body)
     lift = halved(np.linspace(0.0, 1.0, density.count(3) + 1))[1:]
     r = np.concatenate(
@@ -202,7 +210,7 @@ def foot_mesh(gear: Gear, across: Floats, density: Density) -> Foot:
     rows, columns = r.shape
     number = np.arange(r.size).reshape(r.shape)
     nodes = _plane(r, phi).reshape(-1, 2)
-    cells = cells_of((rows - 1) // 2, (columns - 1) // 2)
+    cells = cells_of(rows=(rows - 1) // 2, columns=(columns - 1) // 2)
     return Foot(
         Patch(nodes, cells, gear.material.poisson_ratio),
         bore=number[0],
@@ -222,7 +230,7 @@ class Tooth:
     flank: Integers
 
 
-def tooth_mesh(gear: Gear, across: Floats, arcs: Floats, density: Density) -> Tooth:
+def tooth_mesh(gear: Gear, *, across: Floats, arcs: Floats, density: Density) -> Tooth:
     """A tooth with corners at ``across`` (joint) and at the involute lengths ``arcs``.
 
     ``arcs`` ascend from the form circle to the tip.
@@ -237,7 +245,7 @@ def tooth_mesh(gear: Gear, across: Floats, arcs: Floats, density: Density) -> To
     grid_r = np.broadcast_to(r[:, None], (r.size, columns.size))
     nodes = _plane(grid_r, phi[:, None] * columns).reshape(-1, 2)
     number = np.arange(nodes.shape[0]).reshape(r.size, columns.size)
-    cells = cells_of((r.size - 1) // 2, (columns.size - 1) // 2)
+    cells = cells_of(rows=(r.size - 1) // 2, columns=(columns.size - 1) // 2)
     return Tooth(Patch(nodes, cells, gear.material.poisson_ratio), number[0], number[:, -1])
 
 
@@ -253,13 +261,13 @@ def contact_arcs(gear: Gear, t: float, half_width: float, density: Density) -> F
     low, high = profile.ends
     fine = half_width / (density.per_half_width * density.refinement)
     return graded(
-        low,
-        high,
-        profile.arc(t),
-        1.25 * half_width,
-        fine,
-        density.rate,
-        density.coarsest * gear.module / density.refinement,
+        low=low,
+        high=high,
+        centre=profile.arc(t),
+        core=1.25 * half_width,
+        fine=fine,
+        rate=density.rate,
+        coarse=density.coarsest * gear.module / density.refinement,
     )
 
 
@@ -268,7 +276,9 @@ def contact_across(gear: Gear, half_width: float, density: Density) -> Floats:
     thickness = gear.module * 0.5 * np.pi
     fine = 2.0 * half_width / thickness / (density.per_half_width * density.refinement)
     coarse = 2.0 * density.coarsest * gear.module / thickness / density.refinement
-    return graded(-1.0, 1.0, 1.0, 0.0, fine, density.rate, coarse)
+    return graded(
+        low=-1.0, high=1.0, centre=1.0, core=0.0, fine=fine, rate=density.rate, coarse=coarse
+    )
 
 
 def plain_across(density: Density) -> Floats:

@@ -102,7 +102,7 @@ def _cell(value: object) -> str:
 def page(kind: str, summary: Summary, groups: Groups) -> str:
     """The self-contained page of one stored result."""
     drawn = draw(_picture(kind, groups), kind, f"{kind} of {summary['title']}")
-    caption = CAPTIONS[kind]
+    caption = _caption(kind, summary, groups)
     gallery = Gallery([Picture(kind, HEADINGS[kind], caption, drawn, wide=True)])
     blocks: list[Block] = [*_TABLES[kind](summary)]
     sections = [Section("numbers", "Numbers", blocks), Section("picture", "Picture", [gallery])]
@@ -126,13 +126,33 @@ CAPTIONS = {
     "shared": "Above: at rest over the load, the exact loaded contact beside both forms built at "
     "the mean load (dotted). Below: settled motion over the speed, at the mean load and at a "
     "light one.",
-    "orbit": "Dashed: edges of the backlash. An orbit is stable where its multipliers lie inside "
-    "the circle; lines at half orders show a doubled period.",
     "lyapunov": "The band is one standard error of the mean.",
-    "branch": "Solid: stable; dotted: unstable. Marks: where folds, period doublings and grazing "
-    "were located.",
-    "cascade": "Dots: period doublings. One colour for each state of heat.",
 }
+
+
+def _caption(kind: str, summary: Summary, groups: Groups) -> str:
+    """What the picture shows: only what is drawn in it."""
+    if kind == "orbit":
+        edges = plots.edges_in_sight(groups["orbit"])
+        half = any(line["half_order"] for line in summary["lines"])
+        words = ["Dashed: edges of the backlash."] * bool(edges)
+        words.append("An orbit is stable where its multipliers lie inside the circle.")
+        words += ["Lines at half orders show a doubled period."] * half
+        return " ".join(words)
+    if kind == "branch":
+        legs, points = summary["branches"], summary["bifurcations"]
+        unstable = any(leg["stable_points"] < leg["points"] for leg in legs)
+        stable = any(leg["stable_points"] for leg in legs)
+        words = [
+            "; ".join(["solid: stable"] * stable + ["dotted: unstable"] * unstable).capitalize()
+        ]
+        words += ["Marks: where bifurcations were located"] * bool(points)
+        return ". ".join(words) + "."
+    if kind == "cascade":
+        several = len({one["heat"] for one in summary["cascades"]}) > 1
+        heat = " One colour for each state of heat." if several else ""
+        return f"Dots: period doublings.{heat}"
+    return CAPTIONS[kind]
 
 
 def _headline(kind: str, summary: Summary) -> str:

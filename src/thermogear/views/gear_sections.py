@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from thermogear.views import tables
+from thermogear.views import captions, tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import backlash, deformation, motion, path, stiffness, temperature
 from thermogear.views.results import Results
 from thermogear.views.style import chosen, names_of
-from thermogear.views.words import celsius, jam_words, number, operating_names, span
+from thermogear.views.words import celsius, jam_words, operating_names
 
 MOST_SPEEDS = 3
 """Rows of a grid over temperature."""
@@ -20,7 +20,8 @@ def with_gap(data: xr.Dataset, mesh: xr.Dataset | None) -> xr.Dataset:
     """``data`` with the half backlash and the jam temperature of the same points beside it."""
     if mesh is None:
         return data
-    names = [n for n in ("half_backlash", "jam_temperature") if n in mesh and n not in data]
+    wanted = ("half_backlash", "jam_temperature")
+    names = [n for n in wanted if n in mesh and n not in data]
     return data.assign({name: mesh[name] for name in names})
 
 
@@ -32,77 +33,69 @@ def friction(results: Results, pictures: Pictures) -> Section | None:
     first = names_of(data, "bundle")[0]
     speeds = ("pinion_rolling_velocity", "wheel_rolling_velocity", "sliding_velocity")
     pictures.add(
-        "speeds", "Rolling and sliding",
-        f"At {operating_names(data)[path.fastest(data)]}. Both flanks roll with the same speed at "
-        "the pitch point C alone; sliding changes its "
-        "sign there and is greatest at the ends of contact A and E.",
+        "speeds", "Rolling and sliding", captions.kinematics(data, path.fastest(data)),
         data, (*speeds, "entrainment_velocity"), lambda: path.speeds(data),
     )  # fmt: skip
-    pictures.add(
-        "share", "Load share of one tooth pair",
-        "One pair carries everything about the pitch point; towards A and E two pairs share the "
-        "force, by their stiffnesses or in equal parts, as the bundle says.",
-        data, ("load_share",), lambda: path.load_share(data),
-    )  # fmt: skip
+    if "load_share" in data:
+        pictures.add(
+            "share", "Load share of one tooth pair",
+            captions.load_share(data, results.table("bundles")),
+            data, ("load_share",), lambda: path.load_share(data),
+        )  # fmt: skip
     pictures.add(
         "hertz", "Hertzian contact",
-        f"Pressure and half width of the contact band, bundle {first}, hot. Both jump where the "
-        "pair becomes alone.",
+        f"Pressure and half width of the contact band, bundle {first}, hot. Both go with the root "
+        "of the load that the pair carries.",
         data, ("hertz_pressure", "hertz_half_width"), lambda: path.hertz(data, 0),
     )  # fmt: skip
-    pictures.add(
-        "friction", "Friction coefficient, mixed against dry",
-        f"Bundle {first}, hot. Mixed friction falls as the speed rises and peaks at the pitch "
-        "point, where nothing slides and the law would diverge; dry friction is a constant.",
-        data, ("friction_coefficient_mixed", "friction_coefficient_dry"),
-        lambda: path.friction(data, 0),
-    )  # fmt: skip
-    for kind, words in (("mixed", "in mixed lubrication"), ("dry", "dry")):
-        name = f"flash_temperature_{kind}"
-        if name in data and not np.isfinite(data[name].values).any():
-            continue
-        highest = float(np.nanmax(data[name].values)) if name in data else 0.0
+    needs = ("friction_coefficient_mixed", "friction_coefficient_dry")
+    if all(name in data for name in needs):
         pictures.add(
-            f"flash-{kind}", f"Flash temperature, {words}",
-            f"Zero at the pitch point, highest at the start of contact A; {number(highest)} K at "
-            "most here. A rise of the skin alone, some tens of micrometres deep.",
-            data, (name,), lambda kind=kind: path.flash(data, kind),  # type: ignore[misc]
+            "friction", "Friction coefficient, lubricated against dry",
+            captions.friction(data, 0, results.table("bundles")), data, needs,
+            lambda: path.friction(data, 0),
         )  # fmt: skip
-    intro = Text(
-        "Along the path of contact: A start, B to D one pair alone, C pitch point, E end. "
-        "Colours are operating points, line styles are bundles."
-    )
+    for name, words in path.FLASHES.items():
+        if name not in data or not np.isfinite(data[name].values).any():
+            continue
+        kind = name.removeprefix("flash_temperature").removeprefix("_")
+        if not kind and not path.own_law(data, name):
+            continue
+        pictures.add(
+            f"flash-{kind or 'own'}", f"Flash temperature, {words}", captions.flash(data, name),
+            data, (name,), lambda name=name: path.flash(data, name),  # type: ignore[misc]
+        )  # fmt: skip
+    intro = Text(captions.path_intro(data))
     return _section("friction", "Friction and flash temperature", [intro], pictures)
 
 
 def heat(results: Results, pictures: Pictures) -> Section | None:
     """Temperature of the bodies and what it does to the flanks."""
     data, profile = results.group("path"), results.group("profile")
+    bodies = ("pinion_body_temperature", "wheel_body_temperature")
     if data is not None:
-        first = names_of(data, "bundle")[0]
-        bodies = ("pinion_body_temperature", "wheel_body_temperature")
-        pictures.add(
-            "temperatures", "Contact and body temperature",
-            f"Bundle {first}, hot. The body temperatures follow the steady field from bore to "
-            "tip; the contact is hotter by the flash alone, and as cool as the bodies at C.",
-            data, ("contact_temperature", *bodies), lambda: path.temperatures(data, 0),
-        )  # fmt: skip
+        if all(name in data for name in bodies):
+            pictures.add(
+                "temperatures", "Contact and body temperature", captions.temperatures(data, 0),
+                data, ("contact_temperature", *bodies), lambda: path.temperatures(data, 0),
+            )  # fmt: skip
         deformed = ("pinion_deformation", "wheel_deformation", "deformation_sum")
-        pictures.add(
-            "growth", "Growth of both flanks",
-            _growth_caption(data), data, deformed, lambda: deformation.growth(data),
-        )  # fmt: skip
+        if all(name in data for name in deformed):
+            pictures.add(
+                "growth", "Growth of both flanks", captions.growth(data), data, deformed,
+                lambda: deformation.growth(data),
+            )  # fmt: skip
     if profile is not None:
-        needs = tuple(f"{k}_{a}" for k in ("involute", "printed", "consistent") for a in "xy")
+        kinds = ("involute", *deformation.hot_profiles(profile))
+        needs = tuple(f"{k}_{a}" for k in kinds for a in "xy")
+        at = captions.where(data, bodies[0]) if data is not None and bodies[0] in data else ""
         for place, gear in enumerate(names_of(profile, "gear")):
             if not all(name in profile for name in needs):
                 continue
             factor = deformation.magnification(profile, place)
             pictures.add(
                 f"profile-{place}", f"Tooth of the {gear}, hot over cold",
-                f"The displacement of the hot profile is drawn {factor} times larger than it is. "
-                "As printed and as repaired lie close together: both carry the radial growth of "
-                "body and tooth, and differ in the tooth's thickness.",
+                captions.profile(factor, "printed" in kinds, at),
                 profile, needs, lambda p=place: deformation.profile(profile, p),  # type: ignore[misc]
             )  # fmt: skip
             pictures.add(
@@ -119,48 +112,25 @@ def heat(results: Results, pictures: Pictures) -> Section | None:
     return _section("heat", "Temperature and deformation", [intro], pictures)
 
 
-def _growth_caption(data: xr.Dataset) -> str:
-    total = (
-        data["deformation_sum"].isel(state=-1, operating=0) if "deformation_sum" in data else None
-    )
-    words = "Where the pinion's flank grows least the wheel's grows most."
-    if total is None:
-        return words
-    for place, name in enumerate(names_of(data, "bundle")):
-        values = 1e6 * total.isel(bundle=place).values
-        if np.isfinite(values).all():
-            words += f" Sum in the {name} bundle: {span(values, 4)} µm."
-    return words
-
-
 def gap(results: Results, pictures: Pictures) -> Section | None:
     """Hot backlash and jam."""
     mesh, row = results.group("mesh"), results.group("temperature")
     blocks: list[Block] = []
     if mesh is not None:
-        pictures.add(
-            "gap-phase", "Half backlash over a mesh period",
-            f"{_where(mesh, 'half_backlash')}Heat shifts the gap and hardly makes it breathe. "
-            "Below zero the pair would be jammed; no motion is computed there.",
-            mesh, ("half_backlash_curve",), lambda: backlash.over_phase(mesh),
-        )  # fmt: skip
+        if "half_backlash_curve" in mesh:
+            pictures.add(
+                "gap-phase", "Half backlash over a mesh period", captions.gap_over_phase(mesh),
+                mesh, ("half_backlash_curve",), lambda: backlash.over_phase(mesh),
+            )  # fmt: skip
         blocks += _jam_texts(mesh) if "status" in mesh else []
-    if row is not None:
+    if row is not None and "half_backlash" in row:
         pictures.add(
             "gap-temperature", "Half backlash over the gears' temperature",
-            "Points: the housing follows the gears, as the case states it. Dotted: the gears "
-            "alone get hotter while the housing stays; the cross marks where the pair jams.",
+            captions.gap_over_temperature(row, backlash.jams(row, mesh)),
             row, ("half_backlash", "cold_half_backlash"),
             lambda: backlash.over_temperature(row, mesh),
         )  # fmt: skip
     return _section("backlash", "Backlash", blocks, pictures)
-
-
-def _where(data: xr.Dataset, name: str) -> str:
-    """ "At <first operating point>. " where the picture could not stand for all of them."""
-    values = data[name].transpose("operating", ...).values
-    alike = np.allclose(values, values[:1], rtol=1e-4, atol=0.0, equal_nan=True)
-    return "" if alike else f"At {operating_names(data)[0]}. "
 
 
 def _jam_texts(data: xr.Dataset, end: str = "") -> list[Block]:
@@ -186,27 +156,21 @@ def springs(results: Results, pictures: Pictures) -> Section | None:
     if mesh is None:
         return None
     for place, name in enumerate(names_of(mesh, "bundle")):
-        one = mesh.isel(operating=0, bundle=place)["mean_stiffness"].values
-        change = 100.0 * (float(one[-1]) / float(one[0]) - 1.0)
         pictures.add(
-            f"stiffness-{place}", f"Mesh stiffness, {name}",
-            f"{_where(mesh, 'mean_stiffness')}High where two pairs carry, low where one does. Hot "
-            f"against cold the mean changes by {change:+.1f} %.".replace("-", "−"),
+            f"stiffness-{place}", f"Mesh stiffness, {name}", captions.stiffness(mesh, place),
             mesh, ("mesh_stiffness", "elastic_stiffness", "thermal_stiffness", "mean_stiffness"),
             lambda p=place: stiffness.over_phase(mesh, p),  # type: ignore[misc]
         )  # fmt: skip
     first = mesh.isel(operating=0) if "operating" in mesh.dims else mesh
     pictures.add(
-        "stiffness-bars", "Mean and swing",
-        f"{_where(mesh, 'mean_stiffness')}Cold beside hot. In the thesis heat adds a spring; "
-        "consistently Young's modulus falls and with it the stiffness.",
+        "stiffness-bars", "Mean and swing", captions.bars(mesh, results.table("bundles")),
         mesh, ("mean_stiffness", "peak_to_peak_stiffness"), lambda: stiffness.bars(mesh),
     )  # fmt: skip
-    pictures.add(
-        "stiffness-pair", "Stiffness of one tooth pair",
-        "One pair alone along its path of contact, stiffest near the pitch point.",
-        first, ("pair_stiffness",), lambda: stiffness.pair(first),
-    )  # fmt: skip
+    if "pair_stiffness" in mesh:
+        pictures.add(
+            "stiffness-pair", "Stiffness of one tooth pair", captions.one_pair(mesh),
+            first, ("pair_stiffness",), lambda: stiffness.pair(first),
+        )  # fmt: skip
     needs = ("pair_stiffness", "hertz_stiffness", "pinion_bending_stiffness")
     for place, name in enumerate(names_of(mesh, "bundle")):
         pictures.add(
@@ -219,7 +183,7 @@ def springs(results: Results, pictures: Pictures) -> Section | None:
 
 
 def vibration(results: Results, pictures: Pictures) -> Section | None:
-    """Motion of every bundle and operating point, cold against hot."""
+    """Motion of every bundle and operating point, undeformed against hot."""
     found = results.group("motion")
     if found is None:
         return None
@@ -227,8 +191,8 @@ def vibration(results: Results, pictures: Pictures) -> Section | None:
     blocks: list[Block] = [
         Text(
             "Displacement is drawn from the drive-side edge of each pair's own gap, x − b′: above "
-            "0 the drive flanks touch. Open circles and blue are cold, full circles and orange "
-            "are hot. The axes of the section are those of the phase plane."
+            "0 the drive flanks touch. Open circles and blue are undeformed, full circles and "
+            "orange are hot. The axes of the section are those of the phase plane."
         )
     ]
     names, bundles = operating_names(data), names_of(data, "bundle")
@@ -237,10 +201,10 @@ def vibration(results: Results, pictures: Pictures) -> Section | None:
     for b, bundle in enumerate(bundles):
         for o in kept:
             here = data.isel(bundle=b, operating=o)
-            if all(n in data for n in needs) and motion.needed(data, b, o):
+            if all(n in data for n in needs) and motion.needed(data, bundle=b, operating=o):
                 pictures.add(
                     f"motion-{b}-{o}", f"{bundle}, {names[o]}", _motion_caption(here), data, needs,
-                    lambda b=b, o=o: motion.four_panels(data, b, o), wide=True,  # type: ignore[misc]
+                    lambda b=b, o=o: motion.four_panels(data, bundle=b, operating=o), wide=True,  # type: ignore[misc]
                 )  # fmt: skip
     if "status" in data:
         blocks += _jam_texts(data, "; there is no motion")
@@ -248,7 +212,7 @@ def vibration(results: Results, pictures: Pictures) -> Section | None:
         blocks.append(Text(f"{len(kept)} of {len(names)} operating points are drawn.", "note"))
     drawn = pictures.take()
     table = tables.motion_proofs(data, "state", names_of(data, "state"))
-    return Section("motion", "Motion, cold and hot", [*blocks, *drawn, table])
+    return Section("motion", "Motion, undeformed and hot", [*blocks, *drawn, table])
 
 
 def _motion_caption(here: xr.Dataset) -> str:
@@ -260,7 +224,7 @@ def _motion_caption(here: xr.Dataset) -> str:
             lost = f"{100.0 * share:.1f} % of the time without drive-side contact"
             lost = "always in contact" if share < 1e-6 else lost
             parts.append(f"{state}: {motion.label_of(one)}, {lost}")
-    return "; ".join(parts) + "." if parts else "Cold against hot."
+    return "; ".join(parts) + "." if parts else "Undeformed against hot."
 
 
 def row(results: Results, pictures: Pictures) -> Section | None:
@@ -269,14 +233,14 @@ def row(results: Results, pictures: Pictures) -> Section | None:
     if data is None:
         return None
     words = [celsius(float(t)) for t in data["gear_temperature"].values]
-    speeds = chosen(data.sizes["operating"], MOST_SPEEDS)
+    speeds = chosen(data.sizes["operating"], most=MOST_SPEEDS)
     needs = ("displacement", "velocity", "section_displacement", "time", "label", "half_backlash")
+    grid = captions.row_grid(columns=len(words), most=temperature.MOST_COLUMNS, rows=len(speeds))
     for b, bundle in enumerate(names_of(data, "bundle")):
         pictures.add(
             f"row-{b}", f"Phase plane and section over gear temperature, {bundle}",
-            "Columns: gear temperature; rows: operating points. The dot is the Poincaré section; "
-            "a single dot is a motion of one mesh period.",
-            data, needs, lambda b=b: temperature.grid(data, b, speeds), wide=True,  # type: ignore[misc]
+            grid, data, needs,
+            lambda b=b: temperature.grid(data, b, speeds), wide=True,  # type: ignore[misc]
         )  # fmt: skip
     swing = "peak_to_peak_displacement"
     pictures.add(
@@ -284,12 +248,7 @@ def row(results: Results, pictures: Pictures) -> Section | None:
         "Peak to peak of the relative displacement at every gear temperature.",
         data, (swing,), lambda: temperature.over_temperature(data, swing),
     )  # fmt: skip
-    blocks: list[Block] = [
-        Text(
-            f"Both gears at {', '.join(words)}; shafts and housing keep their distance below the "
-            "addendum, as the case states it."
-        )
-    ]
+    blocks: list[Block] = [Text(captions.row_intro(data, ", ".join(words)))]
     line = "half_order_amplitude"
     if all(n in data for n in (line, swing)) and temperature.worth_drawing(data, line):
         pictures.add(

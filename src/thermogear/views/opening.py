@@ -29,7 +29,7 @@ def summary(results: Results) -> str:
     points = f"{count} operating point" + ("s" if count > 1 else "")
     parts = [f"{points}: pinion at {speeds} rpm under {torques} N m{_heat(mesh)}."]
     parts += [_bundle(mesh, place) for place in range(mesh.sizes["bundle"])]
-    parts.append(_regime(mesh))
+    parts.append(_regime(mesh, _studied(results)))
     motion = results.group("motion")
     if motion is not None:
         for state in names_of(motion, "state"):
@@ -42,7 +42,7 @@ def _heat(mesh: xr.Dataset) -> str:
     if "hot_temperature" not in mesh:
         return ""
     cold, hot = (mesh["hot_temperature"].isel(state=i).values for i in (0, -1))
-    return f"; gears at {celsius(float(hot.max()))} against {celsius(float(cold.min()))} cold"
+    return f"; gears at {celsius(float(hot.max()))} against {celsius(float(cold.min()))} undeformed"
 
 
 def _bundle(mesh: xr.Dataset, place: int) -> str:
@@ -53,13 +53,13 @@ def _bundle(mesh: xr.Dataset, place: int) -> str:
     stiffness = f"the mean mesh stiffness changes by {_percents(change)}"
     jammed = int((hot["status"] == JAMMED).sum())
     jam = hot["jam_temperature"].values
-    at = celsius(float(jam.min())) if np.isfinite(jam).any() else ""
     if jammed:
         where = f"{jammed} of {hot.sizes['operating']} points"
-        return (
-            f"In the {name} bundle the hot pair is jammed at {where} (gap used up at {at}); "
-            f"{stiffness}."
-        )
+        at = f"gap used up at {celsius(float(np.nanmin(jam)))}" if np.isfinite(jam).any() else ""
+        if bool((cold["status"] == JAMMED).any()):
+            at = "without heat already"
+        at = f" ({at})" if at else ""
+        return f"In the {name} bundle the hot pair is jammed at {where}{at}; {stiffness}."
     before = span(1e6 * cold["half_backlash"].values)
     after = span(1e6 * hot["half_backlash"].values)
     return (
@@ -73,14 +73,20 @@ def _percents(ratios: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _regime(mesh: xr.Dataset) -> str:
+def _studied(results: Results) -> bool:
+    """Whether the thesis's bifurcation study is about this case."""
+    return results.text("thesis_case") == "1"
+
+
+def _regime(mesh: xr.Dataset, studied: bool) -> str:
     ratio = mesh["frequency_ratio"].isel(bundle=0, state=0).values
     frequency = span(mesh["natural_frequency"].isel(bundle=0, state=0).values, 4)
     place = "below" if ratio.max() < 0.9 else "above" if ratio.min() > 1.1 else "around"
     return (
         f"The mesh frequency lies at {span(ratio)} of the natural frequency of the "
-        f"cold mean stiffness ({frequency} Hz), "
-        f"{place} the resonance; the thesis's bifurcation study speaks of {STUDIED}."
+        f"undeformed mean stiffness ({frequency} Hz), "
+        f"{place} the resonance"
+        + (f"; the thesis's bifurcation study speaks of {STUDIED}." if studied else ".")
     )
 
 
@@ -101,6 +107,14 @@ def _rows_summary(points: xr.Dataset | None) -> str:
     )
 
 
+def _rising(hot: xr.Dataset) -> str:
+    """Where the pair jams with shafts and housing rising in proportion to the gears."""
+    if "proportional_jam_temperature" not in hot:
+        return ""
+    jam = float(np.ravel(hot["proportional_jam_temperature"].values)[0])
+    return f"; all bodies in proportion: {jam_at(jam)}" if math.isfinite(jam) else ""
+
+
 def tiles(results: Results) -> list[Tile]:
     """The figures that matter, of the first bundle, the others beside them."""
     mesh = results.group("mesh")
@@ -114,19 +128,23 @@ def tiles(results: Results) -> list[Tile]:
         for b, stuck in zip(hot["half_backlash"].values, jammed, strict=True)
     ]
     change = hot["mean_stiffness"].values / cold["mean_stiffness"].values - 1.0
-    jam = [jam_at(float(t)) for t in hot["jam_temperature"].values]
+    bare = cold["status"].values == JAMMED
+    jam = [
+        jam_at(float(t), without_heat=bool(stuck))
+        for t, stuck in zip(hot["jam_temperature"].values, bare, strict=True)
+    ]
     found = [
         Tile(
             "hot half backlash",
             gaps[0],
-            f"cold {number(1e6 * float(cold['half_backlash'][0]))} µm" + _beside(names, gaps),
+            f"undeformed {number(1e6 * float(cold['half_backlash'][0]))} µm" + _beside(names, gaps),
         ),
         Tile(
-            "mean mesh stiffness, hot against cold",
+            "mean mesh stiffness, hot against undeformed",
             percent(float(change[0])),
             names[0] + _beside(names, [percent(float(c)) for c in change]),
         ),
-        Tile("backlash used up at", jam[0], "housing as it is" + _beside(names, jam)),
+        Tile("backlash used up at", jam[0], f"housing as it is{_beside(names, jam)}{_rising(hot)}"),
     ]
     path = results.group("path")
     if path is not None and "flash_temperature" in path:
@@ -139,9 +157,9 @@ def tiles(results: Results) -> list[Tile]:
     ratio = mesh["frequency_ratio"].isel(bundle=0, state=0).values
     found.append(
         Tile(
-            "mesh over natural frequency of the cold mean stiffness",
+            "mesh over natural frequency of the undeformed mean stiffness",
             span(ratio, 2),
-            f"thesis's study {STUDIED}",
+            f"thesis's study {STUDIED}" if _studied(results) else "1 is the resonance",
         )
     )
     motion = results.group("motion")

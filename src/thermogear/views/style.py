@@ -15,12 +15,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.words import axis_label, math_symbol, plain, raised
 
 COLD, HOT = "#0072B2", "#D55E00"
 INK, QUIET, FAINT = "#22303c", "#66727d", "#d5dbe0"
 DRY, MIXED = "#8a5a2b", "#009E73"
-STATES = {"cold": COLD, "hot": HOT}
+STATES = {UNDEFORMED: COLD, "hot": HOT}
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 
 SINGLE = (4.9, 3.1)
@@ -246,7 +247,7 @@ def ramp(count: int, warm: bool = False) -> list[str]:
     return [mpl.colors.to_hex(colours(float(p))) for p in places]
 
 
-def chosen(count: int, most: int = MOST_POINTS) -> list[int]:
+def chosen(count: int, *, most: int = MOST_POINTS) -> list[int]:
     """Which of ``count`` operating points are drawn: all, or ``most`` spread evenly."""
     if count <= most:
         return list(range(count))

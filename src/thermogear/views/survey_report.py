@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from thermogear.base.errors import InputError
@@ -91,6 +92,16 @@ def _files(directory: Path, kind: str, one: Drawn) -> list[Path]:
     return written
 
 
+def _in_words(data: xr.Dataset) -> xr.Dataset:
+    """The same with the words of its flags in place of their numbers."""
+    words = {}
+    for name, variable in data.data_vars.items():
+        if "flag_meanings" in variable.attrs:
+            meanings = np.array(str(variable.attrs["flag_meanings"]).split())
+            words[name] = (variable.dims, meanings[variable.values.astype(int)])
+    return data.assign(words)
+
+
 def _tables(directory: Path, stem: str, data: xr.Dataset) -> list[Path]:
     """One CSV file for each set of dimensions; the header names the units."""
     families: dict[tuple[str, ...], list[str]] = {}
@@ -101,7 +112,7 @@ def _tables(directory: Path, stem: str, data: xr.Dataset) -> list[Path]:
     for dims, names in families.items():
         if not dims:
             continue
-        frame = data[names].to_dataframe().reset_index()
+        frame = _in_words(data[names]).to_dataframe().reset_index()
         units = {
             str(column): f"{column} [{data[column].attrs['units']}]"
             for column in frame.columns

@@ -14,6 +14,8 @@ from matplotlib.figure import Figure
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
+from thermogear.views import captions
+from thermogear.views import survey_captions as words
 from thermogear.views.page import Table
 from thermogear.views.plots import laws, loaded, relief, thermal_map
 from thermogear.views.words import exactly, number, operating_names, prose
@@ -56,8 +58,7 @@ def friction(texts: Mapping[str, Any], groups: Groups) -> Survey:
         Drawn(
             f"laws_{place + 1}",
             f"Friction laws at {names[place]}",
-            "Solid: local laws; dashed: one value for the mesh; dotted: outside the law's range. "
-            "The band on top is the lubrication regime by the film parameter.",
+            words.laws(data, place, means),
             partial(laws.laws, data, place, means),
             wide=True,
         )
@@ -68,7 +69,7 @@ def friction(texts: Mapping[str, Any], groups: Groups) -> Survey:
             "film",
             "Film parameter along the path",
             "Least film thickness over the combined rms roughness; below 1 boundary, from 3 on a "
-            "full film.",
+            f"full film. {captions.regimes(data)}".strip(),
             partial(laws.film, data),
         )
     )
@@ -103,59 +104,65 @@ def friction(texts: Mapping[str, Any], groups: Groups) -> Survey:
         ],
     )
     summary = (
-        f"{len(rows)} laws at {len(names)} operating points; the case computes with "
-        f"{data.attrs['chosen']} (marked)."
+        f"{len(rows)} laws at {words.several(len(names), 'operating point')}; the case computes "
+        f"with {data.attrs['chosen']} (marked)."
     )
+    if len(names) > MOST_PICTURES:
+        summary += f" The first {MOST_PICTURES} points have a picture of their own."
     return Survey(summary, pictures, [table, regimes])
 
 
 def temperature(texts: Mapping[str, Any], groups: Groups) -> Survey:
     """The closed loop over speed and torque."""
     data, warm = groups["map"], groups["warm_up"]
-    pictures = [
-        Drawn(
-            "map",
-            "Everything hot over speed and torque",
-            "Hatched: the oil is beyond its viscosity line. White: no steady temperature. At least "
-            "50 K of scuffing margin are advised.",
-            partial(thermal_map.thermal_map, data),
-            wide=True,
-        ),
+    pictures = []
+    over = words.running(data)
+    if over:
+        pictures.append(
+            Drawn(
+                "map",
+                f"Everything hot over {' and '.join(over)}",
+                words.thermal_map(data, thermal_map.SAFE),
+                partial(thermal_map.thermal_map, data),
+                wide=True,
+            )
+        )
+    pictures.append(
         Drawn(
             "warm_up",
             "Warm-up from the ambient",
-            "The viscosity follows the oil; losses are renewed from interval to interval. A kink "
-            "is where the oil on a rotating face turns turbulent and cools better at once.",
+            "The viscosity follows the oil; losses are renewed from interval to interval. Where a "
+            "curve has a kink the oil on a rotating face turns turbulent and cools better at once.",
             partial(thermal_map.warm_up, warm),
             wide=True,
-        ),
-    ]
-    tables = [_corner_table(data), _estimate_table(data)]
-    rows = json.loads(texts["verdicts"])
-    tables.append(
-        Table(
-            "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
-            "torque are means over the lines of the grid.",
-            ["claim", "found", "verdict"],
-            [[row["claim"], prose(row["found"]), row["verdict"]] for row in rows],
-            names=3,
-            marked=frozenset(i for i, row in enumerate(rows) if row["verdict"] != "holds"),
-            wordy=True,
         )
     )
+    tables = [_corner_table(data), _estimate_table(data)]
+    rows = json.loads(texts["verdicts"])
+    if rows:
+        tables.append(_conclusion_table(rows))
     status = data["status"].values
-    count = {
-        word: int((status == place).sum())
-        for place, word in enumerate(STATUS)
-        if word != "diverged"
-    }
+    count = {word: int((status == place).sum()) for place, word in enumerate(STATUS)}
     summary = (
-        f"{status.size} operating points of the closed loop of friction and heat in "
-        f"{float(texts['seconds']):.2f} s: "
-        + ", ".join(f"{n} {word.replace('_', ' ')}" for word, n in count.items())
+        f"{words.several(status.size, 'operating point')} of the closed loop of friction and heat "
+        f"in {float(texts['seconds']):.2f} s: "
+        + ", ".join(f"{n} {word.replace('_', ' ')}" for word, n in count.items() if n)
         + f". Iterations at most {int(data['iterations'].max())}."
+        + ("" if over else words.one_point(data))
     )
     return Survey(summary, pictures, tables)
+
+
+def _conclusion_table(rows: Sequence[Mapping[str, str]]) -> Table:
+    return Table(
+        "The thesis's first conclusion, checked over the map. Rank correlations with speed and "
+        "torque are means over the lines of the grid.",
+        ["claim", "found", "verdict"],
+        [[row["claim"], prose(row["found"]), row["verdict"]] for row in rows],
+        names=3,
+        marked=frozenset(i for i, row in enumerate(rows) if row["verdict"] != "holds"),
+        wordy=True,
+    )
 
 
 def _chosen(data: xr.Dataset) -> list[tuple[int, int]]:
@@ -202,7 +209,8 @@ def _corner_table(data: xr.Dataset) -> Table:
                 number(float(here["residual"]), 2) if settled else "–",
             ]
         )
-    return Table("Corners and middle of the map.", head, rows, names=3)
+    caption = ("The operating point.", "Ends and middle.", "Corners and middle of the map.")
+    return Table(caption[len(words.running(data))], head, rows, names=3)
 
 
 def _estimate_table(data: xr.Dataset) -> Table:
@@ -232,26 +240,26 @@ def tip_relief(texts: Mapping[str, Any], groups: Groups) -> Survey:
     hot = [float(texts[f"{gear}_addendum"]) - ZERO_CELSIUS for gear in ("pinion", "wheel")]
     summary = (
         f"Made for {exactly(torque)} N m with teeth at {hot[0]:.0f} °C (pinion) and "
-        f"{hot[1]:.0f} °C (wheel): the transmission error falls from {before:.2f} to {after:.2f} "
+        f"{hot[1]:.0f} °C (wheel): the transmission error goes from {before:.2f} to {after:.2f} "
         f"um peak to peak, by {int(texts['evaluations'])} evaluations of the mesh period."
     )
     pictures = [
         Drawn(
             "error",
             "Transmission error over a mesh period",
-            "Under the design load; the relieved pair runs more evenly.",
+            words.relief_error(groups["error"]),
             partial(relief.error, groups["error"]),
         ),
         Drawn(
             "stiffness",
             "Tangent stiffness over a mesh period",
-            "Relief shortens double contact: the mean stiffness falls.",
+            words.relief_stiffness(groups["error"]),
             partial(relief.stiffness, groups["error"]),
         ),
         Drawn(
             "loads",
             "What the relief does at other loads",
-            "Below some load the relief makes the mesh run less evenly than no relief.",
+            words.relief_loads(groups["loads"]),
             partial(relief.over_load, groups["loads"], torque),
         ),
     ]
@@ -276,34 +284,33 @@ def contact(texts: Mapping[str, Any], groups: Groups) -> Survey:
         Drawn(
             "phase",
             "Stiffness and transmission error over a mesh period, hot",
-            "Tangent and secant stiffness are kept apart; the contact hardens with load.",
+            words.contact_phase(data),
             partial(loaded.over_phase, data),
             wide=True,
         ),
         Drawn(
             "path",
             "Load share and pressure of one tooth pair",
-            "Beyond A and E the corner of a tip touches while the teeth give way.",
+            words.contact_path(data),
             partial(loaded.along_path, data, points),
             wide=True,
         ),
         Drawn(
             "double_contact",
             "Double contact lost at light load",
-            "A base-pitch difference between gears of unequal temperature leaves one pair "
-            "unloaded until the teeth bend enough.",
+            words.double_contact(light),
             partial(loaded.double_contact, light, pitch, "double_contact_length"),
         ),
         Drawn(
             "uneven_stiffness",
             "Mean stiffness of unequally hot gears",
-            "Where double contact is lost the mean stiffness falls with it.",
+            words.uneven_stiffness(light),
             partial(loaded.double_contact, light, pitch, "mean_stiffness"),
         ),
         Drawn(
             "uneven_error",
             "Transmission error of unequally hot gears",
-            "A hotter pinion and a hotter wheel are not mirror images.",
+            words.uneven_error(light),
             partial(loaded.double_contact, light, pitch, "peak_to_peak_error"),
         ),
         Drawn(
@@ -328,21 +335,24 @@ def contact(texts: Mapping[str, Any], groups: Groups) -> Survey:
                     number(1e6 * float(error.mean())),
                     number(1e6 * float(np.ptp(error))),
                     number(1e3 * float(here["double_contact_length"])),
+                    " / ".join(number(100.0 * share, 2) for share in _corner_shares(here)),
                     number(1e-6 * float(here["contact_pressure"].max())),
                 ]
             )
     table = Table(
-        "Loaded contact by load and temperature.",
+        "Loaded contact by load and temperature. Edge contact: share of the mesh period in which "
+        "the wheel's tip corner carries (before A) / the pinion's (beyond E). The Hertzian "
+        "pressure is not valid on a corner; the greatest one is that of the flanks alone.",
         [
             "torque [N m]", "temperature", "k tangent [10⁸ N/m]", "k secant [10⁸ N/m]",
             "δ mean [µm]", "δ peak to peak [µm]", "double contact [mm]",
-            "greatest pressure [MPa]",
+            "edge contact [%]", "greatest pressure on the flanks [MPa]",
         ],
         rows,
         names=2,
     )  # fmt: skip
     against = Table(
-        "Mean mesh stiffness, cold [10⁸ N/m].",
+        "Mean mesh stiffness, undeformed [10⁸ N/m].",
         ["torque [N m]", "loaded contact", "ISO 6336-1 method B", "difference [%]"],
         [
             [
@@ -360,10 +370,16 @@ def contact(texts: Mapping[str, Any], groups: Groups) -> Survey:
         ],
     )
     summary = (
-        f"{data.sizes['mesh_phase']} mesh positions, {data.sizes['load']} loads and "
-        f"{len(states)} temperatures; body {str(texts['body']).replace('_', ' ')}."
+        f"{data.sizes['mesh_phase']} mesh positions, {words.several(data.sizes['load'], 'load')} "
+        f"and {len(states)} temperatures; body {str(texts['body']).replace('_', ' ')}."
     )
     return Survey(summary, pictures, [against, table])
+
+
+def _corner_shares(data: xr.Dataset) -> list[float]:
+    """Shares of the mesh period with the wheel's and the pinion's tip corner loaded."""
+    flags = data["edge_contact"].values
+    return [float((flags & bit > 0).any(axis=-1).mean()) for bit in (1, 2)]
 
 
 SURVEYS: dict[str, Callable[[Mapping[str, Any], Groups], Survey]] = {

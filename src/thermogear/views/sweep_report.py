@@ -20,6 +20,7 @@ from thermogear.views.plots.parameters import page_words, shown
 from thermogear.views.words import number
 
 RESULT = "result.zarr"
+Words = Callable[[xr.Dataset], str]
 TITLES = {
     "diagram": "Orbit diagram",
     "map": "Map of regimes",
@@ -76,13 +77,10 @@ def _summary(data: xr.Dataset) -> str:
 
 def _pictures(data: xr.Dataset) -> Section:
     kind = str(data.attrs["kind"])
-    makers: dict[str, list[tuple[str, str, str, Callable[[xr.Dataset], Figure]]]] = {
+    makers: dict[str, list[tuple[str, str, str | Words, Callable[[xr.Dataset], Figure]]]] = {
         "diagram": [
             (
-                "orbits", "Orbit diagram",
-                "Sections at phase 0 of the settled motion, each value starting from the end of "
-                "the last; branches from continuation; the largest Lyapunov exponent below.",
-                sweeps.orbit_diagram_picture,
+                "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture,
             )
         ],
         "map": [
@@ -98,13 +96,11 @@ def _pictures(data: xr.Dataset) -> Section:
             )
         ],
         "sweep": [
-            ("sweep", "Response", "Every point from the case's own start.", sweeps.sweep_picture)
+            ("sweep", "Response", _sweep_caption, sweeps.sweep_picture)
         ],
         "run-up": [
             (
-                "runup", "Response over speed",
-                "Full lines run up, dashed ones down; thin vertical lines are located folds.",
-                sweeps.run_up_picture,
+                "runup", "Response over speed", _run_up_caption, sweeps.run_up_picture,
             ),
             (
                 "waterfall", "Waterfall",
@@ -119,8 +115,34 @@ def _pictures(data: xr.Dataset) -> Section:
         def drawn(make: Callable[[xr.Dataset], Figure] = make) -> Figure:
             return make(data)
 
-        pictures.add(name, heading, caption, data, (), drawn, wide=True)
+        said = caption if isinstance(caption, str) else caption(data)
+        pictures.add(name, heading, said, data, (), drawn, wide=True)
     return Section("pictures", "Pictures", pictures.take())
+
+
+def _diagram_caption(data: xr.Dataset) -> str:
+    words = (
+        "Sections at phase 0 of the settled motion, each value starting from the end of the last"
+    )
+    if data.sizes.get("branch"):
+        words += "; branches from continuation"
+    known = np.isfinite(data["lyapunov"].values).any()
+    return words + ("; the largest Lyapunov exponent below." if known else ".")
+
+
+def _sweep_caption(data: xr.Dataset) -> str:
+    words = "Every point from the case's own start."
+    rest = [str(name) for name in data["label"].dims[2:]]
+    at = [f"{page_words(name)} {number(float(shown(name, data[name].values[0])))}" for name in rest]
+    return f"{words} Drawn at {', '.join(at)}." if at else words
+
+
+def _run_up_caption(data: xr.Dataset) -> str:
+    words = "Full lines run up, dashed ones down"
+    if data.sizes["pinion_speed"] == 1:
+        words = "One speed, met from below and from above"
+    folds = "bifurcation_kind" in data and bool((data["bifurcation_kind"].values == 0).any())
+    return words + ("; thin vertical lines are located folds." if folds else ".")
 
 
 def _points(data: xr.Dataset) -> Section:

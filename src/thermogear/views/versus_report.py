@@ -17,6 +17,7 @@ from thermogear.views.page import Block, Cell, Code, Pictures, Section, Table, T
 from thermogear.views.plots import versus as plots
 from thermogear.views.results import read_tree
 from thermogear.views.style import chosen
+from thermogear.views.tables import is_jammed
 from thermogear.views.words import (
     Display,
     display,
@@ -36,7 +37,8 @@ JAMMED = STATUS.index("jammed")
 
 FIGURES = {
     "half_backlash": "half backlash b′",
-    "jam_temperature": "jams at",
+    "jam_temperature": "jams at, housing as it is",
+    "proportional_jam_temperature": "jams at, all in proportion",
     "mean_stiffness": "mean mesh stiffness",
     "thermal_stiffness_ratio": "its change by heat",
     "greatest_flash_temperature": "greatest flash",
@@ -46,14 +48,19 @@ FIGURES = {
     "peak_to_peak_displacement": "swing of x",
 }
 """Figures of a point in the order of the tables."""
-VIBRATION = tuple(FIGURES)[5:]
+VIBRATION = tuple(FIGURES)[6:]
 """Those of the second table: both together would not fit beside each other."""
-HOT_ALONE = ("jam_temperature", "thermal_stiffness_ratio", "greatest_flash_temperature")
+JAMS = ("jam_temperature", "proportional_jam_temperature")
+HOT_ALONE = (*JAMS, "thermal_stiffness_ratio", "greatest_flash_temperature")
 
 CURVES = (
     ("friction_coefficient", "Friction coefficient", "By the law each case has chosen."),
     ("flash_temperature", "Flash temperature rise", "Of the skin alone, zero at the pitch point."),
-    ("deformation_sum", "Growth of both flanks", "Along the line of action, cold it is zero."),
+    (
+        "deformation_sum",
+        "Growth of both flanks",
+        "Along the line of action; without heat it is zero.",
+    ),
     ("half_backlash_curve", "Half backlash over a mesh period", "Below zero a pair is jammed."),
     ("mesh_stiffness", "Mesh stiffness over a mesh period", "High where two pairs carry."),
 )
@@ -165,7 +172,7 @@ def _table(here: xr.Dataset, names: Sequence[str], words: str) -> Table:
     caption = f"{words}: cases below each other at every operating point"
     if several:
         alone = [FIGURES[name] for name in names if name in HOT_ALONE]
-        caption += ", cold → hot" + (f"; hot alone: {', '.join(alone)}" if alone else "")
+        caption += ", undeformed → hot" + (f"; hot alone: {', '.join(alone)}" if alone else "")
     caption += "."
     return Table(caption, head, rows, names=2, marked=frozenset(marked))
 
@@ -176,7 +183,7 @@ def _any(here: xr.Dataset, name: str) -> bool:
 
 
 def _head(here: xr.Dataset, name: str) -> str:
-    if name in ("label", "jam_temperature", "thermal_stiffness_ratio"):
+    if name in ("label", *JAMS, "thermal_stiffness_ratio"):
         return FIGURES[name]
     unit = _display(here, name).unit
     return FIGURES[name] if unit == "–" else f"{FIGURES[name]} [{unit}]"
@@ -191,8 +198,8 @@ def _cell(one: xr.Dataset, name: str) -> Cell:
     states = [one.isel(state=s) for s in range(one.sizes["state"])]
     if name in HOT_ALONE:
         value = float(states[-1][name])
-        if name == "jam_temperature":
-            return jam_at(value)
+        if name in JAMS:
+            return jam_at(value, without_heat=is_jammed(states[0]))
         if name == "thermal_stiffness_ratio":
             return percent(value)
         return number(float(_display(one, name)(value)))
@@ -228,22 +235,22 @@ def _pictures(data: xr.Dataset) -> list[Section]:
         shared = np.flatnonzero(count > 1)
         of = shared if shared.size else np.flatnonzero(count)
         pictures, before = Pictures(), list[int]()
-        for o in (int(of[i]) for i in chosen(of.size, MOST_POINTS)):
+        for o in (int(of[i]) for i in chosen(of.size, most=MOST_POINTS)):
             for name, heading, words in CURVES:
                 repeats = any(_alike(data, name, b, o, p) for p in before)
-                if repeats or not plots.has_curve(data, name, b, o):
+                if repeats or not plots.has_curve(data, name, bundle=b, operating=o):
                     continue
                 pictures.add(
                     f"{name}-{b}-{o}", f"{heading}, {points[o]}", words, data, (name,),
-                    lambda n=name, o=o, b=b: plots.curve(data, n, b, o),  # type: ignore[misc]
+                    lambda n=name, o=o, b=b: plots.curve(data, n, bundle=b, operating=o),  # type: ignore[misc]
                 )  # fmt: skip
-            if plots.has_curve(data, "line_amplitude", b, o):
+            if plots.has_curve(data, "line_amplitude", bundle=b, operating=o):
                 pictures.add(
                     f"spectrum-{b}-{o}", f"Spectrum of the displacement, {points[o]}",
                     "Lines of one order stand side by side: they are set apart by "
                     f"{plots.SHIFT:g} orders for each case, so that none hides another.",
                     data, ("line_amplitude",),
-                    lambda o=o, b=b: plots.spectrum(data, b, o), wide=True,  # type: ignore[misc]
+                    lambda o=o, b=b: plots.spectrum(data, bundle=b, operating=o), wide=True,  # type: ignore[misc]
                 )  # fmt: skip
             before.append(o)
         blocks = pictures.take()
@@ -253,7 +260,7 @@ def _pictures(data: xr.Dataset) -> list[Section]:
         intro = "A colour for each case; where curves coincide the first is the broadest."
         if gear:
             intro += (
-                " Hot is solid, cold dashed. A curve that is the same at a further operating "
+                " Hot is solid, undeformed dashed. A curve that is the same at a further operating "
                 "point is drawn once."
             )
         title = f"Curves, {bundle}" if gear else "Curves"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 import xarray as xr
@@ -26,6 +26,7 @@ class Display:
 
     unit: str
     scale: float = 1.0
+    _: KW_ONLY
     zero: float = 0.0
 
     def __call__(self, values: ArrayLike) -> Floats:
@@ -35,7 +36,7 @@ class Display:
 MICROMETRE = Display("µm", 1e6)
 MILLIMETRE = Display("mm", 1e3)
 KELVIN = Display("K")
-CELSIUS = Display("°C", 1.0, ZERO_CELSIUS)
+CELSIUS = Display("°C", 1.0, zero=ZERO_CELSIUS)
 
 _BY_UNIT = {
     "1": Display("–"),
@@ -155,8 +156,13 @@ def celsius(kelvin: float) -> str:
     return f"{kelvin - ZERO_CELSIUS:.0f} °C".replace("-", "−")
 
 
-def jam_at(kelvin: float) -> str:
-    """A jam temperature; far beyond what gears bear it is only said to lie there."""
+def jam_at(kelvin: float, *, without_heat: bool = False) -> str:
+    """A jam temperature; far beyond what gears bear it is only said to lie there.
+
+    ``without_heat``: the undeformed pair is jammed already.
+    """
+    if without_heat:
+        return "without heat"
     if not math.isfinite(kelvin):
         return "never"
     return celsius(kelvin) if kelvin < ZERO_CELSIUS + FAR else f"> {FAR:.0f} °C"

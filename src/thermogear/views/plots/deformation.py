@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -50,13 +51,23 @@ def growth(data: xr.Dataset) -> Figure:
     return figure
 
 
+def hot_profiles(data: xr.Dataset) -> dict[str, tuple[str, str, Any, float]]:
+    """The hot profiles that are stored: words, colour, line style and width of each."""
+    printed = "printed_x" in data
+    words = "hot, repaired" if printed else "hot"
+    found: dict[str, tuple[str, str, Any, float]] = {"consistent": (words, HOT, "-", 2.4)}
+    if printed:
+        found["printed"] = ("hot, as printed", INK, (0, (4, 2)), 1.3)
+    return found
+
+
 def magnification(data: xr.Dataset, gear: int) -> int:
     """The round factor that makes the largest displacement about a fifth of the tooth's height."""
     here = data.isel(gear=gear)
     height = float(np.ptp(here["involute_y"].values))
     moved = max(
         float(np.nanmax(np.abs(here[f"{kind}_{axis}"].values - here[f"involute_{axis}"].values)))
-        for kind in ("printed", "consistent")
+        for kind in hot_profiles(data)
         for axis in "xy"
     )
     if not moved > 0.0 or not math.isfinite(moved):
@@ -67,17 +78,13 @@ def magnification(data: xr.Dataset, gear: int) -> int:
 
 
 def profile(data: xr.Dataset, gear: int) -> Figure:
-    """One tooth: cold involute, hot as printed and hot as repaired, the displacement magnified."""
+    """One tooth: cold involute and the hot profiles, their displacement magnified."""
     figure, axes = picture(size=(4.9, 4.3))
     axis = axes[0, 0]
     here = data.isel(gear=gear)
     factor = magnification(data, gear)
     x0, y0 = here["involute_x"].values, here["involute_y"].values
-    curves = {
-        "consistent": ("hot, repaired", HOT, "-", 2.4),
-        "printed": ("hot, as printed", INK, (0, (4, 2)), 1.3),
-        "involute": ("cold involute", QUIET, "-", 1.3),
-    }
+    curves = {**hot_profiles(data), "involute": ("cold involute", QUIET, "-", 1.3)}
     for kind, (words, colour, style, width) in curves.items():
         x = 1e3 * (x0 + factor * (here[f"{kind}_x"].values - x0))
         y = 1e3 * (y0 + factor * (here[f"{kind}_y"].values - y0))
@@ -105,10 +112,7 @@ def profile_growth(data: xr.Dataset, gear: int) -> Figure:
     x0, y0 = here["involute_x"].values, here["involute_y"].values
     across, along = (np.gradient(part, edge_order=2) for part in (x0, y0))
     length = np.hypot(across, along)
-    for kind, words, colour, style in (
-        ("consistent", "hot, repaired", HOT, "-"),
-        ("printed", "hot, as printed", INK, (0, (4, 2))),
-    ):
+    for kind, (words, colour, style, _) in hot_profiles(data).items():
         dx = here[f"{kind}_x"].values - x0
         dy = here[f"{kind}_y"].values - y0
         off = 1e6 * (dx * along - dy * across) / length

@@ -59,10 +59,9 @@ def orbit_picture(data: xr.Dataset) -> Figure:
             ("velocity", data["velocity"].values[0]),
         )
     )
-    t, x, v = refined(t, x, v, 4)
+    t, x, v = refined(t, x=x, v=v, times=4)
     turns = t * float(data["orbit_period"]) / t[-1]
     x, v = x * length, v * speed
-    edge = float(data["half_backlash"]) * length
     figure, axes = picture(2, 2, (WIDE, 6.6), above=0.95, between=0.9)
     history, phase, unit, spectrum = axes.ravel()
 
@@ -75,15 +74,20 @@ def orbit_picture(data: xr.Dataset) -> Figure:
         linestyle="none", marker="o", markersize=6.5, color=HOT, markeredgecolor="white",
     )  # fmt: skip
     phase.set(title="Phase plane, section at phase 0", xlabel=x_words, ylabel=v_words)
-    low, high = float(x.min()), float(x.max())
-    room = 0.15 * (high - low)
-    for place in (edge, -edge):
-        if low - room <= place <= high + room:
-            history.axhline(place, color=QUIET, linewidth=1.0, linestyle=DASHED)
-            phase.axvline(place, color=QUIET, linewidth=1.0, linestyle=DASHED)
+    for place in edges_in_sight(data):
+        history.axhline(length * place, color=QUIET, linewidth=1.0, linestyle=DASHED)
+        phase.axvline(length * place, color=QUIET, linewidth=1.0, linestyle=DASHED)
     _multipliers(unit, data["multiplier_real"].values, data["multiplier_imag"].values)
     _spectrum(spectrum, data, length, "µm" if si else "")
     return figure
+
+
+def edges_in_sight(data: xr.Dataset) -> list[float]:
+    """The edges of the backlash that lie on an orbit or near it."""
+    x, edge = data["displacement"].values, float(data["half_backlash"])
+    low, high = float(x.min()), float(x.max())
+    room = 0.15 * (high - low)
+    return [place for place in (edge, -edge) if low - room <= place <= high + room]
 
 
 def _multipliers(axes: Axes, real: Floats, imag: Floats) -> None:
@@ -98,8 +102,16 @@ def _multipliers(axes: Axes, real: Floats, imag: Floats) -> None:
 
 def _spectrum(axes: Axes, data: xr.Dataset, length: float, unit: str) -> None:
     order, amplitude = data["order"].values, data["line_amplitude"].values * length
-    floor, top = floor_of(amplitude, order, HIGHEST_ORDER)
-    draw_lines(axes, order, amplitude, COLD, floor, HIGHEST_ORDER, "")
+    floor, top = floor_of(amplitude, order=order, highest=HIGHEST_ORDER)
+    draw_lines(
+        axes,
+        order=order,
+        amplitude=amplitude,
+        colour=COLD,
+        floor=floor,
+        highest=HIGHEST_ORDER,
+        label="",
+    )
     log_axis(axes)
     axes.set_ylim(floor, top)
     mark_half_orders(axes, HIGHEST_ORDER)

@@ -12,6 +12,7 @@ from thermogear.views.style import (
     OKABE_ITO,
     QUIET,
     WIDE,
+    chosen,
     legend_below,
     mark_path,
     picture,
@@ -84,7 +85,9 @@ def film(data: xr.Dataset) -> Figure:
     axis = axes[0, 0]
     x = 1e3 * data["path_position"].values
     values = data["film_parameter"].values
-    for i, name in enumerate(operating_names(data)[:6]):
+    names = operating_names(data)
+    for i in chosen(len(names)):
+        name = names[i]
         finite = np.where(np.isfinite(values[i]), values[i], np.nan)
         axis.plot(x, finite, color=OKABE_ITO[i % len(OKABE_ITO)], label=plain(name))
     highest = float(np.nanmax(np.where(np.isfinite(values), values, np.nan), initial=1.0))

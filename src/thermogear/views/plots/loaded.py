@@ -7,9 +7,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, legend_below, picture, ramp
 
-STATES = {"cold": (COLD, (0, (5, 2))), "hot": (HOT, "-")}
+EDGE = OKABE_ITO[4]
+STATES = {UNDEFORMED: (COLD, (0, (5, 2))), "hot": (HOT, "-")}
 
 
 def over_phase(data: xr.Dataset) -> Figure:
@@ -35,14 +37,18 @@ def over_phase(data: xr.Dataset) -> Figure:
 
 
 def along_path(data: xr.Dataset, points: dict[str, float]) -> Figure:
-    """Load share and pressure of a tooth pair along the path, cold and hot, at the last load."""
+    """Load share and pressure of a tooth pair along the path at the first and the last load.
+
+    The pressure stops where a tip corner carries, and those stretches are shaded.
+    """
     figure, axes = picture(1, 2, size=(WIDE, 3.3))
     for name, (colour, line) in STATES.items():
         if name not in data["temperature"].values:
             continue
         here = data.sel(temperature=name)
-        for load, width in ((0, 1.0), (here.sizes["load"] - 1, 1.8)):
-            one = here.isel(load=load)
+        last = here.sizes["load"] - 1
+        for load in sorted({0, last}):
+            one, width = here.isel(load=load), 1.8 if load == last else 1.0
             s = 1e3 * one["pair_position"].values.ravel()
             order = np.argsort(s)
             words = f"{name}, {float(one['load']):.4g} N m"
@@ -54,14 +60,27 @@ def along_path(data: xr.Dataset, points: dict[str, float]) -> Figure:
                 )
     for axis, words in (
         (axes[0, 0], "share of the load [–]"),
-        (axes[0, 1], "greatest Hertzian pressure [MPa]"),
+        (axes[0, 1], "greatest Hertzian pressure on the flanks [MPa]"),
     ):
+        _corners(axis, data)
         _marks(axis, points)
         axis.set_xlabel("distance from the pinion's tangent point [mm]")
         axis.set_ylabel(words)
         axis.set_ylim(bottom=0.0)
     legend_below(figure, axes[0, 0], 4)
     return figure
+
+
+def _corners(axis: Axes, data: xr.Dataset) -> None:
+    """Shade where a tip corner carries at any load and temperature."""
+    positions, flags = data["pair_position"].values, data["edge_contact"].values
+    label = "edge contact: pressure not valid"
+    for corner in (1, 2):
+        touched = positions[(flags == corner).any(axis=tuple(range(flags.ndim - 2)))]
+        if touched.size:
+            low, high = 1e3 * touched.min(), 1e3 * touched.max()
+            axis.axvspan(low, high, color=EDGE, alpha=0.25, linewidth=0.0, zorder=0.1, label=label)
+            label = ""
 
 
 def _marks(axis: Axes, points: dict[str, float]) -> None:
@@ -114,7 +133,7 @@ def iso(data: xr.Dataset) -> Figure:
     figure, axes = picture()
     axis = axes[0, 0]
     for name, words, colour in (
-        ("loaded_stiffness", "loaded contact, cold", HOT),
+        ("loaded_stiffness", "loaded contact, undeformed", HOT),
         ("iso_stiffness", "ISO 6336-1, method B", COLD),
     ):
         axis.plot(

@@ -1,4 +1,4 @@
-"""Motion at one operating point, cold against hot: history, phase plane, section, spectrum."""
+"""Motion at one operating point, without heat and hot: history, phase plane, section, spectrum."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.plots.orbits import SMOOTH, periods_to_draw, refined, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
 from thermogear.views.style import (
@@ -43,7 +44,7 @@ BEYOND = "beyond the gap's edge x − b′ [µm]"
 SPEED = axis_label("velocity")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Orbit:
     """A motion in display units: ``t`` [ms], ``x`` - b' [um], ``v`` [mm/s], and its section.
 
@@ -76,14 +77,14 @@ def orbit_of(one: xr.Dataset) -> Orbit:
     mesh = mesh_frequency(one)
     samples = max(1, round(1.0 / (mesh * float(t[1] - t[0])))) if mesh > 0.0 else t.size
     label = str(one["label"].item())
-    loop = periods_to_draw(label, samples, t.size)
+    loop = periods_to_draw(label, samples_per_period=samples, stored=t.size)
     history = max(min(t.size, HISTORY * samples + 1), min(t.size, 2 * loop))
     times = max(1, round(SMOOTH / samples)) if loop < t.size else 1
-    t, x, v = refined(t[:history], x[:history], v[:history], times)
+    t, x, v = refined(t[:history], x=x[:history], v=v[:history], times=times)
     x, v = display("displacement")(x - edge), display("velocity")(v)
     section_x, section_v = thinned(
-        display("section_displacement")(one["section_displacement"].values - edge),
-        display("section_velocity")(one["section_velocity"].values),
+        x=display("section_displacement")(one["section_displacement"].values - edge),
+        y=display("section_velocity")(one["section_velocity"].values),
         scale=(float(np.ptp(x)), float(np.ptp(v))),
     )
     return Orbit(
@@ -97,8 +98,8 @@ def orbit_of(one: xr.Dataset) -> Orbit:
     )
 
 
-def four_panels(data: xr.Dataset, bundle: int, operating: int) -> Figure:
-    """Time history, phase plane, Poincare section and spectrum, cold and hot together.
+def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
+    """Time history, phase plane, Poincare section and spectrum, undeformed and hot together.
 
     ``data`` is the group ``motion`` with ``half_backlash`` of the same points beside it.
     """
@@ -150,12 +151,13 @@ def _spectra(axes: Axes, here: xr.Dataset, states: list[str], points: list[xr.Da
     """Amplitude over order, with the frequency in Hz along the top."""
     order = here["order"].values
     scale = display("line_amplitude")
-    floor, top = floor_of(scale(here["line_amplitude"].values), order, HIGHEST_ORDER)
+    floor, top = floor_of(scale(here["line_amplitude"].values), order=order, highest=HIGHEST_ORDER)
     for state, one in zip(states, points, strict=True):
         if moving(one):
             draw_lines(
-                axes, order, scale(one["line_amplitude"].values), STATES.get(state, INK),
-                floor, HIGHEST_ORDER, plain(state), filled=state != "cold",
+                axes, order=order, amplitude=scale(one["line_amplitude"].values),
+                colour=STATES.get(state, INK),
+                floor=floor, highest=HIGHEST_ORDER, label=plain(state), filled=state != UNDEFORMED,
             )  # fmt: skip
     log_axis(axes)
     axes.set_ylim(floor, top)
@@ -186,7 +188,7 @@ def mesh_frequency(here: xr.Dataset) -> float:
     return float(frequency[-1] / order[-1])
 
 
-def needed(data: xr.Dataset, bundle: int, operating: int) -> bool:
+def needed(data: xr.Dataset, *, bundle: int, operating: int) -> bool:
     """Whether any state of this point moves at all."""
     here = data.isel(bundle=bundle, operating=operating)
     return any(moving(here.isel(state=i)) for i in range(data.sizes["state"]))

@@ -13,7 +13,7 @@ SMOOTH = 640
 """Points wanted in a mesh period of a drawn curve."""
 
 
-def refined(t: Floats, x: Floats, v: Floats, times: int) -> tuple[Floats, Floats, Floats]:
+def refined(t: Floats, *, x: Floats, v: Floats, times: int) -> tuple[Floats, Floats, Floats]:
     """Smooth (t, x, v) through every sample, ``times`` as many points.
 
     ``t``, ``x`` and ``v`` = dx/dt in units that belong together: x by cubics with the slope v,
@@ -33,7 +33,7 @@ def refined(t: Floats, x: Floats, v: Floats, times: int) -> tuple[Floats, Floats
     return fine, through(x, v), through(v, np.gradient(v, t, edge_order=2))
 
 
-def periods_to_draw(label: str, samples_per_period: int, stored: int, least: int = 1) -> int:
+def periods_to_draw(label: str, *, samples_per_period: int, stored: int, least: int = 1) -> int:
     """How many stored samples show the whole orbit: n periods where the label says so."""
     found = re.match(r"period-(\d+)$", label)
     if not found:
@@ -43,7 +43,7 @@ def periods_to_draw(label: str, samples_per_period: int, stored: int, least: int
 
 
 def thinned(
-    x: Floats, y: Floats, scale: tuple[float, float], cells: float = 400.0
+    *, x: Floats, y: Floats, scale: tuple[float, float], cells: float = 400.0
 ) -> tuple[Floats, Floats]:
     """Points that a reader can tell apart: one for each cell of a grid over the picture.
 

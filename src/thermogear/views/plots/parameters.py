@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.views.words import CELSIUS, MICROMETRE, Display, display, math_symbol, prose
 
-NUMBER = Display("")
+NUMBER = Display(unit="")
 TURNS = display("pinion_speed")
 PARAMETERS = {
     "damping_ratio": ("damping ratio ζ", NUMBER),

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from thermogear.views.plots.curves import draw_by_bundle, draw_by_operating, hot_state
+from thermogear.views.plots.curves import distinct, draw_by_bundle, draw_by_operating, hot_state
 from thermogear.views.style import (
     DRY,
     HOT,
@@ -31,6 +31,12 @@ from thermogear.views.words import (
 )
 
 S = "path_position"
+FLASHES = {
+    "flash_temperature_mixed": "lubricated",
+    "flash_temperature_dry": "dry",
+    "flash_temperature": "own law",
+}
+"""Stored flash temperatures, and what they are called: the film says which regime it is."""
 
 
 def speeds(data: xr.Dataset) -> Figure:
@@ -90,7 +96,8 @@ def hertz(data: xr.Dataset, bundle: int) -> Figure:
     figure, axes = picture(2, 1, (4.9, 4.4), sharex=True, above=0.45)
     here = hot_state(data).isel(bundle=bundle)
     for axis, name in zip(axes[:, 0], ("hertz_pressure", "hertz_half_width"), strict=True):
-        draw_by_operating(axis, here, name, shown(data, S), HOT, label="hot, all operating points")
+        every = ", all operating points" if here.sizes["operating"] > 1 else ""
+        draw_by_operating(axis, here, name, shown(data, S), HOT, label=f"hot{every}")
         axis.set_ylim(bottom=0.0)
         mark_path(axis, data)
     axes[0, 0].set_ylabel(axis_label("hertz_pressure", "Hertzian pressure"))
@@ -102,15 +109,29 @@ def hertz(data: xr.Dataset, bundle: int) -> Figure:
     return figure
 
 
+def own_law(data: xr.Dataset, name: str) -> bool:
+    """Whether ``name`` by the case's own law is neither its lubricated nor its dry curve."""
+    if not all(n in data for n in (name, f"{name}_mixed", f"{name}_dry")):
+        return False
+    others = [data[f"{name}_{kind}"].values for kind in ("mixed", "dry")]
+    return all(distinct([data[name].values, other]) for other in others)
+
+
 def friction(data: xr.Dataset, bundle: int) -> Figure:
-    """Friction coefficient, mixed lubrication against dry, for every operating point."""
+    """Friction coefficient, lubricated against dry, for every operating point.
+
+    Dotted by the case's own law, where it is neither of the two.
+    """
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, S)
     here = hot_state(data).isel(bundle=bundle)
-    draw_by_operating(axis, here, "friction_coefficient_mixed", x, label="mixed")
+    draw_by_operating(axis, here, "friction_coefficient_mixed", x, label="lubricated")
     draw_by_operating(
         axis, here, "friction_coefficient_dry", x, DRY, label="dry", linestyle=(0, (6, 2, 1, 2))
     )
+    if own_law(here, "friction_coefficient"):
+        line = (0, (1, 1.5))
+        draw_by_operating(axis, here, "friction_coefficient", x, label="own law", linestyle=line)
     name_axes(axis, S, "friction_coefficient", y_words="friction coefficient")
     axis.set_ylim(bottom=0.0)
     mark_path(axis, data)
@@ -118,11 +139,10 @@ def friction(data: xr.Dataset, bundle: int) -> Figure:
     return figure
 
 
-def flash(data: xr.Dataset, kind: str) -> Figure:
-    """Flash temperature rise for ``kind`` "mixed" or "dry": speeds by colour, bundles by line."""
+def flash(data: xr.Dataset, name: str) -> Figure:
+    """Flash temperature rise ``name`` of :data:`FLASHES`: speeds by colour, bundles by line."""
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, S)
-    name = f"flash_temperature_{kind}"
     here = hot_state(data)
     bundles, names = names_of(here, "bundle"), operating_names(here)
     places = chosen(here.sizes["operating"])
@@ -138,7 +158,7 @@ def flash(data: xr.Dataset, kind: str) -> Figure:
                     linewidth=1.7 if place == 0 else 1.2,
                     label=plain(f"{names[i]}, {bundle}"),
                 )
-    name_axes(axis, S, "flash_temperature", y_words=f"flash temperature rise, {kind}")
+    name_axes(axis, S, "flash_temperature", y_words=f"flash temperature rise, {FLASHES[name]}")
     axis.set_ylim(bottom=0.0)
     mark_path(axis, data)
     legend_below(figure, axis, 2)

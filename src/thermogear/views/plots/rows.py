@@ -75,14 +75,14 @@ def panels(points: xr.Dataset, row: str) -> Figure:
     width = max(4.9, (2.5 if columns < 5 else 2.2) * columns)
     figure, axes = picture(2, columns, (width, 5.1), top=0.44, left=0.8, between=0.76, above=0.62)
     order = data["order"].values
-    floor, top = floor_of(data["line_amplitude"].values, order, HIGHEST_ORDER)
+    floor, top = floor_of(data["line_amplitude"].values, order=order, highest=HIGHEST_ORDER)
     for column, place in enumerate(kept):
         one = data.isel(point=place)
         upper, lower = axes[:, column]
         if np.isfinite(one["scaled_displacement"].values).all():
             _orbit(upper, one)
-            draw_lines(lower, order, one["line_amplitude"].values, INK, floor,
-                       HIGHEST_ORDER, "spectrum")  # fmt: skip
+            draw_lines(lower, order=order, amplitude=one["line_amplitude"].values, colour=INK,
+                       floor=floor, highest=HIGHEST_ORDER, label="spectrum")  # fmt: skip
         else:
             note(upper, label_of(one))
         upper.set_title(f"{value_text(one)}\n{label_of(one)}", fontsize=9.5)
@@ -107,11 +107,14 @@ def _orbit(axes: Axes, one: xr.Dataset) -> None:
     """The orbit with its section, over the gap in which no teeth touch."""
     x, v = one["scaled_displacement"].values, one["scaled_velocity"].values
     samples = _samples_per_period(one)
-    x, v = (part[: periods_to_draw(str(one["label"].item()), samples, x.size)] for part in (x, v))
+    x, v = (
+        part[: periods_to_draw(str(one["label"].item()), samples_per_period=samples, stored=x.size)]
+        for part in (x, v)
+    )
     axes.plot(x, v, color=COLD, linewidth=0.8, alpha=0.8, label="orbit", rasterized=x.size > DENSE)
     section = thinned(
-        one["section_displacement"].values,
-        one["section_velocity"].values,
+        x=one["section_displacement"].values,
+        y=one["section_velocity"].values,
         scale=(float(np.ptp(x)), float(np.ptp(v))),
     )
     axes.plot(

@@ -29,6 +29,7 @@ def mark_half_orders(axes: Axes, highest: float) -> None:
 
 def draw_lines(
     axes: Axes,
+    *,
     order: Floats,
     amplitude: Floats,
     colour: str,
@@ -67,7 +68,7 @@ def _envelope(x: Floats, y: Floats, most: int = 700) -> tuple[Floats, Floats]:
     return x[places], y[places]
 
 
-def floor_of(amplitudes: Floats, order: Floats, highest: float) -> tuple[float, float]:
+def floor_of(amplitudes: Floats, *, order: Floats, highest: float) -> tuple[float, float]:
     """(floor, top) of a logarithmic axis that holds every line worth seeing."""
     kept = (order > 0.0) & (order <= highest + 0.2)
     values = np.asarray(amplitudes)[..., kept]

@@ -1,4 +1,4 @@
-"""Mesh stiffness cold and hot, its parts, and its mean and swing as bars."""
+"""Mesh stiffness undeformed and hot, its parts, and its mean and swing as bars."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PARTS = {
 
 
 def over_phase(data: xr.Dataset, bundle: int) -> Figure:
-    """Mesh stiffness of one bundle over a mesh period, cold and hot."""
+    """Mesh stiffness of one bundle over a mesh period, undeformed and hot."""
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, "mesh_phase")
     here = data.isel(bundle=bundle, operating=0)
@@ -63,7 +63,7 @@ def over_phase(data: xr.Dataset, bundle: int) -> Figure:
 
 
 def pair(data: xr.Dataset) -> Figure:
-    """Stiffness of one tooth pair along the path, cold and hot, for every bundle."""
+    """Stiffness of one tooth pair along the path, undeformed and hot, for every bundle."""
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, "path_position")
     for place, state in enumerate(names_of(data, "state")):
@@ -98,7 +98,7 @@ def parts(data: xr.Dataset, bundle: int) -> Figure:
 
 
 def bars(data: xr.Dataset) -> Figure:
-    """Mean and peak-to-peak mesh stiffness of every bundle, cold beside hot, with values."""
+    """Mean and peak-to-peak mesh stiffness of every bundle, undeformed beside hot, with values."""
     figure, axes = picture(1, 2)
     bundles, states = names_of(data, "bundle"), names_of(data, "state")
     places = np.arange(len(bundles), dtype=float)

@@ -69,6 +69,11 @@ def _edges(values: Floats) -> Floats:
     )
 
 
+def _dot(values: Floats) -> str:
+    """The marker of a line: a line of one value would not be seen."""
+    return "o" if values.size == 1 else ""
+
+
 def _parameter(data: xr.Dataset) -> str:
     return str(data.attrs["parameter"])
 
@@ -90,7 +95,7 @@ def orbit_diagram_picture(data: xr.Dataset) -> Figure:
             x.ravel(),
             linestyle="none",
             marker=".",
-            markersize=1.6,
+            markersize=1.6 if p.size > 1 else 8.0,
             markeredgewidth=0.0,
             color=colour,
             alpha=0.8,
@@ -100,7 +105,7 @@ def orbit_diagram_picture(data: xr.Dataset) -> Figure:
         top.plot([], [], ".", color=colour, label=word)
         exponent = data["lyapunov"].values[direction]
         for row in exponent:
-            low.plot(p, row, color=colour, linewidth=0.8)
+            low.plot(p, row, color=colour, linewidth=0.8, marker=_dot(p))
     _branches(top, data, name)
     low.axhline(0.0, color=INK, linewidth=0.8)
     top.set_ylabel("X at phase 0 [–]")
@@ -127,8 +132,12 @@ def _branches(axes: Axes, data: xr.Dataset, name: str, column: str = "branch_x")
             linestyle=(0, (4, 2)),
             zorder=3,
         )
-    axes.plot([], [], color=INK, linewidth=0.9, label="stable branch")
-    axes.plot([], [], color=QUIET, linewidth=0.9, linestyle=(0, (4, 2)), label="unstable branch")
+    known = np.isfinite(value)
+    if (stable & known).any():
+        axes.plot([], [], color=INK, linewidth=0.9, label="stable branch")
+    if (~stable & known).any():
+        line = (0, (4, 2))
+        axes.plot([], [], color=QUIET, linewidth=0.9, linestyle=line, label="unstable branch")
     at = shown(name, data["bifurcation_value"].values)
     kinds = data["bifurcation_kind"].values
     for kind in (0, 1):
@@ -230,6 +239,7 @@ def run_up_picture(data: xr.Dataset) -> Figure:
                     color=colours[state % len(colours)],
                     linestyle="-" if direction == 0 else (0, (3, 2)),
                     linewidth=1.2,
+                    marker=_dot(n),
                     label=f"{_state_words(data, state)} {'up' if direction == 0 else 'down'}",
                 )
             if "bifurcation_kind" in data:
@@ -279,9 +289,9 @@ def sweep_picture(data: xr.Dataset) -> Figure:
     if len(dims) == 1:
         figure, axes = picture(2, 1, (WIDE, 5.4), above=0.15, sharex=True)
         p = shown(dims[0], here[dims[0]].values)
-        axes[0, 0].plot(p, 1e6 * here["dte_peak_to_peak"].values, color=COLD)
+        axes[0, 0].plot(p, 1e6 * here["dte_peak_to_peak"].values, color=COLD, marker=_dot(p))
         axes[0, 0].set_ylabel("transmission error, p-p [µm]")
-        axes[1, 0].plot(p, here["dynamic_factor"].values, color=COLD)
+        axes[1, 0].plot(p, here["dynamic_factor"].values, color=COLD, marker=_dot(p))
         axes[1, 0].set_ylabel("dynamic factor $K_{v}$ [–]")
         axes[1, 0].set_xlabel(axis_words(dims[0]))
         return figure

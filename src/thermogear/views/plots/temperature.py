@@ -32,7 +32,7 @@ FIGURES = {
 def grid(row: xr.Dataset, bundle: int, operating: list[int]) -> Figure:
     """Phase plane with section: a column for each gear temperature, a row for each speed."""
     temperatures = row["gear_temperature"].values
-    columns = chosen(temperatures.size, MOST_COLUMNS)
+    columns = chosen(temperatures.size, most=MOST_COLUMNS)
     names = operating_names(row)
     width = max(WIDE, 2.4 * len(columns)) if len(columns) > 2 else 4.9
     figure, axes = picture(

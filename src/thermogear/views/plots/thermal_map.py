@@ -17,6 +17,7 @@ from thermogear.views.words import CELSIUS, plain
 
 Floats = NDArray[np.float64]
 
+AXES = ("pinion speed [rpm]", "pinion torque [N m]")
 SAFE = 50.0
 """Scuffing margin [K] that is advised at least."""
 
@@ -36,7 +37,7 @@ def thermal_map(data: xr.Dataset) -> Figure:
     """Regime, flash, body temperature, backlash left, scuffing margin and friction: six maps.
 
     Points without a steady state are white; where the oil leaves its viscosity line the map is
-    hatched.
+    hatched. Where only one of speed and torque runs there are six lines over it instead.
     """
     figure, axes = picture(2, 3, size=(WIDE, 6.6), between=1.0, above=0.95)
     figure.subplots_adjust(right=0.95)
@@ -59,21 +60,28 @@ def thermal_map(data: xr.Dataset) -> Figure:
         _lines(axes[0, 2], data, tempering, [0.5], "tempered")
     left = kept(1e6 * data["least_half_backlash"].values)
     _panel(axes[1, 0], data, left, "half backlash left [µm]", "viridis")
-    _jam(axes[1, 0], data, left)
+    if min(left.shape) > 1:
+        _jam(axes[1, 0], data, left)
     margin = kept(data["scuffing_margin"].values)
     if np.isfinite(margin).any():
         # red is always below 0 K and the deepest green the greatest margin
         ends = (min(-SAFE, float(np.nanmin(margin))), max(2.0 * SAFE, float(np.nanmax(margin))))
         _panel(axes[1, 1], data, margin, "scuffing margin [K]", "RdYlGn", ends)
+        if min(margin.shape) < 2:
+            for level in (0.0, SAFE):
+                axes[1, 1].axhline(level, color=INK, linewidth=0.9, linestyle=(0, (2, 2)))
         _lines(axes[1, 1], data, margin, [0.0, SAFE], "%.0f K")
     else:
         note(axes[1, 1], "scuffing margin: oil.scuffing_load_stage is not given")
+        if min(margin.shape) < 2:
+            axes[1, 1].set_axis_off()
     friction = kept(data["mean_friction"].values)
     _panel(axes[1, 2], data, friction, "mean friction coefficient [–]", "PuBu")
     for axis in axes.ravel():
         _hatch(axis, data, settled)
-        axis.set_xlabel("pinion speed [rpm]")
-        axis.set_ylabel("pinion torque [N m]")
+        if min(settled.shape) > 1:
+            axis.set_xlabel(AXES[0])
+            axis.set_ylabel(AXES[1])
     return figure
 
 
@@ -90,13 +98,18 @@ def _panel(
     ends: tuple[float, float] | None = None,
 ) -> None:
     """Filled contours over speed and torque; a grid of one line is drawn as that line."""
-    axis.set_title(plain(title))
     speed, torque = _grid(data)
+    line = min(values.shape) < 2
+    if line:
+        axis.set_xlabel(AXES[0] if speed.size >= torque.size else AXES[1])
+        axis.set_ylabel(plain(title))
+    else:
+        axis.set_title(plain(title))
     if not np.isfinite(values).any():
         note(axis, "no point has a steady state")
         return
     low, high = ends or (float(np.nanmin(values)), float(np.nanmax(values)))
-    if min(values.shape) < 2:
+    if line:
         along = speed if speed.size >= torque.size else torque
         axis.plot(along, values.ravel(), marker="o", markersize=3.5, color=OKABE_ITO[1])
         return
@@ -146,7 +159,7 @@ def _jam(axis: Axes, data: xr.Dataset, left: Floats) -> None:
     finite = jam[np.isfinite(jam) & np.isfinite(left)]
     words = "no point jams"
     if finite.size:
-        words += f";\npinion teeth would at {float(CELSIUS(finite.min())):.0f} °C"
+        words += f";\npinion teeth would at {float(CELSIUS(finite.min())):.0f} °C, housing as it is"
     axis.text(
         0.03,
         0.04,

@@ -1,4 +1,4 @@
-"""Curves of several cases over each other: a colour for each case, hot solid and cold dashed."""
+"""Curves of several cases over each other: a colour for each case, hot solid, undeformed dashed."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
 from thermogear.views.style import INK, OKABE_ITO, legend_below, log_axis, mark_path, picture
 from thermogear.views.words import axis_label, display, plain
 
-STYLES: dict[str, Any] = {"cold": (0, (4, 2)), "hot": "-"}
+STYLES: dict[str, Any] = {UNDEFORMED: (0, (4, 2)), "hot": "-"}
 HIGHEST_ORDER = 8.0
 SHIFT = 0.07
 """Lines of neighbouring cases in a spectrum stand so far apart [orders]."""
 
 
-def has_curve(data: xr.Dataset, name: str, bundle: int, operating: int) -> bool:
+def has_curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> bool:
     """Whether any case has a curve ``name`` there that is not zero throughout."""
     if name not in data:
         return False
@@ -29,7 +30,7 @@ def has_curve(data: xr.Dataset, name: str, bundle: int, operating: int) -> bool:
     return bool((np.isfinite(values) & (values != 0.0)).any())
 
 
-def curve(data: xr.Dataset, name: str, bundle: int, operating: int) -> Figure:
+def curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> Figure:
     """``name`` of every case and state over its own positions, at one bundle and point."""
     figure, axes = picture()
     axis = axes[0, 0]
@@ -76,8 +77,8 @@ WORDS = {
 """Words of an axis where the long name would not fit beside it."""
 
 
-def spectrum(data: xr.Dataset, bundle: int, operating: int) -> Figure:
-    """Spectral lines of the displacement: a colour for each case, open cold and full hot."""
+def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
+    """Spectral lines of the displacement: a colour for each case, open undeformed and full hot."""
     figure, axes = picture(size=(10.0, 3.6))
     axis = axes[0, 0]
     here = data.isel(bundle=bundle, operating=operating)
@@ -87,8 +88,8 @@ def spectrum(data: xr.Dataset, bundle: int, operating: int) -> Figure:
     ends = [
         floor_of(
             scale(here["line_amplitude"].isel(case=c).values),
-            here["order"].isel(case=c).values,
-            HIGHEST_ORDER,
+            order=here["order"].isel(case=c).values,
+            highest=HIGHEST_ORDER,
         )
         for c in range(count)
         if np.isfinite(here["line_amplitude"].isel(case=c).values).any()
@@ -106,8 +107,8 @@ def spectrum(data: xr.Dataset, bundle: int, operating: int) -> Figure:
             kept = np.isfinite(order) & (order > 0.0)
             shift = SHIFT * (c - 0.5 * (count - 1))
             draw_lines(
-                axis, order[kept] + shift, scale(lines[kept]), colour, floor, HIGHEST_ORDER,
-                "", filled=str(state) != "cold",
+                axis, order=order[kept] + shift, amplitude=scale(lines[kept]), colour=colour,
+                floor=floor, highest=HIGHEST_ORDER, label="", filled=str(state) != UNDEFORMED,
             )  # fmt: skip
     log_axis(axis)
     axis.set_ylim(floor, top)
@@ -127,9 +128,10 @@ def _legend(
         axis.plot([], [], color=colour, linewidth=2.4, label=title)
     for state in states if len(states) > 1 else ():
         if marks:
-            filled = INK if state != "cold" else "none"
+            filled = INK if state != UNDEFORMED else "none"
             axis.plot(
-                [], [], linestyle="none", marker="o", markersize=4.2 if state != "cold" else 6.4,
+                [], [], linestyle="none", marker="o",
+                markersize=4.2 if state != UNDEFORMED else 6.4,
                 markerfacecolor=filled, markeredgecolor=INK, label=plain(state),
             )  # fmt: skip
         else:

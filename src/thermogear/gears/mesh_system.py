@@ -1,0 +1,229 @@
+"""What the loaded contact is solved from: the model's choices, compliances and gaps of a mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.gears.candidates import MeshPoints, mesh_points
+from thermogear.gears.contact import reduced_modulus
+from thermogear.gears.contact_compliance import (
+    CONTACT_LAWS,
+    palmgren_approach,
+    yang_sun_stiffness,
+)
+from thermogear.gears.deviations import Deviation
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.ring import body_matrices, foot_load
+from thermogear.gears.stiffness import Moduli
+from thermogear.gears.tooth import STARTS, flank_point, unit_compliance
+from thermogear.gears.touch import first_touch
+
+Floats = NDArray[np.float64]
+
+BODIES = {
+    "bore_clamped": "ring held at the bore: statics",
+    "rim": "the same without its wind-up against the bore: for a lumped dynamic model",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadedModel:
+    """The choices of the loaded contact.
+
+    body: reading of the hub, see :data:`BODIES`; contact: see :data:`CONTACT_LAWS`; start: of
+    the tooth's beam, see :data:`STARTS`; extended: contact on tip corners off the path;
+    coupled: a tooth moves under its neighbours' load.
+    """
+
+    body: str = "bore_clamped"
+    contact: str = "weber-banaschek"
+    start: str = "30-degree"
+    extended: bool = True
+    coupled: bool = True
+
+    def __post_init__(self) -> None:
+        for name, known in (("body", BODIES), ("contact", CONTACT_LAWS), ("start", STARTS)):
+            value = getattr(self, name)
+            if value not in known:
+                raise InputError(
+                    f"loaded.{name}",
+                    repr(value),
+                    allowed=" | ".join(known),
+                    fix=nearest(str(value), known),
+                )
+
+
+def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Floats:
+    """Ring compliance between the candidates for unit modulus and width, (position, pair, pair).
+
+    ``direction`` +1: teeth farther on the path stand ahead in the direction of their load.
+    """
+    table, centre = body_matrices(gear, windup=model.body == "bore_clamped")
+    load = foot_load(gear, t)
+    count = t.shape[1]
+    out = np.zeros((*t.shape, count))
+    for j in range(count):
+        for k in range(count):
+            if j == k or model.coupled:
+                by = load[:, k] @ table[centre + direction * (j - k)].T
+                out[:, j, k] = np.einsum("pa,pa->p", load[:, j], by)
+    return out
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MeshSystem:
+    """The compliances and gaps of a mesh at its positions: what the kernel solves.
+
+    Built once for a pair, its phases, moduli and deviations; ``lead`` is the shape those (and
+    ``shape``, that of the loads) broadcast to.
+    """
+
+    pair: GearPair
+    points: MeshPoints
+    lead: tuple[int, ...]
+    gaps: Floats
+    edges: NDArray[np.int8]
+    tooth: Floats
+    body: Floats
+    depth: Floats
+    radius: Floats
+    tooth_modulus: Floats
+    body_modulus: Floats
+    reduced: Floats
+    law: str
+
+    @classmethod
+    def of(
+        cls,
+        pair: GearPair,
+        *,
+        shape: tuple[int, ...],
+        phase: ArrayLike,
+        moduli: tuple[Moduli, Moduli],
+        deviations: Sequence[Deviation],
+        model: LoadedModel,
+        flank: str,
+    ) -> MeshSystem:
+        """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments."""
+        points = mesh_points(pair, phase, flank, model.extended)
+        positions, count = points.s.shape
+        gears = (pair.pinion, pair.wheel)
+        gap, edge = first_touch(points, deviations)
+        lead = np.broadcast_shapes(
+            shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
+        )
+        cases = int(np.prod(lead, dtype=np.int64))
+        whole = (cases, positions, count)
+        gaps, edges = (
+            one[None]
+            if gap.ndim == 2
+            else np.broadcast_to(one, (*lead, positions, count)).reshape(whole)
+            for one in (gap, edge)
+        )
+
+        strings = (points.point.pinion, points.point.wheel)
+        parameters = [_on_flank(gear, rho) for gear, rho in zip(gears, strings, strict=True)]
+        radius = np.maximum(
+            strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
+        )
+        depth = np.empty((2, positions, count))
+        for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
+            at = flank_point(gear, t)
+            depth[i] = (at.x / np.cos(at.beta)) ** 2 / (4.0 * radius)
+        tooth_modulus = np.stack([flat(m.tooth, lead=lead) for m in moduli], axis=-1)
+        return cls(
+            pair=pair,
+            points=points,
+            lead=lead,
+            gaps=np.ascontiguousarray(gaps, dtype=float),
+            edges=np.asarray(edges, dtype=np.int8),
+            tooth=np.stack(
+                [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
+            ),
+            # the pinion's load points against its rotation, the wheel's along it
+            body=np.stack(
+                [
+                    _body_unit(g, t, sign, model)
+                    for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
+                ]
+            ),
+            depth=depth,
+            radius=radius,
+            tooth_modulus=tooth_modulus,
+            body_modulus=np.stack([flat(m.body, lead=lead) for m in moduli], axis=-1),
+            reduced=reduced_modulus(
+                tooth_modulus[:, 0],
+                pair.pinion.material.poisson_ratio,
+                tooth_modulus[:, 1],
+                pair.wheel.material.poisson_ratio,
+            ),
+            law=model.contact,
+        )
+
+    def solve(
+        self, asked: Floats, by_load: bool
+    ) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+        """(force, deflection, tangent stiffness, settled) for loads > 0 or for deflections.
+
+        asked: one value a case, shape (case,). Returns shapes (case, position[, pair]).
+        """
+        from thermogear.gears.sharing_kernel import share_many
+
+        width = self.pair.face_width
+        nu = [g.material.poisson_ratio for g in (self.pair.pinion, self.pair.wheel)]
+        cases, (positions, count) = asked.size, self.points.s.shape
+        force = np.empty((cases, positions, count))
+        delta = np.empty((cases, positions))
+        stiffness = np.empty((cases, positions))
+        settled = np.empty((cases, positions), dtype=np.bool_)
+        share_many(
+            asked,
+            by_load,
+            self.gaps,
+            self.tooth,
+            self.body,
+            self.depth,
+            1.0 / (self.tooth_modulus * width),
+            1.0 / (self.body_modulus * width),
+            np.pi * width * self.reduced,
+            _contact_coefficients(self.law, self.tooth_modulus, nu, self.reduced, width),
+            force,
+            delta,
+            stiffness,
+            settled,
+        )
+        return force, delta, stiffness, settled
+
+
+def _on_flank(gear: Gear, rho: Floats) -> Floats:
+    """t of string lengths [m]; a candidate that misses the flank (it never carries) at its end."""
+    ends = gear.junction[1], gear.curvature_radius(gear.tip_radius) / gear.base_radius
+    return np.asarray(np.clip(rho / gear.base_radius, *ends))
+
+
+def flat(values: ArrayLike, *, lead: tuple[int, ...]) -> Floats:
+    """``values`` broadcast to ``lead``, one axis of cases."""
+    return np.ascontiguousarray(
+        np.broadcast_to(np.asarray(values, dtype=float), lead).reshape(-1), dtype=float
+    )
+
+
+def _contact_coefficients(
+    law: str, modulus: Floats, nu: Sequence[float], reduced: Floats, width: float
+) -> Floats:
+    """[case, 6]: what the kernel's contact takes."""
+    out = np.zeros((modulus.shape[0], 6))
+    if law == "weber-banaschek":
+        for i in range(2):
+            out[:, i] = 2.0 * (1.0 - nu[i] ** 2) / (np.pi * modulus[:, i] * width)
+            out[:, 2 + i] = nu[i] / (1.0 - nu[i])
+    elif law == "palmgren":
+        out[:, 4] = palmgren_approach(1.0, reduced, width)
+    else:
+        out[:, 5] = 1.0 / yang_sun_stiffness(reduced, width)
+    return out

@@ -1,0 +1,329 @@
+"""What the pictures of a gear pair show, in words: taken from the curves that are drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.views.plots.curves import hot_state
+from thermogear.views.plots.path import own_law
+from thermogear.views.style import chosen, names_of, path_points
+from thermogear.views.words import number, operating_names, span
+
+Floats = NDArray[np.float64]
+
+NEAR = 0.02
+"""Positions closer than this part of the path are the same place."""
+SHARING = {
+    "loaded": "by the loaded contact",
+    "stiffness": "by their stiffnesses",
+    "equal": "in equal parts",
+}
+PLACES = {
+    "A": "at the start of contact A",
+    "C": "at the pitch point C",
+    "E": "at the end of contact E",
+}
+
+
+def where(data: xr.Dataset, name: str) -> str:
+    """ "At <first operating point>. " where the picture could not stand for all of them."""
+    values = data[name].transpose("operating", ...).values
+    alike = np.allclose(values, values[:1], rtol=1e-4, atol=0.0, equal_nan=True)
+    return "" if alike else f"At {operating_names(data)[0]}. "
+
+
+def pitch_inside(data: xr.Dataset) -> bool:
+    """Whether the pitch point lies on the path of contact."""
+    points = path_points(data)
+    return "C" in points and points.get("A", np.inf) < points["C"] < points.get("E", -np.inf)
+
+
+def place(data: xr.Dataset, position: float) -> str:
+    """A ``position`` [m] on the path by its letter, where one is near, else in millimetres."""
+    points = path_points(data)
+    s = data["path_position"].values
+    for name, words in PLACES.items():
+        if name in points and abs(position - points[name]) <= NEAR * np.ptp(s):
+            return words
+    return f"at {number(1e3 * position, 4)} mm"
+
+
+def top_of(data: xr.Dataset, values: Floats) -> str:
+    """Where the greatest of ``values`` along the path lies."""
+    return place(data, float(data["path_position"].values[int(np.nanargmax(values))]))
+
+
+def _sentence(parts: Mapping[str, str], start: str = "") -> str:
+    """name -> words as one sentence, after ``start``; names only where the words differ."""
+    if len(set(parts.values())) == 1:
+        words = next(iter(parts.values()))
+        return f"{start}: {words}." if start else f"{words[:1].upper()}{words[1:]}."
+    colon = "" if start else ":"
+    told = "; ".join(f"{name}{colon} {words}" for name, words in parts.items())
+    return f"{start}: {told}." if start else f"{told}."
+
+
+def regimes(here: xr.Dataset) -> str:
+    """The lubrication regime of every drawn operating point by its film; "" if unknown.
+
+    ``here`` has the axes operating and path_position alone.
+    """
+    known = "regime" in here and "flag_meanings" in here["regime"].attrs
+    if not known or "film_parameter" not in here:
+        return ""
+    drawn = chosen(here.sizes["operating"])
+    names = operating_names(here)
+    film = here["film_parameter"].values[drawn]
+    if not np.isfinite(film).any():
+        return "Without load the film has no limit."
+    told = {names[o]: _regime_along(here.isel(operating=o)) for o in drawn}
+    return _sentence(told, f"Lubrication by the film parameter, Λ = {span(film, 2)}")
+
+
+def _regime_along(one: xr.Dataset) -> str:
+    """ "boundary throughout", or from where to where each regime reaches."""
+    names = str(one["regime"].attrs["flag_meanings"]).split()
+    index, s = one["regime"].values.astype(int), 1e3 * one["path_position"].values
+    cuts = np.flatnonzero(np.diff(index)) + 1
+    if not cuts.size:
+        return f"{names[index[0]]} throughout"
+    if cuts.size > 3:
+        shares = [(name, float(np.mean(index == k))) for k, name in enumerate(names)]
+        return ", ".join(f"{name} on {100 * part:.0f} %" for name, part in shares if part)
+    runs = [names[index[0]], *(names[index[c]] for c in cuts)]
+    ends = [f" up to {number(0.5 * (s[c - 1] + s[c]), 4)} mm" for c in cuts] + [" to the end"]
+    return ", ".join(run + end for run, end in zip(runs, ends, strict=True))
+
+
+def kinematics(data: xr.Dataset, fastest: int) -> str:
+    """Of the rolling and sliding speeds."""
+    words = f"At {operating_names(data)[fastest]}. "
+    if not pitch_inside(data):
+        return words + "The pitch point lies outside the path: the flanks slide all along."
+    return words + (
+        "Both flanks roll with the same speed at the pitch point C alone; sliding changes its "
+        "sign there and is greatest at the ends of contact A and E."
+    )
+
+
+def load_share(data: xr.Dataset, bundles: Mapping[str, Any]) -> str:
+    """Of the share of one tooth pair."""
+    here = hot_state(data).isel(operating=0)
+    s, points = data["path_position"].values, path_points(data)
+    if "line_load" in here and not np.any(here["line_load"].values > 0.0):
+        return "Without load: the shares that a light one would have."
+    alone = (here["load_share"].values > 0.999).all(axis=0)
+    if not alone.any():
+        words = "More than one pair carries all along the path"
+    else:
+        pitch = pitch_inside(data) and bool(np.interp(points["C"], s, alone.astype(float)) > 0.5)
+        low, high = (number(1e3 * float(s[alone][end]), 4) for end in (0, -1))
+        words = f"One pair carries everything from {low} to {high} mm"
+        words += ", about the pitch point" if pitch else ""
+        words += "; towards A and E two share the force"
+    how = {
+        name: SHARING[str(bundles[name]["sharing"])]
+        for name in names_of(data, "bundle")
+        if str(bundles.get(name, {}).get("sharing")) in SHARING
+    }
+    return (
+        f"{where(data, 'load_share')}{words}. {_sentence(how, 'How they share it') if how else ''}"
+    )
+
+
+def friction(data: xr.Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
+    """Of the friction coefficient, lubricated against dry, and by the case's own law."""
+    here = hot_state(data).isel(bundle=bundle)
+    name = names_of(data, "bundle")[bundle]
+    values = here["friction_coefficient_mixed"].values
+    known = bool(np.isfinite(values).any())
+    lubricated = "Lubricated by Benedict and Kelley's law, dry a constant."
+    rough = "Dry, a constant; Benedict and Kelley's law has no value for such rough flanks."
+    words = [f"Bundle {name}, hot. {lubricated if known else rough}"]
+    if own_law(here, "friction_coefficient"):
+        law = bundles.get(name, {}).get("friction", "another law")
+        words.append(f"Dotted: {law}, by which the case computes.")
+    drawn = [o for o in chosen(len(values)) if np.isfinite(values[o]).any()]
+    tops = {top_of(data, values[o]) for o in drawn}
+    if tops == {PLACES["C"]}:
+        words.append("The law would diverge at the pitch point, where nothing slides.")
+    slower = _falls_with_speed(here, values)
+    if slower:
+        words.append(slower)
+    return " ".join([*words, regimes(here)]).strip()
+
+
+def _falls_with_speed(here: xr.Dataset, values: Floats) -> str:
+    """How the mean coefficient goes with speed, where points differ in their speed alone."""
+    speed, torque = here["pinion_speed"].values, here["pinion_torque"].values
+    if np.unique(speed).size < 2 or np.unique(torque).size > 1 or not np.isfinite(values).all():
+        return ""
+    steps = np.diff(values.mean(axis=-1)[np.argsort(speed)])
+    if np.all(steps < 0.0):
+        return "It falls as the speed rises."
+    return "It rises with the speed." if np.all(steps > 0.0) else ""
+
+
+def flash(data: xr.Dataset, name: str) -> str:
+    """Of the flash temperature ``name`` over what the picture draws."""
+    here = hot_state(data)[name].transpose("bundle", "operating", ...).values
+    drawn = chosen(here.shape[1])
+    told = {}
+    for b, bundle in enumerate(names_of(data, "bundle")):
+        values = here[b, drawn]
+        if np.nanmax(values, initial=0.0) > 0.0:
+            highest = np.nanmax(values, axis=0)
+            told[bundle] = f"at most {number(float(np.nanmax(highest)))} K, {top_of(data, highest)}"
+    words = _sentence(told, "Hot") + " " if told else "Nothing flashes. "
+    zero = "Zero at the pitch point, where nothing slides. " if pitch_inside(data) else ""
+    return f"{words}{zero}A rise of the skin alone."
+
+
+def temperatures(data: xr.Dataset, bundle: int) -> str:
+    """Of body and contact temperatures."""
+    bodies = hot_state(data).isel(bundle=bundle)[["pinion_body_temperature"]]
+    words = f"Bundle {names_of(data, 'bundle')[bundle]}, hot. The body temperatures"
+    at = where(bodies, "pinion_body_temperature").removesuffix(". ")
+    words += f", drawn {at[:1].lower()}{at[1:]}," if at else ""
+    words += " follow the steady field from bore to tip; the contact is hotter by the flash alone"
+    return words + (", and as cool as the bodies at C." if pitch_inside(data) else ".")
+
+
+def growth(data: xr.Dataset) -> str:
+    """Of the flanks' growth."""
+    if "deformation_sum" not in data:
+        return "Growth of the hot flanks."
+    hot = hot_state(data)
+    words = where(hot, "deformation_sum")
+    here = hot.isel(operating=0)
+    first, second = (here[f"{gear}_deformation"].values for gear in ("pinion", "wheel"))
+    finite = np.isfinite(first).all() and np.isfinite(second).all()
+    if finite and np.array_equal(first.argmin(axis=-1), second.argmax(axis=-1)):
+        words += "Where the pinion's flank grows least the wheel's grows most."
+    for b, name in enumerate(names_of(data, "bundle")):
+        values = 1e6 * here["deformation_sum"].values[b]
+        if np.isfinite(values).all():
+            words += f" Sum in the {name} bundle: {span(values, 4)} µm."
+    return words.strip()
+
+
+def profile(factor: int, printed: bool, at: str) -> str:
+    """Of one tooth, its hot displacement magnified."""
+    words = f"{at}The displacement of the hot profile is drawn {factor} times larger than it is."
+    if printed:
+        words += (
+            " As printed and as repaired lie close together: both carry the radial growth of "
+            "body and tooth, and differ in the tooth's thickness."
+        )
+    return words
+
+
+def gap_over_phase(mesh: xr.Dataset) -> str:
+    """Of the half backlash over a mesh period."""
+    curves = mesh["half_backlash_curve"].isel(operating=0).transpose("bundle", "state", ...).values
+    told = {}
+    for b, name in enumerate(names_of(mesh, "bundle")):
+        cold, hot = curves[b, 0], curves[b, -1]
+        shift, breath = float(hot.mean() - cold.mean()), float(np.ptp(hot))
+        told[name] = (
+            f"heat shifts the gap by {number(1e6 * shift)} µm; hot it breathes by "
+            f"{number(1e6 * breath) if breath > 1e-3 * abs(shift) else '0'} µm over the period"
+        )
+    return (
+        f"{where(mesh, 'half_backlash')}{_sentence(told)} Below zero a pair is jammed; no motion "
+        "is computed there."
+    )
+
+
+FOLLOWS = {
+    "proportional": "shafts and housing keep their proportion to them",
+    "follows": "the housing keeps its distance below the pinion's",
+    "stays": "the housing stays at the temperature that the case gives it",
+    "computed": "the housing's temperature follows from the heat balance",
+}
+"""How the housing goes along with the gears in a row of temperatures."""
+
+
+def gap_over_temperature(row: xr.Dataset, jams: Collection[str]) -> str:
+    """Of the half backlash over the gears' temperature; ``jams`` by the ways that are drawn."""
+    how = FOLLOWS.get(str(row.attrs.get("housing", "")))
+    words = f"{where(row, 'half_backlash')}Points: both gears at that temperature"
+    words += f"; {how}." if how else "."
+    ways = {
+        "jam_temperature": "Dotted: the gears alone get hotter and the housing stays as it is "
+        "when they are hot",
+        "proportional_jam_temperature": "Dash-dotted: shafts and housing rise on in proportion",
+    }
+    told = [text for name, text in ways.items() if name in jams]
+    if told:
+        words += f" {'. '.join(told)}; a cross marks where the pair jams."
+    return words
+
+
+def row_intro(row: xr.Dataset, temperatures: str) -> str:
+    """What goes along with the gears over a row of temperatures."""
+    words = f"Both gears at {temperatures}"
+    how = FOLLOWS.get(str(row.attrs.get("housing", "")))
+    return f"{words}; {how}." if how else f"{words}."
+
+
+def row_grid(*, columns: int, most: int, rows: int) -> str:
+    """Of the orbits over a row of temperatures."""
+    words = "Columns: gear temperature"
+    words += f", {most} of {columns}" if columns > most else ""
+    words += "; rows: operating points." if rows > 1 else "."
+    return f"{words} The dot is the Poincaré section; a single dot is a motion of one mesh period."
+
+
+def stiffness(mesh: xr.Dataset, bundle: int) -> str:
+    """Of the mesh stiffness over a mesh period."""
+    one = mesh.isel(operating=0, bundle=bundle)["mean_stiffness"].values
+    change = 100.0 * (float(one[-1]) / float(one[0]) - 1.0)
+    words = where(mesh, "mean_stiffness")
+    ratio = float(mesh.attrs.get("contact_ratio", np.nan))
+    if 1.0 < ratio < 2.0:
+        words += "High where two pairs carry, low where one does. "
+    return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")
+
+
+def bars(mesh: xr.Dataset, bundles: Mapping[str, Any]) -> str:
+    """Of mean and swing of the stiffness: what heat does in each bundle."""
+    names = names_of(mesh, "bundle")
+    springs = [n for n in names if bundles.get(n, {}).get("thermal_stiffness") == "thesis"]
+    mean = mesh["mean_stiffness"].isel(operating=0)
+    softer = [
+        name
+        for b, name in enumerate(names)
+        if bundles.get(name, {}).get("modulus") == "of-temperature"
+        and float(mean.isel(bundle=b, state=-1)) < float(mean.isel(bundle=b, state=0))
+    ]
+    words = f"{where(mesh, 'mean_stiffness')}Undeformed beside hot."
+    if softer:
+        words += f" Young's modulus falls with heat, and the stiffness with it ({softer[0]})."
+    if springs:
+        words += f" Heat adds a spring ({springs[0]})."
+    return words
+
+
+def one_pair(mesh: xr.Dataset) -> str:
+    """Of the stiffness of one tooth pair."""
+    values = mesh["pair_stiffness"].isel(bundle=0, state=-1, operating=0).values
+    at = f", stiffest {top_of(mesh, values)}" if np.isfinite(values).any() else ""
+    return f"{where(mesh, 'pair_stiffness')}One pair alone along its path of contact{at}."
+
+
+def path_intro(data: xr.Dataset) -> str:
+    """How the pictures along the path are to be read."""
+    points = path_points(data)
+    words = "Along the path of contact: A start, C pitch point, E end."
+    if all(n in points for n in "BD") and points["B"] < points["D"]:
+        words = "Along the path of contact: A start, B to D one pair alone, C pitch point, E end."
+    several = data.sizes["operating"] > 1, data.sizes["bundle"] > 1
+    told = ["colours are operating points"] * several[0] + ["line styles are bundles"] * several[1]
+    said = ", ".join(told)
+    return f"{words} {said[:1].upper()}{said[1:]}." if said else words

@@ -1,0 +1,181 @@
+"""What the pictures of the gear surveys show, in words: taken from what is drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import STATUS
+from thermogear.views.words import exactly, number, span
+
+Floats = NDArray[np.float64]
+
+
+def several(count: int, noun: str) -> str:
+    """ "1 point", "3 points"."""
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
+# --- friction -----------------------------------------------------------------------------
+
+
+def laws(data: xr.Dataset, operating: int, means: frozenset[str]) -> str:
+    """Of the friction laws at one operating point."""
+    here = data.isel(operating=operating)
+    drawn = np.isfinite(here["friction_coefficient"].values).any(axis=-1)
+    outside = (here["outside_range"].values[drawn] == 1).any()
+    words = "Solid: local laws"
+    words += "; dashed: one value for the mesh" if means else ""
+    words += "; dotted: outside the law's range" if outside else ""
+    return f"{words}. The band on top is the lubrication regime by the film parameter."
+
+
+# --- temperature --------------------------------------------------------------------------
+
+
+def running(data: xr.Dataset) -> list[str]:
+    """The axes of the map along which there is more than one value."""
+    axes = {"pinion_speed": "speed", "pinion_torque": "torque"}
+    return [words for name, words in axes.items() if data.sizes[name] > 1]
+
+
+def held(data: xr.Dataset) -> str:
+    """The one value of the axis that does not run."""
+    if data.sizes["pinion_speed"] > 1:
+        return f"{exactly(float(data['pinion_torque'][0]))} N m"
+    return f"{exactly(float(data['pinion_speed'][0]) / RPM)} rpm"
+
+
+def thermal_map(data: xr.Dataset, safe: float) -> str:
+    """Of the map of everything hot, or of its line over one axis."""
+    settled = data["status"].values != STATUS.index("not_converged")
+    beyond = settled & (data["within_oil_range"].values == 0)
+    words = []
+    if len(running(data)) == 1:
+        words.append(f"At {held(data)}.")
+        words += ["Gaps: no steady temperature."] * bool((~settled).any())
+    else:
+        words += ["Hatched: the oil is beyond its viscosity line."] * bool(beyond.any())
+        words += ["White: no steady temperature."] * bool((~settled).any())
+        words.append("Lines in the first map: least film parameter Λ.")
+    if np.isfinite(data["scuffing_margin"].values[settled]).any():
+        words.append(f"At least {safe:.0f} K of scuffing margin are advised.")
+    return " ".join(words)
+
+
+def one_point(data: xr.Dataset) -> str:
+    """What a map of one point would show."""
+    here = data.isel(pinion_speed=0, pinion_torque=0)
+    if int(here["status"]) == STATUS.index("not_converged"):
+        return ""
+    shares = zip(here["regime_name"].values, here["regime_share"].values, strict=True)
+    film = ", ".join(f"{name} on {100 * float(part):.0f} %" for name, part in shares if part)
+    return (
+        f" Lubrication is {film} of the path, with a mean friction coefficient of "
+        f"{number(float(here['mean_friction']), 2)}."
+    )
+
+
+# --- tip relief ---------------------------------------------------------------------------
+
+
+def relief_error(data: xr.Dataset) -> str:
+    """Of the transmission error under the design load."""
+    spread = 1e6 * np.ptp(data["transmission_error"].values, axis=-1)
+    without, with_it = (number(float(v)) for v in spread)
+    return f"Under the design load: {without} µm peak to peak without relief, {with_it} µm with it."
+
+
+def relief_stiffness(data: xr.Dataset) -> str:
+    """Of the tangent stiffness under the design load."""
+    without, with_it = data["tangent_stiffness"].values.mean(axis=-1)
+    change = 100.0 * (with_it / without - 1.0)
+    return f"Relief changes the mean stiffness by {change:+.1f} %.".replace("-", "−")
+
+
+def relief_loads(data: xr.Dataset) -> str:
+    """Of the error over other loads than the design load."""
+    load = data["load"].values
+    without, with_it = data["peak_to_peak_error"].values
+    worse = with_it > without
+    if not worse.any():
+        return "At every load drawn the relieved pair runs at least as evenly."
+    if worse.all():
+        return "At every load drawn the relieved pair runs less evenly."
+    runs = np.split(np.arange(load.size), np.flatnonzero(np.diff(worse)) + 1)
+    told = [f"{span(load[run], 3)} N m" for run in runs if worse[run[0]]]
+    return f"Less even with relief than without at {' and at '.join(told)}; else more even."
+
+
+# --- loaded contact -----------------------------------------------------------------------
+
+
+def contact_phase(data: xr.Dataset) -> str:
+    """Of stiffness and error over a mesh period."""
+    mean = data.sel(temperature="hot")["tangent_stiffness"].mean("mesh_phase").values
+    words = "Tangent and secant stiffness are kept apart"
+    return words + ("; the contact hardens with load." if _rises(mean) else ".")
+
+
+def _rises(values: Floats) -> bool:
+    return values.size > 1 and bool(np.all(np.diff(values) > 0.0))
+
+
+def contact_path(data: xr.Dataset) -> str:
+    """Of load share and pressure along the path."""
+    loads = [exactly(float(data["load"][end])) for end in (0, -1)]
+    words = f"At {loads[0]} N m"
+    if data.sizes["load"] > 1:
+        words = f"Thin at {loads[0]} N m, broad at {loads[1]} N m"
+    edges = data["edge_contact"].values[:, [0, -1]]
+    corners = [name for bit, name in ((1, "wheel"), (2, "pinion")) if (edges & bit).any()]
+    if not corners:
+        return f"{words}. No corner of a tip touches."
+    whose = "the tips of both gears" if len(corners) == 2 else f"the {corners[0]}'s tip"
+    return (
+        f"{words}. Where the teeth give way the corner of {whose} touches: there (shaded) the "
+        "Hertzian pressure is not valid and is left out."
+    )
+
+
+def double_contact(data: xr.Dataset) -> str:
+    """Of the length of double contact of unequally hot gears."""
+    length = 1e3 * data["double_contact_length"].values
+    apart = data["temperature_difference"].values
+    equal = length[int(np.argmin(np.abs(apart)))]
+    least = np.unravel_index(int(np.argmin(length - equal)), length.shape)
+    if length[least] >= equal[least[1]] - 1e-6:
+        return "A base-pitch difference between the gears costs no double contact here."
+    left, whole = number(float(length[least])), number(float(equal[least[1]]))
+    degrees = float(apart[least[0]])
+    unequal = f"{abs(degrees):.0f} K {'hotter' if degrees > 0.0 else 'colder'}"
+    return (
+        "A base-pitch difference between gears of unequal temperature leaves one pair unloaded "
+        f"until the teeth bend enough: with the pinion {unequal} than the wheel double contact "
+        f"is {left} mm long at {number(float(data['load'][least[1]]), 2)} N m, instead of {whole} "
+        "mm."
+    )
+
+
+def uneven_stiffness(data: xr.Dataset) -> str:
+    """Of the mean stiffness of unequally hot gears."""
+    mean, apart = data["mean_stiffness"].values, data["temperature_difference"].values
+    ratio = 100.0 * (mean / mean[int(np.argmin(np.abs(apart)))] - 1.0)
+    low, high = (_percent(float(v)) for v in (ratio.min(), ratio.max()))
+    return f"Against equally hot gears the mean stiffness changes by {low} to {high} %."
+
+
+def _percent(value: float) -> str:
+    return "0" if abs(value) < 0.5 else f"{value:+.0f}".replace("-", "−")
+
+
+def uneven_error(data: xr.Dataset) -> str:
+    """Of the transmission error of unequally hot gears."""
+    error = data["peak_to_peak_error"].values
+    apart = data["temperature_difference"].values
+    most = float(np.abs(apart).max())
+    ends = [error[int(np.argmin(np.abs(apart - sign * most)))] for sign in (1.0, -1.0)]
+    mirror = np.allclose(ends[0], ends[1], rtol=1e-3, atol=0.0)
+    return f"A hotter pinion and a hotter wheel are {'' if mirror else 'not '}mirror images."

@@ -1,0 +1,85 @@
+"""Where a tip corner carries, Hertz's pressure of the involutes is no number but a flag."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
+from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.loaded import LoadedModel, loaded_contact, solve_mesh
+
+WIDTH = 20e-3
+PAIR = GearPair(
+    Gear(25, 5e-3, face_width=WIDTH, bore_radius=20e-3),
+    Gear(75, 5e-3, face_width=WIDTH, bore_radius=60e-3),
+)
+LINE_LOADS = np.array([20.0, 50.0, 100.0, 200.0, 400.0, 800.0]) * 1e3
+TWO_PAIRS = np.array([0.760, 0.790, 0.820, 0.860, 0.920, 0.995])
+"""Share of the period with two pairs in contact, tip corners counted: computed apart."""
+ON_THE_PATH = 0.715
+"""The same at any load where contact on tip corners is left out."""
+FLAGS = ["no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners"]
+
+
+@pytest.fixture(scope="module")
+def data() -> xr.Dataset:
+    return loaded_contact(PAIR, LINE_LOADS * WIDTH, dimensions=("load",))
+
+
+def test_every_pressure_is_a_number_or_has_its_flag(data: xr.Dataset) -> None:
+    flag, force = data.edge_contact.values, data.pair_force.values
+    s = data.pair_position.values
+    slack = 1e-9 * PAIR.base_pitch
+    early = (force > 0.0) & (s < PAIR.path.a - slack)
+    late = (force > 0.0) & (s > PAIR.path.e + slack)
+    assert early.any()
+    assert late.any()
+    assert np.array_equal(flag, 1 * early + 2 * late)
+    assert np.array_equal(np.isnan(data.contact_pressure.values), flag > 0)
+
+
+def test_on_the_flanks_the_pressure_is_hertzs(data: xr.Dataset) -> None:
+    s, force = data.pair_position.values, data.pair_force.values[3]
+    valid = (force > 0.0) & (data.edge_contact.values[3] == 0)
+    exact = hertz_pressure(force / WIDTH, reduced_radius(PAIR, s), pair_reduced_modulus(PAIR))
+    assert np.allclose(data.contact_pressure.values[3][valid], exact[valid], rtol=1e-12)
+    assert np.all(data.contact_pressure.values[3][force == 0.0] == 0.0)
+
+
+def test_corners_carry_as_long_as_they_lengthen_the_double_contact(data: xr.Dataset) -> None:
+    assert data.edge_contact_share.values == pytest.approx(TWO_PAIRS - ON_THE_PATH, abs=6e-3)
+    assert np.all(np.diff(data.edge_contact_share.values) > 0.0)
+
+
+def test_the_flag_says_what_its_values_mean(data: xr.Dataset) -> None:
+    attributes = data.edge_contact.attrs
+    assert data.edge_contact.dtype == np.int8
+    assert attributes["flag_values"].tolist() == [0, 1, 2, 3]
+    assert attributes["flag_values"].dtype == np.int8
+    assert attributes["flag_meanings"].split() == FLAGS
+    assert "edge contact" in data.contact_pressure.attrs["long_name"]
+
+
+def test_without_corners_every_pressure_stands() -> None:
+    got = loaded_contact(PAIR, 200e3 * WIDTH, model=LoadedModel(extended=False))
+    assert float(got.edge_contact_share) == 0.0
+    assert not got.edge_contact.values.any()
+    assert np.isfinite(got.contact_pressure.values).all()
+    unloaded = loaded_contact(PAIR, 0.0)
+    assert float(unloaded.edge_contact_share) == 0.0
+    assert np.array_equal(unloaded.contact_pressure.values, np.zeros((200, 4)))
+
+
+@pytest.mark.parametrize("flank", ["drive", "back"])
+def test_exchanged_gears_exchange_their_corners(flank: str) -> None:
+    phase = np.linspace(0.013, 0.987, 80)
+    one = solve_mesh(PAIR, 8e3, phase, flank=flank)
+    two = solve_mesh(PAIR.swapped(), 8e3, PAIR.contact_ratio - phase, flank=flank)
+    for mine, other in ((1, 2), (2, 1)):
+        assert (one.edge == mine).any()
+        mine_phases = (one.edge == mine).any(axis=-1)
+        assert np.array_equal(mine_phases, (two.edge == other).any(axis=-1))
+    with np.errstate(invalid="ignore"):
+        assert np.array_equal(np.isnan(one.pressure), one.edge > 0)

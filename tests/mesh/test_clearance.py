@@ -1,0 +1,237 @@
+"""Clearance and jam: both forms of the mesh force, every deviation, and what the picture shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from conftest import Compared
+from thermogear import Gear, GearPair, MeshModel, Operating, Temperatures, mesh_cycle
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS
+from thermogear.dynamics.load_shared import LoadSharedModel
+from thermogear.gears.deviations import (
+    BasePitchDifference,
+    Deviation,
+    FlankTable,
+    PathTable,
+    PitchError,
+    PressureAngleError,
+    Relief,
+)
+from thermogear.gears.loaded import mesh_force
+from thermogear.mesh.clearance import clearance
+from thermogear.mesh.excite import excitation
+from thermogear.mesh.load_shared import pair_springs
+from thermogear.mesh.thermal import HotPair, ThermalDeviation
+
+# the textbook's foundation, shown beside the loaded contact, has its range
+pytestmark = pytest.mark.filterwarnings("ignore:foundation of the gear with 19 teeth")
+
+T0 = ZERO_CELSIUS + 20.0
+SMALL = GearPair(
+    Gear(19, 3e-3, pressure_angle=np.radians(25.0), profile_shift=0.3),
+    Gear(47, 3e-3, pressure_angle=np.radians(25.0), profile_shift=0.1),
+)
+
+
+def table(gear: str, flank: str = "both") -> FlankTable:
+    body = SMALL.pinion if gear == "pinion" else SMALL.wheel
+    radius = np.linspace(body.form_radius, body.tip_radius, 6)
+    return FlankTable(
+        gear, radius=radius, added=1e-6 * np.array([12, -4, 9, 3, -8, -20.0]), flank=flank
+    )
+
+
+DEVIATIONS: dict[str, list[Deviation]] = {
+    "none": [],
+    "tip relief": [
+        Relief("pinion", amount=25e-6, length=3e-3),
+        Relief("wheel", amount=18e-6, length=2.5e-3, end="tip", shape="parabolic"),
+    ],
+    "root relief of one side": [
+        Relief("wheel", amount=30e-6, length=4e-3, end="root", flank="back")
+    ],
+    "long relief that leaves no involute": [
+        Relief("pinion", amount=40e-6, length=8e-3, end="root")
+    ],
+    "pressure angle": [PressureAngleError("pinion", 4e-3), PressureAngleError("wheel", -2e-3)],
+    "profile": [table("pinion"), table("wheel", "drive")],
+    "added material": [PathTable(s=[0.0, 0.1], added=[6e-6, 6e-6])],
+    "base pitch": [BasePitchDifference(3e-4)],
+    "one pitch error": [PitchError("pinion", (4e-6,) * 19)],
+}
+
+
+def warm(pinion: float, wheel: float, housing: float) -> Temperatures:
+    """Addenda and housing [C], bores 15 K below."""
+    one, two = ZERO_CELSIUS + pinion, ZERO_CELSIUS + wheel
+    return Temperatures(
+        reference=T0,
+        pinion_addendum=one,
+        pinion_bore=one - 15.0,
+        wheel_addendum=two,
+        wheel_bore=two - 15.0,
+        housing=ZERO_CELSIUS + housing,
+    )
+
+
+def point(
+    hot_rig: Operating, temperatures: Temperatures, half_backlash: float = 60e-6
+) -> Operating:
+    return replace(
+        hot_rig,
+        speed=np.array([200.0]),
+        torque=np.array([40.0]),
+        oil_temperature=330.0,
+        temperatures=temperatures,
+        half_backlash=half_backlash,
+    )
+
+
+def first_force(force: Callable[..., float], low: float, high: float) -> float:
+    """Displacement at which a force begins, by halving down to the last bit."""
+    while True:
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            return high
+        low, high = (low, middle) if force(middle) > 0.0 else (middle, high)
+
+
+@pytest.mark.parametrize("kind", DEVIATIONS)
+def test_both_forms_of_the_mesh_force_leave_one_clearance(
+    hot_rig: Operating, kind: str, compared: Compared
+) -> None:
+    devices = DEVIATIONS[kind]
+    operating = point(hot_rig, warm(110.0, 80.0, 60.0))
+    cycle = mesh_cycle(SMALL, operating, deviations=devices, mesh_positions=24)
+    hot = HotPair(SMALL, operating, MeshModel.consistent())
+    drive, back = (
+        pair_springs(hot, 0, devices, flank=flank, positions=24) for flank in ("drive", "back")
+    )
+    found = excitation(cycle, SMALL, damping_ratio=0.05)[0]
+    assert found is not None
+    shared = LoadSharedModel.from_excitation(found, drive, back)
+    phase, b = cycle["mesh_phase"].values, operating.half_backlash
+    one_spring = 2.0 * cycle["half_backlash_curve"].values[0]
+    compared(
+        "clearance of both forms of the mesh force",
+        "one spring against springs of the pairs",
+        (shared.clearance(phase) - one_spring) / b,
+        1e-9,
+    )
+    assert shared.clearance(phase).mean() == pytest.approx(2.0 * found.half_backlash, rel=1e-12)
+    # and where each force begins, found by trial
+    flanks = [*devices, ThermalDeviation(hot)]
+    for at, expected in zip(phase[[0, 17]], one_spring[[0, 17]], strict=True):
+        drives = first_force(lambda y, at=at: shared.mesh_force(y, at), 0.0, 3 * b)
+        backs = first_force(lambda y, at=at: -shared.mesh_force(-y, at), 0.0, 3 * b)
+        assert (drives + backs - expected) / b == pytest.approx(0.0, abs=1e-9)
+        touch = [
+            first_force(
+                lambda d, at=at, flank=flank: mesh_force(
+                    SMALL, [d], [at], deviations=flanks, flank=flank
+                )[0][0, 0],
+                -2 * b,
+                2 * b,
+            )
+            for flank in ("drive", "back")
+        ]
+        assert (sum(touch) + 2 * b - expected) / b == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", DEVIATIONS)
+def test_at_its_jam_temperature_a_pair_has_no_clearance_left(
+    hot_rig: Operating, kind: str, compared: Compared
+) -> None:
+    """Both readings: gears over a housing as it is, and everything in proportion."""
+    devices = DEVIATIONS[kind]
+    state = warm(120.0, 95.0, 50.0)
+    before = mesh_cycle(SMALL, point(hot_rig, state), deviations=devices, mesh_positions=24)
+    rise = float(before["jam_temperature"][0] - state.pinion_addendum)
+    factor = float(before["proportional_jam_temperature"][0] - T0) / 100.0
+    bodies = ("pinion_addendum", "pinion_bore", "wheel_addendum", "wheel_bore")
+    alone = replace(state, **{name: float(getattr(state, name)) + rise for name in bodies})
+    together = replace(
+        state,
+        **{name: T0 + factor * (getattr(state, name) - T0) for name in (*bodies, "housing")},
+    )
+    for jammed in (alone, together):
+        there = mesh_cycle(SMALL, point(hot_rig, jammed), deviations=devices, mesh_positions=24)
+        least = float(there["half_backlash_curve"].min())
+        compared("least half backlash at the jam", "0", least / 60e-6, 1e-9)
+    assert factor > 1.0
+    assert rise > 0.0
+
+
+@pytest.mark.parametrize(
+    "model", [MeshModel.consistent(), MeshModel.thesis()], ids=lambda m: m.name
+)
+def test_material_added_to_both_flanks_takes_up_the_backlash(
+    hot_rig: Operating, model: MeshModel
+) -> None:
+    cold = point(hot_rig, Temperatures.uniform(T0, reference=T0), 100e-6)
+    for added, left, status in ((60e-6, 40e-6, "ok"), (101e-6, -1e-6, "jammed")):
+        devices = [PathTable(s=[0.0, 0.1], added=[added, added])]
+        cycle = mesh_cycle(SMALL, cold, model, deviations=devices)
+        np.testing.assert_allclose(cycle["half_backlash_curve"], left, rtol=0, atol=1e-18)
+        assert STATUS[int(cycle["status"][0])] == status
+        assert float(cycle["cold_half_backlash"][0]) == 100e-6
+        assert float(np.abs(cycle["kinematic_error"]).max()) < 1e-18
+    one_side = [PathTable(s=[0.0, 0.1], added=[20e-6, 20e-6], flank="drive")]
+    cycle = mesh_cycle(SMALL, cold, model, deviations=one_side)
+    np.testing.assert_allclose(cycle["half_backlash_curve"], 90e-6, rtol=1e-12)
+    np.testing.assert_allclose(cycle["kinematic_error"], -10e-6, rtol=1e-12)
+
+
+def test_the_tightest_pair_decides_not_a_mean(rig: GearPair, hot_rig: Operating) -> None:
+    """In double contact the flanks of unequal gears differ by strain times base pitch."""
+    for difference in (30.0, 60.0):
+        hotter, colder = T0 + 80.0, T0 + 80.0 - difference
+        state = Temperatures(
+            reference=T0,
+            pinion_addendum=hotter,
+            pinion_bore=hotter,
+            wheel_addendum=colder,
+            wheel_bore=colder,
+            housing=T0 + 40.0,
+        )
+        hot = HotPair(rig, replace(hot_rig, temperatures=state), MeshModel.consistent())
+        phase = np.array([0.3])
+        entering, leading = rig.path.a + np.array([0.3, 1.3]) * rig.base_pitch
+        drive = hot.added_material(np.array([entering, leading]))[0]
+        strain = rig.pinion.material.thermal_expansion * difference
+        assert drive[1] - drive[0] == pytest.approx(strain * rig.base_pitch, rel=1e-9)
+        found = clearance(hot, phase)
+        taken = hot.operating.half_backlash - found.half_backlash - found.error
+        assert float(taken[0, 0]) == pytest.approx(drive[1], rel=0, abs=1e-16)
+
+
+@pytest.mark.parametrize("flank", ["growth", "thesis"])
+def test_one_pair_alone_takes_its_own_added_material_off_the_drive_side(
+    rig: GearPair, hot_rig: Operating, flank: str
+) -> None:
+    """(b - b') - e = (S + S^c)/2 + (S - S^c)/2 = S; the thesis knows no error of heat."""
+    hot = HotPair(rig, hot_rig, MeshModel.consistent().override(flank=flank))
+    phase = np.linspace(rig.contact_ratio - 1.0 + 0.02, 1.0 - 0.02, 9)  # one pair in contact
+    s = rig.path.a + phase * rig.base_pitch
+    found = clearance(hot, phase)
+    if flank == "thesis":
+        assert not np.any(found.error)
+        return
+    taken = hot_rig.half_backlash - found.half_backlash - found.error
+    np.testing.assert_allclose(taken, hot.added_material(s), rtol=0, atol=1e-17)
+    assert np.any(found.error)
+
+
+def test_what_heat_never_closes_has_no_jam_temperature(rig: GearPair, hot_rig: Operating) -> None:
+    cold = mesh_cycle(rig, replace(hot_rig, temperatures=hot_rig.temperatures.cold()))
+    uniform = mesh_cycle(
+        rig, replace(hot_rig, temperatures=Temperatures.uniform(T0 + 100.0, reference=T0))
+    )
+    for cycle in (cold, uniform):
+        assert np.all(np.isnan(cycle["proportional_jam_temperature"].values))
+        assert np.all(np.isfinite(cycle["jam_temperature"].values))

@@ -1,0 +1,113 @@
+"""Cold is cold: at the drawing temperature every study finds the pair that is drawn."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.gears.relief import optimise_tip_relief
+from thermogear.mesh.operating import Temperatures
+from thermogear.study.case import GearCase, load_case, load_example
+from thermogear.study.gearwords import GearFamily
+from thermogear.study.ready import example_text
+from thermogear.study.relief import relief_survey
+from thermogear.study.subject import family, of_case
+
+T0 = ZERO_CELSIUS + 20.0
+GIVEN = r"(pinion|wheel)_(addendum|bore_below_addendum)|housing_below_addendum|row"
+
+
+def own_pair(*changes: str) -> GearCase:
+    """Not the rig: another module, angle, ratio and shift, the oil held, gears of two heats."""
+    text = example_text("rig")
+    for old, new in (
+        ("teeth = 25 ", "teeth = 19 "),
+        ("teeth = 75 ", "teeth = 47 "),
+        ('module = "5 mm" ', 'module = "3 mm" '),
+        ('pressure_angle = "20 deg" ', 'pressure_angle = "25 deg" '),
+        ('temperature_below_addendum = "40 K"', 'temperature = "95 degC"'),
+        ('"oil.temperature_below_addendum"', '"oil.temperature"'),
+        ('bore_radius = "25 mm"', 'bore_radius = "12 mm"'),
+        ('bore_radius = "80 mm"', 'bore_radius = "30 mm"'),
+        ("fillet_radius = 0.38 ", "fillet_radius = 0.25 "),
+        ('bundle = "both"', 'bundle = "consistent"'),
+    ):
+        assert old in text, old
+        text = text.replace(old, new)
+    text = re.sub(r"(?m)^(tip_diameter|\"gears\.\w+\.tip_diameter\").*\n", "", text)
+    return load_example_text(text, "temperatures.wheel_addendum=120 degC", *changes)
+
+
+def load_example_text(text: str, *changes: str) -> GearCase:
+    case = load_case(text, changes)
+    assert isinstance(case, GearCase)
+    return case
+
+
+def test_a_sweep_over_temperature_begins_at_the_cold_backlash() -> None:
+    case = own_pair()
+    points = GearFamily(case, ("gear_temperature",))(np.array([[T0], [T0 + 60.0], [T0 + 120.0]]))
+    cold = GearFamily(case, (), state="undeformed")(np.empty((1, 0)))
+    assert points.half_backlash[0] == case.stated.half_backlash
+    assert points.stiffness[0] == cold.stiffness[0]
+    # the loss grows in proportion to the excess
+    lost = case.stated.half_backlash - points.half_backlash
+    assert lost[2] == pytest.approx(2.0 * lost[1], rel=2e-3)
+    assert lost[1] > 0.0
+
+
+def test_a_continuation_over_temperature_passes_the_drawn_pair_and_the_stated_one() -> None:
+    case = own_pair("temperatures.wheel_addendum=140 degC")
+    subject = of_case(case)
+    models, present = family(subject, "temperature")
+    assert present == pytest.approx(ZERO_CELSIUS + 140.0)
+    drawn, stated = models(T0), models(present)
+    cold = of_case(case, state="undeformed").model
+    assert drawn.half_backlash == cold.half_backlash == 1.0  # type: ignore[attr-defined]
+    assert stated.half_backlash == pytest.approx(subject.model.half_backlash, rel=1e-12)  # type: ignore[attr-defined]
+
+
+def test_each_operating_point_of_computed_temperatures_is_its_own() -> None:
+    text = re.sub(rf"(?m)^({GIVEN}) = .*\n", "", example_text("rig"))
+    text = re.sub(rf"(?m)^\"temperatures\.({GIVEN})\".*\n", "", text)
+    text = re.sub(r"(?m)^temperature_below_addendum = .*\n", "", text)
+    text = re.sub(r"(?m)^\"oil\.temperature_below_addendum\".*\n", "", text)
+    case = load_example_text(text)
+    for bundle in case.models:
+        whole = np.ravel(case.operating_of(bundle).temperatures.pinion_addendum)
+        for place in range(3):
+            gears = of_case(case, operating=place + 1, bundle=bundle.name).gears
+            assert gears is not None
+            assert gears.value("temperature") == whole[place]
+            assert gears.excitation().half_backlash < gears.operating.half_backlash
+    moved = gears.at("temperature", T0).operating
+    assert all(np.all(body == T0) for body in moved.temperatures.bodies.values())
+    assert np.all(moved.oil_temperature == T0)
+
+
+def test_the_relief_for_the_drawing_temperature_is_that_of_the_drawn_pair() -> None:
+    case = own_pair()
+    found = relief_survey(case, torque=60.0, gear_temperature=T0)
+    drawn = optimise_tip_relief(case.pair, 60.0 / case.pair.pinion.base_radius)
+    assert found.attrs["unrelieved"] == pytest.approx(drawn.unrelieved, rel=1e-12)
+    assert found.attrs["relieved"] == pytest.approx(drawn.relieved, rel=1e-9)
+
+
+def test_with_fixed_distances_the_housing_cools_below_the_drawing() -> None:
+    """What was done before, kept under its own name."""
+    case = load_example("rig", ["temperatures.follow=fixed"])
+    assert isinstance(case, GearCase)
+    there = case.operating_at(T0).temperatures
+    expected = Temperatures(
+        reference=T0,
+        pinion_addendum=T0,
+        pinion_bore=T0 - 20.0,
+        wheel_addendum=T0,
+        wheel_bore=T0 - 20.0,
+        housing=T0 - 40.0,
+    )
+    for name, body in expected.bodies.items():
+        np.testing.assert_allclose(there.bodies[name], body)

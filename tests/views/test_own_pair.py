@@ -1,0 +1,237 @@
+"""Pages of somebody's own gear pair: every word and figure is this pair's, none the thesis's."""
+
+from __future__ import annotations
+
+import json
+import re
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from own_pair import OWN_PAIR
+from thermogear.front.cli import main
+from thermogear.study.case import GearCase, load_case, load_example
+from thermogear.study.friction_survey import friction_survey
+from thermogear.study.loaded_survey import loaded_survey
+from thermogear.study.relief import relief_survey
+from thermogear.study.run import run
+from thermogear.study.thermal_map import thermal_map
+from thermogear.views import captions, report, survey_report
+from thermogear.views.plots import thermal_map as map_plots
+from thermogear.views.results import Results, results_of
+from thermogear.views.survey_sections import SURVEYS
+
+pytestmark = pytest.mark.filterwarnings("ignore:foundation of the gear")
+SMALL = ["grid.path_positions=41", "grid.mesh_positions=48", "simulation.periods=16",
+         "simulation.samples=32", "grid.harmonics=12", "simulation.discard=100"]  # fmt: skip
+FOREIGN = re.compile(
+    r"thesis|\brigs?\b|table 4|section 4\.1|errat|as printed|repaired|bifurcation study"
+    r"|\b(25:75|20/60|1\.227|46 to 49|14 %|8315|9827|413|419\.7)\b",
+    re.IGNORECASE,
+)
+"""Words and figures of the thesis, of its rig, and of the pairs of the finite elements."""
+
+
+def own(*changes: str) -> GearCase:
+    case = load_case(OWN_PAIR, [*SMALL, *changes])
+    assert isinstance(case, GearCase)
+    return case
+
+
+def prose(html: str) -> str:
+    """What a reader reads, pictures' labels included; the case file and sources left out."""
+    text = re.sub(r"<style.*?</style>|<pre.*?</pre>", "", html, flags=re.DOTALL)
+    text = re.sub(r'<section id="(sources|version)".*?</section>', "", text, flags=re.DOTALL)
+    return " ".join(unescape(re.sub(r"<[^>]+>", " ", text)).split())
+
+
+@pytest.fixture(scope="module")
+def tree() -> xr.DataTree:
+    return run(own('temperatures.row=["60 degC", "100 degC"]'))
+
+
+@pytest.fixture(scope="module")
+def results(tree: xr.DataTree) -> Results:
+    return results_of(tree)
+
+
+def test_the_page_of_a_run_is_this_pairs(results: Results) -> None:
+    text = prose(report.page(results))
+    assert FOREIGN.findall(text) == []
+    assert "Errata" not in text
+    assert not any(name.startswith("base_sets") for name in results.groups)
+    assert json.loads(results.texts["errata"]) == []
+    assert "thesis" not in results.texts["citations"]
+    assert "printed_x" not in results.groups["profile"]
+
+
+def test_the_regime_is_the_films_and_not_the_laws(results: Results) -> None:
+    film = results.groups["path"]["film_parameter"].values
+    assert film.max() < 1.0  # boundary lubrication, whatever the law is made for
+    text = prose(report.page(results))
+    assert "boundary throughout" in text
+    assert "mixed lubrication" not in text.partition("choices")[0]
+    assert "Flash temperature, lubricated" in text
+
+
+def test_captions_of_the_flash_name_the_peak_that_is_drawn(results: Results) -> None:
+    data = results.groups["path"]
+    hot = data["flash_temperature_mixed"].isel(state=-1, bundle=0, operating=0)
+    place = float(hot["path_position"][int(np.argmax(hot.values))])
+    said = captions.flash(data, "flash_temperature_mixed")
+    assert f"at most {float(hot.max()):.1f} K, " in said
+    assert captions.place(data, place) in said
+
+
+@pytest.mark.parametrize("bundle", ["thesis", "both"])
+def test_the_textbook_stiffness_is_held_against_this_pair(bundle: str) -> None:
+    tree = run(own(f"model.bundle={bundle}", 'draw.pictures=["path"]'))
+    cold = tree["mesh"].to_dataset().sel(bundle="thesis", state="undeformed").isel(operating=0)
+    over = [
+        float(cold["mean_stiffness"] / cold[f"{body}_stiffness"]) - 1.0
+        for body in ("rim", "bore_clamped")
+    ]
+    told = [f"{100.0 * abs(v):.0f} % {'above' if v > 0.0 else 'below'}" for v in over]
+    (text,) = [n["text"] for n in json.loads(tree.attrs["notices"]) if "textbook" in n["text"]]
+    assert f"lies {told[0]} that of the loaded contact, {told[1]} it with the bodies" in text
+    page = prose(report.page(results_of(tree)))
+    # the bundle is called by its name; nothing is said of the thesis's claims
+    for found in FOREIGN.findall(page):
+        assert found in ("", "thesis"), found
+    for claim in ("thesis's bifurcation", "Errata", "Two regimes"):
+        assert claim not in page
+
+
+def test_a_copy_of_the_rig_with_other_gears_is_no_rig() -> None:
+    changed = ["gears.wheel.teeth=60", "gears.wheel.tip_diameter=310 mm",
+               "operating.speed=1000 rpm", 'draw.pictures=["base-sets"]']  # fmt: skip
+    tree = run(load_example("rig", [*SMALL, *changed]))
+    texts = " ".join(notice["text"] for notice in json.loads(tree.attrs["notices"]))
+    assert "draw.base_sets: left out" in texts
+    assert "base_sets" not in tree.children
+    assert "thesis's bifurcation" not in texts
+    assert "thesis's study" not in prose(report.page(results_of(tree)))
+
+
+def test_the_rig_keeps_what_belongs_to_the_thesis() -> None:
+    tree = run(load_example("rig", [*SMALL, 'draw.pictures=["path", "profile", "base-sets"]',
+                                    "operating.speed=1000 rpm"]))  # fmt: skip
+    assert len(json.loads(tree.attrs["errata"])) == 20
+    assert set(tree["base_sets"].children) == {"table-4.2", "section-4.1"}
+    text = prose(report.page(results_of(tree)))
+    for said in ("Two regimes", "thesis's study 1.1 to 1.3", "Errata of the thesis", "as printed"):
+        assert said in text
+
+
+# --- surveys ------------------------------------------------------------------------------
+
+
+def survey_page(tree: xr.DataTree) -> str:
+    stored = results_of(tree)
+    return prose(
+        survey_report.page(stored.texts, SURVEYS[stored.texts["kind"]](stored.texts, stored.groups))
+    )
+
+
+@pytest.mark.parametrize("make", [friction_survey, loaded_survey, relief_survey])
+def test_pages_of_surveys_are_this_pairs(make) -> None:  # type: ignore[no-untyped-def]
+    text = survey_page(make(own()))
+    assert FOREIGN.findall(text) == []
+    assert "second picture" not in text
+
+
+def test_captions_of_the_relief_are_its_curves() -> None:
+    tree = relief_survey(own())
+    loads, text = tree["loads"], survey_page(tree)
+    without, with_it = loads["peak_to_peak_error"].values
+    worse = loads["load"].values[with_it > without]
+    assert f"Less even with relief than without at {worse[0]:.3g} to {worse[-1]:.3g} N m" in text
+
+
+def test_one_load_is_drawn_once() -> None:
+    text = survey_page(loaded_survey(own(), [40.0]))
+    assert "At 40 N m." in text
+    assert "hardens with load" not in text
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_point_and_a_line_of_the_map(count: int) -> None:
+    case = own("oil.scuffing_load_stage=12")
+    speeds = np.linspace(100.0, 200.0, count)
+    tree = thermal_map(case, speeds, case.torques)
+    grid = tree["map"].to_dataset()
+    text = survey_page(tree)
+    assert FOREIGN.findall(text) == []
+    assert json.loads(tree.attrs["verdicts"]) == []
+    assert ("Everything hot over speed" in text) == (count > 1)
+    assert "Hatched" not in text
+    assert "White" not in text
+    if count == 1:
+        assert "1 operating point of the closed loop" in text
+        share = 100.0 * float(grid["regime_share"].isel(regime_name=0).item())
+        assert f"boundary on {share:.0f} %" in text
+        return
+    for axes in map_plots.thermal_map(grid).axes:
+        assert axes.get_xlabel() == "pinion speed [rpm]"
+        assert "torque" not in axes.get_ylabel()
+        assert axes.get_ylabel().endswith("]")
+
+
+def test_the_rigs_map_checks_the_thesis_where_there_is_something_to_compare() -> None:
+    rig = load_example("rig", SMALL)
+    assert isinstance(rig, GearCase)
+    one = json.loads(thermal_map(rig, [100.0], [100.0]).attrs["verdicts"])
+    assert {row["claim"].partition(":")[0] for row in one} == {
+        "friction coefficient", "flash temperature", "growth",
+    }  # fmt: skip
+    two = json.loads(thermal_map(rig, [100.0, 200.0], [100.0]).attrs["verdicts"])
+    flash = next(r for r in two if r["claim"] == "flash temperature rises with speed, mixed")
+    assert flash == {
+        "claim": "flash temperature rises with speed, mixed",
+        "found": "100 % of steps rise",
+        "verdict": "holds",
+    }
+    assert not any("torque" in row["claim"] or "correlated" in row["claim"] for row in two)
+
+
+def test_sensitivity_refuses_other_gears_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(OWN_PAIR, encoding="utf-8")
+    assert main(["sensitivity", str(path), "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said.startswith("error: case: got 'Pair 19:47', a case with values of its own; allowed ")
+    assert not (tmp_path / "out").exists()
+
+
+# --- regimes ------------------------------------------------------------------------------
+
+
+def test_regimes_say_where_they_change() -> None:
+    s = np.linspace(0.0, 0.01, 101)
+    rows = {
+        "boundary throughout": np.zeros(101),
+        "boundary up to 5.050 mm, mixed to the end": np.where(s > 0.00501, 1, 0),
+        "mixed up to 2.050 mm, boundary up to 7.050 mm, mixed to the end": np.where(
+            (s > 0.00201) & (s < 0.00701), 0, 1
+        ),
+        "boundary on 50 %, elastohydrodynamic on 50 %": np.where(np.arange(101) % 2, 0, 2),
+    }
+    flags = {"flag_meanings": "boundary mixed elastohydrodynamic"}
+    for words, index in rows.items():
+        data = xr.Dataset(
+            {
+                "regime": (("operating", "path_position"), index[None].astype(np.int8), flags),
+                "film_parameter": (("operating", "path_position"), 0.4 + index[None]),
+            },
+            {
+                "path_position": s,
+                "pinion_speed": ("operating", [100.0]),
+                "pinion_torque": ("operating", [10.0]),
+            },
+        )
+        assert captions.regimes(data).endswith(f": {words}.")
