@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,7 @@ from thermogear.gears.deviations import (
 from thermogear.gears.loaded import loaded_contact
 from thermogear.gears.relief import optimise_tip_relief
 from thermogear.mesh.excite import excitation
+from thermogear.mesh.thermal import HotPair, ThermalDeviation
 
 Floats = NDArray[np.float64]
 Random = np.random.Generator
@@ -50,8 +52,12 @@ NEAR = 3
 """Positions beside a change of the contact set that are not compared."""
 FINER = 20
 """A pair that nearly leaves is steep, not broken: what is no step falls with finer positions."""
+SEARCH = 20
+"""Evaluations from each start of the search for a relief: most of a trial's time goes there."""
 SOMETIMES_NONE = {"jam_temperature", "proportional_jam_temperature"}
 """Heat that never closes the gap has no jam temperature."""
+NO_CORNERS = {"edge_contact_share"}
+"""The textbook's springs know no corner."""
 FILM = ("film_thickness", "film_parameter")
 """Boundless where a pair carries nothing."""
 EDGE = {"contact_pressure"}
@@ -205,25 +211,23 @@ def trial(drawn: Drawn, search: bool = True, phase: Floats = WHOLE) -> Found:
         warnings.simplefilter("ignore")
         for name, step in (
             ("cycle", cycles),
-            ("contact", contacts),
+            ("contact", partial(contacts, phase=phase)),
             ("symmetry", symmetries),
             *((("relief", reliefs),) if search else ()),
         ):
             try:
-                step(drawn, found, phase)
+                step(drawn, found)
             except Exception as error:  # the trial counts every kind
                 found.counts["exceptions"] += 1
                 found.notes.append(f"{name}: {type(error).__name__}: {error}")
     return found
 
 
-def cycles(drawn: Drawn, found: Found, phase: Floats) -> None:
+def cycles(drawn: Drawn, found: Found) -> None:
     """Cold and hot cycle under both bundles, then the motion of the consistent one."""
     cold = replace(drawn.operating, temperatures=drawn.operating.temperatures.cold())
-    rough = 0.5 * (drawn.pair.pinion.roughness + drawn.pair.wheel.roughness) > 1.1e-6
     for model in (MeshModel.consistent(), MeshModel.thesis()):
-        if rough:
-            model = model.override(friction="dry")
+        textbook = model.stiffness != "loaded"
         for operating in (cold, drawn.operating):
             cycle = mesh_cycle(
                 drawn.pair,
@@ -236,7 +240,10 @@ def cycles(drawn: Drawn, found: Found, phase: Floats) -> None:
             status = STATUS[int(cycle["status"][0])]
             found.counts[status] += 1
             film = {name: cycle[name].where(cycle["line_load"] > 0.0, 0.0) for name in FILM}
-            count_nan(cycle.assign(film), found, SOMETIMES_NONE)
+            corner = cycle["edge_contact"] > 0
+            flanks = {"hertz_pressure": cycle["hertz_pressure"].where(~corner, 0.0)}
+            allowed = SOMETIMES_NONE | (NO_CORNERS if textbook else set())
+            count_nan(cycle.assign(film | flanks), found, allowed)
             if float(cycle["load_share"].min()) < 0.0:
                 found.counts["negative shares"] += 1
             if float(cycle["mesh_stiffness"].min()) <= 0.0:
@@ -266,11 +273,20 @@ def count_nan(data: xr.Dataset, found: Found, allowed: set[str]) -> None:
             found.notes.append(f"NaN in {name}")
 
 
+def hot_flanks(drawn: Drawn) -> tuple[Deviation, ...]:
+    """The deviations with the growth of the hot gears among them."""
+    hot = HotPair(drawn.pair, drawn.operating, MeshModel.consistent())
+    return (*drawn.deviations, ThermalDeviation(hot))
+
+
 def contacts(drawn: Drawn, found: Found, phase: Floats) -> None:
-    """The loaded contact at many positions: shares, balance, and no step without a cause."""
-    force = float(drawn.operating.torque[0]) / drawn.pair.pinion.base_radius
+    """The hot pair's contact at many positions: shares, balance, and no step without a cause."""
+    force = drawn.operating.torque / drawn.pair.pinion.base_radius
+    deviations = hot_flanks(drawn)
     for flank in ("drive", "back"):
-        mesh = loaded_contact(drawn.pair, force, phase, deviations=drawn.deviations, flank=flank)
+        mesh = loaded_contact(
+            drawn.pair, force, phase, deviations=deviations, flank=flank
+        ).squeeze()
         found.counts["not converged"] += int((mesh["status"].values != 0).sum())
         count_nan(mesh, found, EDGE)
         share = mesh["load_share"].values
@@ -286,9 +302,9 @@ def contacts(drawn: Drawn, found: Found, phase: Floats) -> None:
         for place in np.flatnonzero(steps > STEP).tolist():
             found.counts["steep places"] += 1
             fine = np.linspace(phase[place], phase[place + 1], FINER + 1)
-            near = loaded_contact(
-                drawn.pair, force, fine, deviations=drawn.deviations, flank=flank
-            )["tangent_stiffness"].values
+            near = loaded_contact(drawn.pair, force, fine, deviations=deviations, flank=flank)[
+                "tangent_stiffness"
+            ].values.ravel()
             left = float((np.abs(np.diff(near)) / near[1:]).max())
             found.see("step at a steep place, looked at closer", left)
             if left > STEP:
@@ -297,7 +313,7 @@ def contacts(drawn: Drawn, found: Found, phase: Floats) -> None:
         found.see("step", float(steps.max()))
 
 
-def symmetries(drawn: Drawn, found: Found, phase: Floats) -> None:
+def symmetries(drawn: Drawn, found: Found) -> None:
     """Gears exchanged, and everything twice as large: the same mesh."""
     pair = drawn.pair
     force = float(drawn.operating.torque[0]) / pair.pinion.base_radius
@@ -356,11 +372,13 @@ def enlarged(deviation: Deviation, factor: float) -> Deviation:
     return deviation
 
 
-def reliefs(drawn: Drawn, found: Found, phase: Floats) -> None:
-    """A tip relief of both gears alike beside the other deviations: never worse than none."""
+def reliefs(drawn: Drawn, found: Found) -> None:
+    """A tip relief of both gears alike beside heat and other deviations: never worse than none."""
     force = float(drawn.operating.torque[0]) / drawn.pair.pinion.base_radius
-    kept = [d for d in drawn.deviations if not (isinstance(d, Relief) and d.end == "tip")]
-    design = optimise_tip_relief(drawn.pair, force, deviations=kept, positions=24, symmetric=True)
+    kept = [d for d in hot_flanks(drawn) if not (isinstance(d, Relief) and d.end == "tip")]
+    design = optimise_tip_relief(
+        drawn.pair, force, deviations=kept, positions=24, symmetric=True, evaluations=SEARCH
+    )
     found.counts["reliefs"] += 1
     values = (design.unrelieved, design.relieved, design.pinion.amount, design.pinion.length)
     if not np.all(np.isfinite(values)):

@@ -104,6 +104,9 @@ QUANTITIES: dict[str, Quantity] = {
     "half_backlash_curve": Quantity("m", "half backlash along the line of action", "b′(φ)"),
     "half_backlash": Quantity("m", "half backlash, mean over a mesh period", "b′"),
     "least_half_backlash": Quantity("m", "half backlash, least over a mesh period", "b′_min"),
+    "edge_contact_share": Quantity(
+        "1", "share of the mesh period in which a tip corner carries load"
+    ),
     "cold_half_backlash": Quantity("m", "cold half backlash, flanks without deviations", "b"),
     "kinematic_error": Quantity(
         "m", "unloaded error of both flanks' touch, by deviations and heat", "e_k"
@@ -247,6 +250,10 @@ def edge_attributes() -> dict[str, Any]:
     }
 
 
+FLAGS = {"status": status_attributes, "edge_contact": edge_attributes}
+"""Variables whose values are places in a list of words."""
+
+
 def label(
     variables: Mapping[str, tuple[tuple[str, ...], ArrayLike]],
     coordinates: Mapping[str, tuple[tuple[str, ...], ArrayLike]] | None = None,
@@ -256,8 +263,8 @@ def label(
     import xarray as xr
 
     def dressed(name: str, dims: tuple[str, ...], values: ArrayLike) -> xr.Variable:
-        if name == "status":
-            return xr.Variable(dims, np.asarray(values, np.int8), status_attributes())
+        if name in FLAGS:
+            return xr.Variable(dims, np.asarray(values, np.int8), FLAGS[name]())
         return xr.Variable(dims, np.asarray(values), attributes(name))
 
     return xr.Dataset(

@@ -260,7 +260,10 @@ def _state(text: str) -> str | float:
         celsius = float(text)
     except ValueError:
         raise InputError(
-            "state", repr(text), allowed="hot | undeformed | degrees Celsius"
+            "state",
+            repr(text),
+            allowed="hot | undeformed | degrees Celsius",
+            fix='"cold" is now called "undeformed"' if text == "cold" else None,
         ) from None
     return kelvin("state", celsius)
 

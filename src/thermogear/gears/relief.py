@@ -47,6 +47,7 @@ def optimise_tip_relief(
     largest: float | None = None,
     positions: int = 100,
     symmetric: bool = False,
+    evaluations: int = MOST_EVALUATIONS,
     progress: Callable[[int], None] | None = None,
 ) -> ReliefDesign:
     """Amount and length of the tip relief of both gears with the least peak-to-peak error.
@@ -59,7 +60,8 @@ def optimise_tip_relief(
     difference) as :func:`loaded_contact`, without leading axes; shape: "linear" or "parabolic";
     largest: greatest amount [m], default three times the unrelieved error's mean height over its
     least value plus its swing; positions: of the mesh period; symmetric: both gears with one
-    amount and one length; progress: told the evaluations so far. Lengths lie between 0.05 base
+    amount and one length; evaluations: at most so many from every start; progress: told those
+    so far. Lengths lie between 0.05 base
     pitches and the active profile.
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
@@ -111,7 +113,7 @@ def optimise_tip_relief(
             start,
             method="Nelder-Mead",
             bounds=[(0.0, 1.0)] * start.size,
-            options={"xatol": 1e-3, "fatol": 1e-4 * unrelieved, "maxfev": MOST_EVALUATIONS},
+            options={"xatol": 1e-3, "fatol": 1e-4 * unrelieved, "maxfev": evaluations},
         )
         if found.fun < best:
             best, best_x = float(found.fun), full(np.asarray(found.x))

@@ -58,7 +58,9 @@ def mesh_cycle(
     is, once when shafts and housing rise in proportion to them; nan where that never jams), and
     ``status``: ``ok``; ``jammed`` where the least half backlash over the phase is <= 0 (the values
     stay, for they say how far it is jammed); ``not_converged`` where the loaded contact did not
-    settle.
+    settle. ``edge_contact`` names the tip corner that carries along the path, where the pressure
+    is nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A
+    and E too, nan where the stiffness model knows none.
 
     ``deviations`` of the flanks (relief, profile, ...) enter the loaded contact and the clearance
     (:func:`~thermogear.mesh.clearance.clearance`); the cold half backlash is that of the flanks
@@ -129,7 +131,7 @@ def _contact(path: FrictionPath) -> Variables:
         "load_share": path.share,
         "line_load": path.line_load,
         "hertz_half_width": path.half_width,
-        "hertz_pressure": path.pressure,
+        "hertz_pressure": np.where(path.edge > 0, np.nan, path.pressure),
         "film_thickness": path.film,
         "film_parameter": path.film_parameter,
         "friction_coefficient": path.friction,
@@ -152,6 +154,7 @@ def _contact(path: FrictionPath) -> Variables:
     }
     power, share = (np.where(path.settled, values, np.nan) for values in path.power())
     variables |= {
+        "edge_contact": (PATH, path.edge),
         "reduced_radius": (("path_position",), path.radius),
         "normal_force": (POINT, path.elastic.force),
         "dynamic_viscosity": (POINT, path.viscosity[:, 0]),
@@ -195,7 +198,7 @@ def _deformation(hot: HotPair, s: Floats) -> Variables:
 
 def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
     """Stiffness and backlash over the mesh phase, with the figures made of them."""
-    k, error, loaded_error = elastic.over(phase)
+    k, error, loaded_error, edge_share = elastic.over(phase)
     thermal = (
         thesis_thermal_stiffness(hot, phase, elastic.pair_stiffness)
         if hot.model.thermal_stiffness == "thesis"
@@ -228,5 +231,6 @@ def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
         "least_half_backlash": (POINT, least),
         "jam_temperature": (POINT, backlash.jam_temperature),
         "proportional_jam_temperature": (POINT, backlash.proportional_jam_temperature),
+        "edge_contact_share": (POINT, edge_share),
         "status": (POINT, status),
     }

@@ -35,12 +35,23 @@ STARTS = {
 
 class MeshCurves(NamedTuple):
     """Over the mesh phase, (count, phases): stiffness [N/m], the error [m] that belongs to it
-    (mean removed; None: heat's alone), and the static transmission error under load [m].
+    (mean removed; None: heat's alone), the static transmission error under load [m], and the
+    share of the phase in which a tip corner carries, (count,); nan where nothing says.
     """
 
     stiffness: Floats
     spring_error: Floats | None
     transmission_error: Floats
+    edge_share: Floats
+
+
+class PathShare(NamedTuple):
+    """Of one tooth pair along its path, (count, positions): its share of the load, and the tip
+    corner that carries there, a place in :data:`~thermogear.base.vocabulary.EDGE_CONTACT`.
+    """
+
+    share: Floats
+    edge: NDArray[np.int8]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,13 +100,18 @@ class ElasticPair(ABC):
         """Stiffness of one tooth pair at ``s`` [m], [N/m]: its :meth:`parts` in series."""
         return np.asarray(1.0 / sum(1.0 / k for k in self.parts(s).values()))
 
-    def share(self, s: Floats) -> Floats:
-        """Share of the load on the pair at ``s`` [m], by the model's rule."""
+    def share(self, s: Floats) -> PathShare:
+        """Share of the load on the pair at ``s`` [m], by the model's rule.
+
+        The rules of thumb know no corner: they say "no_edge_contact" all along.
+        """
+        if self.hot.model.sharing == "loaded":
+            return loaded_share(self, s)
         if self.hot.model.sharing == "equal":
-            return np.broadcast_to(equal_share(self.pair, s), (self.hot.count, s.size))
-        if self.hot.model.sharing == "stiffness":
-            return stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
-        return loaded_share(self, s)
+            shares = np.broadcast_to(equal_share(self.pair, s), (self.hot.count, s.size))
+        else:
+            shares = stiffness_share(self.pair, s[None, :], self.start, *self.moduli)
+        return PathShare(shares, np.zeros(shares.shape, np.int8))
 
     @abstractmethod
     def parts(self, s: Floats) -> dict[str, Floats]:
@@ -133,7 +149,8 @@ class TextbookPair(ElasticPair):
 
     def over(self, phase: Floats) -> MeshCurves:
         k = mesh_stiffness(self.pair, phase[None, :], self.start, *self.moduli)
-        return MeshCurves(k, None, self.force[:, None] / k)
+        unsaid = np.full(self.hot.count, np.nan)
+        return MeshCurves(k, None, self.force[:, None] / k, unsaid)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +179,7 @@ class LoadedPair(ElasticPair):
     def parts(self, s: Floats) -> dict[str, Floats]:
         compliances: dict[str, Floats] = {}
         pair, width = self.pair, self.pair.face_width
-        carried = self.share(s) * self.force[:, None]
+        carried = self.share(s).share * self.force[:, None]
         load = np.maximum(carried, LEAST_LINE_LOAD * width)
         half_width = hertz_half_width(load / width, reduced_radius(pair, s), self.contact_modulus)
         approach = np.zeros_like(load)
@@ -203,13 +220,16 @@ class LoadedPair(ElasticPair):
             k,
             error - error.mean(axis=-1, keepdims=True),
             solved.deflection - solved.unloaded.mean(axis=-1, keepdims=True),
+            np.where(solved.settled.all(axis=-1), solved.edge_share, np.nan),
         )
 
 
-def loaded_share(elastic: ElasticPair, s: Floats) -> Floats:
-    """Share of the pair at ``s`` [m] from the loaded contact, (count, positions).
+def loaded_share(elastic: ElasticPair, s: Floats) -> PathShare:
+    """Share of the pair at ``s`` [m] and its corners from the loaded contact, (count, positions).
 
-    nan where the contact does not settle.
+    The share is nan where the contact does not settle. Between A and E, both included, a pair
+    touches on its flanks; a corner carries there only where deviations or heat let it touch
+    first.
     """
     pair = elastic.pair
     steps = (s - pair.path.a) / pair.base_pitch
@@ -219,7 +239,10 @@ def loaded_share(elastic: ElasticPair, s: Floats) -> Floats:
     solved = LoadedPair(elastic.hot, elastic.deviations).solve(phase)
     # the candidates begin one pair before the one that entered last
     places = np.broadcast_to((rank + 1)[:, None], (elastic.hot.count, s.size, 1))
-    return np.take_along_axis(solved.share, places, axis=-1)[..., 0]
+    return PathShare(
+        np.take_along_axis(solved.share, places, axis=-1)[..., 0],
+        np.take_along_axis(solved.edge, places, axis=-1)[..., 0],
+    )
 
 
 def elastic_pair(hot: HotPair, deviations: Sequence[Deviation] = ()) -> ElasticPair:

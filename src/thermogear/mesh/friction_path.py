@@ -29,7 +29,7 @@ from thermogear.heat.friction import ROUGHNESS_LIMIT, BenedictKelley, ConstantDr
 from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity, walther_slope
 from thermogear.heat.moving_source import flash_temperature
 from thermogear.heat.temperature import frictional_heat, heat_partition
-from thermogear.mesh.elastic import ElasticPair
+from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
@@ -72,18 +72,25 @@ class FrictionPath:
         return rolling_velocities(self.hot.pair, self.hot.operating.speed[:, None], self.s)
 
     @cached_property
-    def _solved(self) -> Floats:
+    def _solved(self) -> PathShare:
         return self.elastic.share(self.s)
 
     @cached_property
     def settled(self) -> NDArray[np.bool_]:
         """Whether the shares of an operating point are known, (count,)."""
-        return np.asarray(np.isfinite(self._solved).all(axis=1))
+        return np.asarray(np.isfinite(self._solved.share).all(axis=1))
 
     @cached_property
     def share(self) -> Floats:
         """Share of the normal force; equal shares, which are no result, where not ``settled``."""
-        return np.where(self.settled[:, None], self._solved, equal_share(self.hot.pair, self.s))
+        return np.where(
+            self.settled[:, None], self._solved.share, equal_share(self.hot.pair, self.s)
+        )
+
+    @property
+    def edge(self) -> NDArray[np.int8]:
+        """Where a tip corner carries: Hertz's formula says nothing about its pressure there."""
+        return self._solved.edge
 
     def checked(self) -> FrictionPath:
         """The same where every point is settled; raises ConvergenceError where one is not."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -9,10 +10,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 
 Floats = NDArray[np.float64]
+
+LEADERS = {
+    "pinion_bore": "the pinion's addendum",
+    "wheel_bore": "the wheel's addendum",
+    "housing": "the mean of both addenda",
+}
+"""Whose excess over the reference a body's excess goes along with."""
+PROPORTION = (0.0, 1.5)
+"""Excesses over the gears' that a linear heat network of bodies warmed by the gears can have."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,21 +124,29 @@ class Operating:
 
         Every excess over the reference scales with the gears': a bore's with its own addendum's,
         housing's and oil's with the mean of both addenda. At the reference all is as it is drawn.
-        Raises InputError where the gears stand at the reference: they give no proportion.
+        Raises InputError where the gears stand at the reference: they give no proportion. Warns
+        (ValidityWarning) where a body or the oil lies outside 0 to 1.5 times the gears' excess:
+        drawn out to other temperatures it would run away from them.
         """
         t, base = self.temperatures, self.temperatures.reference
         bodies = t.bodies
         pinion, wheel = bodies["pinion_addendum"] - base, bodies["wheel_addendum"] - base
         followed = {"pinion_bore": pinion, "wheel_bore": wheel, "housing": 0.5 * (pinion + wheel)}
         rise = gear_temperature - base
-        if rise != 0.0 and any(np.any(excess == 0.0) for excess in followed.values()):
+        still = [LEADERS[name] for name, excess in followed.items() if np.any(excess == 0.0)]
+        if rise != 0.0 and still:
             raise InputError(
                 "gear temperature",
                 f"{gear_temperature:.6g} K",
                 allowed=f"{base:.6g} K",
-                why="the gears stand at the reference temperature: they give no proportion",
+                why=f"{still[0]} stands at the reference temperature, which gives no proportion",
                 fix="give the addenda other temperatures",
             )
+        oil_now = np.asarray(self.oil_temperature, dtype=float)
+        if rise != 0.0:
+            for name, excess in followed.items():
+                _warn_of_proportion(f"temperatures.{name}", bodies[name] - base, excess)
+            _warn_of_proportion("oil.temperature", oil_now - base, followed["housing"])
 
         def beside(temperature: Floats, excess: Floats) -> Floats:
             beyond = np.where(excess == 0.0, 0.0, temperature - base - excess)
@@ -140,5 +158,23 @@ class Operating:
         changed: dict[str, Any] = {n: beside(bodies[n], excess) for n, excess in followed.items()}
         for name in ("pinion_addendum", "wheel_addendum"):
             changed[name] = np.full_like(bodies[name], gear_temperature)
-        oil = beside(np.asarray(self.oil_temperature, dtype=float), followed["housing"])
+        oil = beside(oil_now, followed["housing"])
         return replace(self, oil_temperature=oil, temperatures=replace(t, **changed))
+
+
+def _warn_of_proportion(field: str, excess: Floats, leader: Floats) -> None:
+    """Warn where ``excess`` [K] is no sensible part of the gears' ``leader`` [K]."""
+    low, high = PROPORTION
+    ratio = excess / leader
+    strange = (ratio < low) | (ratio > high)
+    if np.any(strange):
+        place = int(np.flatnonzero(np.ravel(strange))[0])
+        own, gears = (np.broadcast_to(x, strange.shape).ravel()[place] for x in (excess, leader))
+        warnings.warn(
+            f"{field}: stands {own:.4g} K over the reference temperature where the gears stand "
+            f"{gears:.4g} K over it; in proportion, which is meant for {low:g} to {high:g} times "
+            'the gears\' excess, it runs away from them; temperatures.follow = "fixed" keeps its '
+            "distance",
+            ValidityWarning,
+            stacklevel=4,
+        )

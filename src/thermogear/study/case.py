@@ -227,10 +227,10 @@ class GearCase(Case):
 
 def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
     """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
-    why = "in the hot state the gears stand at the reference temperature, which gives no proportion"
     try:
         return hot.with_gears_at(gear_temperature)
     except InputError as error:
+        why = f"in the hot state {error.why}"
         if error.field != "gear temperature":
             name = error.field.rpartition(".")[2]
             why = f"{name} in proportion to it would be at {error.got}; allowed {error.allowed}"
@@ -361,9 +361,18 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     warn_of_torque(pair, torques)
     if case.computed:
         return case
-    row = {
-        f"temperatures.row[{place}]": case.operating_at(temperature)
-        for place, temperature in enumerate(case.gear_temperatures)
-    }
-    warn_of_temperatures(pair, {"temperatures": case.stated} | row)
+    warn_of_temperatures(pair, {"temperatures": case.stated} | _row_of(case))
     return case
+
+
+def _row_of(case: GearCase) -> dict[str, Operating]:
+    """The operating points of every temperature of the row by its field, where it is drawn."""
+    found = {}
+    for place, temperature in enumerate(case.gear_temperatures):
+        field = f"temperatures.row[{place}]"
+        if "temperature" in case.pictures:
+            try:
+                found[field] = case.operating_at(temperature)
+            except InputError as error:
+                raise error.named(field) from error
+    return found

@@ -57,7 +57,7 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
         found += _motion(groups["motion"])
     if "temperature" in groups:
         found += _row_jams(groups["temperature"])
-    found += _stiffness(case, mesh)
+    found += _stiffness(case, mesh) + _edges(mesh)
     if any(model.thermal_stiffness == "thesis" for model in case.models):
         found.append(
             _notice(
@@ -127,6 +127,22 @@ def _stiffness(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
             )
         )
     return found
+
+
+def _edges(mesh: xr.Dataset) -> list[Notice]:
+    """Where a tip corner carries, and what that leaves unknown."""
+    shares = 100.0 * mesh["edge_contact_share"].values
+    if not np.any(shares > 0.0):
+        return []
+    least, most = np.nanmin(shares), np.nanmax(shares)
+    return [
+        _notice(
+            "info",
+            f"Edge contact: under load the corner of a tip carries for {least:.1f} to {most:.1f} % "
+            "of the mesh period in the loaded contact. Hertz's pressure is not valid there and is "
+            "left out; stiffness, shares, friction and flash take the corner for a flank.",
+        )
+    ]
 
 
 def _above(part: float) -> str:
@@ -466,9 +482,11 @@ FIGURES = (
     "mean_stiffness",
     "peak_to_peak_stiffness",
     "half_backlash",
+    "least_half_backlash",
     "cold_half_backlash",
     "jam_temperature",
     "proportional_jam_temperature",
+    "edge_contact_share",
     "natural_frequency",
     *DIMENSIONLESS[1:],
 )

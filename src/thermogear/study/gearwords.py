@@ -161,7 +161,7 @@ class GearFamily:
     """Gear parameters -> lanes, for one ``case`` and one bundle of it, ``bundle``.
 
     ``state`` "hot" (as the case says), "undeformed" (everything at the reference temperature) or
-    the addendum temperature [K] of both gears; a parameter gear_temperature overrules it.
+    the addendum temperature [K] of both gears; beside a parameter gear_temperature it is "hot".
     Parameters that are not named stay as in the case, at its first speed and torque. A dotted
     name is a field of the case file, so that every value there can be swept; each of its
     values reads the case again.
@@ -183,6 +183,13 @@ class GearFamily:
             raise InputError("bundle", repr(self.bundle), fix=nearest(self.bundle, known))
         if isinstance(self.state, str) and self.state not in STATES:
             raise InputError("state", repr(self.state), allowed="'hot' | 'undeformed' | kelvins")
+        if self.state != "hot" and "gear_temperature" in self.names:
+            raise InputError(
+                "state",
+                repr(self.state) if isinstance(self.state, str) else f"{self.state:g} K",
+                why="the gear temperature itself is varied here",
+                fix="leave out the state, or the temperature",
+            )
 
     @property
     def units(self) -> tuple[str, ...]:

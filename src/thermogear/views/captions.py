@@ -30,6 +30,19 @@ PLACES = {
 }
 
 
+def hertz(data: xr.Dataset, bundle: int, name: str) -> str:
+    """Of pressure and half width of ``bundle`` along the path."""
+    words = (
+        f"Pressure and half width of the contact band, bundle {name}, hot. Both go with the root "
+        "of the load that the pair carries."
+    )
+    if "edge_contact" in data and hot_state(data).isel(bundle=bundle)["edge_contact"].any():
+        words += (
+            " The pressure is left out where the corner of a tip carries: it is not valid there."
+        )
+    return words
+
+
 def where(data: xr.Dataset, name: str) -> str:
     """ "At <first operating point>. " where the picture could not stand for all of them."""
     values = data[name].transpose("operating", ...).values

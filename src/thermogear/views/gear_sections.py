@@ -44,8 +44,7 @@ def friction(results: Results, pictures: Pictures) -> Section | None:
         )  # fmt: skip
     pictures.add(
         "hertz", "Hertzian contact",
-        f"Pressure and half width of the contact band, bundle {first}, hot. Both go with the root "
-        "of the load that the pair carries.",
+        captions.hertz(data, 0, first),
         data, ("hertz_pressure", "hertz_half_width"), lambda: path.hertz(data, 0),
     )  # fmt: skip
     needs = ("friction_coefficient_mixed", "friction_coefficient_dry")

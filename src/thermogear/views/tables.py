@@ -95,7 +95,7 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
             k = [float(one["mean_stiffness"]) for one in (cold, hot)]
             rows.append([
                 str(bundle), name,
-                f"{value_of(cold, 'half_backlash')} → {_gap(hot)}",
+                f"{_gap(cold)} → {_gap(hot)}",
                 *(
                     jam_at(float(hot.get(name, np.nan)), without_heat=is_jammed(cold))
                     for name in ("jam_temperature", "proportional_jam_temperature")
@@ -107,15 +107,19 @@ def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | 
                 swing,
             ])  # fmt: skip
     caption = (
-        "Undeformed and hot differ in the temperatures of gears and housing alone. Δk is "
-        "the peak to peak mesh stiffness, flash the highest rise along the path, swing the peak to "
-        "peak displacement."
+        "Undeformed and hot differ in the temperatures of gears and housing alone. b′ is the mean "
+        "over a mesh period, Δk the peak to peak mesh stiffness, flash the highest rise along the "
+        "path, swing the peak to peak displacement."
     )
     return Table(caption, head, rows, names=2, marked=frozenset(marked))
 
 
 def _gap(one: xr.Dataset) -> str:
-    return "none" if is_jammed(one) else value_of(one, "half_backlash")
+    """The mean over a mesh period, and the least where it reads differently."""
+    if is_jammed(one):
+        return "none"
+    mean, least = (value_of(one, name) for name in ("half_backlash", "least_half_backlash"))
+    return mean if least in (mean, "–") else f"{mean} (least {least})"
 
 
 def _state_word(figures: xr.Dataset, motion: xr.Dataset | None, state: int) -> Cell:
