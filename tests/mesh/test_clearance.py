@@ -10,7 +10,7 @@ import pytest
 
 from conftest import Compared
 from thermogear import Gear, GearPair, MeshModel, Operating, Temperatures, mesh_cycle
-from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.base.materials import MATERIALS, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.gears.deviations import (
@@ -22,7 +22,7 @@ from thermogear.gears.deviations import (
     PressureAngleError,
     Relief,
 )
-from thermogear.gears.loaded import mesh_force
+from thermogear.gears.loaded import loaded_contact, mesh_force
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.load_shared import pair_springs
@@ -235,3 +235,65 @@ def test_what_heat_never_closes_has_no_jam_temperature(rig: GearPair, hot_rig: O
     for cycle in (cold, uniform):
         assert np.all(np.isnan(cycle["proportional_jam_temperature"].values))
         assert np.all(np.isfinite(cycle["jam_temperature"].values))
+
+
+def proportion(state: Temperatures, factor: float) -> Temperatures:
+    """Every excess over the reference times ``factor``."""
+    return replace(
+        state, **{name: T0 + factor * (body - T0) for name, body in state.bodies.items()}
+    )
+
+
+@pytest.mark.parametrize(
+    ("state", "expansion", "side"),
+    [
+        (warm(120.0, 95.0, 60.0), 12e-6, 1.0),
+        (warm(120.0, 110.0, 100.0), 23e-6, -1.0),
+        (warm(-10.0, 0.0, -25.0), 12e-6, -1.0),
+        (warm(-10.0, 0.0, 15.0), 12e-6, 1.0),
+    ],
+    ids=["housing of steel", "of aluminium", "colder than the drawing", "colder gears alone"],
+)
+def test_in_proportion_a_pair_jams_on_the_side_where_its_gap_closes(
+    hot_rig: Operating, state: Temperatures, expansion: float, side: float
+) -> None:
+    """A housing that shrinks more than the gears takes the backlash up in the cold."""
+    housing = replace(MATERIALS["steel"], thermal_expansion=expansion)
+    operating = replace(point(hot_rig, state, 12e-6), housing=housing)
+    cycle = mesh_cycle(SMALL, operating, mesh_positions=24)
+    jam = float(cycle["proportional_jam_temperature"][0])
+    assert np.sign(jam - T0) == side
+    factor = (jam - T0) / (float(state.pinion_addendum) - T0)
+    there = replace(operating, temperatures=proportion(state, factor))
+    least = mesh_cycle(SMALL, there, mesh_positions=24)["least_half_backlash"]
+    assert float(least[0]) / 12e-6 == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_pair_that_jams_without_heat_has_no_temperature_of_it(hot_rig: Operating) -> None:
+    tight = [PathTable(s=[0.0, 0.1], added=[61e-6, 61e-6])]
+    for state in (warm(120.0, 95.0, 50.0), Temperatures.uniform(T0, reference=T0)):
+        cycle = mesh_cycle(SMALL, point(hot_rig, state), deviations=tight, mesh_positions=24)
+        assert STATUS[int(cycle["status"][0])] == "jammed"
+        assert float(cycle["least_half_backlash"][0]) < 0.0
+        assert np.isnan(cycle["jam_temperature"].values).all()
+        assert np.isnan(cycle["proportional_jam_temperature"].values).all()
+
+
+def test_heavy_added_material_leaves_a_contact_that_settles(hot_rig: Operating) -> None:
+    """A constant shift moves the origin alone, however light the load is."""
+    pair = GearPair(
+        Gear(60, 20e-3, face_width=0.2, bore_radius=0.3),
+        Gear(150, 20e-3, face_width=0.2, bore_radius=0.8),
+    )
+    phase = np.arange(24) / 24
+    for line_load in (1e2, 1e3):
+        force = line_load * pair.face_width
+        bare = loaded_contact(pair, force, phase)
+        shifted = loaded_contact(
+            pair, force, phase, deviations=[PathTable(s=[0.0, 1.0], added=[-1e-3, -1e-3])]
+        )
+        assert not shifted["status"].any()
+        stiffness = bare["tangent_stiffness"].values
+        np.testing.assert_allclose(shifted["tangent_stiffness"], stiffness, rtol=1e-6)
+        moved = shifted["transmission_error"].values - bare["transmission_error"].values
+        np.testing.assert_allclose(moved, 1e-3, rtol=1e-9)

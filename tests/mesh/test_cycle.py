@@ -12,9 +12,10 @@ from conftest import Compared
 from thermogear import Gear, GearPair, InputError, MeshModel, Operating, Temperatures, mesh_cycle
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS
-from thermogear.base.vocabulary import QUANTITIES, STATUS
-from thermogear.gears.deviations import PitchError
+from thermogear.base.vocabulary import FLAGS, QUANTITIES, STATUS
+from thermogear.gears.deviations import FlankTable, PitchError
 from thermogear.mesh.elastic import LoadedPair, MeshCurves
+from thermogear.mesh.thermal import HotPair
 
 T0 = ZERO_CELSIUS + 20.0
 BUNDLES = [MeshModel.consistent(), MeshModel.thesis()]
@@ -332,7 +333,7 @@ def test_a_contact_that_does_not_settle_is_a_status(
     def lost(self: LoadedPair, phase: np.ndarray) -> MeshCurves:
         k = np.full((3, phase.size), 4e8)
         k[1, 0] = np.nan
-        return MeshCurves(k, np.zeros_like(k), np.zeros_like(k))
+        return MeshCurves(k, np.zeros_like(k), np.zeros_like(k), np.zeros(len(k)))
 
     monkeypatch.setattr(LoadedPair, "over", lost)
     status = mesh_cycle(rig, hot_rig)["status"].values
@@ -400,7 +401,7 @@ def test_secant_and_tangent_springs_differ_by_the_hardening_of_the_contact(
 def test_every_stored_name_carries_its_unit_and_words(rig: GearPair, hot_rig: Operating) -> None:
     cycle = mesh_cycle(rig, hot_rig)
     for name, values in cycle.variables.items():
-        if name != "status":
+        if name not in FLAGS:
             assert values.attrs["units"] == QUANTITIES[str(name)].unit
         assert values.attrs["long_name"]
 
@@ -416,3 +417,24 @@ def test_an_unknown_choice_says_the_nearest() -> None:
     with pytest.raises(InputError, match="did you mean 'flank'"):
         MeshModel.thesis().override(flnk="growth")
     assert MeshModel.thesis().override(flank="growth").name == "thesis + flank=growth"
+
+
+def test_a_cycle_says_where_a_corner_carries_along_the_path(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    """Material left standing at the wheel's tip lets its corner touch between A and E."""
+    tip, model = rig.wheel.tip_radius, MeshModel.consistent()
+    left = FlankTable("wheel", radius=[tip - 3e-3, tip - 2e-4, tip], added=[0.0, 0.0, 8e-6])
+    cycle = mesh_cycle(rig, hot_rig, model, deviations=[left], path_positions=41)
+    edge, pressure = cycle["edge_contact"].values, cycle["hertz_pressure"].values
+    assert np.all((edge == 1).sum(axis=1) > 1)
+    assert np.all(edge[:, 10:30] == 0)
+    np.testing.assert_array_equal(np.isnan(pressure), edge > 0)
+    assert cycle["edge_contact"].attrs["flag_meanings"].startswith("no_edge_contact wheel_tip")
+    # and over the mesh period, beyond A and E too, as the loaded contact has it
+    elastic = LoadedPair(HotPair(rig, hot_rig, model), [left])
+    phase = cycle["mesh_phase"].values
+    np.testing.assert_array_equal(cycle["edge_contact_share"], elastic.solve(phase).edge_share)
+    assert float(cycle["edge_contact_share"].min()) > 0.03
+    # a model of uncoupled springs knows no corner
+    assert np.isnan(mesh_cycle(rig, hot_rig, MeshModel.thesis())["edge_contact_share"]).all()

@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.gears.relief import optimise_tip_relief
 from thermogear.mesh.operating import Temperatures
@@ -111,3 +112,32 @@ def test_with_fixed_distances_the_housing_cools_below_the_drawing() -> None:
     )
     for name, body in expected.bodies.items():
         np.testing.assert_allclose(there.bodies[name], body)
+
+
+def test_a_proportion_that_no_network_has_is_warned_of() -> None:
+    far = (
+        "temperatures.housing=150 degC",
+        "temperatures.pinion_addendum=60 degC",
+        "temperatures.wheel_addendum=60 degC",
+        "draw.pictures=['path']",
+    )
+    text = re.sub(r"(?m)^housing_below_addendum = .*\n", "", example_text("rig"))
+    text = re.sub(r"(?m)^\"temperatures\.housing_below_addendum\".*\n", "", text)
+    case = load_example_text(text, *far)
+    with pytest.warns(ValidityWarning, match=r"temperatures\.housing: stands 130 K over .* 40 K"):
+        case.operating_at(T0 + 20.0)
+    fixed = load_example_text(text, *far, "temperatures.follow=fixed")
+    assert float(fixed.operating_at(T0 + 60.0).temperatures.housing) == T0 + 130.0
+
+
+def test_a_temperature_of_the_row_that_gives_no_proportion_is_named_by_its_place() -> None:
+    still = "temperatures.wheel_addendum=20 degC"
+    with pytest.raises(InputError, match=r"^temperatures\.row\[0\]: .*the wheel's addendum stands"):
+        load_example_text(example_text("rig"), still)
+    # where the row is not drawn nothing asks for a proportion
+    load_example_text(example_text("rig"), still, "draw.pictures=['path']")
+
+
+def test_a_state_beside_a_varied_temperature_is_refused() -> None:
+    with pytest.raises(InputError, match="the gear temperature itself is varied here"):
+        GearFamily(own_pair(), ("gear_temperature",), state="undeformed")

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.study.case import load_example
+from thermogear.study.case import gear_case, load_case, load_example
+from thermogear.study.ready import example_text
 from thermogear.study.shared_force import shared_results
 from thermogear.study.subject import SHORT, of_case, of_numbers
 
@@ -24,6 +25,26 @@ def test_where_the_two_forms_part() -> None:
     assert float(light["shared_stiffness"]) == pytest.approx(exact, rel=0.05)
     assert float(light["one_spring_stiffness"]) > 1.5 * exact
     assert np.all(np.diff(rest["exact_stiffness"].values) > 0.0)
+
+
+def test_deviations_reach_both_forms() -> None:
+    relieved = load_case(
+        example_text("rig"),
+        [
+            "gears.pinion.tip_relief={amount='60 um', length='6 mm'}",
+            "gears.wheel.tip_relief={amount='60 um', length='6 mm'}",
+        ],
+    )
+    at, bare = (
+        shared_results(of_case(case), speeds=(200.0, 201.0), count=1).tree["rest"].to_dataset()
+        for case in (gear_case(relieved), load_example("rig"))
+    )
+    # both forms: more play, the same play, and softer flanks at the tips
+    play = at["one_spring_clearance"].values
+    np.testing.assert_allclose(at["shared_clearance"].values, play, rtol=1e-9)
+    assert np.ptp(play) > 1e-6 + np.ptp(bare["one_spring_clearance"].values)
+    for name in ("exact_stiffness", "shared_stiffness", "one_spring_stiffness"):
+        assert float(at[name].sel(load=at["load"][16])) < 0.95 * float(bare[name][16])
 
 
 def test_without_gears_there_is_no_load_to_share() -> None:

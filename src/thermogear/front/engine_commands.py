@@ -426,6 +426,13 @@ def _shared_lines(s: dict[str, Any]) -> list[str]:
         ):
             if name in s:
                 lines.append(f"  {where:>5} load: {words:<34} {100 * s[name]:7.2f} %")
+    if "mean_clearance_m" in s:
+        mean, least, apart = (s[f"{name}_m"] for name in (
+            "mean_clearance", "least_clearance", "clearance_apart"))  # fmt: skip
+        lines.append(
+            f"  free play 2b': mean {1e6 * mean:.2f} um, least {1e6 * least:.2f} um, "
+            f"forms {1e9 * apart:.2g} nm apart"
+        )
     return lines
 
 

@@ -227,8 +227,8 @@ class LoadedPair(ElasticPair):
 def loaded_share(elastic: ElasticPair, s: Floats) -> PathShare:
     """Share of the pair at ``s`` [m] and its corners from the loaded contact, (count, positions).
 
-    The share is nan where the contact does not settle. Between A and E, both included, a pair
-    touches on its flanks; a corner carries there only where deviations or heat let it touch
+    The share is nan where the contact does not settle. Plain involutes touch on their flanks from
+    A to E, both included; a corner carries there only where the shape of a flank lets it touch
     first.
     """
     pair = elastic.pair

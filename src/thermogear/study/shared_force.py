@@ -15,6 +15,7 @@ from thermogear.base.progress import Progress, silent
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import from_excitation
+from thermogear.mesh.clearance import clearance
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
 from thermogear.study.engine import Found, found
@@ -133,13 +134,11 @@ def free_play(gears: Gears, here: Excitation, drive: PairSprings, back: PairSpri
 
     Both from one gap function; in motion the one spring keeps its mean all along.
     """
-    cycle = gears.cycle()
-    phase = cycle["mesh_phase"].values
+    hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
+    phase = np.arange(POSITIONS) / POSITIONS
     shared = LoadSharedModel.from_excitation(here, drive, back)
-    values = {
-        "shared_clearance": shared.clearance(phase),
-        "one_spring_clearance": 2.0 * cycle["half_backlash_curve"].values[0],
-    }
+    one = clearance(hot, phase, gears.case.deviations).half_backlash[0]
+    values = {"shared_clearance": shared.clearance(phase), "one_spring_clearance": 2.0 * one}
     return xr.Dataset(
         {name: ("mesh_phase", play, METRES) for name, play in values.items()},
         {"mesh_phase": ("mesh_phase", phase, {"units": "1", "long_name": "mesh phase"})},
