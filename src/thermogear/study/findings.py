@@ -134,11 +134,12 @@ def _edges(mesh: xr.Dataset) -> list[Notice]:
     shares = 100.0 * mesh["edge_contact_share"].values
     if not np.any(shares > 0.0):
         return []
-    least, most = np.nanmin(shares), np.nanmax(shares)
+    least, most = f"{np.nanmin(shares):.1f}", f"{np.nanmax(shares):.1f}"
+    span = most if least == most else f"{least} to {most}"
     return [
         _notice(
             "info",
-            f"Edge contact: under load the corner of a tip carries for {least:.1f} to {most:.1f} % "
+            f"Edge contact: under load the corner of a tip carries for {span} % "
             "of the mesh period in the loaded contact. Hertz's pressure is not valid there and is "
             "left out; stiffness, shares, friction and flash take the corner for a flank.",
         )
