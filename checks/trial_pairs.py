@@ -455,7 +455,9 @@ def page(count: int, refused: Counter[str], found: Sequence[Found], seconds: flo
         "",
         f"Steps are relative, between neighbours more than {NEAR} positions "
         "from a change of the set",
-        "of pairs that carry. Exchange and scale are relative to the greatest value.",
+        "of pairs that carry. Exchange and scale are relative to the greatest value. Where kinks",
+        "of two profiles lie closer together than the samples of a flank, the exchanged pair may",
+        "find the other of two neighbouring valleys.",
         "",
     ]
     print(f"{seconds:.0f} s")

@@ -182,7 +182,7 @@ def test_film_parameter_and_regime() -> None:
     values = film_parameter([0.2e-6, 1e-6, 3e-6], roughness_1=0.3e-6, roughness_2=0.4e-6)
     assert values == pytest.approx([0.4, 2.0, 6.0])
     assert regime(values).tolist() == [0, 1, 2]
-    assert regime([1.0, 3.0, np.inf]).tolist() == [1, 2, 2]
+    assert regime([1.0, 3.0, 1e9, np.inf]).tolist() == [1, 2, 2, 3]
     with pytest.raises(InputError, match=r"^roughness: got 0.0; allowed > 0 m"):
         film_parameter(1e-6, roughness_1=0.0, roughness_2=0.0)
     with pytest.raises(InputError, match=r"^regime limits: got 3.0 and 1.0"):
@@ -190,5 +190,5 @@ def test_film_parameter_and_regime() -> None:
 
 
 def test_shares_of_the_path() -> None:
-    shares = regime_shares([[0.5, 0.6, 1.5, 4.0], [5.0, 5.0, 5.0, 5.0]])
-    assert shares.tolist() == [[0.5, 0.25, 0.25], [0.0, 0.0, 1.0]]
+    shares = regime_shares([[0.5, 0.6, 1.5, 4.0], [5.0, 5.0, 5.0, np.inf]])
+    assert shares.tolist() == [[0.5, 0.25, 0.25, 0.0], [0.0, 0.0, 0.75, 0.25]]

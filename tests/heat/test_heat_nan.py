@@ -55,7 +55,7 @@ def test_an_unknown_film_is_in_no_regime() -> None:
         regime([0.5, NAN])
     with pytest.raises(InputError, match=r"^film parameter: got nan"):
         regime_shares([0.5, NAN, 4.0])
-    assert regime([0.5, np.inf]).tolist() == [0, 2]
+    assert regime([0.5, np.inf]).tolist() == [0, 3]
     with pytest.raises(InputError, match=r"^roughness: got nan; allowed > 0 m on one flank"):
         film_parameter(1e-6, roughness_1=NAN, roughness_2=1e-6)
 

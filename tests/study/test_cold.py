@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
@@ -93,8 +94,14 @@ def test_the_relief_for_the_drawing_temperature_is_that_of_the_drawn_pair() -> N
     case = own_pair()
     found = relief_survey(case, torque=60.0, gear_temperature=T0)
     drawn = optimise_tip_relief(case.pair, 60.0 / case.pair.pinion.base_radius)
-    assert found.attrs["unrelieved"] == pytest.approx(drawn.unrelieved, rel=1e-12)
-    assert found.attrs["relieved"] == pytest.approx(drawn.relieved, rel=1e-9)
+    designed = json.loads(found.attrs["reliefs"])
+    for relief in (drawn.pinion, drawn.wheel):
+        assert designed[relief.gear]["amount_m"] == pytest.approx(relief.amount, rel=1e-9)
+        assert designed[relief.gear]["length_m"] == pytest.approx(relief.length, rel=1e-9)
+    # the figures are those of the curve that is drawn, of finer positions
+    swing = np.ptp(found["error"]["transmission_error"].values, axis=-1)
+    assert [found.attrs["unrelieved"], found.attrs["relieved"]] == swing.tolist()
+    assert swing[0] == pytest.approx(drawn.unrelieved, rel=0.03)
 
 
 def test_with_fixed_distances_the_housing_cools_below_the_drawing() -> None:

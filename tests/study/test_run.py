@@ -10,9 +10,10 @@ import pytest
 import xarray as xr
 
 from thermogear import InputError, run
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.study.case import load_example
-from thermogear.study.findings import summary
+from thermogear.study.findings import _jams, summary
 from thermogear.study.results import RESULTS, SUMMARY
 from thermogear.study.run import run_to_directory
 
@@ -182,3 +183,29 @@ def test_progress_names_its_stages() -> None:
     stages: list[str] = []
     run(load_example("rig", SMALL), progress=lambda stage, done, total: stages.append(stage))
     assert {"mesh cycle", "motion", "motion over temperature"} <= set(stages)
+
+
+def test_both_jams_are_those_of_named_points() -> None:
+    """In proportion the jam nearest to the drawing counts, on whichever side it lies."""
+
+    def point(alone: list[float], together: list[float]) -> str:
+        axis = ("operating",)
+        data = xr.Dataset(
+            {
+                "jam_temperature": (axis, np.array(alone) + ZERO_CELSIUS),
+                "proportional_jam_temperature": (axis, np.array(together) + ZERO_CELSIUS),
+            },
+            {
+                "pinion_speed": (axis, RPM * np.array([800.0, 4000.0])),
+                "pinion_torque": (axis, np.array([60.0, 60.0])),
+            },
+        )
+        return _jams(data, ZERO_CELSIUS + 20.0)[1]
+
+    nan = float("nan")
+    words = point([405.0, 281.0], [nan, -42.0])
+    assert words.startswith("at 281 °C (4000 rpm, 60 N m) of the pinion's addendum")
+    assert "at -42 °C (4000 rpm, 60 N m) where shafts and housing cool in proportion" in words
+    assert "at 130 °C (800 rpm" in point([200.0, 200.0], [130.0, 180.0])
+    assert point([200.0, 200.0], [nan, nan]).endswith("and never where shafts and housing go along"
+                                                      " in proportion")  # fmt: skip

@@ -296,16 +296,17 @@ def film_parameter(
     return np.asarray(np.asarray(thickness) / both)
 
 
-REGIMES = ("boundary", "mixed", "elastohydrodynamic")
+REGIMES = ("boundary", "mixed", "elastohydrodynamic", "unloaded")
 
 
 def regime(
     film_parameter: ArrayLike, *, boundary_below: float = 1.0, full_film_above: float = 3.0
 ) -> NDArray[np.int64]:
-    """Lubrication regime as an index into :data:`REGIMES` (0, 1, 2).
+    """Lubrication regime as an index into :data:`REGIMES` (0 to 3).
 
     ``film_parameter`` Lambda [-], any shape; boundary below ``boundary_below``, full
     elastohydrodynamic film from ``full_film_above`` on, mixed between: the customary 1 and 3.
+    Infinite Lambda is a pair that carries nothing: unloaded.
     """
     if not 0.0 < boundary_below < full_film_above:
         raise InputError(
@@ -316,7 +317,7 @@ def regime(
     thickness = np.asarray(film_parameter, dtype=float)
     if np.any(np.isnan(thickness)):
         raise InputError("film parameter", "nan", allowed="a number, or inf without load")
-    index = np.digitize(thickness, [boundary_below, full_film_above])
+    index = np.digitize(thickness, [boundary_below, full_film_above, np.inf])
     return np.asarray(index, dtype=np.int64)
 
 
@@ -326,7 +327,7 @@ def regime_shares(
     """Share of the path (the last axis) spent in each of :data:`REGIMES` [-].
 
     ``film_parameter`` Lambda (..., position), positions evenly spaced; limits as
-    :func:`regime`. Returns (..., 3), each row adding up to 1.
+    :func:`regime`. Returns (..., 4), each row adding up to 1.
     """
     index = regime(film_parameter, boundary_below=boundary_below, full_film_above=full_film_above)
     return np.stack([np.mean(index == k, axis=-1) for k in range(len(REGIMES))], axis=-1)

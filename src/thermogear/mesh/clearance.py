@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base import bounds
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.touch import first_touch
@@ -30,8 +31,8 @@ class Clearance:
     gears rising (or, jammed already, falling) alike, the housing as it is.
     ``proportional_jam_temperature`` [K], (count,): the same where every excess over the reference
     temperature, housing's and shafts' too, keeps its proportion; the warm side's, the cold side's
-    where a pair jams in the cold alone. Both nan where no temperature does it, and where the pair
-    is jammed without heat.
+    where a pair jams in the cold alone, unless below what a case's bodies may have. Both nan where
+    no temperature does it, and where the pair is jammed without heat.
     """
 
     half_backlash: Floats
@@ -75,6 +76,8 @@ def clearance(hot: HotPair, phase: Floats, deviations: Sequence[Deviation] = ())
         warm, cold = base + np.abs(excess) * np.where(
             excess > 0.0, (grow, -shrink), (shrink, -grow)
         )
+    # colder than any body of a case is no answer
+    cold = np.where(cold >= bounds.BODY.least, cold, np.nan)
     together = np.where(np.isfinite(warm), warm, cold)
     return Clearance(
         half_backlash=left,

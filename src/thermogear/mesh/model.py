@@ -50,7 +50,7 @@ CHOICES: dict[str, dict[str, str]] = {
         "rigid": "the centre distance stays",
     },
     "modulus": {
-        "of-temperature": "E(T) of carbon steel",
+        "of-temperature": "E(T) of each material, by its slope",
         "constant": "E at 20 C",
     },
     "stiffness": {

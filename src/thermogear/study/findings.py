@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -25,6 +26,7 @@ from thermogear.study.facts import Fact
 from thermogear.study.facts import facts as case_facts
 from thermogear.study.thesis_cases import of_the_thesis
 
+Floats = NDArray[np.float64]
 Notice = dict[str, str]
 
 STUDIED_FREQUENCIES = (1.1, 1.3)
@@ -50,7 +52,7 @@ def _rpm(speed: float) -> float:
 def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     """What a reader should know before the pictures, most important first."""
     mesh = groups["mesh"]
-    found = _computed(case, groups) + _jammed(mesh) + _deviations(case)
+    found = _computed(case, groups) + _jammed(case, mesh) + _deviations(case)
     if of_the_thesis(case):
         found += _regime(case, mesh)
     if "motion" in groups:
@@ -216,7 +218,7 @@ def _deviations(case: GearCase) -> list[Notice]:
     return found
 
 
-def _jammed(mesh: xr.Dataset) -> list[Notice]:
+def _jammed(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
     hot = mesh.isel(state=-1)
     found = []
     for place, bundle in enumerate(mesh["bundle"].values):
@@ -233,14 +235,7 @@ def _jammed(mesh: xr.Dataset) -> list[Notice]:
             )
             continue
         jammed = int((here["status"] == STATUS.index("jammed")).sum())
-        alone, together = (
-            float(here[name].min()) for name in ("jam_temperature", "proportional_jam_temperature")
-        )
-        words = (
-            f"at {_degrees(alone)} of the pinion's addendum where both gears rise alike with the "
-            f"housing as it is, at {_degrees(together)} where shafts and housing rise in "
-            "proportion to the gears"
-        )
+        alone, words = _jams(here, case.stated.temperatures.reference)
         if jammed:
             found.append(
                 _notice(
@@ -254,8 +249,40 @@ def _jammed(mesh: xr.Dataset) -> list[Notice]:
     return found
 
 
-def _degrees(kelvin: float) -> str:
-    return f"{kelvin - ZERO_CELSIUS:.0f} °C" if math.isfinite(kelvin) else "no temperature"
+def _jams(here: xr.Dataset, reference: float) -> tuple[float, str]:
+    """Least jam temperature [K] of gears that rise alone, and both jams in words.
+
+    In proportion it is the one nearest to the ``reference`` [K], from where all bodies go.
+    """
+    alone, together = (
+        np.ravel(here[name].values) for name in ("jam_temperature", "proportional_jam_temperature")
+    )
+    first = f"at {_degrees(alone, np.argsort(alone), here)} of the pinion's addendum"
+    words = f"{first} where both gears rise alike with the housing as it is"
+    nearest = np.argsort(np.abs(together - reference))
+    known = float(together[nearest[0]])
+    if not math.isfinite(known):
+        return float(np.nanmin(alone, initial=np.inf)), (
+            f"{words}, and never where shafts and housing go along in proportion"
+        )
+    way = "rise" if known > reference else "cool"
+    return float(np.nanmin(alone, initial=np.inf)), (
+        f"{words}, at {_degrees(together, nearest, here)} where shafts and housing {way} in "
+        "proportion to the gears"
+    )
+
+
+def _degrees(kelvin: Floats, order: NDArray[np.int64], here: xr.Dataset) -> str:
+    """The first of some temperatures in ``order``, with its operating point where they differ."""
+    first = int(order[0])
+    if not math.isfinite(kelvin[first]):
+        return "no temperature"
+    text = f"{kelvin[first] - ZERO_CELSIUS:.0f} °C"
+    if np.all(np.abs(kelvin - kelvin[first]) < 0.5):
+        return text
+    one = here.isel(operating=first)
+    speed, torque = _rpm(float(one["pinion_speed"])), float(one["pinion_torque"])
+    return f"{text} ({speed:.5g} rpm, {torque:.5g} N m)"
 
 
 def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:

@@ -171,8 +171,7 @@ def relief_survey(
         "wheel_addendum": float(np.ravel(hot.temperatures.wheel_addendum)[0]),
         "shape": shape,
         "symmetric": int(symmetric),
-        "unrelieved": design.unrelieved,
-        "relieved": design.relieved,
+        **{name: float(np.ptp(c.deflection)) for name, c in zip(pairs, curves, strict=True)},
         "evaluations": design.evaluations,
         "reliefs": json.dumps(
             {

@@ -215,7 +215,8 @@ def of_case(
             fix="use --set, for instance --set dynamics.damping_ratio=0.1",
         )
     if state not in STATES:
-        raise InputError("--state", repr(state), allowed=" | ".join(STATES))
+        fix = '"cold" is now called "undeformed"' if state == "cold" else None
+        raise InputError("--state", repr(state), allowed=" | ".join(STATES), fix=fix)
     names = [m.name for m in case.models]
     model_of = dict(zip(names, case.models, strict=True))[named("--bundle", bundle, names)]
     here = counted("--operating", operating, most=len(case.speeds) * len(case.torques))

@@ -344,8 +344,8 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
             "info",
             f"No point jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
             "backlash are left. Held against its housing as it is, the pair would jam from "
-            f"{_least(jam[settled])} of the pinion's teeth, with all bodies rising in proportion "
-            f"from {_least(together[settled])}.",
+            f"{_least(jam[settled])} of the pinion's teeth"
+            + _in_proportion(together[settled], case.stated.temperatures.reference),
         )
     if case.scuffing_load_stage is None:
         say("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
@@ -359,6 +359,16 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
 
 
 __all__ = ["GRID", "KIND", "LUBRICATIONS", "QUANTITIES", "SPEEDS", "TORQUES", "thermal_map"]
+
+
+def _in_proportion(kelvin: NDArray[np.float64], reference: float) -> str:
+    """The jam nearest to the ``reference`` [K] from which all bodies go in proportion."""
+    known = kelvin[np.isfinite(kelvin)]
+    if not known.size:
+        return ", and never with all bodies going along in proportion."
+    nearest = float(known[np.argmin(np.abs(known - reference))])
+    way = "rising" if nearest > reference else "cooling"
+    return f", with all bodies {way} in proportion from {nearest - ZERO_CELSIUS:.0f} °C."
 
 
 def _least(kelvin: NDArray[np.float64]) -> str:

@@ -304,17 +304,20 @@ def stiffness(mesh: xr.Dataset, bundle: int) -> str:
     return f"{words}Hot against undeformed the mean changes by {change:+.1f} %.".replace("-", "−")
 
 
-def bars(mesh: xr.Dataset, bundles: Mapping[str, Any]) -> str:
+def bars(mesh: xr.Dataset) -> str:
     """Of mean and swing of the stiffness: what heat does in each bundle."""
     names = names_of(mesh, "bundle")
-    springs = [n for n in names if bundles.get(n, {}).get("thermal_stiffness") == "thesis"]
-    mean = mesh["mean_stiffness"].isel(operating=0)
-    softer = [
-        name
-        for b, name in enumerate(names)
-        if bundles.get(name, {}).get("modulus") == "of-temperature"
-        and float(mean.isel(bundle=b, state=-1)) < float(mean.isel(bundle=b, state=0))
-    ]
+    springs, softer = [], []
+    for b, name in enumerate(names):
+        here = mesh.isel(bundle=b, operating=0)
+        cold, hot = here.isel(state=0), here.isel(state=-1)
+        if "thermal_stiffness" in here and bool((hot["thermal_stiffness"] > 0.0).any()):
+            springs.append(name)
+        # the teeth's own bending tells the modulus from all that deforms with it
+        teeth = [n for n in ("pinion_bending_stiffness", "wheel_bending_stiffness") if n in here]
+        fallen = any(bool((hot[n] < cold[n]).all()) for n in teeth)
+        if fallen and float(hot["mean_stiffness"]) < float(cold["mean_stiffness"]):
+            softer.append(name)
     words = f"{where(mesh, 'mean_stiffness')}Undeformed beside hot."
     if softer:
         words += f" Young's modulus falls with heat, and the stiffness with it ({softer[0]})."

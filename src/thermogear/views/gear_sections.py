@@ -162,7 +162,7 @@ def springs(results: Results, pictures: Pictures) -> Section | None:
         )  # fmt: skip
     first = mesh.isel(operating=0) if "operating" in mesh.dims else mesh
     pictures.add(
-        "stiffness-bars", "Mean and swing", captions.bars(mesh, results.table("bundles")),
+        "stiffness-bars", "Mean and swing", captions.bars(mesh),
         mesh, ("mean_stiffness", "peak_to_peak_stiffness"), lambda: stiffness.bars(mesh),
     )  # fmt: skip
     if "pair_stiffness" in mesh:

@@ -42,7 +42,15 @@ def _heat(mesh: xr.Dataset) -> str:
     if "hot_temperature" not in mesh:
         return ""
     cold, hot = (mesh["hot_temperature"].isel(state=i).values for i in (0, -1))
-    return f"; gears at {celsius(float(hot.max()))} against {celsius(float(cold.min()))} undeformed"
+    drawn, pinion = celsius(float(cold.min())), celsius(float(hot.max()))
+    wheel = pinion
+    if "hot_wheel_temperature" in mesh:
+        wheel = celsius(float(mesh["hot_wheel_temperature"].isel(state=-1).max()))
+    gears = f"gears at {pinion}" if wheel == pinion else f"pinion at {pinion}, wheel at {wheel}"
+    colder = "; the state of operation, here a cold one, is called hot" * bool(
+        hot.max() < cold.min()
+    )
+    return f"; {gears} against {drawn} undeformed{colder}"
 
 
 def _bundle(mesh: xr.Dataset, place: int) -> str:
@@ -63,8 +71,8 @@ def _bundle(mesh: xr.Dataset, place: int) -> str:
     before = span(1e6 * cold["half_backlash"].values)
     after = span(1e6 * hot["half_backlash"].values)
     return (
-        f"In the {name} bundle heat takes the half backlash from {before} to {after} µm and "
-        f"{stiffness}."
+        f"In the {name} bundle the temperatures take the half backlash from {before} to {after} µm "
+        f"and {stiffness}."
     )
 
 

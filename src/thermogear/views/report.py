@@ -64,10 +64,13 @@ def _sections(results: Results) -> list[Section]:
 
 
 def with_hot_temperature(results: Results) -> Results:
-    """The mesh's figures with the pinion's tip temperature of the same points beside them."""
+    """The mesh's figures with both tips' temperatures of the same points beside them."""
     path, mesh = results.group("path"), results.group("mesh")
     if path is None or mesh is None or "pinion_body_temperature" not in path:
         return results
     tip: xr.DataArray = path["pinion_body_temperature"].isel(path_position=-1, drop=True)
     grown = mesh.assign(hot_temperature=tip.variable)
+    if "wheel_body_temperature" in path:
+        other = path["wheel_body_temperature"].isel(path_position=0, drop=True)
+        grown = grown.assign(hot_wheel_temperature=other.variable)
     return Results(results.texts, {**results.groups, "mesh": grown})

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from thermogear.views.style import (
     DRY,
+    FAINT,
     INK,
     OKABE_ITO,
     QUIET,
@@ -23,6 +24,7 @@ REGIME_COLOURS = {
     "boundary": "#c0504d",
     "mixed": "#e0b34c",
     "elastohydrodynamic": "#5b9bd5",
+    "unloaded": FAINT,
 }
 LAW_COLOURS = (*OKABE_ITO, DRY, INK, QUIET)
 BAND = 0.05
