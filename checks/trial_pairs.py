@@ -52,7 +52,7 @@ NEAR = 3
 """Positions beside a change of the contact set that are not compared."""
 FINER = 20
 """A pair that nearly leaves is steep, not broken: what is no step falls with finer positions."""
-SEARCH = 20
+SEARCH = 6
 """Evaluations from each start of the search for a relief: most of a trial's time goes there."""
 SOMETIMES_NONE = {"jam_temperature", "proportional_jam_temperature"}
 """Heat that never closes the gap has no jam temperature."""

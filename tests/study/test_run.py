@@ -11,7 +11,7 @@ import xarray as xr
 
 from thermogear import InputError, run
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
+from thermogear.base.vocabulary import FLAGS, STATUS
 from thermogear.study.case import load_example
 from thermogear.study.findings import _jams, summary
 from thermogear.study.results import RESULTS, SUMMARY
@@ -58,7 +58,7 @@ def test_every_stored_variable_has_units_and_words(small: xr.DataTree) -> None:
     texts = {"label", "label_reason", "row", "parameter", "expected", "value", "value_unit"}
     for node in small.subtree:
         for name, values in node.data_vars.items():
-            if name in texts or name == "status":
+            if name in texts or name in FLAGS:
                 continue
             assert values.attrs.get("units"), f"{node.path}/{name}"
             assert values.attrs.get("long_name"), f"{node.path}/{name}"

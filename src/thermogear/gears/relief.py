@@ -97,13 +97,13 @@ def optimise_tip_relief(
     def full(x: Floats) -> Floats:
         return np.repeat(x, 2) if symmetric else x
 
-    best_x, best, evaluations = np.array([0.0, 0.0, 0.3, 0.3]), unrelieved, 1
+    best_x, best, done = np.array([0.0, 0.0, 0.3, 0.3]), unrelieved, 1
 
     def peak(x: Floats) -> float:
-        nonlocal evaluations
-        evaluations += 1
+        nonlocal done
+        done += 1
         if progress is not None:
-            progress(evaluations)
+            progress(done)
         return float(np.ptp(error(reliefs(full(x)))))
 
     for amount, length in STARTS:
@@ -119,5 +119,5 @@ def optimise_tip_relief(
             best, best_x = float(found.fun), full(np.asarray(found.x))
     one, two = reliefs(best_x)
     return ReliefDesign(
-        pinion=one, wheel=two, unrelieved=unrelieved, relieved=best, evaluations=evaluations
+        pinion=one, wheel=two, unrelieved=unrelieved, relieved=best, evaluations=done
     )

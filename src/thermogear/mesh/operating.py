@@ -143,10 +143,6 @@ class Operating:
                 fix="give the addenda other temperatures",
             )
         oil_now = np.asarray(self.oil_temperature, dtype=float)
-        if rise != 0.0:
-            for name, excess in followed.items():
-                _warn_of_proportion(f"temperatures.{name}", bodies[name] - base, excess)
-            _warn_of_proportion("oil.temperature", oil_now - base, followed["housing"])
 
         def beside(temperature: Floats, excess: Floats) -> Floats:
             beyond = np.where(excess == 0.0, 0.0, temperature - base - excess)
@@ -159,7 +155,12 @@ class Operating:
         for name in ("pinion_addendum", "wheel_addendum"):
             changed[name] = np.full_like(bodies[name], gear_temperature)
         oil = beside(oil_now, followed["housing"])
-        return replace(self, oil_temperature=oil, temperatures=replace(t, **changed))
+        there = replace(self, oil_temperature=oil, temperatures=replace(t, **changed))
+        if rise != 0.0:
+            for name, excess in followed.items():
+                _warn_of_proportion(f"temperatures.{name}", bodies[name] - base, excess)
+            _warn_of_proportion("oil.temperature", oil_now - base, followed["housing"])
+        return there
 
 
 def _warn_of_proportion(field: str, excess: Floats, leader: Floats) -> None:
