@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: trial-pairs audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
+.PHONY: trial-branches trial-damage trial-hostile trial-labels trial-pairs audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -81,8 +81,20 @@ $(AUDIT_STAMP): $(STAMP) requirements/audit.txt
 	VIRTUAL_ENV=$(CURDIR)/.audit-venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/audit.txt
 	@touch $@
 
+trial-damage: $(STAMP)  ## 300 single damages to finished files and stores, minutes; docs/trial_damage.md
+	@$(BIN)/python checks/trial_damage.py
+
 trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an hour; docs/trial_pairs.md
 	@$(BIN)/python checks/trial_pairs.py
+
+trial-hostile: $(STAMP)  ## 5 000 mutated cases, 5 700 mutated records of 12 kinds; docs/trial_hostile.md
+	@$(BIN)/python checks/trial_hostile.py
+
+trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test, ten minutes; docs/trial_labels.md
+	@$(BIN)/python checks/trial_labels.py
+
+trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, half an hour; docs/trial_branches.md
+	@$(BIN)/python checks/trial_branches.py
 
 house: $(STAMP)  ## docs/house.md anew: sizes, imports between floors, public names
 	$(BIN)/python checks/house.py > docs/house.md

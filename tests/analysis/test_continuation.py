@@ -6,16 +6,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermogear.analysis.bifurcations import LONGEST_STEP
+from thermogear.analysis.bifurcations import LONGEST_STEP, Curve
 from thermogear.analysis.continuation import (
     BIRTH,
     FLIP,
     FOLD,
     GRAZING,
+    PITCHFORK,
+    SUBCRITICAL,
+    SUPERCRITICAL,
+    VERTICAL,
     cascade,
     continuation,
+    family_of,
     switch_branch,
 )
+from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
@@ -219,7 +225,8 @@ def test_folds_beside_a_grazing_are_found():
     assert len(found.flips) == 1
     kinds = [b.kind for b in found.branches[1].bifurcations]
     assert kinds == [GRAZING, FOLD, GRAZING, FOLD, BIRTH]
-    assert all(flip.note == "" for flip in found.branches[1].of_kind(FOLD))
+    assert all(fold.note == "" for fold in found.branches[1].of_kind(FOLD))
+    assert found.flips[0].note == SUPERCRITICAL
     # walked back, the branch passes the same places in reverse, to its other birth
     there = found.branches[1]
     back = continuation(there.orbit(-1), "frequency", 1.35)
@@ -350,3 +357,152 @@ def test_the_stored_branch_is_its_orbits():
     np.testing.assert_allclose(size[:, 0], np.exp(-0.05 * 2 * np.pi / w), rtol=1e-10)
     assert np.all(data.stable)
     assert not data.contact_losses.any()
+
+
+def test_a_branch_runs_through_a_grazing_that_a_difference_would_straddle():
+    """No event but a grazing at w = .3842: the contact of a central difference changed there."""
+    model = TorsionalModel(
+        damping_ratio=0.0513048,
+        frequency=0.39,
+        stiffness_amplitude=0.367185,
+        mean_force=0.292073,
+        force_amplitude=0.823992,
+    )
+    first = continuation(label(model.replace(frequency=0.35)).orbit, "frequency", 0.395)
+    assert first.ended == "reached the end"
+    assert [b.kind for b in first.bifurcations] == [FOLD, FOLD, FLIP, GRAZING]
+    assert first.bifurcations[-1].value == pytest.approx(0.38417183, abs=1e-8)
+    # the range of the parameter is in no result
+    whole = continuation(first.orbit(-1), "frequency", 0.5)
+    assert [b.kind for b in whole.bifurcations] == [FLIP]
+
+
+@pytest.mark.parametrize(
+    "parameter",
+    ["frequency", "damping_ratio", "stiffness_amplitude", "mean_force", "half_backlash"],
+)
+def test_the_derivative_in_the_parameter_is_that_of_the_map(parameter):
+    """Against central differences of the map, at an orbit with contact on both sides."""
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.3,
+        mean_force=0.1,
+        force_amplitude=0.6,
+        half_backlash=0.9,
+    )
+    family, value = family_of(model, parameter)
+    curve = Curve(family, parameter, 2, start=value, span=1.0)
+    here = np.array([1.1, 0.3, value])
+    _, _, section = curve.residual(here)
+    assert section.visit(here[:2] * curve.unit[:2], 2).back_impacts > 0
+    moved, _ = curve.in_parameter(here, section)
+    step = np.array([0.0, 0.0, 1e-5])
+    ends = [curve.residual(here + sign * step)[0] for sign in (1.0, -1.0)]
+    assert moved == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=3e-8, abs=1e-8)
+
+
+def test_a_parameter_at_the_end_of_what_it_may_be_is_reached():
+    """Below zeta = 0 there is no model: the derivative there is one-sided."""
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.0,
+        mean_force=1.0,
+        force_amplitude=0.2,
+    )
+    branch = continuation(periodic_orbit(model, 1, (1.9, 0.0)), "damping_ratio", 0.0)
+    assert (branch.values[-1], branch.ended) == (0.0, "reached the end")
+    # x = b + F_m + F_h/(1 - w^2) cos(w t) without damping
+    assert branch.states[-1] == pytest.approx([2.0 + 0.2 / 0.51, 0.0], abs=1e-11)
+
+
+def test_pitchforks_of_symmetric_orbits_are_passed_and_none_is_a_fold():
+    model = TorsionalModel(
+        damping_ratio=0.08653681,
+        frequency=0.85,
+        stiffness_amplitude=0.0,
+        mean_force=0.0,
+        force_amplitude=0.68923095,
+    )
+    orbit = label(model, initial_state=(3.0, 0.0)).orbit
+    branch = continuation(orbit, "frequency", 0.36)
+    assert branch.ended == "reached the end"
+    assert [b.kind for b in branch.bifurcations] == [PITCHFORK]
+    (fork,) = branch.bifurcations
+    assert fork.note == SUPERCRITICAL
+    assert fork.multipliers[0] == pytest.approx(1.0, abs=1e-7)
+    # all along x(t + T/2) = -x(t); the parameter never turns
+    assert np.all(np.diff(branch.values) < 0.0)
+    assert branch.orbit(-1).samples(16)[1] == pytest.approx(
+        -np.roll(branch.orbit(-1).samples(16)[1], 8), abs=1e-9
+    )
+    # the two orbits that leave it mirror each other, and lead back to it
+    beside = switch_branch(fork, branch.family)
+    away = 0.36 if beside.value < fork.value else 0.85
+    arm = continuation(
+        beside.orbit,
+        "frequency",
+        fork.value + 0.02 * (away - fork.value),
+        family=branch.family,
+        start=beside.value,
+        direction=beside.direction,
+    )
+    back = continuation(arm.orbit(-1), "frequency", 0.85 if away == 0.36 else 0.36)
+    assert back.bifurcations[-1].kind == PITCHFORK
+    assert back.bifurcations[-1].value == pytest.approx(fork.value, abs=1e-8)
+    assert back.ended == "the orbit became its own mirror image"
+
+
+def test_orbits_that_float_in_the_gap_are_no_branch():
+    """Without a mean force any shift of x is an orbit too."""
+    model = TorsionalModel(
+        damping_ratio=0.1,
+        frequency=1.6,
+        stiffness_amplitude=0.0,
+        mean_force=0.0,
+        force_amplitude=1.0,
+    )
+    free = 1.0 / (1.6 * (1.6 - 0.2j))  # x = -Re(free exp(i w t)) + shift
+    floating = periodic_orbit(model, 1, (-free.real + 0.2, 1.6 * free.imag))
+    branch = continuation(floating, "frequency", 1.2)
+    assert "floats in the gap" in branch.ended
+    assert branch.bifurcations == ()
+
+
+def test_a_subcritical_doubling_is_followed_back_through_its_fold():
+    model = TorsionalModel(
+        damping_ratio=0.10208669,
+        frequency=1.98,
+        stiffness_amplitude=0.56183829,
+        mean_force=0.19730742,
+        force_amplitude=0.98997492,
+    )
+    start = label(model.replace(frequency=1.90894553)).orbit
+    mother = continuation(start, "frequency", 1.98).orbit(-1)
+    found = cascade(mother, "frequency", 2.2)
+    (flip,) = found.flips
+    assert flip.note == SUBCRITICAL
+    doubled = found.branches[1]
+    folds = doubled.of_kind(FOLD)
+    assert len(folds) == 1
+    assert folds[0].value < flip.value < doubled.values.max()
+    assert doubled.ended != "left the range where it began"
+    # unstable from its birth to the fold, stable behind it
+    turn = int(np.argmin(doubled.values))
+    assert not doubled.stable[: turn - 1].any()
+    assert doubled.stable[turn + 1]
+
+
+def test_a_doubling_in_lasting_contact_is_vertical():
+    """Hill's equation there: all doubled orbits live at its border, until contact is lost."""
+    model = TorsionalModel(
+        damping_ratio=0.04439774,
+        frequency=1.9,
+        stiffness_amplitude=0.17862974,
+        mean_force=0.23223388,
+        force_amplitude=0.0,
+    )
+    branch = continuation(periodic_orbit(model, 1, (1.2, 0.0)), "frequency", 2.0)
+    assert branch.of_kind(FLIP)
+    assert branch.of_kind(FLIP)[0].note == VERTICAL

@@ -54,12 +54,14 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         *,
         case_text: str,
         progress: Callable[[str, int, int], None],
+        also: Callable[[Path], None],
     ) -> dict[str, Any]:
         seen.update(case=case, directory=directory, case_text=case_text)
         progress("mesh cycle", 1, 2)
         progress("mesh cycle", 2, 2)
         if "effect" in seen:
             raise seen["effect"]
+        also(directory / "folder")
         return {"thermogear": "0", "notices": [{"level": "info", "text": "two\nlines"}]}
 
     def write_report(directory: Path) -> Path:
@@ -71,6 +73,10 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen["curves"] = directory
         return []
 
+    def clear_csv(directory: Path, kept: list[str]) -> None:
+        assert directory == seen["directory"]
+        assert kept == []
+
     running = types.ModuleType("thermogear.study.run")
     running.run_to_directory = run_to_directory  # type: ignore[attr-defined]
     reporting = types.ModuleType("thermogear.views.report")
@@ -78,6 +84,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setitem(sys.modules, "thermogear.study.run", running)
     curves = types.ModuleType("thermogear.views.csv")
     curves.write_csv = write_csv  # type: ignore[attr-defined]
+    curves.clear_csv = clear_csv  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "thermogear.views.csv", curves)
     monkeypatch.setitem(sys.modules, "thermogear.views.report", reporting)
     return seen
@@ -247,8 +254,8 @@ def test_run_hands_case_and_directory_on(
     assert shown.out == f"- two lines\n{results / 'report.html'}\n"
     assert shown.err == ""
     assert pretended["case"].torques == (150.0,)
-    assert pretended["directory"] == pretended["reported"] == pretended["curves"] == results
-    assert results.is_dir()
+    assert pretended["directory"] == results
+    assert pretended["reported"] == pretended["curves"] == results / "folder"
     text = pretended["case_text"]
     assert text.startswith(example_text("rig").rstrip())
     assert text.endswith("\n# on the command line: operating.torque = 150 N m\n")
@@ -304,14 +311,24 @@ def test_a_case_too_large_needs_force(
 @pytest.mark.parametrize(
     ("effect", "code", "line"),
     [
-        (KeyboardInterrupt(), 130, "interrupted: stopped on request; what was finished stays\n"),
+        (KeyboardInterrupt(), 130, "interrupted: stopped on request\n"),
+        (
+            KeyboardInterrupt("nothing was written to results"),
+            130,
+            "interrupted: stopped on request; nothing was written to results\n",
+        ),
         (ThermogearError("it did not\nsettle"), 2, "error: it did not settle\n"),
         (
             PermissionError(13, "Permission denied", "results.nc"),
             2,
             "error: results.nc: Permission denied\n",
         ),
-        (OSError(28, "No space left on device"), 2, "error: No space left on device\n"),
+        (
+            OSError(28, "No space left on device", "results"),
+            2,
+            "error: results: No space left on device; make room there and give the same command "
+            "again\n",
+        ),
         (MemoryError(), 2, "error: MemoryError: the case is too large for this machine\n"),
     ],
 )

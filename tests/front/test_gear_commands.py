@@ -15,7 +15,7 @@ import xarray as xr
 from thermogear.base.errors import InputError
 from thermogear.front.cli import cli, main
 from thermogear.study.ready import example_text
-from thermogear.study.results import MARK, claim_directory, is_ours
+from thermogear.study.results import MARK, claimed, is_ours
 from thermogear.views.survey_report import write_survey
 
 SMALL = ["--set", "grid.path_positions=41", "--set", 'operating.speed="2000 rpm"']
@@ -142,17 +142,22 @@ def test_a_dimensionless_case_has_no_gears(
 
 def test_what_an_interrupted_run_leaves_is_still_ours(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    claim_directory(out)
-    assert (out / MARK).is_file()
-    (out / ".results.nc.123.part").write_bytes(b"half a file")
-    claim_directory(out)
+    with claimed(out) as folder:
+        assert (out / MARK).is_file()
+        (folder / "results.nc").write_bytes(b"half a file")
+        folder.rename(out / ".thermogear-1-1.part")  # what a kill leaves
+        folder.mkdir()
+    with claimed(out):
+        pass
     assert is_ours(out)
+    assert sorted(path.name for path in out.iterdir()) == [MARK, "lock"]
     foreign = tmp_path / "foreign"
     foreign.mkdir()
     (foreign / "letter.txt").write_text("mine", encoding="utf-8")
     assert not is_ours(foreign)
-    with pytest.raises(InputError, match="not results of thermogear"):
-        claim_directory(foreign)
+    with pytest.raises(InputError, match="not results of thermogear"), claimed(foreign):
+        pass
+    assert [path.name for path in foreign.iterdir()] == ["letter.txt"]
 
 
 def test_a_damaged_store_is_refused_in_one_line(tmp_path: Path) -> None:

@@ -92,16 +92,39 @@ def test_compare_as_json() -> None:
     [
         (measure, ["nowhere.csv"], r"^file: got nowhere\.csv; there is no such file$"),
         (measure, ["FILE", "--unit", "furlong"], r"^unit: got 'furlong'; "),
-        (measure, ["FILE", "--rate", "-5"], r"^rate: got -5\.0; allowed > 0"),
+        (measure, ["FILE", "--rate", "-5"], r"^rate: got -5 samples/s; allowed 1e-6\.\.1e\+12"),
+        (measure, ["FILE", "--rate", "1e308"], r"^rate: got 1e\+308 samples/s; allowed 1e-6"),
+        (measure, ["FILE", "--rate", "1e-308"], r"^rate: got 1e-308 samples/s; allowed 1e-6"),
+        (measure, ["FILE", "--limit", "nan"], r"^--limit: got nan GiB; allowed > 0 \.\. 1048576"),
+        (measure, ["FILE", "--limit", "inf"], r"^--limit: got inf GiB"),
+        (measure, ["FILE", "--limit", "1e300"], r"^--limit: got 1e\+300 GiB"),
+        (measure, ["FILE", "--scale", "1e308"], r"^scale: got 1e\+308 units at full scale"),
+        (measure, ["FILE", "--speed", "1e308"], r"^--speed: got 1e\+308 rpm; allowed > 0 \.\. 5"),
+        (measure, ["FILE", "--pulses", "1e308"], r"^pulses_per_turn: got 1e\+308 pulses"),
+        (measure, ["FILE", "--teeth", 10**20], r"^teeth: got a number of more than twelve digits"),
+        (measure, ["FILE", "--channel", "²"], r"^channel: got '²'; known: "),
+        (measure, ["FILE", "--channel", "9" * 5000], r"^channel: got '99999"),
         (measure, ["FILE", "--channel", "z"], r"^channel: got 'z'; known: "),
         (measure, ["FILE", "--method", "magic"], r"^method: got 'magic'; "),
-        (measure, ["FILE", "--teeth", "0"], r"^teeth: got 0; allowed >= 1$"),
+        (measure, ["FILE", "--teeth", "0"], r"^teeth: got 0; allowed 1\.\.2000$"),
         (compare, ["thesis-5.2", "--tolerance", "x"], r"^--tolerance: got 'x'; allowed FIELD="),
+        (
+            compare,
+            ["thesis-5.2", "--u-data", "1e308"],
+            r"^u_data: got 1e\+308 %; allowed 0\.\.1000",
+        ),
+        (compare, ["rig", "thesis-5.2", "--tolerance", "x=1e308"], r"^tolerance of x: got 1e\+308"),
+        (
+            compare,
+            ["rig", "thesis-5.2", "--tolerance", "x=1", "--samples", 10**9],
+            r"^samples: got 1000000000; allowed 2\.\.10000$",
+        ),
+        (compare, ["thesis-5.2", "--teeth", 10**20], r"^teeth: got a number of more than"),
         (compare, ["nowhere", "thesis-5.2"], r"^"),
     ],
 )
 def test_refusals_are_one_line(
-    record: Path, command: click.Command, words: list[str], message: str
+    record: Path, command: click.Command, words: list[object], message: str
 ) -> None:
     done = call(command, *[str(record) if word == "FILE" else word for word in words])
     assert isinstance(done.exception, InputError)

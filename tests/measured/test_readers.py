@@ -159,13 +159,17 @@ def test_tdms_channels_keep_rate_and_unit(tmp_path: Path, monkeypatch: pytest.Mo
         def __getitem__(self, key: slice) -> np.ndarray:
             return self._data[key]
 
+        def __len__(self) -> int:
+            return len(self._data)
+
     said = {"wf_increment": 1 / 2048, "unit_string": "m/s^2"}
     group = types.SimpleNamespace(
         name="g", channels=lambda: [Item("x", np.arange(20.0), said), Item("y", np.ones(20), said)]
     )
-    reader = types.SimpleNamespace(read=lambda path: types.SimpleNamespace(groups=lambda: [group]))
+    read = lambda file: types.SimpleNamespace(groups=lambda: [group])  # noqa: E731
+    reader = types.SimpleNamespace(read=read, read_metadata=read)
     monkeypatch.setitem(sys.modules, "nptdms", types.SimpleNamespace(TdmsFile=reader))
-    (tmp_path / "a.tdms").write_bytes(b"TDSm")
+    (tmp_path / "a.tdms").write_bytes(b"TDSm" + bytes(100))
     record = read_record(tmp_path / "a.tdms")
     assert record.names == ("g/x", "g/y")
     assert record.rate == pytest.approx(2048.0)
@@ -184,7 +188,9 @@ def test_records_refuse_the_impossible() -> None:
         Record((one,), "x").channel(2)
     with pytest.raises(InputError, match=r"^unit: got 'm/s\^3'; did you mean 'm/s\^2'\?$"):
         Record((one,), "x").supplied(unit="m/s^3")
-    with pytest.raises(InputError, match=r"^rate: got -1; allowed > 0 samples per second$"):
+    with pytest.raises(
+        InputError, match=r"^rate: got -1 samples/s; allowed 1e-6\.\.1e\+12 samples/s$"
+    ):
         Record((one,), "x").supplied(rate=-1)
     with pytest.raises(InputError, match=r"unit: got none; the file states no unit"):
         _ = one.si_factor

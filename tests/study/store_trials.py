@@ -10,18 +10,24 @@ import random
 import resource
 import shutil
 import signal
+import socket
+import subprocess
 import sys
 import time
 import traceback
+import warnings
 from pathlib import Path
 
 import numpy as np
 
+import thermogear
 from thermogear.analysis.maps import MapPlan, map_plan
 from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError, WorkerWarning
+from thermogear.base.stores import read_journal
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.study.fingerprint import code_version
-from thermogear.study.store import QUARANTINE, read_journal
+from thermogear.study.store import QUARANTINE
 from thermogear.study.work import carry_out
 
 MODEL = TorsionalModel(
@@ -139,13 +145,12 @@ def full(directory: Path, _: int) -> dict:
 
 
 def cluster(directory: Path, _: int) -> dict:
-    """Two worker processes, against threads; the one that holds the plan is killed twice."""
+    """Two worker processes, against threads; one of them is killed twice."""
     import dask
     from distributed import Client, LocalCluster
 
     dask.config.set(
         {
-            "distributed.scheduler.active-memory-manager.interval": "50ms",
             # a loaded machine may take longer than the default 15 s to start a worker again
             "distributed.deploy.lost-worker-timeout": "10 minutes",
         }
@@ -168,9 +173,7 @@ def cluster(directory: Path, _: int) -> dict:
 
         def watch(step) -> None:
             if step.done in (10, 50) and len(killed) < 2:
-                time.sleep(0.5)  # the scheduler drops what it holds twice
-                held = client.run(lambda dask_worker: (os.getpid(), list(dask_worker.data)))
-                victim = next(p for p, keys in held.values() if any("chunk" not in k for k in keys))
+                victim = min(client.run(os.getpid).values())
                 os.kill(victim, signal.SIGKILL)
                 killed.append(victim)
 
@@ -188,7 +191,137 @@ def cluster(directory: Path, _: int) -> dict:
     }
 
 
-TRIALS = {"kills": kills, "full": full, "cluster": cluster}
+class Crowd:
+    """A scheduler and workers of several kinds, processes of this machine."""
+
+    def __init__(self, directory: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+        source = Path(thermogear.__file__).parent
+        self.paths = {"good": source.parent}
+        for kind in ("old", "bare"):
+            self.paths[kind] = directory / kind
+            shutil.rmtree(directory / kind, ignore_errors=True)
+        shutil.copytree(
+            source, directory / "old" / "thermogear", ignore=shutil.ignore_patterns("__pycache__")
+        )
+        plan = directory / "old" / "thermogear" / "analysis" / "plan.py"
+        words = "dtype=np.dtype(variable.dtype))"
+        text = plan.read_text("utf-8")
+        assert text.count(words) == 1
+        plan.write_text(text.replace(words, f"{words} * 1.001"), "utf-8")
+        (directory / "bare" / "thermogear").mkdir(parents=True)
+        (directory / "bare" / "thermogear" / "__init__.py").write_text(
+            "raise ModuleNotFoundError(\"No module named 'thermogear'\")\n", "utf-8"
+        )
+        host, port = self.address.removeprefix("tcp://").split(":")
+        self.scheduler = self.start("good", "scheduler", "--host", host, "--port", port)
+        self.workers: dict[str, subprocess.Popen] = {}
+
+    def start(self, kind: str, *words: str) -> subprocess.Popen:
+        """A process of dask that finds the package of this kind."""
+        code = "import sys; from dask.__main__ import main; sys.argv[0] = 'dask'; main()"
+        return subprocess.Popen(
+            [sys.executable, "-c", code, *words, "--no-dashboard"],
+            env=os.environ | {"PYTHONPATH": str(self.paths[kind])},
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+
+    def hire(self, name: str, kind: str = "good") -> None:
+        """A worker process."""
+        words = ("--name", name, "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+        self.workers[name] = self.start(kind, "worker", self.address, *words)
+
+    def names(self, count: int) -> dict[str, str]:
+        """Address to name, once ``count`` workers are there."""
+        from distributed import Client
+
+        with Client(self.address, timeout=200, set_as_default=False) as client:
+            client.wait_for_workers(count, timeout=400)
+            there = client.scheduler_info(n_workers=-1)["workers"]
+            return {address: one["name"] for address, one in there.items()}
+
+    def end(self) -> None:
+        """Nobody is left."""
+        for one in (self.scheduler, *self.workers.values()):
+            one.kill()
+            one.wait()
+
+
+def crowd(directory: Path, _: int) -> dict:
+    """Good, old, bare and dying workers, then a scheduler that dies, then nobody of use."""
+    plan = small_plan(60, 6)
+    plan.pilot(16)
+    threads = numbers(carry_out(plan, directory / "threads", threads=1))
+    found: dict = {"dead": []}
+    one = Crowd(directory)
+    try:
+        for name, kind in (("good", "good"), ("dying", "good"), ("old", "old"), ("bare", "bare")):
+            one.hire(name, kind)
+        names = one.names(4)
+
+        def watch(step) -> None:
+            if step.done == 10 and not found["dead"]:
+                one.workers["dying"].kill()
+                found["dead"].append("dying")
+
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            data = carry_out(plan, directory / "crowd", scheduler=one.address, report=watch)
+        found["same"] = numbers(data) == threads
+        texts = [str(w.message) for w in said if issubclass(w.category, WorkerWarning)]
+        found["texts"] = texts
+        reasons = ("its code is", "it cannot import thermogear")
+        found["refused"] = {
+            names[address]: reason
+            for address in names for text in texts for reason in reasons
+            if address in text and reason in text
+        }  # fmt: skip
+        begun = [0.0]
+
+        def cut(step) -> None:
+            if step.done == 20:
+                begun[0] = time.monotonic()
+                one.scheduler.kill()
+
+        store = directory / "lost"
+        found["lost"] = refusal(lambda: carry_out(plan, store, scheduler=one.address, report=cut))
+        found["lost_after_s"] = time.monotonic() - begun[0]
+        found["kept"] = len({tuple(e["chunk"]) for e in read_journal(store) if "chunk" in e})
+    finally:
+        one.end()
+    two = Crowd(directory)
+    try:
+        two.hire("bare", "bare")
+        two.names(1)
+        started = time.monotonic()
+        found["alone"] = refusal(lambda: carry_out(plan, store, scheduler=two.address))
+        found["alone_after_s"] = time.monotonic() - started
+        two.hire("good")
+        two.names(2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found["same_resumed"] = (
+                numbers(carry_out(plan, store, scheduler=two.address)) == threads
+            )
+    finally:
+        two.end()
+    return found
+
+
+def refusal(work) -> str:
+    """The one line that ``work`` ends with."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            work()
+        except InputError as error:
+            return str(error)
+    return "nothing"
+
+
+TRIALS = {"kills": kills, "full": full, "cluster": cluster, "crowd": crowd}
 
 
 def main() -> None:

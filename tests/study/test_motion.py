@@ -42,6 +42,10 @@ def test_every_motion_carries_its_proof() -> None:
     assert exponent == pytest.approx(0.0487557, abs=3.0 * float(error) + 2e-3)
     assert np.isnan(values["lyapunov_exponent"][:2]).all()
     assert set(PROOFS) <= set(values)
+    assert values["followed_periods"][2] >= 32_000
+    assert values["followed_periods"][:2].tolist() == [0, 0]
+    assert values["followed_starts"][2] == 16
+    assert "none of 16 starts closed in" in values["label_reason"][2]
 
 
 def test_a_complex_pair_is_stored_by_its_upper_half() -> None:

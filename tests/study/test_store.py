@@ -1,7 +1,9 @@
 """The store: resumed, refused, repaired, never silently wrong."""
 
+import hashlib
 import json
 import random
+import shutil
 import subprocess
 import sys
 import warnings
@@ -18,10 +20,13 @@ from thermogear.analysis.maps import map_plan
 from thermogear.analysis.plan import gather, keys_of
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
+from thermogear.base.stores import COPY, JOURNAL, MANIFEST, RESULT, read_store
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.study import work
-from thermogear.study.store import COPY, JOURNAL, MANIFEST, QUARANTINE, RESULT, Store, read_store
-from thermogear.study.work import carry_out, duration, estimate, require_space
+from thermogear.study import crew
+from thermogear.study.size import duration
+from thermogear.study.store import QUARANTINE, Store
+from thermogear.study.work import carry_out, estimate, require_space
+from thermogear.views.sweep_report import read_result
 
 MODEL = TorsionalModel(
     damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3
@@ -314,8 +319,8 @@ def test_cluster_without_workers_is_one_line_and_keeps_what_is_done(tmp_path, mo
 
     plan = plan_of()
     whole = carry_out(plan, tmp_path / "s", threads=1)
-    monkeypatch.setattr(work, "PAUSE", 0.05)
-    monkeypatch.setattr(work, "PATIENCE", 0.2)
+    monkeypatch.setattr(crew, "PAUSE", 0.05)
+    monkeypatch.setattr(crew, "PATIENCE", 0.2)
     with LocalCluster(n_workers=0, dashboard_address=":0") as empty:
         address = empty.scheduler_address
         with pytest.raises(InputError, match=r"scheduler: .*no worker for .*; start workers"):
@@ -330,3 +335,114 @@ def test_cluster_that_loses_a_worker(tmp_path):
     assert found["killed"] == 2
     assert found["same_calm"]
     assert found["same_rough"]
+
+
+# --- what the numbers mean --------------------------------------------------------------------
+
+
+def other_units(content):
+    content["attributes"]["units"] = "mm"
+
+
+def other_meanings(content):
+    words = content["attributes"]["flag_meanings"].split()
+    content["attributes"]["flag_meanings"] = " ".join(reversed(words))
+
+
+def other_dimensions(content):
+    content["dimension_names"].reverse()
+
+
+def changed(name, change):
+    def damage(result):
+        path = result / name / "zarr.json"
+        content = json.loads(path.read_text())
+        change(content)
+        path.write_text(json.dumps(content))
+
+    return damage
+
+
+def exchanged(result):
+    """Both of one shape and type: no number says which is which."""
+    one, two = (result / name / "zarr.json" for name in ("multiplier_real", "lyapunov"))
+    first, second = one.read_bytes(), two.read_bytes()
+    one.write_bytes(second)
+    two.write_bytes(first)
+
+
+def foreign(result):
+    shutil.copytree(result / "label", result / "foreign")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    place = tmp_path_factory.mktemp("finished") / "s"
+    carry_out(plan_of(), place)
+    return place
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        changed("frequency", other_units),
+        changed("label", other_meanings),
+        changed("lyapunov", other_dimensions),
+        exchanged,
+        foreign,
+    ],
+    ids=["units", "meanings", "dimensions", "exchanged", "foreign"],
+)
+def test_what_the_numbers_mean_is_sealed(damage, finished, tmp_path, memory):
+    """All five were accepted, and drawn."""
+    store = tmp_path / "s"
+    shutil.copytree(finished, store)
+    damage(store / RESULT)
+    with pytest.raises(InputError, match=r"it is damaged or changed \(.*; repeat the command that"):
+        read_store(store)
+    with pytest.raises(InputError, match="it is damaged or changed"):
+        read_result(store)
+    assert carry_out(plan_of(), store).identical(memory)
+    assert read_store(store).attrs == read_store(finished).attrs
+
+
+def test_a_manifest_of_other_work_is_refused(finished, tmp_path):
+    store, other = tmp_path / "s", tmp_path / "o"
+    shutil.copytree(finished, store)
+    with Store(other, plan_of(damping=0.06)):
+        pass
+    (store / MANIFEST).write_bytes((other / MANIFEST).read_bytes())
+    same_numbers(read_store(store), read_store(finished))  # by its copy
+    (store / COPY).write_bytes((other / MANIFEST).read_bytes())
+    with pytest.raises(InputError, match="its manifest is of other work"):
+        read_store(store)
+
+
+def test_stores_of_another_format_say_so(finished, tmp_path):
+    store = tmp_path / "s"
+    shutil.copytree(finished, store)
+    for name in (MANIFEST, COPY):
+        text = (store / name).read_text().partition("\n")[2].rstrip("\n")
+        text = text.replace('"format": 2', '"format": 1')
+        seal = hashlib.sha256(text.encode()).hexdigest()
+        (store / name).write_text(f"{seal}\n{text}\n")
+    with pytest.raises(InputError, match="another version of thermogear wrote it"):
+        read_store(store)
+
+
+@pytest.mark.slow
+def test_cluster_of_good_old_bare_and_dying_workers_and_a_dying_scheduler(tmp_path):
+    found = trial("crowd", tmp_path)
+    assert found["same"], found
+    assert found["refused"] == {
+        "old": "its code is",
+        "bare": "it cannot import thermogear",
+    }
+    assert found["dead"] == ["dying"]
+    assert "it is lost; what is done is stored; start it" in found["lost"]
+    assert found["lost_after_s"] < 10.0
+    assert found["kept"] > 10
+    assert found["same_resumed"]
+    assert "none of its workers can be believed" in found["alone"]
+    assert "it cannot import thermogear" in found["alone"]
+    assert found["alone_after_s"] < 30.0

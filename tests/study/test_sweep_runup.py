@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.study.case import load_example
+from thermogear.study.case import load_case, load_example
 from thermogear.study.response import Recording, respond
 from thermogear.study.runup import notices_of, run_up
 from thermogear.study.sweep import sweep
@@ -68,6 +68,47 @@ def test_between_the_jumps_two_motions_coexist(plain):
     assert between.sum() >= 4
     assert np.all(size[1, between] > 1.2 * size[0, between])
     assert np.allclose(size[1, ~between], size[0, ~between], rtol=1e-6)
+
+
+def variant(torque, damping, error):
+    """The rig with another torque [N m], damping ratio and amplitude of the error [um]."""
+    return load_case(
+        "rig",
+        {
+            "operating.torque": f"{torque} N m",
+            "dynamics.damping_ratio": f"{damping}",
+            "transmission_error.harmonics": (
+                f'[{{ order = 1, amplitude = "{error} um", phase = "0 deg" }}]'
+            ),
+        },
+    )
+
+
+def test_steep_growth_that_is_the_same_both_ways_is_no_jump():
+    """16 % from 2300 to 2400 rpm, up and down alike: a rule of thumb called it a jump."""
+    data = run_up(
+        variant(60, 0.05, 10), np.array([2340.0, 2440.0]) * RPM, temperatures=(None,),
+        branch_period=0,
+    )  # fmt: skip
+    size = data.dte_peak_to_peak.values[0]
+    assert size[0] == pytest.approx(size[1], rel=1e-9)
+    assert data.sizes["jump"] == 0
+
+
+def test_jumps_are_the_same_in_coarse_and_in_fine_steps():
+    """A fold at 2401.11 rpm and one at 2251.36: 22 % each, missed by the rule of thumb."""
+    lists = []
+    for step in (100.0, 50.0):
+        speeds = np.arange(2200.0, 2501.0, step) * RPM
+        data = run_up(variant(100, 0.03, 5), speeds, temperatures=(None,), branch_period=0)
+        lists.append(data.jump_fold.values / RPM)
+        assert data.jump_direction.values.tolist() == [1, -1]
+        # a run back from either meets the other
+        assert data.jump_return.values[::-1] == pytest.approx(data.jump_fold.values, rel=1e-12)
+        assert not data.left_early.values.any()
+    assert lists[0] == pytest.approx([2401.1125, 2251.3559], abs=1e-3)
+    assert lists[1] == pytest.approx(lists[0], abs=1e-5)
+    assert any("contact is lost at" in text for text in notices_of(data))
 
 
 def test_waterfall_holds_the_power_of_the_transmission_error(plain):

@@ -91,7 +91,9 @@ def test_ctrl_c_keeps_what_is_judged(
     monkeypatch.setattr(chain, "operating_grid", stop)
     assert main(["thesis", "-o", str(tmp_path)]) == 130
     told = capsys.readouterr()
-    assert told.err.splitlines()[-1].startswith("interrupted: ")
+    assert told.err.splitlines()[-1] == (
+        f"interrupted: stopped on request; the claims judged so far stay in {tmp_path}"
+    )
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert 0 < summary["claims"] < summary["claims_in_all"] == len(CLAIMS)
     assert f"{summary['claims']} of {len(CLAIMS)} claims" in told.out

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from thermogear.base.netcdf import write_tree
 from thermogear.base.vocabulary import STATUS, label
 
 PINION_TEETH = 25
@@ -66,7 +67,7 @@ def write(directory: Path, groups: dict[str, xr.Dataset], **attributes: str) -> 
         **attributes,
     }  # fmt: skip
     directory.mkdir(parents=True, exist_ok=True)
-    tree.to_netcdf(directory / "results.nc", engine="h5netcdf")
+    write_tree(tree, directory / "results.nc")
     return directory
 
 

@@ -16,7 +16,7 @@ import synthetic_results as synthetic
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, UnsealedWarning
 from thermogear.views import page as pages
 from thermogear.views import style
 from thermogear.views.report import write_report
@@ -275,7 +275,10 @@ def test_foreign_results_are_an_error_in_one_line(tmp_path: Path) -> None:
     with h5netcdf.File(tmp_path / "results.nc", "w") as file:
         file.dimensions["x"] = 3
         file.create_variable("y", ("x",), data=np.arange(3.0))
-    with pytest.raises(InputError, match="it was not written by thermogear"):
+    with (
+        pytest.warns(UnsealedWarning, match=r"no results\.nc\.sha256 beside it"),
+        pytest.raises(InputError, match="it was not written by thermogear"),
+    ):
         write_report(tmp_path)
 
 

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 import synthetic_results as synthetic
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, UnsealedWarning
 from thermogear.study.versus import Stored, store, versus
 from thermogear.views.results import read_results
 from thermogear.views.versus_report import read_versus, write_versus
@@ -98,5 +98,8 @@ def test_what_is_missing_damaged_or_foreign_is_refused(tmp_path: Path) -> None:
         read_versus(tmp_path)
     other = synthetic.build(tmp_path / "run")
     (other / "results.nc").rename(tmp_path / "versus.nc")
-    with pytest.raises(InputError, match="not written by thermogear"):
+    with (
+        pytest.warns(UnsealedWarning, match=r"no versus\.nc\.sha256 beside it"),
+        pytest.raises(InputError, match="not written by thermogear"),
+    ):
         read_versus(tmp_path)

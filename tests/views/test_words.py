@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thermogear.base.vocabulary import QUANTITIES
+from thermogear.analysis.outcome import outcome_variables
+from thermogear.base.vocabulary import FASTER_RULE, QUANTITIES, told_labels
 from thermogear.views import words
 from thermogear.views.plots.orbits import periods_to_draw, refined, thinned
 from thermogear.views.plots.spectrum import floor_of
+from thermogear.views.plots.sweeps import CLASSES
 
 
 @pytest.mark.parametrize(
@@ -103,3 +106,23 @@ def test_the_floor_of_a_spectrum_lies_below_its_greatest_line() -> None:
     assert floor == pytest.approx(2e-5)
     assert top > 2.0
     assert floor_of(np.full(4, np.nan), order=order, highest=8.0) == (1e-6, 1.0)
+
+
+def test_chaos_is_told_with_how_long_and_from_how_many_starts() -> None:
+    data = xr.Dataset(
+        {
+            "label": ("point", ["period-2", "chaotic"]),
+            "followed_periods": ("point", [0, 32268]),
+            "followed_starts": ("point", [2, 16]),
+        }
+    )
+    assert told_labels(data).tolist() == ["period-2", "chaotic for 32 268 periods, 16 starts"]
+    assert words.label_text(data.isel(point=1)) == "chaotic for 32 268 periods, 16 starts"
+    # results stored before say no more than they know
+    assert words.label_text(data[["label"]].isel(point=1)) == "chaotic"
+
+
+def test_the_faster_rule_says_that_it_is_an_estimate() -> None:
+    assert "an estimate" in FASTER_RULE
+    assert outcome_variables(("a", "b"))["label"].attributes["comment"] == FASTER_RULE
+    assert "chaotic, estimate" in dict(CLASSES)

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, Bifurcation
-from thermogear.analysis.continuation import Branch, continuation
+from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFORK, Bifurcation
+from thermogear.analysis.continuation import GAP, Branch, continuation
 from thermogear.analysis.family import Family
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import ReturnMap, lanes_of
@@ -21,7 +21,7 @@ from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 
-KINDS = (FOLD, FLIP, GRAZING, BIRTH)
+KINDS = (FOLD, FLIP, GRAZING, BIRTH, PITCHFORK)
 """Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""
 MOST_BRANCHES = 24
 MOST_POINTS = 600
@@ -38,6 +38,8 @@ class _Line:
     states: Floats
     multipliers: NDArray[np.complex128]
     bifurcations: tuple[Bifurcation, ...]
+    cut: tuple[str, ...]
+    """Why an arm ends although the branch goes on."""
 
 
 def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period: int) -> xr.Dataset:
@@ -53,6 +55,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
             continue
         try:
             lines.append(_line(orbit, value, family, parameter, data[parameter].values))
+            lost += [f"branch of period {period} from {value:.6g}: {w}" for w in lines[-1].cut]
         except ConvergenceError as error:
             lost.append(str(error))
     data.attrs["branch_notes"] = "; ".join(lost)
@@ -124,7 +127,14 @@ def _line(orbit: Orbit, value: float, family: Family, parameter: str, values: Fl
             )
     if len(arms) == 1:
         only = arms[0]
-        return _Line(orbit.period, only.values, only.states, only.multipliers, only.bifurcations)
+        return _Line(
+            orbit.period,
+            only.values,
+            only.states,
+            only.multipliers,
+            only.bifurcations,
+            _cut(only),
+        )
     low, high = arms
     return _Line(
         orbit.period,
@@ -132,7 +142,12 @@ def _line(orbit: Orbit, value: float, family: Family, parameter: str, values: Fl
         np.concatenate([low.states[::-1], high.states[1:]]),
         np.concatenate([low.multipliers[::-1], high.multipliers[1:]]),
         tuple(reversed(low.bifurcations)) + high.bifurcations,
+        _cut(low) + _cut(high),
     )
+
+
+def _cut(arm: Branch) -> tuple[str, ...]:
+    return (arm.ended,) if arm.ended.startswith((GAP, str(MOST_POINTS))) else ()
 
 
 def _stored(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field, fields, is_dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,19 @@ from thermogear.analysis.bifurcations import (
     FOLD,
     GRAZING,
     LONGEST_STEP,
+    PITCHFORK,
+    SUBCRITICAL,
+    SUPERCRITICAL,
+    VERTICAL,
     Bifurcation,
     Curve,
     Family,
     Point,
     birth_of,
+    doubled_beside,
     locate,
+    looked_closer,
+    mirrored,
     passed_mother,
 )
 from thermogear.analysis.orbits import Orbit, closed, multipliers
@@ -33,6 +41,10 @@ __all__ = [
     "FLIP",
     "FOLD",
     "GRAZING",
+    "PITCHFORK",
+    "SUBCRITICAL",
+    "SUPERCRITICAL",
+    "VERTICAL",
     "Bifurcation",
     "Branch",
     "Cascade",
@@ -45,8 +57,21 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-SHRUNK = "the orbit shrank into one of half its period"
+SHRUNK = {
+    BIRTH: "the orbit shrank into one of half its period",
+    PITCHFORK: "the orbit became its own mirror image",
+}
+GAP = "a gap"
+REACHED = "reached the end"
+LEFT = "left the range where it began"
+FLOATS = "the orbit floats in the gap without touching a tooth: any shift of it is one too"
 SHORTEST_STEP = 1e-7
+LARGE = 5.0
+"""Beyond so many half backlashes steps grow with the orbit, though not in the parameter."""
+STRAIGHT = 1e-4
+"""Steps shorter than this are believed whatever their chord says."""
+ASTRAY = 0.1
+"""Radians by which a chord may leave the angle between the tangents of its ends."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,8 +163,9 @@ def continuation(
     *,
     family: Family | None = None,
     start: float | None = None,
+    back_to: float | None = None,
     most_points: int = 2000,
-    stop_at: str | None = None,
+    stop_at: str | Collection[str] | None = None,
     direction: Floats | None = None,
     progress: Callable[[int, float], None] | None = None,
     keep_on_interrupt: bool = False,
@@ -149,14 +175,18 @@ def continuation(
     States, parameter and ``to`` are in the units of the model: pure numbers for
     :class:`TorsionalModel`, SI for a model in SI. Pseudo-arclength continuation of stable and
     unstable orbits alike, around folds; it ends at ``to``, or where the branch leaves the range
-    on the side it came from, shrinks into an orbit of half its period, or after ``most_points``.
-    On the way folds (multiplier +1), period doublings (-1) and grazing (an extremum touches an
-    edge of the backlash) are located.
+    on the side it came from, shrinks into an orbit of half its period, becomes symmetric, or
+    after ``most_points``. On the way folds (multiplier +1), period doublings (-1), grazing (an
+    extremum touches an edge of the backlash) and pitchforks (+1 where a symmetric orbit of a
+    symmetric equation loses its symmetry) are located. Where no further orbit is found the
+    branch as far as it goes comes back, and ``ended`` names the gap.
 
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
-    give ``family``, a function value -> model, and its present value ``start``. ``stop_at`` a
-    kind of bifurcation to stop at. ``progress`` is called with the points so far and the
-    parameter. With ``keep_on_interrupt`` Ctrl+C returns what is done, ``ended`` "interrupted".
+    give ``family``, a function value -> model, and its present value ``start``. The range lies
+    between ``to`` and ``back_to`` or, where that lies further back, ``start``, so that a doubled
+    branch may run back through a fold first. ``stop_at`` a kind of bifurcation (or several) to
+    stop at. ``progress`` is called with the points so far and the parameter. With
+    ``keep_on_interrupt`` Ctrl+C returns what is done, ``ended`` "interrupted".
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
@@ -169,8 +199,23 @@ def continuation(
         raise InputError("start", start, allowed="finite")
     if not np.isfinite(to) or to == start:
         raise InputError("to", to, allowed=f"a finite number other than {start}")
-    span = abs(to - start)
-    curve = Curve(family, parameter, orbit.period, start=start, span=span)
+    behind = start if back_to is None else back_to
+    if not np.isfinite(behind):
+        raise InputError("back_to", behind, allowed="finite")
+    if (behind - start) * (to - start) > 0.0:
+        behind = start
+    span = abs(to - behind)
+    stops = {stop_at} if isinstance(stop_at, str) else set(stop_at or ())
+    mirrors, symmetric = _symmetry(orbit, family, start, to)
+    curve = Curve(
+        family,
+        parameter,
+        orbit.period,
+        start=start,
+        span=span,
+        mirrors=mirrors,
+        symmetric=symmetric,
+    )
     guess = np.append(orbit.state, start) / curve.unit
     heading = np.array([0.0, 0.0, float(np.sign(to - start))])
     if direction is None:
@@ -183,25 +228,37 @@ def continuation(
     points = [first]
     found: list[Bifurcation] = []
     ended = f"{most_points} points"
+    step = 0.01 if direction is None else 5e-4
     try:
-        for point in _walk(
-            curve, first, start, to, most_points, 0.01 if direction is None else 5e-4
-        ):
+        for point in _walk(curve, first, (behind, to), most_points, step):
             if isinstance(point, str):
                 ended = point
                 break
-            if passed_mother(curve, points[-1], point):
-                birth = birth_of(curve, points[-1])
-                found += [] if birth is None else [birth]
-                ended = SHRUNK
+            here = points[-1]
+            if point.floats and not curve.symmetric:
+                ended = FLOATS
                 break
-            fresh = locate(curve, points[-1], point)
+            mother = passed_mother(curve, here, point)
+            if mother:
+                birth = birth_of(curve, here, mother)
+                found += [] if birth is None else [birth]
+                ended = SHRUNK[mother]
+                break
+            try:
+                fine = looked_closer(curve, points[-2] if len(points) > 1 else None, here, point)
+                fresh = [b for one, two in pairwise([here, *fine]) for b in locate(curve, one, two)]
+            except ConvergenceError as error:
+                ended = f"{GAP}: {error}"
+                break
             found += fresh
-            points.append(point)
+            points += fine
             if progress is not None:
                 progress(len(points), float(point.scaled[2] * span))
-            if stop_at is not None and any(b.kind == stop_at for b in fresh):
-                ended = f"stopped at a {stop_at}"
+            last = next((b.kind for b in fresh if b.kind in stops), "")
+            if last:
+                ended = f"stopped at a {last}"
+                break
+            if len(points) > most_points:
                 break
     except KeyboardInterrupt:
         if not keep_on_interrupt:
@@ -222,13 +279,27 @@ def continuation(
     )
 
 
+def _symmetry(orbit: Orbit, family: Family, start: float, to: float) -> tuple[bool, bool]:
+    """Whether the equation is symmetric all the way, and the orbit its own mirror image."""
+    try:
+        lanes = [lanes_of(family(start + part * (to - start))) for part in (0.0, 0.37, 1.0)]
+    except InputError:
+        return False, False
+    if not all(mirrored(one, orbit.period) for one in lanes):
+        return False, False
+    section = ReturnMap(lanes[0])
+    end, _ = section.flow(orbit.state, orbit.period)
+    return True, float(section.distance(-end, orbit.state)) < 1e-8
+
+
 def _walk(
-    curve: Curve, first: Point, start: float, to: float, most: int, step: float
+    curve: Curve, first: Point, limits: tuple[float, float], most: int, step: float
 ) -> Iterator[Point | str]:
-    """Points of the branch, then the reason for its end."""
+    """Points of the branch between two ``limits``, the end last; then the reason for its end."""
     here = first
-    side = np.sign(to - start)
-    low, high = sorted((start / curve.span, to / curve.span))
+    behind, to = limits
+    side = np.sign(to - behind)
+    low, high = sorted((behind / curve.span, to / curve.span))
     for _ in range(most):
         while True:
             guess = here.scaled + step * here.tangent
@@ -238,18 +309,31 @@ def _walk(
                     guess, normal=here.tangent, old=here.tangent, reach=0.5 * step
                 )
             except InputError:
-                point = None  # the step left the parameter's range
+                # the step left what the parameter may be; the walk's end may lie right there
+                point = None
+                border = low if guess[2] < low else high
+                if not low <= guess[2] <= high:
+                    inside = _reach(curve, here, border)
+                    if inside is not None:
+                        yield inside
+                        out = (border == high) == (side > 0)
+                        yield REACHED if out else LEFT
+                        return
             # near its birth a doubled orbit's corrector may slide onto the mother or the
             # half-shifted side: such a step must be short to be believed
             if (
                 point is not None
                 and point.tangent @ here.tangent > 0.9
+                and (step < STRAIGHT or _follows(here, point))
                 and (step < 2e-4 or not passed_mother(curve, here, point))
             ):
                 break
             step *= 0.5
             if step < SHORTEST_STEP:
-                yield "no further orbit within the shortest step"
+                yield (
+                    f"{GAP}: no further orbit within the shortest step beyond "
+                    f"{curve.parameter} = {float(here.scaled[2] * curve.span)!r}"
+                )
                 return
         turn = float(point.tangent @ here.tangent)
         value = float(point.scaled[2])
@@ -258,14 +342,39 @@ def _walk(
             if inside is not None:
                 yield inside
             out = (value > high) == (side > 0)
-            yield "reached the end" if out else "left the range where it began"
+            yield REACHED if out else LEFT
             return
         yield point
         here = point
+        longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:2]))) / LARGE)
         if turn > 0.98:
-            step = min(LONGEST_STEP, 1.5 * step)
+            step = min(longest, LONGEST_STEP / max(abs(here.tangent[2]), 1e-9), 1.5 * step)
         elif turn < 0.95:
             step *= 0.7
+
+
+def _follows(a: Point, b: Point) -> bool:
+    """Whether ``b`` may lie on the branch of ``a``: the chord runs between both tangents.
+
+    A corrector that fell onto a neighbouring branch leaves a chord across two parallel tangents.
+    """
+    chord = (b.scaled - a.scaled) / np.linalg.norm(b.scaled - a.scaled)
+    across = float(np.arccos(np.clip(chord @ a.tangent, -1.0, 1.0)))
+    across += float(np.arccos(np.clip(chord @ b.tangent, -1.0, 1.0)))
+    return across <= 1.5 * float(np.arccos(np.clip(a.tangent @ b.tangent, -1.0, 1.0))) + ASTRAY
+
+
+def _reach(curve: Curve, a: Point, value: float) -> Point | None:
+    """The orbit at a border value ahead of ``a``, where no step beyond it can be tried."""
+    far = (value - a.scaled[2]) / a.tangent[2]
+    guess = a.scaled + far * a.tangent
+    guess[2] = value
+    if far > LONGEST_STEP:
+        return None
+    found = curve.correct(
+        guess, normal=np.array([0.0, 0.0, 1.0]), old=a.tangent, reach=0.5 * max(far, 1e-9)
+    )
+    return found if found is not None and found.tangent @ a.tangent > 0.9 else None
 
 
 def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
@@ -278,7 +387,7 @@ def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
 
 @dataclass(frozen=True)
 class Doubled:
-    """An orbit of twice the period beside a flip: its parameter ``value``, scaled ``direction``."""
+    """An orbit beside a flip or pitchfork: its parameter ``value``, scaled ``direction``."""
 
     orbit: Orbit
     value: float
@@ -289,37 +398,15 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
     """An orbit of twice the period beside a flip, and the direction away from it.
 
     The doubled orbit starts along the eigenvector of the multiplier -1; hand its parts to
-    :func:`continuation` as ``orbit``, ``start`` (with a ``family``) and ``direction``.
+    :func:`continuation` as ``orbit``, ``start`` (with a ``family``) and ``direction``. Beside a
+    pitchfork: one of the two orbits of the same period that mirror each other.
     """
-    if bifurcation.kind != FLIP:
-        raise InputError("bifurcation", bifurcation.kind, allowed=FLIP)
-    orbit = bifurcation.orbit
+    if bifurcation.kind not in (FLIP, PITCHFORK):
+        raise InputError("bifurcation", bifurcation.kind, allowed=f"{FLIP} | {PITCHFORK}")
     if family is None:
-        family, _ = family_of(orbit.model, bifurcation.parameter)
-    value = bifurcation.value
-    span = max(abs(value), 1e-3)
-    curve = Curve(family, bifurcation.parameter, 2 * orbit.period, start=value, span=span)
-    two = curve.unit[:2]
-    matrix = orbit.jacobian / two[:, None] * two
-    direction = np.linalg.svd(matrix + np.eye(2))[2][1]
-    normal = np.append(direction, 0.0)
-    centre = np.append(orbit.state, value) / curve.unit
-    for amplitude in (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-3, 1e-2):
-        point = curve.correct(
-            centre + amplitude * normal, normal=normal, old=normal, reach=10.0 * amplitude
-        )
-        if point is None:
-            continue
-        doubled = curve.orbit(point)
-        # half way round, a doubled orbit stands on the other side of the flipping one; the
-        # flipping orbit itself, elsewhere on its branch, stands where it started
-        across = (doubled.points[orbit.period] - doubled.points[0]) / two
-        if np.linalg.norm(across) > amplitude:
-            return Doubled(doubled, float(point.scaled[2] * curve.unit[2]), normal)
-    raise ConvergenceError(
-        f"no orbit of period {2 * orbit.period} found beside the flip at "
-        f"{bifurcation.parameter} = {value!r}"
-    )
+        family, _ = family_of(bifurcation.orbit.model, bifurcation.parameter)
+    curve, normal, point = doubled_beside(bifurcation, family)
+    return Doubled(curve.orbit(point), float(point.scaled[2] * curve.unit[2]), normal)
 
 
 @dataclass(frozen=True)
@@ -349,14 +436,17 @@ def cascade(
 ) -> Cascade:
     """Follow ``orbit`` to its first period doubling, switch, and so on ``flips`` times.
 
-    Arguments as in :func:`continuation`; fewer flips come back when a branch reaches ``to``
-    (or ends) without one.
+    Arguments as in :func:`continuation`. Where a doubling is subcritical the doubled branch runs
+    back first, to a fold, and is followed there, as far back as the value where the cascade
+    began. Fewer flips come back when a branch reaches ``to`` (or ends) without one; the last
+    branch's ``ended`` says why.
     """
     branch = continuation(
         orbit, parameter, to, family=family, start=start, stop_at=FLIP, progress=progress
     )
     branches = [branch]
     found: list[Bifurcation] = []
+    begin = float(branch.values[0])
     while branch.of_kind(FLIP):
         flip = branch.of_kind(FLIP)[0]
         found.append(flip)
@@ -369,6 +459,7 @@ def cascade(
             to,
             family=branch.family,
             start=doubled.value,
+            back_to=begin,
             stop_at=FLIP,
             direction=doubled.direction,
             progress=progress,

@@ -6,9 +6,9 @@ that never closes is chaotic or has not settled.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,14 +17,22 @@ from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import Ensemble, ReturnMap, lanes_of, scales, starts_of
 from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import label_words
 from thermogear.dynamics.blocks import Progress
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
 
 NEAR_BORDER = 0.998
 SETTLED = 1e-7
 CLOSE = 1e-5
+APART = 1e-13
+"""Starts that differ by rounding: in half backlashes, or of the start where that is larger."""
+PARTED = float(np.log(1e6))
+"""Growth of a small difference on the way above which rounding may decide where a motion ends."""
+STARTS = 16
+FOLLOW = 32_000
 
 
 @dataclass(frozen=True)
@@ -32,9 +40,11 @@ class Label:
     """What a trajectory settles on.
 
     ``name`` is "period-n", "chaotic", "diverged" or "undecided"; ``period`` n (0: none found;
-    also given for an undecided motion that seems to close). The proof: ``orbit`` with its
-    Floquet multipliers, or ``lyapunov`` with its error. ``reason`` says it in words,
-    ``discarded`` how many periods went by before.
+    also given for an undecided motion that seems to close). What stands behind it: ``orbit`` with
+    its Floquet multipliers, or ``lyapunov`` with its error. ``reason`` says it in words,
+    ``discarded`` how many periods went by before. ``starts`` that differ by rounding share the
+    label; of a chaotic motion all of them were ``followed`` so many periods and none closed: an
+    estimate, for chaos may end later.
     """
 
     name: str
@@ -43,14 +53,21 @@ class Label:
     discarded: int
     orbit: Orbit | None = None
     lyapunov: Lyapunov | None = None
+    followed: int = 0
+    starts: int = 1
 
     @property
     def multipliers(self) -> NDArray[np.complex128] | None:
         """Floquet multipliers of the orbit, when there is one."""
         return None if self.orbit is None else self.orbit.multipliers
 
+    @property
+    def words(self) -> str:
+        """The name, and for chaos how long and from how many starts it was seen."""
+        return label_words(self.name, followed=self.followed, starts=self.starts)
+
     def __str__(self) -> str:
-        return self.name
+        return self.words
 
 
 def label(
@@ -63,6 +80,8 @@ def label(
     near_border: float = NEAR_BORDER,
     batches: int = 20,
     batch_periods: int = 500,
+    starts: int = STARTS,
+    follow: int = FOLLOW,
     threads: int | None = None,
 ) -> Label:
     """Label of the motion a model of one lane settles on from ``initial_state``.
@@ -75,9 +94,14 @@ def label(
     approaches, every shorter lag differs by more than a thousand closure tolerances, and the
     largest Floquet multiplier stays below ``near_border`` in modulus. Chaotic: no lag up to
     ``max_period`` closes and the largest Lyapunov exponent is positive by more than four
-    standard errors, in both halves of its record. The label stands only when the same motion
-    on twice as many sub-steps of the event-exact maps earns it too; everything else is
-    undecided.
+    standard errors, in both halves of its record.
+
+    The label stands only when the same motion on twice as many sub-steps of the event-exact maps
+    ends there too. Where a difference of 1e-13 half backlashes grows a millionfold on the way,
+    ``starts`` starts that differ by so much are followed, to where each closes, for ``follow``
+    periods (``cap`` if that is more): all must end on one orbit, or, for "chaotic", none may
+    close and all must still part in the last round. Everything else is undecided. Chaos is
+    therefore an estimate, "chaotic for N periods, k starts": no exponent says how long it lasts.
     """
     lanes = lanes_of(model)
     if len(lanes) != 1:
@@ -91,6 +115,8 @@ def label(
         near_border=near_border,
         batches=batches,
         batch_periods=batch_periods,
+        starts=starts,
+        follow=follow,
         threads=threads,
     )[0]
     if found.orbit is None:
@@ -109,28 +135,25 @@ def labels(
     near_border: float = NEAR_BORDER,
     batches: int = 20,
     batch_periods: int = 500,
+    starts: int = STARTS,
+    follow: int = FOLLOW,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> list[Label]:
     """:func:`label` for every lane of ``model``; ``progress`` counts finished lanes."""
-    for name, value, least in (("max_period", max_period, 1), ("discard", discard, 1)):
+    for name, value, least in (
+        ("max_period", max_period, 1), ("discard", discard, 1), ("starts", starts, 2),
+        ("follow", follow, 1),
+    ):  # fmt: skip
         if not (least <= value < np.inf and int(value) == value):
             raise InputError(name, value, allowed=f"a whole number >= {least}")
     lanes = lanes_of(model)
     start = starts_of(initial_state, len(lanes))
-    search = _Search(max_period, discard, cap, near_border, batches, batch_periods, threads)
-    total = 2 * len(lanes)
-    first = _settle(
-        lanes, start, search, 1, None if progress is None else partial(_tell, progress, 0, total)
+    search = _Search(
+        max_period, discard, cap, near_border, batches, batch_periods, starts, follow, threads
     )
-    again = _settle(
-        lanes,
-        start,
-        search,
-        2,
-        None if progress is None else partial(_tell, progress, len(lanes), total),
-    )
-    return [_agreed(one, other) for one, other in zip(first, again, strict=True)]
+    found, top = _settle(lanes, start, search, progress)
+    return _confirmed(lanes, start, found, top, search, progress)
 
 
 @dataclass(frozen=True)
@@ -141,42 +164,35 @@ class _Search:
     near_border: float
     batches: int
     batch_periods: int
+    starts: int
+    follow: int
     threads: int | None
 
-
-def _tell(progress: Progress, before: int, total: int, done: int) -> None:
-    progress(before + done, total)
-
-
-def _agreed(one: Label, other: Label) -> Label:
-    """A label stands when another rounding of the same motion leads there too."""
-    if str(one) == str(other):
-        return one
-    if "undecided" in (one.name, other.name):
-        return one if one.name == "undecided" else other
-    reason = f"where the transient ends depends on rounding: {one} or {other}"
-    return Label("undecided", 0, reason, max(one.discarded, other.discarded))
+    def rounds(self, most: int) -> Iterator[int]:
+        """Lengths of the rounds: ``discard`` periods and a window, then doubling."""
+        elapsed, length = 0, self.discard
+        while elapsed < most:
+            yield length + 2 * self.max_period
+            elapsed += length + 2 * self.max_period
+            length *= 2
 
 
 def _settle(
-    lanes: Lanes,
-    start: Floats,
-    search: _Search,
-    refine: int,
-    progress: Callable[[int], None] | None,
-) -> list[Label]:
-    """Labels from one run with ``refine`` times the sub-steps."""
+    lanes: Lanes, start: Floats, search: _Search, progress: Progress | None
+) -> tuple[list[Label], Floats]:
+    """What the starts themselves settle on, and ln of how far neighbours parted on the way."""
     state = start.copy()
     found: list[Label | None] = [None] * len(lanes)
     waiting = np.arange(len(lanes))
+    level, top = np.zeros(len(lanes)), np.zeros(len(lanes))
     elapsed = 0
-    length = search.discard
-    keep = 2 * search.max_period
-    while waiting.size and elapsed < search.cap:
-        group = Ensemble(lanes.take(waiting), state[waiting], threads=search.threads, refine=refine)
-        window = group.run(length + keep, keep=keep)
-        elapsed += length + keep
+    for length in search.rounds(search.cap):
+        group = Ensemble(lanes.take(waiting), state[waiting], threads=search.threads, parting=True)
+        window = group.run(length, keep=2 * search.max_period)
+        elapsed += length
         state[waiting] = group.state
+        top[waiting] = np.fmax(top[waiting], level[waiting] + group.top)
+        level[waiting] += group.level
         silent: list[int] = []
         for row, lane in enumerate(waiting.tolist()):
             verdict, quiet = _periodic(
@@ -186,9 +202,8 @@ def _settle(
             if quiet:
                 silent.append(lane)
         # no lag closes: chaos is asked once the transient had a fair chance
-        last = elapsed >= search.cap
         asked = [lane for lane in silent if found[lane] is None]
-        if asked and (elapsed >= 4 * search.discard or last):
+        if asked and (elapsed >= 4 * search.discard or elapsed >= search.cap):
             proofs = lyapunov_exponents(
                 lanes.take(np.array(asked)),
                 initial_state=state[asked],
@@ -196,7 +211,6 @@ def _settle(
                 batches=search.batches,
                 batch_periods=search.batch_periods,
                 threads=search.threads,
-                refine=refine,
             )
             for lane, proof in zip(asked, proofs, strict=True):
                 state[lane] = proof.state
@@ -209,17 +223,212 @@ def _settle(
                         lyapunov=proof,
                     )
         waiting = np.array([i for i in waiting if found[i] is None], dtype=int)
-        length *= 2
         if progress is not None:
-            progress(len(lanes) - waiting.size)
+            progress(len(lanes) - waiting.size, 2 * len(lanes))
+        if waiting.size == 0:
+            break
     for lane in waiting.tolist():
         found[lane] = Label(
             "undecided",
             0,
-            f"neither closed nor provably chaotic after {elapsed} periods",
+            f"neither closed nor chaotic by its exponent after {elapsed} periods",
             elapsed,
         )
-    return [one for one in found if one is not None]
+    return [one for one in found if one is not None], top
+
+
+def _confirmed(
+    lanes: Lanes,
+    start: Floats,
+    found: Sequence[Label],
+    top: Floats,
+    search: _Search,
+    progress: Progress | None,
+) -> list[Label]:
+    """The labels that hold for starts that differ by rounding; the others are undecided.
+
+    A neighbour within :data:`APART` of a start stays beside it where the linearised motion never
+    parts them by more than :data:`PARTED`; then the same start on twice as many sub-steps is
+    enough. Elsewhere rounding decides where a motion ends, and all of ``starts`` are followed.
+    """
+    chaotic = np.array([one.name == "chaotic" for one in found], dtype=bool)
+    asked = np.array([i for i, one in enumerate(found) if one.name != "undecided"], dtype=int)
+    parted, own = asked[(top > PARTED)[asked] | chaotic[asked]], np.flatnonzero(chaotic)
+    unit = np.stack([lanes.half_backlash, 2 * np.pi * lanes.half_backlash / lanes.period], axis=1)
+    number = np.tile(np.arange(1, search.starts - 1), parted.size)
+    owner = np.repeat(parted, search.starts - 2)
+    angle = np.pi * (np.sqrt(5.0) - 1.0) * number
+    beside = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    near = start[owner] + APART * np.maximum(unit, np.abs(start))[owner] * beside
+    ends: list[list[_End]] = [[] for _ in found]
+    groups = (
+        (1, np.concatenate([own, owner]), np.concatenate([start[own], near])),
+        (2, asked, start[asked]),
+    )
+    total, done = max(1, sum(mine.size for _, mine, _ in groups)), 0
+    for refine, mine, begin in groups:
+        for over in _follow(lanes, begin, mine, found, search, refine, ends):
+            done += over
+            if progress is not None:
+                progress(len(lanes) + done * len(lanes) // total, 2 * len(lanes))
+    if progress is not None:
+        progress(2 * len(lanes), 2 * len(lanes))
+    return [
+        _judged(one, theirs) if theirs else one for one, theirs in zip(found, ends, strict=True)
+    ]
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where one start ended: its label, None where it moves on; ``lively``: chaotic to the end."""
+
+    label: Label | None
+    periods: int
+    lively: bool = False
+
+
+def _follow(
+    lanes: Lanes,
+    start: Floats,
+    owner: Whole,
+    found: Sequence[Label],
+    search: _Search,
+    refine: int,
+    ends: list[list[_End]],
+) -> Iterator[int]:
+    """Follow every start to where it closes, at most to ``follow``; adds to the owners' ends.
+
+    Yields how many starts each round was the last for.
+
+    Where most starts of a motion have closed by then, and on one orbit, the others get four times
+    as long: chaos that ends has no fixed length. Where two ended apart, nothing is left to ask.
+    """
+    state = start.copy()
+    waiting = np.arange(owner.size)
+    elapsed = 0
+    last = max(search.cap, search.follow)
+    lively = np.zeros(owner.size, bool)
+    for length in search.rounds(4 * last):
+        if waiting.size == 0:
+            break
+        mine = owner[waiting]
+        elapsed += length
+        parting = elapsed >= last
+        group = Ensemble(
+            lanes.take(mine), state[waiting], threads=search.threads, refine=refine, parting=parting
+        )
+        window = group.run(length, keep=2 * search.max_period)
+        state[waiting] = group.state
+        open_ = []
+        for row, lane in enumerate(mine.tolist()):
+            one = lanes.take(lane)
+            verdict = _returned(one, window[row], found[lane], elapsed)
+            if verdict is None:
+                verdict, _ = _periodic(
+                    one, window[row], search.max_period, elapsed, search.near_border
+                )
+            if verdict is None:
+                open_.append(waiting[row])
+                lively[waiting[row]] = group.level[row] > 0.0 and not _closing(
+                    window[row] / scales(one), search.max_period
+                )
+            else:
+                ends[lane].append(_End(verdict, elapsed))
+        left = Counter(owner[open_].tolist())
+        going = {lane for lane, many in left.items() if _agreed(found[lane], ends[lane])}
+        if parting:
+            going &= {lane for lane, many in left.items() if _most(found[lane], ends[lane], many)}
+        over = [row for row in open_ if owner[row] not in going]
+        waiting = np.array([row for row in open_ if owner[row] in going], dtype=int)
+        for row in over:
+            ends[owner[row]].append(_End(None, elapsed, bool(lively[row])))
+        yield mine.size - waiting.size
+    for row in waiting.tolist():
+        ends[owner[row]].append(_End(None, elapsed, bool(lively[row])))
+
+
+def _returned(lane: Lanes, window: Floats, first: Label, elapsed: int) -> Label | None:
+    """The label ``first`` where the last sections lie on its orbit, in any of its phases."""
+    if first.orbit is None:
+        return None
+    unit = scales(lane)
+    scaled, points = window / unit, first.orbit.points / unit
+    place = int(np.argmin(np.max(np.abs(points - scaled[-1]), axis=1)))
+    turned = np.roll(points, -place, axis=0)
+    return replace(first, discarded=elapsed) if _on(turned, scaled) else None
+
+
+def _on(points: Floats, scaled: Floats) -> bool:
+    """Whether sections lie on an orbit and come nearer; the last is beside its first point."""
+    turned = points[(np.arange(len(scaled)) - (len(scaled) - 1)) % len(points)]
+    away = np.max(np.abs(scaled - turned), axis=1)
+    early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())
+    return late <= SETTLED and (late <= 1e-10 or late < early)
+
+
+def _same(one: Label, other: Label) -> bool:
+    """Whether two labels are of one motion: the same name and, with orbits, the same orbit."""
+    if (one.name, one.period) != (other.name, other.period):
+        return False
+    if one.orbit is None or other.orbit is None:
+        return one.orbit is other.orbit
+    away = np.abs(one.orbit.points - other.orbit.state) / scales(one.orbit.lanes)
+    return bool(np.min(np.max(away, axis=1)) < 1e-6)
+
+
+def _agreed(first: Label, ends: Sequence[_End]) -> bool:
+    """Whether all starts that have ended did so on one motion."""
+    kinds = _kinds(first, ends)
+    return all(_same(kinds[0], one) for one in kinds[1:])
+
+
+def _most(first: Label, ends: Sequence[_End], waiting: int) -> bool:
+    """Whether more starts have ended than go on, the ``waiting`` ones and those given up."""
+    return len(_kinds(first, ends)) > waiting + sum(end.label is None for end in ends)
+
+
+def _kinds(first: Label, ends: Sequence[_End]) -> list[Label]:
+    """The labels of all starts that have ended, the first one's too unless it is chaotic."""
+    own = [] if first.name == "chaotic" else [first]
+    return own + [end.label for end in ends if end.label is not None]
+
+
+def _closing(scaled: Floats, max_period: int) -> bool:
+    """Whether the whole window nearly repeats after some lag: one chance return does not."""
+    return any(
+        np.max(np.abs(scaled[lag:] - scaled[:-lag])) < 10.0 * CLOSE
+        for lag in range(1, max_period + 1)
+    )
+
+
+def _judged(first: Label, ends: Sequence[_End]) -> Label:
+    """The label of a start when the starts beside it ended so."""
+    kinds = _kinds(first, ends)
+    still = [end for end in ends if end.label is None]
+    most = max([first.discarded, *(end.periods for end in ends)])
+    of = len(ends) + (first.name != "chaotic")
+    if not kinds:
+        shortest = min(end.periods for end in still)
+        if all(end.lively for end in still):
+            reason = f"{first.reason}; none of {of} starts closed in {shortest} periods"
+            return replace(first, reason=reason, followed=shortest, starts=of)
+        reason = f"neither closed nor chaotic to the end by the exponent after {most} periods"
+        return Label("undecided", 0, reason, most, lyapunov=first.lyapunov)
+    different = [kinds[0]]
+    for one in kinds[1:]:
+        if not any(_same(one, other) for other in different):
+            different.append(one)
+    if len(different) > 1:
+        names = sorted({one.name for one in different})
+        words = " or ".join(names) if len(names) > 1 else f"{len(different)} {names[0]} orbits"
+        reason = f"where the transient ends depends on rounding: {words} from {of} starts"
+        return Label("undecided", 0, reason, most)
+    if still:
+        reason = (
+            f"{len(kinds)} of {of} starts end as {kinds[0].name}, the others not in {most} periods"
+        )
+        return Label("undecided", kinds[0].period, reason, most, kinds[0].orbit)
+    return replace(kinds[0], discarded=most, starts=of)
 
 
 def _positive(proof: Lyapunov) -> bool:
@@ -260,13 +469,10 @@ def _periodic(
             return None, False
         orbit = shorter
     points = orbit.points / unit
-    # the window against the orbit, in step: its last state is the orbit's first point
-    turned = points[(np.arange(len(scaled)) - (len(scaled) - 1)) % period]
-    away = np.max(np.abs(scaled - turned), axis=1)
-    early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())
     largest = float(np.max(np.abs(orbit.multipliers)))
     shown = f"largest Floquet multiplier {_shown(orbit)} over {period} period{'s' * (period > 1)}"
-    if not (late <= SETTLED and (late <= 1e-10 or late < early)):
+    # the window against the orbit, in step: its last state is the orbit's first point
+    if not _on(points, scaled):
         return None, False
     if period > 1:
         others = [np.max(np.abs(points[k] - points[0])) for k in range(1, period)]
@@ -286,6 +492,6 @@ def _shown(orbit: Orbit) -> str:
 
 def counts(found: Sequence[Label]) -> dict[str, int]:
     """How many lanes carry each name, in descending number."""
-    names, numbers = np.unique([str(one) for one in found], return_counts=True)
+    names, numbers = np.unique([one.name for one in found], return_counts=True)
     order = np.argsort(-numbers, kind="stable")
     return {str(names[i]): int(numbers[i]) for i in order}

@@ -212,6 +212,9 @@ def parameter_map(
     goes on only where neighbours differ, inside tiles of ``tile`` x ``tile`` points.
     ``rule.full()`` with ``refine=False`` is the full run.
 
+    Labels are an estimate by this faster rule; :func:`~thermogear.analysis.labels.label` follows
+    one point for longer and from several starts.
+
     Returns label, period, largest multiplier, Lyapunov exponent and counts over the two
     parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The
     attributes tell the periods run and those of the full run. The result does not depend on

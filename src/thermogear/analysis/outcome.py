@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.plan import Alive, Arrays, Variable, keep_going
 from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
-from thermogear.base.vocabulary import STATUS, status_attributes
+from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -21,6 +21,7 @@ LABEL_ATTRIBUTES = {
     "long_name": "settled motion",
     "flag_values": np.arange(len(LABELS), dtype=np.int8),
     "flag_meanings": " ".join(LABELS),
+    "comment": FASTER_RULE,
 }
 _NAN = float("nan")
 

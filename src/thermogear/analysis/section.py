@@ -90,6 +90,20 @@ class ReturnMap:
         """det D P^n = exp(-c n T) of every trajectory."""
         return float(np.exp(-self.lanes.damping[0] * self.period * periods))
 
+    def flow(self, start: Floats, halves: int) -> tuple[Floats, Floats]:
+        """State (2,) and Jacobian (2, 2) ``halves`` half periods later.
+
+        An odd number needs a border of the sub-steps at phase 1/2, as every uniform layout has.
+        """
+        state = exact.State.start(
+            x=np.array([start[0]]), y=np.array([start[1]]), backlash=self.lanes.half_backlash
+        )
+        if halves > 1:
+            exact.advance(self.maps, state, halves // 2, columns=2)
+        if halves % 2:
+            exact.advance(exact.first_half(self.maps), state, 1, columns=2)
+        return np.array([state.x[0], state.y[0]]), state.tangent[:, 0].reshape(2, 2)
+
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
         state = exact.State.start(
@@ -108,14 +122,27 @@ class ReturnMap:
 
 
 class Ensemble:
-    """Many lanes running side by side, with the last stretch of their sections kept."""
+    """Many lanes running side by side, with the last stretch of their sections kept.
+
+    ``parting``: one tangent travels along every lane; :attr:`level` is ln|D P^n e| over the last
+    :meth:`run` and :attr:`top` the largest it was on the way.
+    """
 
     def __init__(
-        self, lanes: Lanes, start: Floats, *, threads: int | None = None, refine: int = 1
+        self,
+        lanes: Lanes,
+        start: Floats,
+        *,
+        threads: int | None = None,
+        refine: int = 1,
+        parting: bool = False,
     ) -> None:
         self.lanes = lanes
         self.threads = threads
         self.elapsed = 0
+        self.parting = parting
+        self.level = np.zeros(len(lanes))
+        self.top = np.zeros(len(lanes))
         self._blocks = list(exact.layouts(lanes, refine=refine))
         self._states = [
             exact.State.start(
@@ -135,17 +162,30 @@ class Ensemble:
     def run(self, periods: int, *, keep: int = 0) -> Floats:
         """Advance; the last ``keep`` sections as (lane, keep, 2)."""
         kept = np.full((len(self.lanes), keep, 2), np.nan)
+        self.level[:] = 0.0
+        self.top[:] = 0.0
 
         def block(number: int, pace: Pace) -> None:
             # prepared anew: it costs some thirty periods and spares the memory of all blocks
             index, borders, marks = self._blocks[number]
             maps = exact.prepare_maps(self.lanes.take(index), borders, marks)
             state = self._states[number]
-            for _, count in pace.chunks(periods - keep, lanes=index.size):
-                exact.advance(maps, state, count)
-            for first, count in pace.chunks(keep, lanes=index.size):
-                sections, _, _ = exact.advance(maps, state, count)
-                kept[index, first : first + count] = sections.transpose(2, 0, 1)
+            if self.parting:
+                turn = 2.0 * np.pi / self.lanes.period[index]
+                state.tangent[0] = 1.0 / np.hypot(1.0, turn)
+                state.tangent[2] = turn / np.hypot(1.0, turn)
+            for first, count in pace.chunks(periods, lanes=index.size):
+                sections, stretch, _ = exact.advance(
+                    maps, state, count, columns=int(self.parting), normalise=self.parting
+                )
+                if self.parting:
+                    levels = np.cumsum(np.vstack([self.level[index], stretch]), axis=0)
+                    self.level[index] = levels[-1]
+                    self.top[index] = np.fmax(self.top[index], np.max(levels, axis=0))
+                wanted = first + count - (periods - keep)
+                if wanted > 0:
+                    part = sections[-min(wanted, count) :].transpose(2, 0, 1)
+                    kept[index, wanted - part.shape[1] : wanted] = part
 
         jobs = [partial(block, number) for number in range(len(self._blocks))]
         run_blocks(jobs, len(self.lanes) * periods, threads=self.threads)

@@ -1,4 +1,7 @@
-"""What very many lanes settle on: the proofs of :mod:`labels`, batched, and given up early.
+"""What very many lanes settle on: an estimate by a faster rule than that of :mod:`labels`.
+
+One start, one rounding, left as soon as it closes or its exponent is positive: chaos may end
+later, and a start on the border of two basins may end elsewhere.
 
 Lanes of one layout run side by side. After every round those whose section closes are polished
 by Newton together; a lane leaves as soon as its proof stands, so that most of a map costs a

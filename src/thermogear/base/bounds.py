@@ -52,7 +52,8 @@ class Bounds:
         """Refuse SI ``values`` of which one lies outside, or is no number."""
         found = np.asarray(values, dtype=float)
         slack = 1e-12 * max(abs(self.least), abs(self.most))
-        good = (found >= self.least - slack) & (found <= self.most + slack)
+        below = 1e-12 * self.least if self.least > 0.0 else slack
+        good = (found >= self.least - below) & (found <= self.most + slack)
         if not np.all(good):
             value = float(found[~good].flat[0])
             allowed = f"{_plain(self.low)}..{_plain(self.high)} {self.unit}"
@@ -119,6 +120,11 @@ TEMPERING = Bounds(low=-70.0, high=3000.0, unit="degC", si="K", zero=ZERO_CELSIU
 
 SPEED = Bounds(low=0.0, high=500000.0, unit="rpm", si="rad/s", scale=RPM)
 TORQUE = Bounds(low=0.0, high=1e7, unit="N m", si="N m")
+
+RATE = Bounds(low=1e-6, high=1e12, unit="samples/s", si="samples/s")
+"""From one sample in eleven days to a thousand times what the fastest converters take."""
+PULSES = Bounds(low=1e-6, high=1e7, unit="pulses per turn", si="pulses per turn")
+FULL_SCALE = Bounds(low=1e-15, high=1e15, unit="units at full scale", si="units at full scale")
 
 YOUNGS_MODULUS = Bounds(
     low=0.01, high=2000.0, unit="GPa", si="Pa", scale=1e9, slips={"N/mm^2": 1e6}

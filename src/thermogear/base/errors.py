@@ -61,6 +61,14 @@ class ValidityWarning(UserWarning):
     """A value outside the range its source states; the result is an extrapolation."""
 
 
+class UnsealedWarning(ValidityWarning):
+    """A stored file without its seal: whether it is as it was written cannot be told."""
+
+
+class WorkerWarning(UserWarning):
+    """A worker of a cluster whose numbers do not count, and why."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Advice for an unknown ``name``: the nearest known one, else the whole list."""
     names = sorted(known)

@@ -3,24 +3,45 @@
 from __future__ import annotations
 
 import codecs
+import hashlib
+import io
+import itertools
 import os
+import shutil
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from thermogear.base.errors import InputError
+
+LOCK = "lock"
+"""Stands in every directory that one process at a time writes into; stays there."""
+SEAL = ".sha256"
+"""Ending of a seal: the digest of the file beside it, as ``sha256sum -c`` reads it."""
+PART = ".part"
+"""Ending of what is being written; what a kill leaves of it is nothing."""
+
+_number = itertools.count()
 
 
 @contextmanager
 def beside(path: Path) -> Iterator[Path]:
     """A name beside ``path`` to write to; the file takes the place of ``path`` at the end.
 
-    An older file stays until then, and for good where writing fails.
+    An older file stays until then, and for good where writing fails. A link is replaced, not
+    followed. What the system refuses is told with the name of ``path``.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}-{next(_number)}{PART}")
     try:
         yield temporary
         temporary.replace(path)
+    except OSError as error:
+        if error.filename in (None, str(temporary)):
+            error.filename, error.filename2 = str(path), None
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -55,8 +76,167 @@ def require_directory(path: Path, field: str = "output") -> None:
 
 def put(path: Path, data: bytes | str) -> Path:
     """Write ``data`` (text as UTF-8), flushed to the disk, whole or not at all; the path."""
-    with beside(path) as temporary, temporary.open("wb") as file:
-        file.write(data.encode() if isinstance(data, str) else data)
+    with beside(path) as temporary:
+        _write(temporary, data.encode() if isinstance(data, str) else data)
+    return path
+
+
+def _write(path: Path, data: bytes | memoryview) -> None:
+    with path.open("wb") as file:
+        file.write(data)
         file.flush()
         os.fsync(file.fileno())
+
+
+def sync(directory: Path) -> None:
+    """Flush the names in ``directory`` to the disk, where the system can."""
+    try:
+        handle = os.open(directory, os.O_RDONLY)
+    except PermissionError:
+        return  # Windows opens no directory
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+# --- one writer at a time -------------------------------------------------------------------
+
+
+@contextmanager
+def held(directory: Path, field: str = "output") -> Iterator[None]:
+    """``directory`` for this process alone; InputError where another one holds it."""
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(directory / LOCK)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise InputError(
+            field,
+            str(directory),
+            why="another process is writing into it",
+            fix="wait for it, or name another directory",
+        ) from None
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+# --- seals ----------------------------------------------------------------------------------
+
+
+def seal_of(path: Path) -> Path:
+    """Where the seal of ``path`` stands."""
+    return path.with_name(path.name + SEAL)
+
+
+def put_sealed(path: Path, data: bytes | memoryview) -> Path:
+    """:func:`put`, and the seal of ``path`` beside it.
+
+    At no moment, not of a kill either, does a file stand beside a seal that denies it: while the
+    new file takes the old one's place the seal vouches for both.
+    """
+    seal = seal_of(path)
+    new = _line(hashlib.sha256(data).hexdigest(), path.name)
+    with beside(seal) as last, beside(path) as temporary:
+        _write(temporary, data)
+        _write(last, new.encode())
+        put(seal, new + _old_seal(seal))
+        sync(path.parent)
     return path
+
+
+def _line(digest: str, name: str) -> str:
+    return f"{digest}  {name}\n"
+
+
+def _old_seal(seal: Path) -> str:
+    try:
+        return seal.read_text(encoding="ascii")
+    except (OSError, ValueError):
+        return ""
+
+
+def open_sealed(path: Path, *, field: str, fix: str = "") -> tuple[BinaryIO, bool]:
+    """``path`` in memory, as its seal says it was written; and whether there is a seal at all.
+
+    Raises InputError in one line, with ``fix``, where the file is missing, or is not what its
+    seal vouches for.
+    """
+    try:
+        raw = path.read_bytes()
+    except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
+        raise InputError(field, str(path), why="there is no such file", fix=fix) from None
+    seal = seal_of(path)
+    try:
+        lines = seal.read_bytes().splitlines()
+    except FileNotFoundError:
+        return io.BytesIO(raw), False
+    if _line(hashlib.sha256(raw).hexdigest(), path.name).rstrip().encode() not in lines:
+        why = f"it is not the file that {seal.name} vouches for; one of them is damaged or changed"
+        raise InputError(field, str(path), why=why, fix=fix)
+    return io.BytesIO(raw), True
+
+
+# --- many files at once ---------------------------------------------------------------------
+
+_FOLDER = ".thermogear-"
+
+
+@contextmanager
+def together(directory: Path) -> Iterator[Path]:
+    """A new folder inside ``directory``; what is written there is put into place at the end.
+
+    All of it, below the same names, or nothing: after an error or Ctrl+C ``directory`` holds what
+    it held before. Links are replaced, and refused where a folder should be. ``directory`` must
+    be :func:`held`.
+    """
+    for old in directory.glob(f"{_FOLDER}*{PART}"):
+        shutil.rmtree(old)  # of a process that was killed: nobody else writes here
+    folder = directory / f"{_FOLDER}{os.getpid()}-{next(_number)}{PART}"
+    folder.mkdir()
+    try:
+        yield folder
+        _put_in_place(folder, directory)
+    except OSError as error:
+        if isinstance(error.filename, str) and Path(error.filename).is_relative_to(folder):
+            error.filename = str(directory / Path(error.filename).relative_to(folder))
+        raise
+    except KeyboardInterrupt as stop:
+        if not stop.args:
+            stop.args = (f"nothing was written to {directory}",)
+        raise
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _put_in_place(folder: Path, directory: Path) -> None:
+    found = sorted(path.relative_to(folder) for path in folder.rglob("*"))
+    for name in (name for name in found if (folder / name).is_dir()):
+        place = directory / name
+        if place.is_symlink():
+            raise InputError("output", str(place), why="it is a link", fix="remove the link")
+        place.mkdir(exist_ok=True)
+    files = [name for name in found if (folder / name).is_file()]
+    seals = [name for name in files if name.name.endswith(SEAL)]
+    with _uninterrupted():
+        for name in seals:
+            put(directory / name, (folder / name).read_text() + _old_seal(directory / name))
+        for name in (*(name for name in files if name not in seals), *seals):
+            (folder / name).replace(directory / name)
+        sync(directory)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Ctrl+C comes too late while the block runs."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
 
@@ -205,6 +205,8 @@ QUANTITIES: dict[str, Quantity] = {
     "multiplier_modulus": Quantity("1", "largest Floquet multiplier, modulus", "|μ|"),
     "lyapunov_exponent": Quantity("1", "largest Lyapunov exponent, per ω_n t", "λ₁"),
     "lyapunov_error": Quantity("1", "its standard error (batch means)", "s(λ₁)"),
+    "followed_periods": Quantity("1", "mesh periods each start was followed in chaos, 0: no chaos"),
+    "followed_starts": Quantity("1", "starts apart by rounding that share the label"),
     "lyapunov_batch": Quantity("1", "largest Lyapunov exponent, batch means", "λ₁"),
     "contact_losses": Quantity("1", "losses of drive contact per orbit"),
     "back_impacts_per_orbit": Quantity("1", "back-side impacts per orbit"),
@@ -248,6 +250,38 @@ def edge_attributes() -> dict[str, Any]:
         "flag_values": np.arange(len(EDGE_CONTACT), dtype=np.int8),
         "flag_meanings": " ".join(EDGE_CONTACT),
     }
+
+
+FASTER_RULE = (
+    "labels by a faster rule, an estimate: one start, left as soon as it closes or its exponent is "
+    "positive; chaos may end later, and a start on a border may end elsewhere"
+)
+"""What stands behind the labels of maps, diagrams, basins and run-ups."""
+
+
+def label_words(name: str, *, followed: int, starts: int) -> str:
+    """What a reader sees of a label: "chaotic for 32 268 periods, 16 starts", else the name.
+
+    ``followed`` periods were run from each of ``starts`` starts and none closed; 0: not known.
+    """
+    if name != "chaotic" or followed <= 0:
+        return name
+    length = f"{followed:,}".replace(",", " ")
+    return f"chaotic for {length} periods, {starts} start{'s' * (starts > 1)}"
+
+
+def told_labels(data: xr.Dataset) -> NDArray[np.str_]:
+    """:func:`label_words` of every stored label, in its shape."""
+    names = data["label"].values.astype(str)
+    seen = [
+        data[name].values if name in data else np.zeros(names.shape)
+        for name in ("followed_periods", "followed_starts")
+    ]
+    told = [
+        label_words(str(name), followed=int(periods), starts=int(starts))
+        for name, periods, starts in zip(names.flat, seen[0].flat, seen[1].flat, strict=True)
+    ]
+    return np.array(told, dtype=np.str_).reshape(names.shape)
 
 
 FLAGS = {"status": status_attributes, "edge_contact": edge_attributes}

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.kernels.affine import prepare
+from thermogear.dynamics.kernels.affine import add_harmonic, prepare
 from thermogear.dynamics.kernels.exact import advance_exact
+from thermogear.dynamics.kernels.sensitivity import sensitivity
 from thermogear.dynamics.tables import Lanes, Pieces
 
 Floats = NDArray[np.float64]
@@ -137,16 +138,14 @@ def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) 
         if not np.any(row):
             continue
         angle = 2.0 * np.pi * np.mod(rank * centres, 1.0)
-        cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
-        even = row.real * cosine - row.imag * sine
-        odd = row.real * sine + row.imag * cosine
-        reach = 2.0 * np.pi * rank * half[:, None]
-        power = np.ones_like(reach)
-        for m in range(order + 1):
-            if m > 0:
-                power = power * reach / m
-            part = odd if m % 2 else even
-            out[:, :, m] += part * power if m % 4 in (0, 3) else -(part * power)
+        add_harmonic(
+            np.ascontiguousarray(row.real),
+            np.ascontiguousarray(row.imag),
+            np.cos(angle),
+            np.sin(angle),
+            2.0 * np.pi * rank * half,
+            out,
+        )
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
     done: dict[Pieces, Floats] = {}
     for lane, piece in enumerate(pieces):
@@ -189,6 +188,48 @@ def prepare_maps(
         marks=marks,
         borders=borders,
     )
+
+
+def first_half(maps: ExactMaps) -> ExactMaps:
+    """The maps of the first half period; InputError where no border lies at phase 1/2."""
+    count = int(np.searchsorted(maps.borders, 0.5))
+    if maps.borders[count] != 0.5:
+        raise InputError("sub-steps", maps.borders.size - 1, allowed="a border at phase 1/2")
+    return replace(
+        maps,
+        maps=maps.maps[:count],
+        polys=maps.polys[:count],
+        half=maps.half[:count],
+        marks=maps.marks[:count],
+        borders=maps.borders[: count + 1],
+    )
+
+
+def moved_by(
+    maps: ExactMaps, rates: tuple[Floats, Floats, float], start: Floats, steps: int
+) -> tuple[Floats, float]:
+    """d(x, y)/dp after ``steps`` sub-steps of one lane, and the least distance of an extreme of x
+    on the way from an edge of the backlash.
+
+    ``rates``: derivatives of the polynomials (N, 5, K + 1), half widths (N) and half backlash by
+    the parameter p. The start does not move. Exact for the path as it is: crossings stay at their
+    phases, which the continuous force allows.
+    """
+    state = State.start(x=start[:1], y=start[1:], backlash=maps.backlash)
+    found = np.empty(3)
+    sensitivity(
+        np.ascontiguousarray(maps.polys[:, 0]),
+        np.ascontiguousarray(maps.half[:, 0]),
+        float(maps.backlash[0]),
+        np.ascontiguousarray(rates[0]),
+        np.ascontiguousarray(rates[1]),
+        float(rates[2]),
+        np.asarray(start, dtype=float),
+        int(state.region[0]),
+        steps,
+        found,
+    )
+    return found[:2], float(found[2])
 
 
 def layouts(

@@ -118,8 +118,9 @@ class TorsionalModel:
 
     def lanes(self) -> Lanes:
         """Flat parameter arrays, lanes in C order of the broadcast fields."""
+        shape = self.shape
         flat = [
-            np.broadcast_to(np.asarray(getattr(self, f.name), dtype=float), self.shape).ravel()
+            np.broadcast_to(np.asarray(getattr(self, f.name), dtype=float), shape).ravel()
             for f in fields(self)
         ]
         zeta, frequency, eps, mean, amplitude, backlash, thermal = flat

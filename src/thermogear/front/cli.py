@@ -93,23 +93,29 @@ def run(
     reference: bool,
 ) -> None:
     """Run CASE and write results.nc, summary.json, CSV curves and report.html to DIR."""
-    from thermogear.study.results import claim_directory
+    from thermogear.study.results import require_ours
     from thermogear.study.size import require_room
 
     read = _load(case, (*overrides, "model.flash=exact") if reference else overrides)
     require_room(read, forced=force)
     directory = Path(output)
-    claim_directory(directory)
+    require_ours(directory)
 
     from thermogear.front.progress import progress
     from thermogear.study.run import run_to_directory
+    from thermogear.views.csv import clear_csv, write_csv
+
+    curves: list[str] = []
+
+    def pages(folder: Path) -> None:
+        _report(folder)
+        curves.extend(path.name for path in write_csv(folder))
 
     with progress(wanted=not as_json) as report_progress:
         summary = run_to_directory(
-            read, directory, case_text=_text_of(read), progress=report_progress
+            read, directory, case_text=_text_of(read), progress=report_progress, also=pages
         )
-    _report(directory)
-    _curves(directory)
+    clear_csv(directory, curves)
     if as_json:
         click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
     else:
@@ -232,12 +238,6 @@ def _report(directory: Path) -> Path:
     return write_report(directory)
 
 
-def _curves(directory: Path) -> None:
-    from thermogear.views.csv import write_csv
-
-    write_csv(directory)
-
-
 def _print_summary(summary: dict[str, Any], directory: Path) -> None:
     for notice in summary.get("notices", ()):
         text = notice.get("text", "") if isinstance(notice, dict) else notice
@@ -262,8 +262,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ThermogearError as error:
         say("error", error)
         return USER_ERROR
-    except (KeyboardInterrupt, click.Abort):
-        say("interrupted", "stopped on request; what was finished stays")
+    except (KeyboardInterrupt, click.Abort) as stop:
+        say("interrupted", "; ".join(["stopped on request", *map(str, stop.args)]))
         return INTERRUPTED
     except BrokenPipeError:
         # the reader of the output left (as `head` does); there is nobody to tell

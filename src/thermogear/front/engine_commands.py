@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress
 
 if TYPE_CHECKING:
     from thermogear.study.engine import Found
@@ -115,16 +117,23 @@ def _subject(options: dict[str, Any], case: Any) -> Subject:
     )
 
 
-def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, Any]], Any]) -> None:
-    """Store and print what was found; Ctrl+C is passed on once that is done."""
-    page = None
-    if options["output"] is not None:
-        from thermogear.study.results import claim_directory
-        from thermogear.views.engine_page import write_pages
+def _carry_out(
+    options: dict[str, Any],
+    make: Callable[[Progress], Found],
+    lines: Callable[[dict[str, Any]], list[str]],
+) -> None:
+    """Claim the directory, compute, store, draw, print; Ctrl+C is passed on after that."""
+    from thermogear.front.progress import Stopped, progress
+    from thermogear.study.results import claimed
 
-        directory = Path(options["output"])
-        claim_directory(directory, OURS)
-        page = write_pages(result.write(directory))[0]
+    output = options["output"]
+    with nullcontext() if output is None else claimed(Path(output)) as folder:
+        with progress(wanted=not options["as_json"]) as report:
+            result = make(report)
+        if folder is not None:
+            from thermogear.views.engine_page import write_pages
+
+            page = write_pages(result.write(folder))[0].name
     if options["as_json"]:
         click.echo(json.dumps(result.summary, indent=2, ensure_ascii=False, allow_nan=False))
     else:
@@ -132,22 +141,11 @@ def _finish(result: Found, options: dict[str, Any], lines: Callable[[dict[str, A
             click.echo(line)
         for notice in result.summary["notices"]:
             click.echo(f"- {notice}")
-        if page is not None:
-            click.echo(page)
+        if output is not None:
+            click.echo(Path(output) / page)
     if result.interrupted:
-        from thermogear.front.progress import Stopped
-
-        raise Stopped
-
-
-OURS = ("orbit", "lyapunov", "branch", "cascade", "shared")
-
-
-def _claim_early(options: dict[str, Any]) -> None:
-    if options["output"] is not None:
-        from thermogear.study.results import claim_directory
-
-        claim_directory(Path(options["output"]), OURS)
+        what = "what was found so far"
+        raise Stopped(f"{what} is printed" if output is None else f"{what} stays in {output}")
 
 
 @click.command()
@@ -163,14 +161,14 @@ def orbit(period: int | None, direct: bool, **options: Any) -> None:
       thermogear orbit table-4.2 --row zeta --point 2
       thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2
     """
-    from thermogear.front.progress import progress
     from thermogear.study.engine import orbit_results
 
     subject = _subject(options, _case(options))
-    _claim_early(options)
-    with progress(wanted=not options["as_json"]) as report:
-        result = orbit_results(subject, period, transient=not direct, progress=report)
-    _finish(result, options, _orbit_lines)
+
+    def make(report: Progress) -> Found:
+        return orbit_results(subject, period, transient=not direct, progress=report)
+
+    _carry_out(options, make, _orbit_lines)
 
 
 def _orbit_lines(s: dict[str, Any]) -> list[str]:
@@ -217,22 +215,22 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
     \b
       thermogear lyapunov table-4.2 --row zeta --point 4
     """
-    from thermogear.front.progress import progress
     from thermogear.study.engine import lyapunov_results
 
     if batches > MOST_BATCHES:
         raise InputError("--batches", batches, allowed=f"4..{MOST_BATCHES}")
     subject = _subject(options, _case(options))
-    _claim_early(options)
-    with progress(wanted=not options["as_json"]) as report:
-        result = lyapunov_results(
+
+    def make(report: Progress) -> Found:
+        return lyapunov_results(
             subject,
             discard=discard,
             batches=batches,
             batch_periods=batch_periods,
             progress=report,
         )
-    _finish(result, options, _lyapunov_lines)
+
+    _carry_out(options, make, _lyapunov_lines)
 
 
 def _lyapunov_lines(s: dict[str, Any]) -> list[str]:
@@ -277,7 +275,14 @@ def continue_(
     hot: bool,
     **options: Any,
 ) -> None:
-    """Follow an orbit in a parameter; locate folds, flips and grazing.
+    """Follow an orbit in a parameter; locate folds, flips, pitchforks and grazing.
+
+    \b
+    fold             the branch turns back: the motion jumps there
+    period doubling  supercritical: the doubled motion takes over smoothly; subcritical: it
+                     jumps; vertical: the linear motion in contact becomes unstable
+    pitchfork        a symmetric motion loses its symmetry
+    grazing          the motion just touches an edge of the gap: contacts begin or end
 
     \b
       thermogear continue table-4.2 --cascade 4 --hot
@@ -285,20 +290,20 @@ def continue_(
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
     """
-    from thermogear.front.progress import progress
     from thermogear.study.cascades import branch_results, cascade_results
     from thermogear.study.subject import parameter_name, parameter_value
 
     case = _case(options)
     if cascade is not None:
         sweeps, title = _sweeps(options, case, parameter, begin, to)
-        _claim_early(options)
-        with progress(wanted=not options["as_json"]) as report:
-            result = cascade_results(
+
+        def make_cascade(report: Progress) -> Found:
+            return cascade_results(
                 sweeps, cascade, title=title, hot=hot, start=_start(options["start"]),
                 progress=report,
             )  # fmt: skip
-        _finish(result, options, _cascade_lines)
+
+        _carry_out(options, make_cascade, _cascade_lines)
         return
     if hot:
         raise InputError("--hot", "without --cascade", fix="add --cascade 4")
@@ -309,13 +314,14 @@ def continue_(
     name = parameter_name(subject, parameter)
     end = parameter_value("--to", subject, name, to)
     first = None if begin is None else parameter_value("--from", subject, name, begin)
-    _claim_early(options)
-    with progress(wanted=not options["as_json"]) as report:
-        result = branch_results(
+
+    def make(report: Progress) -> Found:
+        return branch_results(
             subject, name, end, start=first, period=period, transient=not direct, switch=switch,
             progress=report,
         )  # fmt: skip
-    _finish(result, options, _branch_lines)
+
+    _carry_out(options, make, _branch_lines)
 
 
 def _sweeps(
@@ -388,6 +394,10 @@ def _cascade_lines(s: dict[str, Any]) -> list[str]:
             ]
             lines.append(f"  {2**k:>2} -> {2 ** (k + 1):<3} " + " ".join(cells))
         for c in own:
+            lines += [
+                f"  {c['heat']}: {f['from_period']} -> {f['to_period']} {f['note']}"
+                for f in c["flips"]
+            ]
             if len(c["flips"]) < s["flips"]:
                 lines.append(f"  {c['heat']}: no further flip, {c['ended']}")
     heats = dict.fromkeys(c["heat"] for c in s["cascades"] if c["heat"] != "cold")
@@ -403,16 +413,16 @@ def shared_force(speeds: int, **options: Any) -> None:
     \b
       thermogear shared-force rig.toml -o shared
     """
-    from thermogear.front.progress import progress
     from thermogear.study.shared_force import shared_results
 
     if not 2 <= speeds <= MOST_SPEEDS:
         raise InputError("--speeds", speeds, allowed=f"2..{MOST_SPEEDS}")
     subject = _subject(options, _case(options))
-    _claim_early(options)
-    with progress(wanted=not options["as_json"]) as report:
-        result = shared_results(subject, count=speeds, progress=report)
-    _finish(result, options, _shared_lines)
+
+    def make(report: Progress) -> Found:
+        return shared_results(subject, count=speeds, progress=report)
+
+    _carry_out(options, make, _shared_lines)
 
 
 def _shared_lines(s: dict[str, Any]) -> list[str]:

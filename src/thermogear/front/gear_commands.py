@@ -344,14 +344,14 @@ def _carry_out(
 ) -> xr.DataTree:
     """Claim the directory, compute, store, draw."""
     from thermogear.front.progress import progress
-    from thermogear.study.results import claim_directory, write_results
+    from thermogear.study.results import claimed, write_results
     from thermogear.views.survey_report import write_survey
 
-    claim_directory(directory)
-    with progress(wanted=not quiet) as report:
-        tree = make(report)
-    write_results(tree, directory, f"{name}.nc")
-    write_survey(directory, name)
+    with claimed(directory) as folder:
+        with progress(wanted=not quiet) as report:
+            tree = make(report)
+        write_results(tree, folder, f"{name}.nc")
+        write_survey(folder, name)
     return tree
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""A full disk, a full quota, a limit of a file's size."""
 
 
 def one_line(text: object) -> str:
@@ -21,8 +25,10 @@ def say(kind: str, text: object) -> None:
 
 
 def system_error(error: OSError) -> str:
-    """What the system refused, and where."""
+    """What the system refused, where, and what to do where there is no room."""
     reason = error.strerror or str(error) or type(error).__name__
+    if error.errno in NO_ROOM:
+        reason += "; make room there and give the same command again"
     return f"{error.filename}: {reason}" if error.filename is not None else reason
 
 

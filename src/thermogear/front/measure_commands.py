@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import require_directory
 from thermogear.base.units import RPM
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from thermogear.measured.reduction import Measurement
     from thermogear.study.comparison import Comparison
 
@@ -36,7 +38,12 @@ def _supplies(command: Any) -> Any:
         click.option(
             "--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file."
         ),
-        click.option("--limit", type=float, default=8.0, help="Most GiB a packed file may become."),
+        click.option(
+            "--limit",
+            type=float,
+            metavar="GIB",
+            help="Most GiB that a packed file may become [32 times its size, 0.25..8].",
+        ),
         click.option(
             "--sensor-tolerance", type=float, help="Relative standard uncertainty of the sensor."
         ),
@@ -51,14 +58,25 @@ def _supplies(command: Any) -> Any:
     return command
 
 
+def _require_gear(options: dict[str, Any]) -> None:
+    """Refuse teeth and a speed that no gear has, before anything is read."""
+    from thermogear.measured.reduction import require_teeth
+
+    speed = options["speed"]
+    from thermogear.base.bounds import SPEED
+
+    if speed is not None and not 0.0 < speed * RPM <= SPEED.most:
+        raise InputError("--speed", f"{speed:g} rpm", allowed=f"> 0 .. {SPEED.high:g} rpm")
+    require_teeth(options["teeth"])
+
+
 def _measured(file: str, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.chain import Chain
+    from thermogear.measured.options import bytes_of_gibibytes
     from thermogear.measured.readers import read_record
     from thermogear.measured.reduction import measure as reduce
 
-    speed = options["speed"]
-    if speed is not None and not 0.0 < speed < math.inf:
-        raise InputError("--speed", f"{speed:g} rpm", allowed="> 0 rpm, finite")
+    speed, limit = options["speed"], options["limit"]
     record = read_record(
         file,
         rate=options["rate"],
@@ -67,9 +85,8 @@ def _measured(file: str, options: dict[str, Any]) -> Measurement:
         channels=options["channels"],
         tacho=options["tacho"],
         decimal=options["decimal"],
-        limit=int(options["limit"] * 2**30),
+        limit=None if limit is None else bytes_of_gibibytes(limit),
     )
-    speed = options["speed"]
     return reduce(
         record,
         teeth=options["teeth"],
@@ -87,12 +104,15 @@ def _measured(file: str, options: dict[str, Any]) -> Measurement:
 @click.option("-o", "--output", metavar="DIR", help="Also write measured.nc and measured.html.")
 def measure(file: str, as_json: bool, output: str | None, **options: Any) -> None:
     """Read a record and print its lines: order, frequency, amplitude, uncertainty."""
-    found = _measured(file, options)
-    if output is not None:
-        from thermogear import __version__
-        from thermogear.measured.dataset import tree_of
+    _require_gear(options)
+    with _claimed(output) as folder:
+        found = _measured(file, options)
+        if folder is not None:
+            from thermogear import __version__
+            from thermogear.measured.dataset import tree_of
 
-        _store(tree_of(found, __version__), Path(output), "measured", as_json)
+            _store(tree_of(found, __version__), folder, "measured")
+    _name_page(output, "measured", as_json)
     if as_json:
         click.echo(json.dumps(_as_dict(found), indent=2, ensure_ascii=False))
         return
@@ -143,23 +163,26 @@ def compare(
     from thermogear.measured.published import PUBLISHED
     from thermogear.study import comparison
 
+    _require_gear(options)
     speed = options["speed"]
     against: Any = measured
-    if measured is not None and measured not in PUBLISHED and not comparison.is_table(measured):
-        against = _measured(measured, options)
-    found = comparison.compare(
-        case,
-        against,
-        teeth=options["teeth"],
-        speed=None if speed is None else speed * RPM,
-        u_data=None if u_data is None else u_data / 100.0,
-        tolerances=dict(_tolerance(text) for text in tolerances),
-        samples=samples,
-    )
-    if output is not None:
-        from thermogear import __version__
+    with _claimed(output) as folder:
+        if measured is not None and measured not in PUBLISHED and not comparison.is_table(measured):
+            against = _measured(measured, options)
+        found = comparison.compare(
+            case,
+            against,
+            teeth=options["teeth"],
+            speed=None if speed is None else speed * RPM,
+            u_data=None if u_data is None else u_data / 100.0,
+            tolerances=dict(_tolerance(text) for text in tolerances),
+            samples=samples,
+        )
+        if folder is not None:
+            from thermogear import __version__
 
-        _store(comparison.tree_of(found, __version__), Path(output), "comparison", as_json)
+            _store(comparison.tree_of(found, __version__), folder, "comparison")
+    _name_page(output, "comparison", as_json)
     if as_json:
         click.echo(comparison.as_json(found))
     else:
@@ -201,15 +224,25 @@ def _print(found: Comparison) -> None:
     click.echo(found.conclusion)
 
 
-def _store(tree: Any, directory: Path, name: str, quiet: bool) -> None:
-    """Store the tree and draw its page; the page's path goes to the error stream if ``quiet``."""
+def _claimed(output: str | None) -> AbstractContextManager[Path | None]:
+    """The folder that ``output`` gets its files from at the end; None where none is named."""
+    from thermogear.study.results import claimed
+
+    return nullcontext() if output is None else claimed(Path(output))
+
+
+def _store(tree: xr.DataTree, folder: Path, name: str) -> None:
+    """Store the tree and draw its page."""
+    from thermogear.study.results import write_results
     from thermogear.views.measured_report import write_measured_report
 
-    require_directory(directory)
-    directory.mkdir(parents=True, exist_ok=True)
-    stored = directory / f"{name}.nc"
-    tree.to_netcdf(stored, engine="h5netcdf")
-    click.echo(str(write_measured_report(stored, directory / f"{name}.html")), err=quiet)
+    write_measured_report(write_results(tree, folder, f"{name}.nc"), folder / f"{name}.html")
+
+
+def _name_page(output: str | None, name: str, quiet: bool) -> None:
+    """Say where the page is, on the error stream if ``quiet``."""
+    if output is not None:
+        click.echo(str(Path(output) / f"{name}.html"), err=quiet)
 
 
 def _text(value: float, width: int, digits: int) -> str:

@@ -10,7 +10,7 @@ from thermogear.base.progress import Progress, silent
 
 
 class Stopped(KeyboardInterrupt):
-    """Ctrl+C after what was finished had been kept."""
+    """Ctrl+C after what was finished had been kept; its argument says what, and where."""
 
 
 @contextmanager

@@ -329,7 +329,7 @@ def _watched() -> Iterator[Report]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
 
-    from thermogear.study.work import duration
+    from thermogear.study.size import duration
 
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[left]}"))
     with Progress(*columns, console=Console(stderr=True)) as bars:
@@ -355,14 +355,30 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
         say("estimate", estimate(plan, threads=options["threads"]))
     if options["only_estimate"]:
         return None
-    with _watched() as report:
-        data = carry_out(
-            plan, directory, threads=options["threads"], scheduler=options["scheduler"],
-            report=report, forced=options["force"],
-        )  # fmt: skip
-    from thermogear.views.sweep_report import write_sweep_report
+    last: list[Step] = []
+    try:
+        with _watched() as watch:
 
-    write_sweep_report(directory, title)
+            def report(step: Step) -> None:
+                last[:] = [step]
+                watch(step)
+
+            data = carry_out(
+                plan, directory, threads=options["threads"], scheduler=options["scheduler"],
+                report=report, forced=options["force"],
+            )  # fmt: skip
+        from thermogear.views.sweep_report import write_sweep_report
+
+        write_sweep_report(directory, title)
+    except KeyboardInterrupt:
+        from thermogear.front.progress import Stopped
+
+        if not last:
+            raise Stopped(f"nothing was added to {directory}") from None
+        raise Stopped(
+            f"{last[0].done} of {last[0].total} chunks stay in {directory}, the same command goes "
+            "on from there"
+        ) from None
     return data
 
 
@@ -419,6 +435,7 @@ def _label_summary(data: xr.Dataset) -> dict[str, Any]:
     import numpy as np
 
     from thermogear.analysis.outcome import label_names
+    from thermogear.base.vocabulary import FASTER_RULE
     from thermogear.study.notices import back_side_notice
 
     names, counts = np.unique(label_names(data), return_counts=True)
@@ -426,6 +443,7 @@ def _label_summary(data: xr.Dataset) -> dict[str, Any]:
     found: dict[str, Any] = {
         "points": int(data["label"].size),
         "labels": {str(names[i]): int(counts[i]) for i in order},
+        "rule": FASTER_RULE,
     }
     for name in ("total_periods", "full_periods", "computed_points"):
         if name in data.attrs:
@@ -480,7 +498,10 @@ def _basin_summary(data: xr.Dataset) -> dict[str, Any]:
         name: float(data.attrs[name])
         for name in ("basin_entropy", "boundary_basin_entropy", "unassigned")
     }
-    return {"points": int(data["attractor"].size), "attractors": rows, **figures}
+    from thermogear.base.vocabulary import FASTER_RULE
+
+    points = int(data["attractor"].size)
+    return {"points": points, "attractors": rows, **figures, "rule": FASTER_RULE}
 
 
 def _run_up_summary(data: xr.Dataset) -> dict[str, Any]:
@@ -497,7 +518,9 @@ def _run_up_summary(data: xr.Dataset) -> dict[str, Any]:
                 "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
                 "from_rpm": rpm(float(data["jump_from"].values[i])),
                 "to_rpm": rpm(float(data["jump_to"].values[i])),
+                "at": ("fold", "subcritical period doubling")[int(data["jump_kind"].values[i])],
                 "fold_rpm": rpm(float(data["jump_fold"].values[i])),
+                "return_rpm": rpm(float(data["jump_return"].values[i])),
                 "before_um": 1e6 * float(data["jump_before"].values[i]),
                 "after_um": 1e6 * float(data["jump_after"].values[i]),
             }

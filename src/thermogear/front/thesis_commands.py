@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from pathlib import Path
 
 import click
@@ -23,7 +24,7 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
     Sections 2 to 6: what is said, what is computed as in the thesis and consistently, a verdict,
     its argument and the code behind it. Ctrl+C keeps the claims judged so far.
     """
-    from thermogear.views.claims_report import write_claims_report
+    from thermogear.views.claims_report import REPORT, write_claims_report
 
     directory = Path(output)
     if redraw:
@@ -36,9 +37,11 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
     require_salib()
     with progress(wanted=not as_json) as told:
         summary = build_to_directory(
-            directory, progress=lambda stage, done, total: told("thesis", done, total)
+            directory,
+            progress=lambda stage, done, total: told("thesis", done, total),
+            also=write_claims_report,
         )
-    path = write_claims_report(directory)
+    path = directory / REPORT
     cut = summary["claims"] < summary["claims_in_all"]
     if as_json:
         click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
@@ -49,7 +52,7 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
             click.echo(f"{count:6d}  {verdict}")
         click.echo(path)
     if cut:
-        raise Stopped
+        raise Stopped(f"the claims judged so far stay in {directory}")
 
 
 @click.command()
@@ -84,7 +87,7 @@ def sensitivity(
     """
     from thermogear.front.progress import progress
     from thermogear.study.case import gear_case, load_case
-    from thermogear.study.results import claim_directory
+    from thermogear.study.results import claimed
     from thermogear.study.sensitivity import (
         ABOUT,
         Plan,
@@ -102,23 +105,22 @@ def sensitivity(
     plan = Plan(samples=samples, speed=None if speed is None else speed * RPM, seed=seed)
     read = gear_case(load_case(Path(case), overrides))
     require_of_the_thesis(read, ABOUT)
-    if output is not None:
-        claim_directory(Path(output))
-    with progress(wanted=not as_json) as told:
-        data = study(read, plan, progress=told)
+    with nullcontext() if output is None else claimed(Path(output)) as folder:
+        with progress(wanted=not as_json) as told:
+            data = study(read, plan, progress=told)
+        if folder is not None:
+            from thermogear.views.claims_report import write_claims_report
+
+            store(data, folder)
+            page = write_claims_report(folder).name
     if as_json:
         click.echo(json.dumps(as_rows(data), indent=2, ensure_ascii=False))
     else:
         for text in plain_words(data):
             click.echo(f"- {text}")
         click.echo(f"{data.attrs['evaluations']} evaluations in {data.attrs['seconds']:.1f} s")
-    if output is not None:
-        from thermogear.views.claims_report import write_claims_report
-
-        store(data, Path(output))
-        path = write_claims_report(Path(output))
-        if not as_json:
-            click.echo(path)
+    if output is not None and not as_json:
+        click.echo(Path(output) / page)
 
 
 COMMANDS: list[click.Command] = [thesis, sensitivity]

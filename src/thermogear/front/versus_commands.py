@@ -32,9 +32,9 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     directory = Path(output)
     paths = [_existing(Path(given)) for given in results]
 
-    from thermogear.front.progress import progress
+    from thermogear.front.progress import Stopped, progress
     from thermogear.study.case import load_case
-    from thermogear.study.results import claim_directory
+    from thermogear.study.results import claimed
     from thermogear.study.size import require_room
     from thermogear.views.results import Results, read_results
     from thermogear.views.versus_report import write_versus
@@ -52,27 +52,35 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
             require_room(cases[place])
             kinds[str(path)] = cases[place].kind
     study.require_one_kind(kinds)
-    claim_directory(directory)
     homes = _homes(directory, paths)
-    for place, case in cases.items():
-        from thermogear.study.run import run_to_directory
+    done = 0
+    try:
+        with claimed(directory) as folder:
+            for place, case in cases.items():
+                from thermogear.study.run import run_to_directory
 
-        with progress(wanted=not as_json) as told:
-            run_to_directory(case, homes[place], progress=told)
-        found[place] = read_results(homes[place])
-    stored = [
-        study.Stored(homes[place].name, found[place].texts, found[place].groups)
-        for place in range(len(paths))
-    ]
-    data = study.versus(stored)
-    study.store(data, directory)
-    written = write_versus(directory)
+                with progress(wanted=not as_json) as told:
+                    run_to_directory(case, homes[place], progress=told)
+                done += 1
+                found[place] = read_results(homes[place])
+            stored = [
+                study.Stored(homes[place].name, found[place].texts, found[place].groups)
+                for place in range(len(paths))
+            ]
+            data = study.versus(stored)
+            study.store(data, folder)
+            page = write_versus(folder)[0].name
+    except KeyboardInterrupt:
+        if not done:
+            raise
+        what = f"{done} of {len(cases)} runs are whole and stay below {directory}"
+        raise Stopped(what) from None
     if as_json:
         click.echo(json.dumps(study.summary(data), indent=2, ensure_ascii=False))
         return
     for notice in json.loads(data.attrs["notices"]):
         click.echo(f"- {notice['text']}")
-    click.echo(written[0])
+    click.echo(directory / page)
 
 
 def _existing(path: Path) -> Path:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
-from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.options import ReadOptions, refused, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import MOST_CHANNELS, Named, record_of
 
 _MOST_SETS = 4096
+_WHOLE = 1 << 28
+"""Bytes up to which a data set that is slow in slices is read as a whole."""
+_CHUNK = 1 << 20
+"""Bytes of a chunk that HDF5 keeps between two slices: larger ones it decodes anew for each."""
 
 
 def read_hdf(path: Path, options: ReadOptions) -> Record:
@@ -23,8 +28,10 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
 
     arrays: list[Named] = []
     common: dict[str, Any] = {}
+    claimed = 0
 
     def visit(name: str, item: Any) -> None:
+        nonlocal claimed
         if not isinstance(item, h5py.Dataset) or name.startswith("#"):
             return
         if item.dtype.kind not in "iuf" or item.dtype.names or len(arrays) >= _MOST_SETS:
@@ -35,11 +42,15 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
         if "MATLAB_empty" in item.attrs:
             return
         shape = tuple(int(n) for n in item.shape or ())
-        if len(shape) == 2 and min(shape) > 1 and min(shape) <= MOST_CHANNELS:
-            largest = max(shape) * min(shape) * item.dtype.itemsize
-            if largest <= (1 << 28) and largest <= options.limit:
-                data = item[()]  # one column of a chunked table would read all of it each time
-        elif len(shape) <= 1 and max(shape, default=1) == 1:
+        size, chunk = _size(item, shape)
+        # what stands in the file byte by byte cannot be a mere claim
+        claimed += max(0, size - int(item.id.get_storage_size()))
+        if claimed > options.limit:
+            raise too_large(path, becomes=claimed, limit=options.limit)
+        table = len(shape) == 2 and 1 < min(shape) <= MOST_CHANNELS
+        if size <= _WHOLE and (table or chunk > _CHUNK):
+            data = item[()]  # a column of a chunked table would read all of it each time
+        elif math.prod(shape) == 1:
             data = item[()]
         arrays.append(Named(name, data, shape, dict(item.attrs)))
 
@@ -52,3 +63,11 @@ def read_hdf(path: Path, options: ReadOptions) -> Record:
         raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
         raise refused(path, "HDF5", error) from error
+
+
+def _size(item: Any, shape: tuple[int, ...]) -> tuple[int, int]:
+    """Bytes that a data set takes once it is read, whole chunks; and those of one chunk."""
+    if item.chunks is None:
+        return math.prod(shape) * item.dtype.itemsize, 0
+    whole = math.prod(-(-n // c) * c for n, c in zip(shape, item.chunks, strict=True))
+    return whole * item.dtype.itemsize, math.prod(item.chunks) * item.dtype.itemsize

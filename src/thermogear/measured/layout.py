@@ -9,11 +9,13 @@ from pathlib import Path
 
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Notice
-from thermogear.measured.traps import is_rate_name, is_time_name, split_unit
+from thermogear.measured.traps import is_possible_rate, is_rate_name, is_time_name, split_unit
 from thermogear.measured.units import factor_of, kind_of, unit
 
-NUMBER = re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+NUMBER = re.compile(r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$")
 MISSING = {"", "nan", "na", "n/a", "null", "-", "--", "inf", "-inf", "#n/a", "-nan", "1.#qnan"}
+MOST_COLUMNS = 4096
+_LONGEST_FACT = 400  # characters of a line above the table that are looked at
 _META = re.compile(r"^[\s#%;/!\"']*([^:=,;\t]{2,40}?)\s*[:=,;\t]\s*\"?([^\s\"]+)\s*\"?([^\s\"]*)")
 
 
@@ -81,6 +83,9 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         [table[i] for i in rows if i >= start], len(names), path, options
     )
     columns = width // 2 if paired else width
+    if columns > MOST_COLUMNS:
+        why = f"{columns} columns; allowed 1..{MOST_COLUMNS} (channels stand side by side)"
+        raise refused(path, "text", why)
     layout = Layout(separator, decimal, paired, columns, names, units, start)
     if paired:
         layout.notices.append(
@@ -183,7 +188,7 @@ def _paired(rows: list[list[str]], named: int, path: Path, options: ReadOptions)
 def _facts(layout: Layout, above: list[str]) -> None:
     """What the lines above the names state: rate, count of channels, unit."""
     for line in above:
-        found = _META.match(line)
+        found = _META.match(line.strip()[:_LONGEST_FACT])
         if not found:
             continue
         key, value, tail = found.groups()
@@ -199,17 +204,17 @@ def _facts(layout: Layout, above: list[str]) -> None:
                         "(give --rate)",
                     )
                 )
-            elif float(number) > 0:
+            elif is_possible_rate(float(number) * factor_of(said)):
                 layout.rate = float(number) * factor_of(said)
         elif re.match(r"(number of )?channels?( count)?$", key_name.strip(), re.I) and re.fullmatch(
-            r"\d+", number
+            r"[0-9]+", number
         ):
             signals = sum(not is_time_name(name) for name in layout.names)
-            if int(number) not in (signals, layout.columns):
+            if number.lstrip("0") not in (str(signals), str(layout.columns)):
                 layout.notices.append(
                     Notice(
                         "important",
-                        f"the header says {number} channels, the rows hold {signals}",
+                        f"the header says {number[:20]} channels, the rows hold {signals}",
                     )
                 )
         elif key_name.strip().lower() in ("unit", "units", "单位") and unit(value):

@@ -8,6 +8,7 @@ is stored twice, which a dictionary of variables would hide, and checks every si
 from __future__ import annotations
 
 import math
+import mmap
 import struct
 import zlib
 from collections.abc import Iterator
@@ -39,6 +40,8 @@ _KINDS = {
 _MATRIX, _COMPRESSED = 14, 15
 _CELL, _STRUCT, _CHAR = 1, 2, 4
 _DEEPEST = 8
+_MOST_PARTS = 1 << 16
+"""Elements of one file or variable: fields of structures and their numbers."""
 
 
 class _Malformed(Exception):
@@ -53,7 +56,9 @@ class _Buffer:
     def elements(self) -> Iterator[tuple[int, memoryview]]:
         """The tagged elements one after another: (type, bytes)."""
         place, end = 0, len(self.data)
-        while place + 8 <= end:
+        for _ in range(_MOST_PARTS):
+            if place + 8 > end:
+                return
             first, second = struct.unpack(self.order + "II", self.data[place : place + 8])
             if first >> 16:  # small element: size and type share a word, data follow at once
                 kind, size, start = first & 0xFFFF, first >> 16, place + 4
@@ -68,11 +73,16 @@ class _Buffer:
                 raise _Malformed(f"an element of {size} bytes where {end - start} are left")
             yield kind, self.data[start : start + size]
             place = following
+        raise _Malformed(f"more than {_MOST_PARTS} elements")
 
 
 def read_mat(path: Path, options: ReadOptions) -> Record:
     """A record from a MAT file of version 5 to 7 (7.3 is HDF5 and read as such)."""
-    raw = path.read_bytes()
+    with path.open("rb") as file:
+        if path.stat().st_size < 136:
+            raise refused(path, "MAT", "no version 5 header (save it with -v7 or -v7.3)")
+        # numbers that are not packed stay in the file
+        raw = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     if len(raw) < 136 or raw[126:128] not in (b"IM", b"MI"):
         raise refused(path, "MAT", "no version 5 header (save it with -v7 or -v7.3)")
     order = "<" if raw[126:128] == b"IM" else ">"
@@ -81,11 +91,7 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
     try:
         for kind, body in _Buffer(memoryview(raw)[128:], order).elements():
             if kind == _COMPRESSED:
-                engine = zlib.decompressobj()
-                packed = engine.decompress(bytes(body), left + 1)
-                left -= len(packed)
-                if left < 0:
-                    raise too_large(path, becomes=options.limit - left, limit=options.limit)
+                packed, left = _unpacked(body, order, left, path, options)
                 for inner, content in _Buffer(memoryview(packed), order).elements():
                     if inner == _MATRIX:
                         arrays += _matrix(content, order, "", 0)
@@ -96,6 +102,21 @@ def read_mat(path: Path, options: ReadOptions) -> Record:
     except (_Malformed, zlib.error, struct.error, ValueError, OverflowError) as error:
         raise refused(path, "MAT", error) from error
     return record_of(path, "MAT", arrays, options, {})
+
+
+def _unpacked(
+    body: memoryview, order: str, left: int, path: Path, options: ReadOptions
+) -> tuple[bytes, int]:
+    """One packed variable, whose own tag says its size before it is unpacked; what is left."""
+    engine = zlib.decompressobj()
+    tag = engine.decompress(body, 8)
+    if len(tag) < 8:
+        raise _Malformed("a packed variable that ends at once")
+    size = int(struct.unpack(order + "I", tag[4:])[0])
+    left -= size
+    if left < 0:
+        raise too_large(path, becomes=options.limit - left, limit=options.limit)
+    return tag + engine.decompress(engine.unconsumed_tail, size) if size else tag, left
 
 
 def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named]:

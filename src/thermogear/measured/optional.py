@@ -5,9 +5,14 @@ from __future__ import annotations
 import contextlib
 import gc
 import importlib
+import importlib.util
 import io
+import json
 import logging
+import os
+import subprocess
 import sys
+import tempfile
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -76,8 +81,28 @@ def read_tdms(path: Path, options: ReadOptions) -> Record:
     return _guarded(path, "TDMS", "nptdms", _tdms)
 
 
+class _Clipped(io.BufferedReader):
+    """A file that never makes room for more bytes than it has."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(io.FileIO(path))
+        self._size = path.stat().st_size
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        left = max(0, self._size - self.tell())
+        return super().read(left if size is None or size < 0 else min(size, left))
+
+
 def _tdms(nptdms: ModuleType, path: Path, parts: _Parts) -> None:
-    for group in nptdms.TdmsFile.read(path).groups():
+    size = path.stat().st_size
+    with _Clipped(path) as file:
+        stated = nptdms.TdmsFile.read_metadata(file)
+        count = sum(len(item) for group in stated.groups() for item in group.channels())
+        if count > size:  # a value takes a byte or more
+            raise ValueError(f"it states {count} values and has {size} bytes")
+        file.seek(0)
+        groups = nptdms.TdmsFile.read(file).groups()
+    for group in groups:
         for item in group.channels():
             values = np.asarray(item[:])
             if values.dtype.kind not in "iuf" or values.size < 2:
@@ -113,26 +138,44 @@ def _uff(pyuff: ModuleType, path: Path, parts: _Parts) -> None:
 
 
 def read_mdf(path: Path, options: ReadOptions) -> Record:
-    """MDF 4 (and 3): the channels of the longest common time base; unit as stored."""
-    return _guarded(path, "MDF", "asammdf", _mdf)
+    """MDF 4 (and 3): the channels of the longest common time base; unit as stored.
+
+    It is read in a process of its own, for asammdf may crash on a damaged file.
+    """
+    if importlib.util.find_spec("asammdf") is None:
+        _load("asammdf", path, "MDF")
+    parts = _Parts()
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        found = _apart(path, folder, options)
+        if "error" in found:
+            raise refused(path, "MDF", found["error"])
+        for number, one in enumerate(found["channels"]):
+            samples = np.load(folder / f"{number}.npy", allow_pickle=False)
+            parts.channels.append(Channel(one["name"], samples, unit(one["unit"])))
+        parts.rates += [(rate, where) for rate, where in found["rates"]]
+        parts.notes += [Notice("important", text) for text in found["remarks"]]
+    return _record(path, "MDF", parts.channels, parts.rates, parts.notes)
 
 
-def _mdf(asammdf: ModuleType, path: Path, parts: _Parts) -> None:
-    with asammdf.MDF(str(path)) as file:
-        signals: list[Any] = [s for s in file.iter_channels() if s.samples.dtype.kind in "iuf"]
-        for item in signals:
-            stamps = np.asarray(item.timestamps, dtype=float)
-            if stamps.size < 3:
-                continue
-            steps = np.diff(stamps)
-            step = float((stamps[-1] - stamps[0]) / steps.size)
-            if step > 0 and np.max(np.abs(steps - step)) <= 0.5 * step:
-                parts.rates.append((1.0 / step, f"time base of {item.name}"))
-            else:
-                text = f"{item.name}: its time base is not uniform"
-                parts.notes.append(Notice("important", text))
-            samples = np.asarray(item.samples)
-            parts.channels.append(Channel(item.name, samples, unit(item.unit or "")))
+def _apart(path: Path, folder: Path, options: ReadOptions) -> dict[str, Any]:
+    """What the reader of MDF found; a refusal where it crashed or took more than it may."""
+    seconds = 30 + path.stat().st_size // 1_000_000
+    words = [str(path.absolute()), str(folder), str(2 * options.limit), str(seconds)]
+    run = subprocess.run(
+        [sys.executable, str(Path(__file__).with_name("mdf_process.py")), *words],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        check=False,
+    )
+    try:
+        found: dict[str, Any] = json.loads((folder / "parts.json").read_text("utf-8"))
+    except (OSError, ValueError):
+        text = f"its reader ended with code {run.returncode}: it is damaged, or too large"
+        raise refused(path, "MDF", text) from None
+    return found
 
 
 def _record(

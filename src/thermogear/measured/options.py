@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from thermogear.base.errors import InputError
 
+LEAST_DECODED = 256 << 20
+"""Bytes that any packed file may become."""
 DECODED_LIMIT = 8 << 30
-"""Most bytes that a packed file (gz, npz, mat) may become; ``--limit`` raises it."""
+"""Most bytes that a packed file may become unless ``--limit`` says otherwise."""
+UNPACKED = 32
+"""How many times its own size a packed file may become: records of sensors, which hold noise,
+become 1.1 to 10 times as large."""
+MOST_LIMIT = 1 << 50
+
+
+def decoded_limit(size: int) -> int:
+    """Bytes that a packed file (gz, npz, mat, hdf5) of ``size`` bytes may become by itself."""
+    return min(DECODED_LIMIT, max(LEAST_DECODED, UNPACKED * size))
 
 
 @dataclass(frozen=True)
@@ -26,8 +38,22 @@ class ReadOptions:
     def __post_init__(self) -> None:
         if self.decimal not in (None, ".", ","):
             raise InputError("decimal", repr(self.decimal), allowed="'.' or ','")
-        if self.limit <= 0:
-            raise InputError("limit", self.limit, allowed="> 0 bytes")
+        if not 1 <= self.limit <= MOST_LIMIT:
+            raise InputError("limit", f"{self.limit} bytes", allowed=f"1..{MOST_LIMIT} bytes")
+
+
+def bytes_of_gibibytes(number: float) -> int:
+    """``--limit`` [GiB] as bytes."""
+    if not (math.isfinite(number) and 1 <= number * 2**30 <= MOST_LIMIT):
+        raise InputError("--limit", f"{number:g} GiB", allowed=f"> 0 .. {MOST_LIMIT >> 30} GiB")
+    return int(number * 2**30)
+
+
+def place_of(key: str, count: int) -> int | None:
+    """The place, from 0, that ``key`` means as a number from 1 to ``count``; None otherwise."""
+    if not (key.isascii() and key.isdigit() and len(key) <= 9):
+        return None
+    return int(key) - 1 if 1 <= int(key) <= count else None
 
 
 def refused(path: Path, as_what: str, reason: object) -> InputError:
@@ -41,7 +67,7 @@ def too_large(path: Path, *, becomes: int, limit: int) -> InputError:
     return InputError(
         "file",
         path.name,
-        why=f"unpacked it is {becomes / 2**30:.3g} GiB",
+        why=f"unpacked it is {becomes / 2**30:.3g} GiB or more",
         allowed=f"up to {limit / 2**30:.3g} GiB",
         fix="raise --limit if that is meant",
     )

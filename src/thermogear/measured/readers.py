@@ -9,7 +9,7 @@ from thermogear.base.errors import InputError
 from thermogear.measured.hdf import read_hdf
 from thermogear.measured.matlab import read_mat
 from thermogear.measured.optional import read_mdf, read_tdms, read_uff
-from thermogear.measured.options import DECODED_LIMIT, ReadOptions
+from thermogear.measured.options import ReadOptions, decoded_limit
 from thermogear.measured.packed import read_npy, read_npz
 from thermogear.measured.record import Record
 from thermogear.measured.text import read_text
@@ -77,7 +77,7 @@ def read_record(
     channels: Sequence[str | int] = (),
     tacho: str | int | None = None,
     decimal: str | None = None,
-    limit: int = DECODED_LIMIT,
+    limit: int | None = None,
 ) -> Record:
     """A record from CSV/TXT (also .gz), MAT, WAV, NPZ, NPY, HDF5, TDMS, UFF or MDF.
 
@@ -85,7 +85,8 @@ def read_record(
     [samples/s], ``unit`` (of the vibration channels) or ``scale`` (its units at full scale, for
     integer samples) say it. ``channels`` keeps those alone; ``tacho`` names the tacho channel;
     ``decimal`` is "." or "," where the text leaves it open; ``limit`` bytes is the most that a
-    packed file may become. What looks wrong stands in ``notices``.
+    packed file may become (None: :func:`~thermogear.measured.options.decoded_limit` of its
+    size). What looks wrong stands in ``notices``.
 
     Raises InputError (one line) for a file that cannot be read.
     """
@@ -94,6 +95,7 @@ def read_record(
         raise InputError("file", str(file), why="it is a directory", fix="name a file in it")
     if not path.is_file():
         raise InputError("file", str(file), why="there is no such file")
-    options = ReadOptions(decimal, tuple(str(c) for c in channels), int(limit))
+    most = decoded_limit(path.stat().st_size) if limit is None else int(limit)
+    options = ReadOptions(decimal, tuple(str(c) for c in channels), most)
     record = READERS[format_of(path)](path, options)
     return examined(record.supplied(rate, unit, scale, tacho))

@@ -9,7 +9,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.bounds import FULL_SCALE, RATE
 from thermogear.base.errors import InputError, nearest
+from thermogear.measured.options import place_of
 from thermogear.measured.units import factor_of, kind_of, known_unit
 
 Floats = NDArray[np.float64]
@@ -107,9 +109,8 @@ class Record:
         lengths = {len(c) for c in self.channels}
         if len(lengths) != 1:
             raise InputError("record", f"channels of {sorted(lengths)} samples", allowed="one")
-        if self.rate is not None and not (np.isfinite(self.rate) and self.rate > 0):
-            raise InputError("rate", self.rate, allowed="> 0 samples per second")
         if self.rate is not None:
+            RATE.require("rate", self.rate)
             object.__setattr__(self, "rate", float(self.rate))
         if self.tacho is not None:
             self.channel(self.tacho)
@@ -133,11 +134,11 @@ class Record:
         """A channel by name, or by its number counted from 1."""
         if isinstance(name, str) and name in self.names:
             return self.channels[self.names.index(name)]
-        if isinstance(name, int) or (name.isdigit() and name not in self.names):
-            number = int(name)
-            if 1 <= number <= len(self.channels):
-                return self.channels[number - 1]
-            raise InputError("channel", number, allowed=f"1..{len(self.channels)}")
+        place = place_of(str(name), len(self.channels))
+        if place is not None:
+            return self.channels[place]
+        if isinstance(name, int) or name.isdigit():
+            raise InputError("channel", str(name)[:40], allowed=f"1..{len(self.channels)}")
         raise InputError("channel", repr(name), fix=nearest(name, self.names))
 
     def signals(self) -> tuple[Channel, ...]:
@@ -167,8 +168,7 @@ class Record:
         if tacho is not None:
             record = replace(record, tacho=record.channel(tacho).name)
         if rate is not None:
-            if not (np.isfinite(rate) and rate > 0):
-                raise InputError("rate", rate, allowed="> 0 samples per second")
+            RATE.require("rate", rate)
             if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3:
                 record = record.noting(
                     "important",
@@ -186,8 +186,7 @@ class Record:
                         contradicted.append(f"{c.name} ({c.unit})")
                     c = replace(c, unit=name or c.unit)
                     if scale is not None:
-                        if not (np.isfinite(scale) and scale != 0):
-                            raise InputError("scale", scale, allowed="a finite number, not 0")
+                        FULL_SCALE.require("scale", abs(scale))
                         c = replace(
                             c,
                             scale=c.scale * float(scale),

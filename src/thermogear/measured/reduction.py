@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import METHODS, Chain, Turning, reduced
@@ -140,8 +141,9 @@ def measure(
         raise InputError("harmonics, sidebands", f"{harmonics}, {sidebands}", allowed=">= 1, >= 0")
     if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
         raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
-    if pulses_per_turn is not None and not 0 < pulses_per_turn < np.inf:
-        raise InputError("pulses_per_turn", pulses_per_turn, allowed="> 0, finite")
+    if pulses_per_turn is not None:
+        PULSES.require("pulses_per_turn", pulses_per_turn)
+    require_teeth(teeth)
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
     start, table = _stretch(chosen, notices)
@@ -256,11 +258,18 @@ def _stretch(channels: list[Channel], notices: list[Notice]) -> tuple[int, Float
     return start, table
 
 
+def require_teeth(teeth: int | None) -> None:
+    """Refuse a number of ``teeth`` (None: unknown) that no gear has."""
+    if teeth is not None and not 1 <= teeth <= MOST_TEETH:
+        got = teeth if abs(teeth) < 10**12 else "a number of more than twelve digits"
+        raise InputError("teeth", got, allowed=f"1..{MOST_TEETH}")
+
+
 def _expected(record: Record, teeth: int | None, speed: float | None) -> float | None:
-    if teeth is not None and teeth < 1:
-        raise InputError("teeth", teeth, allowed=">= 1")
-    if speed is not None and not (np.isfinite(speed) and speed > 0):
-        raise InputError("speed", speed, allowed="> 0")
+    if speed is not None:
+        SPEED.require("speed", speed)
+        if speed == 0.0:
+            raise InputError("speed", "0 rad/s", why="a gear that stands still has no line")
     if record.rate is None or teeth is None or speed is None:
         return None
     return teeth * speed / (2.0 * np.pi) / record.rate

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,6 +12,10 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 Floats = NDArray[np.float64]
+
+IN_MEMORY = 128 << 20
+"""Bytes of a text's columns that are held; more of them go to disk."""
+_PIECE = 16 << 20
 
 
 class FileTable:
@@ -56,42 +61,88 @@ class FileTable:
         self._file.close()
 
 
-class ColumnStore:
-    """Appended tables, kept column by column; ``spill`` keeps them on disk.
+class _Unnamed:
+    """An unnamed file that lives as long as whoever reads from it."""
 
-    The unnamed files disappear with their arrays. In memory the peak is the data once plus one
-    column; spilled it is one block of rows.
+    def __init__(self) -> None:
+        self.file: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 (closed below)
+
+    def __del__(self) -> None:
+        self.file.close()
+
+
+class StoredColumn:
+    """One column of rows that lie on disk block by block, read slice by slice.
+
+    ``firsts``: the first row of each block, and the count of all rows; ``offsets``: where this
+    column's numbers of each block begin.
     """
 
-    def __init__(self, columns: int, spill: bool) -> None:
+    def __init__(self, where: _Unnamed, *, firsts: list[int], offsets: list[int]) -> None:
+        self._where, self._firsts, self._offsets = where, firsts, offsets
+
+    def __len__(self) -> int:
+        return self._firsts[-1]
+
+    def __getitem__(self, key: slice) -> Floats:
+        start, stop, _ = key.indices(len(self))
+        parts = [np.empty(0)]
+        block = bisect.bisect_right(self._firsts, start) - 1
+        while start < stop:
+            end = min(stop, self._firsts[block + 1])
+            self._where.file.seek(self._offsets[block] + 8 * (start - self._firsts[block]))
+            parts.append(np.frombuffer(self._where.file.read(8 * (end - start))))
+            start, block = end, block + 1
+        return np.concatenate(parts)
+
+
+class ColumnStore:
+    """Appended tables, kept column by column; beyond ``IN_MEMORY`` bytes they go to disk.
+
+    In memory the peak is the data once plus one column, on disk a few blocks of rows.
+    """
+
+    def __init__(self, columns: int) -> None:
         self.rows = 0
         self._parts: list[list[Floats]] = [[] for _ in range(columns)]
-        self._files: list[IO[bytes]] = [
-            # the arrays own these files: closed when they go
-            tempfile.TemporaryFile()  # noqa: SIM115
-            for _ in range(columns if spill else 0)
-        ]
+        self._where: _Unnamed | None = None
+        self._firsts, self._starts = [0], [0]
 
     def append(self, table: Floats) -> None:
         """Rows of all columns."""
         self.rows += table.shape[0]
-        for place in range(table.shape[1]):
-            column = np.ascontiguousarray(table[:, place], dtype=float)
-            if self._files:
-                self._files[place].write(column.tobytes())
-            else:
-                self._parts[place].append(column)
+        for place, part in enumerate(self._parts):
+            part.append(np.ascontiguousarray(table[:, place], dtype=float))
+        held = 8 * (self.rows - self._firsts[-1]) * len(self._parts)
+        if held > (IN_MEMORY if self._where is None else _PIECE):
+            self._spill()
 
-    def columns(self) -> Sequence[Floats | FileTable]:
+    def _spill(self) -> None:
+        self._where = self._where or _Unnamed()
+        for part in self._parts:
+            for piece in part:
+                self._where.file.write(piece.tobytes())
+            part.clear()
+        self._firsts.append(self.rows)
+        self._starts.append(self._where.file.tell())
+
+    def columns(self) -> Sequence[Floats | StoredColumn]:
         """The columns; the store is empty afterwards."""
         if self.rows == 0:
             return []
-        if self._files:
-            found = []
-            for file in self._files:
-                file.flush()
-                found.append(FileTable(file, np.float64, offset=0, frames=self.rows))
-            return found
+        if self._where is not None:
+            if self._firsts[-1] < self.rows:
+                self._spill()
+            self._where.file.flush()
+            sizes = [8 * int(n) for n in np.diff(self._firsts)]
+            return [
+                StoredColumn(
+                    self._where,
+                    firsts=self._firsts,
+                    offsets=[s + place * n for s, n in zip(self._starts, sizes, strict=False)],
+                )
+                for place in range(len(self._parts))
+            ]
         result = []
         for parts in self._parts:
             result.append(np.concatenate(parts))

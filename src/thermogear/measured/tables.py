@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.options import ReadOptions, place_of, refused
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
+    MOST_STAMPS,
+    is_possible_rate,
     is_rate_name,
     is_tacho_name,
     is_time_name,
@@ -23,6 +25,8 @@ from thermogear.measured.traps import (
 from thermogear.measured.units import factor_of, kind_of, unit
 
 MOST_CHANNELS = 512
+MOST_IN_ALL = 4096
+"""Channels of one table, and of a whole file."""
 SHORTEST = 8  # samples: shorter arrays are parameters, not records
 
 
@@ -128,15 +132,21 @@ def record_of(
         shown = ", ".join(aside[:5]) + (", ..." if len(aside) > 5 else "")
         notes.append(Notice("warning", f"shorter than {longest} samples, left aside: {shown}"))
     channels = [c for c in channels if len(c) == longest]
+    if len(channels) > MOST_IN_ALL:
+        raise refused(path, kind, f"{len(channels)} channels; allowed 1..{MOST_IN_ALL}")
     channels, doubled = without_doubles(channels, path.name)
     if options.keep:
         channels = _kept(channels, options.keep)
     start = 0.0
     for name, said, time in times:
-        if time.shape[0] != longest or longest > (1 << 26):
+        if time.shape[0] != longest:
             continue
-        t = np.asarray(time.data[0:longest], dtype=float)
-        base = read_time(name, said, t, set())
+        t = np.asarray(time.data[0 : min(longest, MOST_STAMPS)], dtype=float)
+        if t.size < longest:
+            notes.append(
+                Notice("info", f"the rate is taken from the first {t.size} samples of {name!r}")
+            )
+        base = read_time(name, said, t)
         notes += base.notices
         start = base.start
         if base.rate is not None:
@@ -151,6 +161,10 @@ def record_of(
 
 def agreed(rates: list[tuple[float, str]], notes: list[Notice]) -> tuple[float | None, str]:
     """The one rate that every place in the file agrees on, else None with a notice."""
+    for rate, origin in rates:
+        if not is_possible_rate(rate):
+            notes.append(Notice("important", f"{origin} says {rate:g} samples/s: it is not used"))
+    rates = [one for one in rates if is_possible_rate(one[0])]
     if not rates:
         return None, ""
     rate, origin = rates[0]
@@ -183,8 +197,8 @@ def _kept(channels: list[Channel], keep: tuple[str, ...]) -> list[Channel]:
     for key in keep:
         if key in names:
             wanted.add(names.index(key))
-        elif key.isdigit() and 1 <= int(key) <= len(names):
-            wanted.add(int(key) - 1)
+        elif (place := place_of(key, len(names))) is not None:
+            wanted.add(place)
         else:
             raise InputError("channel", repr(key), fix=nearest(key, names))
     special = {i for i, name in enumerate(names) if is_tacho_name(name)}

@@ -6,7 +6,6 @@ import gzip
 import io
 import zlib
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from pathlib import Path
 from typing import IO
 
@@ -15,10 +14,11 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.measured.layout import MISSING, NUMBER, Layout, cells_of, find_layout
-from thermogear.measured.options import ReadOptions, refused, too_large
-from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.store import ColumnStore, FileTable
+from thermogear.measured.options import ReadOptions, place_of, refused, too_large
+from thermogear.measured.record import BLOCK, Channel, Notice, Record
+from thermogear.measured.store import ColumnStore, StoredColumn
 from thermogear.measured.traps import (
+    MOST_STAMPS,
     is_tacho_name,
     is_time_name,
     read_time,
@@ -29,6 +29,7 @@ Floats = NDArray[np.float64]
 
 _HEAD = 1 << 16
 _LINES = 1 << 15  # rows parsed at once
+_CHARACTERS = 1 << 24  # of the rows parsed at once
 _LONGEST = 1 << 20  # characters of one line
 
 
@@ -40,8 +41,7 @@ def read_text(path: Path, options: ReadOptions) -> Record:
     layout = find_layout(head, path, options)
     layout.notices[:0] = notes
     keep = _kept(layout, options)
-    size = path.stat().st_size * (8 if path.suffix == ".gz" else 1)
-    store = ColumnStore(len(keep), spill=size > (128 << 20))
+    store = ColumnStore(len(keep))
     with _open(path, encoding, options) as lines:
         for _ in range(layout.skip):
             next(lines, None)
@@ -137,8 +137,8 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
     for key in options.keep:
         if key in layout.names:
             wanted.add(layout.names.index(key))
-        elif key.isdigit() and 1 <= int(key) <= layout.columns:
-            wanted.add(int(key) - 1)
+        elif (place := place_of(key, layout.columns)) is not None:
+            wanted.add(place)
         else:
             raise InputError("channel", repr(key), fix=nearest(key, layout.names))
     special = {i for i, n in enumerate(layout.names) if is_time_name(n) or is_tacho_name(n)}
@@ -153,10 +153,9 @@ def _tables(lines: io.TextIOWrapper, layout: Layout, path: Path) -> Iterator[Flo
     number = layout.skip
     try:
         while True:
-            block = list(islice(lines, _LINES))
+            block, last = _block(lines, path, number)
             if not block:
                 return
-            last = len(block) < _LINES
             if last:
                 _cut_end(block, layout)
             if block:
@@ -167,6 +166,23 @@ def _tables(lines: io.TextIOWrapper, layout: Layout, path: Path) -> Iterator[Flo
             Notice("important", f"the packed file ends early ({type(error).__name__})")
         )
         raise refused(path, "text", error) from error
+
+
+def _block(lines: io.TextIOWrapper, path: Path, number: int) -> tuple[list[str], bool]:
+    """The next rows, and whether the file ends with them."""
+    block: list[str] = []
+    size = 0
+    while len(block) < _LINES and size < _CHARACTERS:
+        line = lines.readline(_LONGEST)
+        if not line:
+            return block, True
+        if len(line) == _LONGEST and not line.endswith("\n"):
+            raise refused(
+                path, "text", f"line {number + len(block) + 1} is longer than {_LONGEST} characters"
+            )
+        block.append(line)
+        size += len(line)
+    return block, False
 
 
 def _cut_end(block: list[str], layout: Layout) -> None:
@@ -242,7 +258,7 @@ def _value(cell: str) -> float:
 
 
 def _record(
-    path: Path, layout: Layout, keep: list[int], columns: Sequence[Floats | FileTable]
+    path: Path, layout: Layout, keep: list[int], columns: Sequence[Floats | StoredColumn]
 ) -> Record:
     notes = list(layout.notices)
     names = [layout.names[i] for i in keep]
@@ -250,17 +266,15 @@ def _record(
     rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
     times = [i for i, name in enumerate(names) if is_time_name(name)]
     for place in times[:1]:
-        t = np.asarray(columns[place][:])
-        same = {
-            int(i) + 1
-            for i in np.flatnonzero(np.diff(t) == 0.0)
-            if all(np.ptp(np.asarray(c[int(i) : int(i) + 2])) == 0.0 for c in columns)
-        }
-        base = read_time(names[place], units[place], t, same)
+        t = np.asarray(columns[place][:MOST_STAMPS])
+        if t.size < len(columns[place]):
+            text = f"the rate is taken from the first {t.size} rows of {names[place]!r}"
+            notes.append(Notice("info", text))
+        base = read_time(names[place], units[place], t, repeats=_repeats(columns, t.size))
         notes += base.notices
         start = base.start
         if base.drop:
-            columns = [np.delete(np.asarray(c[:]), base.drop) for c in columns]
+            columns = _without(columns, base.drop)
         if base.rate is not None and rate is not None and abs(base.rate / rate - 1) > 1e-3:
             notes.append(
                 Notice(
@@ -282,3 +296,27 @@ def _record(
     channels, doubled = without_doubles(channels, path.name)
     tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
     return Record(tuple(channels), path.name, rate, origin, start, tacho, (*notes, *doubled))
+
+
+def _repeats(columns: Sequence[Floats | StoredColumn], count: int) -> NDArray[np.bool_]:
+    """Of each of the first ``count`` rows, whether its every value repeats the row before."""
+    same = np.ones(count, dtype=np.bool_)
+    same[0] = False
+    for column in columns:
+        for start in range(0, count - 1, BLOCK):
+            part = column[start : min(start + BLOCK, count - 1) + 1]
+            same[start + 1 : start + part.size] &= part[1:] == part[:-1]
+    return same
+
+
+def _without(
+    columns: Sequence[Floats | StoredColumn], drop: Sequence[int]
+) -> Sequence[Floats | StoredColumn]:
+    """The columns without the rows ``drop``."""
+    kept = ColumnStore(len(columns))
+    gone = np.asarray(drop)
+    for start in range(0, len(columns[0]), BLOCK):
+        table = np.column_stack([c[start : start + BLOCK] for c in columns])
+        inside = gone[(gone >= start) & (gone < start + BLOCK)] - start
+        kept.append(np.delete(table, inside, axis=0))
+    return kept.columns()

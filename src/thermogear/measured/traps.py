@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.bounds import RATE
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.units import factor_of, kind_of, unit
@@ -23,28 +24,39 @@ _RATE = re.compile(
 )
 
 
+_LONGEST = 200  # characters of a name that are looked at and kept
+
 HUGE = 1e100
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
 
 
+MOST_STAMPS = 1 << 23
+"""Rows of a time column that its rate is taken from."""
+
+
 def is_time_name(name: str) -> bool:
     """Whether a column's name (without its unit) says time."""
-    return bool(_TIME.match(name.strip()))
+    return bool(_TIME.match(name.strip()[:_LONGEST]))
 
 
 def is_tacho_name(name: str) -> bool:
     """Whether a column's name says tacho or keyphasor."""
-    return bool(_TACHO.search(name))
+    return bool(_TACHO.search(name[:_LONGEST]))
 
 
 def is_rate_name(name: str) -> bool:
     """Whether a variable's name says sampling rate."""
-    return bool(_RATE.match(name.strip()))
+    return bool(_RATE.match(name.strip()[:_LONGEST]))
+
+
+def is_possible_rate(rate: float) -> bool:
+    """Whether a rate [samples/s] that a file states can be one."""
+    return RATE.least <= rate <= RATE.most
 
 
 def split_unit(name: str) -> tuple[str, str | None]:
     """A header cell as (name, known unit): "a1 [g]", "Time(ms)", "acc / m/s²", "加速度(m/s²)"."""
-    text = name.strip().strip("\"'").strip()
+    text = name.strip()[:_LONGEST].strip("\"'").strip()
     for pattern in (r"^(.*?)\s*[\[(（{]([^\])）}]*)[\])）}]\s*$", r"^(.*?)\s+(?:/|in)\s+(.+)$"):
         found = re.match(pattern, text)
         if found and found.group(1).strip():
@@ -65,11 +77,13 @@ class TimeBase:
     notices: tuple[Notice, ...] = ()
 
 
-def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int]) -> TimeBase:
+def read_time(
+    name: str, unit_name: str | None, t: Floats, *, repeats: NDArray[np.bool_] | None = None
+) -> TimeBase:
     """Rate and start from a time column, or why it gives none.
 
-    ``t`` in the column's own unit; ``rows_equal``: rows whose every value repeats the row
-    before. A time without a unit gives no rate. A doubled stamp on a row that is doubled as a
+    ``t`` in the column's own unit; ``repeats``: of each row, whether its every value repeats the
+    row before. A time without a unit gives no rate. A doubled stamp on a row that is doubled as a
     whole is one row written twice and is dropped; any other irregularity gives no rate.
     """
     notes: list[Notice] = []
@@ -79,13 +93,22 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
             Notice("important", f"{label} states no unit: no rate is taken from it (give --rate)")
         )
         return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
-    seconds = t * factor_of(unit_name)
+    with np.errstate(over="ignore"):
+        seconds = t * factor_of(unit_name)
     if t.size < 3 or not np.all(np.isfinite(seconds)):
         notes.append(Notice("important", f"{label} holds gaps: no rate is taken from it"))
         return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
+    what = ""
+    if np.max(np.abs(seconds)) > HUGE:  # their differences would overflow
+        what = f"holds stamps up to {np.max(np.abs(seconds)):.3g} s"
+    elif np.all(seconds == seconds[0]):
+        what = "stands still"
+    if what:
+        notes.append(Notice("important", f"{label} {what}: no rate is taken from it (give --rate)"))
+        return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
     steps = np.diff(seconds)
-    twice = {int(i) + 1 for i in np.flatnonzero(steps == 0.0)}
-    drop = tuple(sorted(twice & rows_equal))
+    twice = np.flatnonzero(steps == 0.0) + 1
+    drop = tuple(int(i) for i in twice[repeats[twice]]) if repeats is not None else ()
     if drop:
         keep = np.ones(seconds.size, bool)
         keep[list(drop)] = False
@@ -98,12 +121,17 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
                 "the repetition dropped",
             )
         )
-    mean = (seconds[-1] - seconds[0]) / (seconds.size - 1) if seconds.size > 1 else 0.0
-    if mean <= 0 or np.any(steps < 0):
+    mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
+    if mean <= 0.0 or np.any(steps < 0):
         place = int(np.argmax(steps < 0)) + 2
         notes.append(
             Notice("important", f"{label} does not rise (row {place}): no rate is taken from it")
         )
+        return TimeBase(
+            rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
+        )
+    if not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
+        notes.append(Notice("important", f"{label}: steps of {mean:.3g} s give no rate"))
         return TimeBase(
             rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
         )
@@ -130,7 +158,7 @@ def read_time(name: str, unit_name: str | None, t: Floats, rows_equal: set[int])
     if unit_name != "s":
         notes.append(Notice("info", f"{label} is in {unit_name}"))
     return TimeBase(
-        rate=float(1.0 / mean),
+        rate=1.0 / mean,
         start=float(seconds[0]),
         origin=label,
         drop=drop,
@@ -157,9 +185,11 @@ def health(channel: Channel) -> Health:
     low, high = np.inf, -np.inf
     for block in channel.blocks():
         good = np.isfinite(block)
-        bad = np.flatnonzero(~good)
-        missing += bad.size
-        if bad.size:
+        values = block
+        if not good.all():
+            bad = np.flatnonzero(~good)
+            missing += bad.size
+            values = block[good]
             edges = np.flatnonzero(np.diff(bad) > 1)
             firsts = bad[np.concatenate([[0], edges + 1])]
             lasts = bad[np.concatenate([edges, [bad.size - 1]])]
@@ -170,7 +200,6 @@ def health(channel: Channel) -> Health:
             gap = int(runs[-1]) if lasts[-1] == block.size - 1 else 0
         else:
             gap = 0
-        values = block[good]
         if values.size:
             count += values.size
             with np.errstate(over="ignore", invalid="ignore"):
@@ -224,12 +253,14 @@ def without_doubles(
     """
     notes: list[Notice] = []
     kept: list[Channel] = []
+    places: dict[str, int] = {}
+    numbers: dict[str, int] = {}
     for channel in channels:
-        twins = [i for i, c in enumerate(kept) if c.name == channel.name]
-        if not twins:
+        if channel.name not in places:
+            places[channel.name] = len(kept)
             kept.append(channel)
             continue
-        place = twins[0]
+        place = places[channel.name]
         first = kept[place]
         if health(first).zeros:
             kept[place] = channel
@@ -251,7 +282,10 @@ def without_doubles(
         elif len(first) == len(channel) and _same(first, channel):
             notes.append(Notice("info", f"{channel.name!r} is stored twice, the same; one is kept"))
         else:
-            number = 1 + sum(c.name.startswith(f"{channel.name} (") for c in kept) + 1
+            number = numbers[channel.name] = numbers.get(channel.name, 1) + 1
+            while f"{channel.name} ({number})" in places:
+                number += 1
+            places[f"{channel.name} ({number})"] = len(kept)
             kept.append(replace(channel, name=f"{channel.name} ({number})"))
             notes.append(
                 Notice(

@@ -76,6 +76,7 @@ _SPELLINGS = {
     "°c": "degC",
     "deg c": "degC",
 }
+_LONGEST = 100  # characters of a text that may be a unit
 _SIGNS = str.maketrans(
     {"²": "2", "µ": "u", "μ": "u", "−": "-", "\u00a0": " ", "⁻": "-", "¹": "1", "㎡": "2"}
 )
@@ -83,7 +84,7 @@ _SIGNS = str.maketrans(
 
 def unit(text: str) -> str | None:
     """The known name of a unit as written in a file ("m/s²", "[g]", "G", "msec"), else None."""
-    bare = text.strip().strip("[](){}").strip().translate(_SIGNS)
+    bare = text.strip()[:_LONGEST].strip("[](){}").strip().translate(_SIGNS)
     if bare in _TABLE:
         return bare
     low = re.sub(r"\s+", " ", bare.lower())

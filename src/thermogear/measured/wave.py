@@ -11,7 +11,7 @@ import numpy as np
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.store import FileTable
-from thermogear.measured.tables import Column
+from thermogear.measured.tables import MOST_CHANNELS, Column
 
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 
@@ -67,6 +67,8 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
     code, channels, rate, _, block, bits = struct.unpack("<HHIIHH", form[:16])
     if code == _EXTENSIBLE and len(form) >= 26:
         code = struct.unpack("<H", form[24:26])[0]
+    if channels > MOST_CHANNELS:
+        raise refused(path, "WAV", f"{channels} channels; allowed 1..{MOST_CHANNELS}")
     if channels == 0 or rate == 0 or block == 0 or block != channels * ((bits + 7) // 8):
         raise refused(
             path, "WAV", f"{channels} channels, {rate} samples/s, {bits} bits, blocks of {block}"

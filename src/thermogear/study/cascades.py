@@ -11,6 +11,7 @@ import xarray as xr
 
 from thermogear.analysis.continuation import (
     FLIP,
+    PITCHFORK,
     Bifurcation,
     Branch,
     continuation,
@@ -56,8 +57,8 @@ def branch_results(
 ) -> Found:
     """Follow the subject's orbit in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
 
-    ``start`` a value of the parameter to begin at (default: the present one). Folds, flips and
-    grazing are located; Ctrl+C keeps the branches walked so far.
+    ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
+    pitchforks and grazing are located; Ctrl+C keeps the branches walked so far.
     """
     models, present = family(subject, parameter)
     begin = present if start is None else start
@@ -66,7 +67,7 @@ def branch_results(
     orbit, _ = orbit_of(subject, period, transient=transient, model=models(begin))
     legs = [Leg(_walk(orbit, parameter, to, models, begin, "branch", progress))]
     cut = legs[0].branch.ended == INTERRUPTED
-    waiting = [(flip, 1) for flip in legs[0].branch.of_kind(FLIP)]
+    waiting = [(flip, 1) for flip in _forks(legs[0].branch)]
     try:
         while waiting and not cut:
             flip, level = waiting.pop(0)
@@ -75,10 +76,10 @@ def branch_results(
             doubled = switch_branch(flip, models)
             # a doubled orbit lives on one side of its flip: to the end there, or to the start
             forth = (doubled.value - flip.value) * (to - flip.value) >= 0.0
-            end = to if forth else begin
+            end, behind = (to, begin) if forth else (begin, to)
             if end == doubled.value:
                 continue
-            stage = f"period {2 * flip.period}"
+            stage = f"period {doubled.orbit.period}"
             branch = _walk(
                 doubled.orbit,
                 parameter,
@@ -88,10 +89,11 @@ def branch_results(
                 stage,
                 progress,
                 doubled.direction,
+                back_to=behind,
             )
             legs.append(Leg(branch, level))
             cut = branch.ended == INTERRUPTED
-            waiting += [(one, level + 1) for one in branch.of_kind(FLIP)]
+            waiting += [(one, level + 1) for one in _forks(branch)]
     except KeyboardInterrupt:
         cut = True
     summary = {
@@ -110,6 +112,11 @@ def branch_results(
     return found("branch", groups, summary, cut)
 
 
+def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
+    """Where other branches begin: period doublings, and pitchforks of symmetric orbits."""
+    return tuple(b for b in branch.bifurcations if b.kind in (FLIP, PITCHFORK))
+
+
 def _walk(
     orbit: Orbit,
     parameter: str,
@@ -120,6 +127,7 @@ def _walk(
     progress: Progress,
     direction: Any = None,
     stop_at: str | None = None,
+    back_to: float | None = None,
 ) -> Branch:
     span = abs(to - begin) or 1.0
 
@@ -133,6 +141,7 @@ def _walk(
         to,
         family=models,
         start=begin,
+        back_to=back_to,
         direction=direction,
         stop_at=stop_at,
         progress=told,
@@ -341,6 +350,7 @@ def _entry(
                 "value": b.value,
                 "state": [float(c) for c in b.state],
                 "multipliers": complex_rows(b.multipliers),
+                "note": b.note,
             }
             for b in values
         ],
@@ -368,12 +378,13 @@ def _cascade(
     """Walk one sweep, filling ``legs`` and flips as they come; whether Ctrl+C cut it short."""
     models, _ = family(subject, sweep.parameter)
     orbit, begin = _mother(subject, sweep, models)
-    direction = None
+    direction, first = None, begin
     while True:
         name = f"{stage}: period {orbit.period}"
         branch = _walk(
-            orbit, sweep.parameter, sweep.last, models, begin, name, progress, direction, FLIP
-        )
+            orbit, sweep.parameter, sweep.last, models, begin, name, progress, direction, FLIP,
+            back_to=first,
+        )  # fmt: skip
         legs.append(Leg(branch, len(legs)))
         if branch.ended == INTERRUPTED:
             return True

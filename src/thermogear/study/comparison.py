@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from thermogear.study.case import Case
 
 _IMPLAUSIBLE_G = 50.0
+_MOST_RUNS = 10_000
 _DEEPEST_SUBHARMONIC = 16
 
 
@@ -142,10 +143,14 @@ def compare(
 
     Raises InputError when no speed is common to both sides, or an uncertainty is impossible.
     """
-    if u_data is not None and not 0.0 <= u_data < np.inf:
-        raise InputError("u_data", f"{100 * u_data:g} %", allowed=">= 0 %, finite")
-    if tolerances and samples < 2:
-        raise InputError("samples", samples, allowed=">= 2", why="one run has no scatter")
+    if u_data is not None and not 0.0 <= u_data <= 10.0:
+        raise InputError("u_data", f"{100 * u_data:g} %", allowed="0..1000 %")
+    for name, sigma in (tolerances or {}).items():
+        if not 0.0 <= sigma <= 1.0:
+            raise InputError(f"tolerance of {name}", f"{100 * sigma:g} %", allowed="0..100 %")
+    if tolerances and not 2 <= samples <= _MOST_RUNS:
+        why = "one run has no scatter" if samples < 2 else None
+        raise InputError("samples", samples, allowed=f"2..{_MOST_RUNS}", why=why)
     if measured is None:
         if isinstance(simulated, str) and simulated in PUBLISHED:
             published = PUBLISHED[simulated]
@@ -240,12 +245,11 @@ def _simulated(
         path = Path(simulated)
         stored = path / "results.nc" if path.is_dir() else path
         if stored.suffix == ".nc":
-            import xarray as xr
+            from thermogear.base.netcdf import read_tree
 
             if not stored.is_file():
                 raise InputError("simulated", str(simulated), why="there are no results")
-            with xr.open_datatree(stored, engine="h5netcdf") as tree:
-                return CaseLines(tree_lines(tree.load()), u_num or 0.0, {}, ())
+            return CaseLines(tree_lines(read_tree(stored)), u_num or 0.0, {}, ())
     if hasattr(simulated, "children"):
         return CaseLines(tree_lines(simulated), u_num or 0.0, {}, ())
     return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]

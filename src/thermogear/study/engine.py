@@ -22,6 +22,7 @@ from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
+from thermogear.base.vocabulary import label_words
 from thermogear.dynamics.integrate import simulate
 from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.study.results import write_results, write_summary
@@ -300,6 +301,8 @@ def lyapunov_results(
     rate, period = subject.scale.rate, float(subject.model.lanes().period[0])
     dimension = 1.0 + value / abs(total - value) if value > 0.0 else 0.0
     half = values.size // 2
+    ran = discard + values.size * batch_periods
+    chaos = label_words("chaotic", followed=ran, starts=1)
     sure = value > 4.0 * error and values[:half].mean() > 0.0 and values[half:].mean() > 0.0
     data = labelled(
         {
@@ -323,7 +326,7 @@ def lyapunov_results(
         "batches": int(values.size),
         "batch_periods": batch_periods,
         "discarded": discard,
-        "verdict": "chaotic" if sure else "not chaotic" if value < -4.0 * error else "undecided",
+        "verdict": chaos if sure else "not chaotic" if value < -4.0 * error else "undecided",
         "state": [float(c) for c in state],
         "interrupted": cut,
         "notices": [],

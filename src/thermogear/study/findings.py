@@ -314,7 +314,7 @@ def _motion(motion: xr.Dataset) -> list[Notice]:
             _notice(
                 "warning",
                 f"{names['undecided']} motions are undecided: they neither close nor are they "
-                "provably chaotic; the reason stands with each.",
+                "chaotic to the end; the reason stands with each.",
             )
         )
     if "back_impacts" in motion:
@@ -518,7 +518,13 @@ FIGURES = (
     "natural_frequency",
     *DIMENSIONLESS[1:],
 )
-MOTION_FIGURES = ("peak_to_peak_displacement", "half_order_amplitude", "contact_loss_share")
+MOTION_FIGURES = (
+    "peak_to_peak_displacement",
+    "half_order_amplitude",
+    "contact_loss_share",
+    "followed_periods",
+    "followed_starts",
+)
 
 
 def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
@@ -578,6 +584,8 @@ def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
                 "unit": str(here["value_unit"].values),
                 "label": str(here["label"].values),
                 "reason": str(here["label_reason"].values),
+                "followed_periods": int(here["followed_periods"]),
+                "followed_starts": int(here["followed_starts"]),
                 "expected": str(here["expected"].values),
                 "half_order_amplitude": _number(here["half_order_amplitude"]),
             }

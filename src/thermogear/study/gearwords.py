@@ -432,7 +432,8 @@ class Tabulated:
         at = np.asarray(points, dtype=float)[:, 0]
         place = np.clip(np.searchsorted(self.values, at, side="right") - 1, 0, len(self.values) - 2)
         low, high = self.values[place], self.values[place + 1]
-        weight = np.clip((at - low) / (high - low), 0.0, 1.0)
+        # a little beyond the ends too, so that it can be differentiated there
+        weight = np.clip((at - low) / (high - low), -0.01, 1.01)
         a, b = self.points.take(place), self.points.take(place + 1)
 
         def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:

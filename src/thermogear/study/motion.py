@@ -119,8 +119,14 @@ PROOFS = (
     "multiplier_modulus",
     "lyapunov_exponent",
     "lyapunov_error",
+    "followed_periods",
+    "followed_starts",
 )
-"""What proves a label: n and the largest Floquet multiplier, or lambda_1 with its error."""
+"""What a label rests on: n and the largest Floquet multiplier, or lambda_1 with its error and for
+how many periods chaos was followed; and how many starts that differ by rounding share it."""
+
+
+WHOLE = ("orbit_period", "followed_periods", "followed_starts")
 
 
 def proofs(found: Sequence[Label]) -> dict[str, NDArray[np.generic]]:
@@ -135,10 +141,11 @@ def proofs(found: Sequence[Label]) -> dict[str, NDArray[np.generic]]:
         rate = (np.nan, np.nan)
         if one.lyapunov is not None:
             rate = (one.lyapunov.value, one.lyapunov.error)
-        rows.append((one.period, mu.real, mu.imag, abs(mu), *rate))
+        rows.append((one.period, mu.real, mu.imag, abs(mu), *rate, one.followed, one.starts))
     columns = np.array(rows, dtype=float).reshape(-1, len(PROOFS)).T
     values: dict[str, NDArray[np.generic]] = dict(zip(PROOFS, columns, strict=True))
-    values["orbit_period"] = columns[0].astype(np.int32)
+    for name in WHOLE:
+        values[name] = values[name].astype(np.int32)
     return values
 
 
@@ -184,7 +191,7 @@ def _missing(name: str) -> object:
         return "jammed"
     if name == "label_reason":
         return "the half backlash is used up: no clearance is left to move in"
-    if name == "orbit_period":
+    if name in WHOLE:
         return 0
     return STATUS.index("jammed") if name == "status" else np.nan
 

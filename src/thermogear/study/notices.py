@@ -14,8 +14,8 @@ from thermogear.base.units import RPM
 from thermogear.study.case import GearCase
 
 NO_BACK_IMPACT = (
-    "no orbit hits the back side anywhere in this range: the half backlash b' has no effect here "
-    "but as a shift of x by b'"
+    "the teeth never reach the back flanks anywhere in this range: a wider or narrower gap would "
+    "change nothing here but the place x is counted from"
 )
 
 
@@ -31,6 +31,40 @@ def back_side_notice(data: xr.Dataset) -> list[str]:
     return []
 
 
+def contact_notices(data: xr.Dataset) -> list[str]:
+    """Over which speeds of a run-up contact is lost, and where the back flanks are hit."""
+    if "contact_loss_share" not in data or "pinion_speed" not in data["label"].dims:
+        return []
+    moving = data["status"].values == 0
+    speeds = data["pinion_speed"].values / RPM
+    axis = data["label"].dims.index("pinion_speed")
+    others = tuple(i for i in range(data["label"].ndim) if i != axis)
+    lost = moving & (data["contact_loss_share"].values > 0.0)
+    # of a motion that is not periodic the impacts are not counted; its least force tells
+    hit = moving & ((data["back_impacts"].values > 0) | (data["mesh_force_min"].values < 0.0))
+    found = []
+    for flags, yes, no in (
+        (lost, "contact is lost", "contact is never lost at these speeds"),
+        (hit, "the back flanks are hit", ""),
+    ):
+        here = np.asarray(flags.any(axis=others))
+        if here.any():
+            found.append(f"{yes} at {_stretches(speeds, here)} rpm (in any state, up or down)")
+        elif no:
+            found.append(no)
+    return found
+
+
+def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
+    """The stretches of ascending values on which a flag holds, in words."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
+    words = []
+    for first, last in edges.reshape(-1, 2):
+        low, high = (f"{values[i]:.4g}" for i in (first, last - 1))
+        words.append(low if low == high else f"{low} .. {high}")
+    return ", ".join(words)
+
+
 def _reach(values: NDArray[np.float64]) -> str:
     """Least and greatest, or the one there is."""
     low, high = (f"{v:.3f}" for v in (values.min(), values.max()))
@@ -39,7 +73,7 @@ def _reach(values: NDArray[np.float64]) -> str:
 
 def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
     """Notices as an attribute: the back side, and where the case's speeds lie."""
-    found = back_side_notice(data)
+    found = contact_notices(data) + back_side_notice(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)
     ratio = ratio[np.isfinite(ratio)]
     frequency = data["mesh_frequency"].values if "mesh_frequency" in data else np.empty(0)

@@ -1,29 +1,29 @@
-"""Stored results: one netCDF file of labelled groups, written whole or not at all."""
+"""Stored results: directories of ours, and files that are written whole or not at all."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import beside, put, require_directory
+from thermogear.base.files import LOCK, held, put, require_directory, together
+from thermogear.base.netcdf import write_tree
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"
 MARK = ".thermogear"
 """Stands in every directory of ours from before the first result is written."""
+_MARKED = "results of thermogear\n"
 
 
 def write_results(tree: xr.DataTree, directory: Path, name: str = RESULTS) -> Path:
-    """Write ``tree`` as ``directory/name`` (netCDF-4); an older file stays until then."""
-    path = directory / name
-    with beside(path) as temporary:
-        tree.to_netcdf(temporary, engine="h5netcdf")
-    return path
+    """Write ``tree`` as ``directory/name`` with its seal; an older file stays until then."""
+    return write_tree(tree, directory / name)
 
 
 def write_summary(summary: Mapping[str, Any], directory: Path, name: str = SUMMARY) -> Path:
@@ -36,31 +36,41 @@ def json_text(summary: Mapping[str, Any]) -> str:
     return json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def claim_directory(directory: Path, ours: Sequence[str] = ()) -> None:
-    """Make ``directory`` ours: new, empty, or claimed earlier; else refuse it.
-
-    The mark is written at once, so that what an interrupted run leaves is still ours.
-    """
+def require_ours(directory: Path) -> None:
+    """Refuse a ``directory`` that is neither new, nor empty, nor of earlier results."""
     require_directory(directory)
-    foreign = directory.is_dir() and any(
-        not (ours and path.name.lstrip(".").startswith(tuple(ours))) for path in directory.iterdir()
-    )
-    if foreign and not is_ours(directory):
+    inside = {path.name for path in directory.iterdir()} if directory.is_dir() else set()
+    if inside - {LOCK} and not is_ours(directory):
         raise InputError(
             "output",
             str(directory),
             why="the directory holds files that are not results of thermogear",
             fix="name a new or an empty directory",
         )
+
+
+@contextmanager
+def claimed(directory: Path) -> Iterator[Path]:
+    """``directory`` for this process alone, and a folder whose files it gets at the end.
+
+    The directory is made if new; one that holds foreign files, or that another process writes
+    into, is refused with an InputError. Whatever is written to the folder yielded is put into
+    ``directory`` when the block ends: all of it, or after an error or Ctrl+C nothing.
+    """
+    require_ours(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    if not (directory / MARK).exists():
-        put(directory / MARK, "results of thermogear\n")
+    with held(directory):
+        require_ours(directory)  # it may have come while the lock did
+        if not (directory / MARK).is_file():
+            put(directory / MARK, _MARKED)
+        with together(directory) as folder:
+            yield folder
 
 
 def is_ours(directory: Path) -> bool:
     """Whether a run wrote here: its mark or its summary is there."""
     try:
-        if (directory / MARK).read_bytes().startswith(b"results of thermogear"):
+        if (directory / MARK).read_bytes().startswith(_MARKED.strip().encode()):
             return True
     except OSError:
         pass  # results of older versions carry no mark

@@ -11,7 +11,7 @@ from __future__ import annotations
 import datetime
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,7 @@ from thermogear.study.case import Case, DimensionlessCase, GearCase, load_exampl
 from thermogear.study.citations import citations
 from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
-from thermogear.study.results import claim_directory, write_results, write_summary
+from thermogear.study.results import claimed, write_results, write_summary
 from thermogear.study.thesis_cases import of_the_thesis
 
 
@@ -86,14 +86,20 @@ def run_to_directory(
     *,
     case_text: str | None = None,
     progress: Progress = silent,
+    also: Callable[[Path], None] = lambda folder: None,
 ) -> dict[str, Any]:
     """:func:`run`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
 
-    A directory that holds anything else than earlier results is refused before the run.
+    A directory that holds anything else than earlier results, or that another process writes
+    into, is refused before the run. ``also`` is called with the folder where the new results
+    stand before they are put into ``directory``; what it writes there is put with them: all, or
+    after an error or Ctrl+C nothing.
     """
-    claim_directory(directory)
-    tree = run(case if case_text is None else replace(case, text=case_text), progress=progress)
-    return save_results(tree, directory)
+    with claimed(directory) as folder:
+        tree = run(case if case_text is None else replace(case, text=case_text), progress=progress)
+        summary = _write(tree, folder)
+        also(folder)
+    return summary
 
 
 def save_results(results: xr.DataTree, directory: str | Path) -> dict[str, Any]:
@@ -108,10 +114,14 @@ def save_results(results: xr.DataTree, directory: str | Path) -> dict[str, Any]:
         "dimensionless",
     ):
         raise InputError("results", "no tree of a run", fix="give what run(case) returns")
-    claim_directory(directory)
+    with claimed(directory) as folder:
+        return _write(results, folder)
+
+
+def _write(results: xr.DataTree, folder: Path) -> dict[str, Any]:
     summary = findings.summary(results)
-    write_results(results, directory)
-    write_summary(summary, directory)
+    write_results(results, folder)
+    write_summary(summary, folder)
     return summary
 
 

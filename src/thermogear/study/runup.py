@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +12,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.analysis.bifurcations import FLIP, FOLD
 from thermogear.analysis.branches import with_branches
 from thermogear.analysis.family import axis_values
+from thermogear.analysis.follow import Leap, follow
 from thermogear.analysis.outcome import (
     outcome_arrays,
     outcome_variables,
@@ -22,11 +23,13 @@ from thermogear.analysis.outcome import (
     settle_with_status,
 )
 from thermogear.analysis.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
-from thermogear.analysis.settle import Rule
+from thermogear.analysis.section import ReturnMap
+from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.study.case import GearCase, gear_case
-from thermogear.study.gearwords import GearFamily, Tabulated
+from thermogear.study.gearwords import GearFamily, GearPoints, Tabulated
 from thermogear.study.notices import range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
 from thermogear.study.work import Report, carry_out
@@ -37,10 +40,22 @@ RUN_UP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 DIRECTIONS = (1, -1)
 BLOCK = 24
 KEEP = 16
-JUMP = 0.15
-"""A transmission error that changes by this share between two speeds has jumped ..."""
-STEEP = 3.0
-"""... when that is so many times what it changes by between the speeds beside."""
+LEAPS = 4
+"""Jumps kept of one step of speed."""
+LISTED_PERIOD = 4
+"""Jumps of longer orbits, which live in windows of chaos, are not listed."""
+LISTED = 1e-3
+"""A jump that changes the transmission error by less than this share is not listed."""
+APART = 1e-3
+"""Half backlashes between two motions that are not one."""
+LEAP_KINDS = (FOLD, FLIP)
+LEAP = {
+    "leap_fold": "speed at which the followed motion leaves its branch",
+    "leap_to": "speed just behind, where the new motion stands",
+    "leap_before": "transmission error before, peak to peak",
+    "leap_after": "transmission error after, peak to peak",
+    "leap_kind": "0: at a fold, 1: at a subcritical period doubling",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +80,7 @@ class RunUpPlan:
             "direction": len(DIRECTIONS),
             "pinion_speed": len(self.speeds),
             "section": KEEP,
+            "leap": LEAPS,
             "order": self.record.orders.size,
         }
 
@@ -106,6 +122,14 @@ class RunUpPlan:
             found[f"end_{name}"] = Variable(
                 dims, "float64", nan, {"long_name": "state carried on", "units": "1"}
             )
+        units = {"leap_fold": "rad/s", "leap_to": "rad/s", "leap_kind": "1"}
+        for name, words in LEAP.items():
+            attributes = {"long_name": words, "units": units.get(name, "m")}
+            found[name] = Variable((*dims, "leap"), "float64", nan, attributes)
+        found["left_early"] = Variable(
+            dims, "int8", 0,
+            {"long_name": "1: a run in these steps alone leaves its branch before this speed"},
+        )  # fmt: skip
         return found
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
@@ -150,13 +174,23 @@ class RunUpPlan:
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[1] == 0
-        speeds = np.array(self.speeds)[ranges_of(self, key)["pinion_speed"]]
+        every = np.array(self.speeds)
+        mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
+        speeds = every[mine]
         order = np.arange(speeds.size) if up else np.arange(speeds.size)[::-1]
-        points = self.family(key[0])(speeds[:, None])
-        state = np.array([self.case.simulation.initial_state])
+        # the speed before the block as well: the step from it belongs to the block
+        edge = mine[0] - 1 if up else mine[-1] + 1
+        wide = np.union1d(mine, [edge])[np.isin(np.union1d(mine, [edge]), np.arange(every.size))]
+        whole = self.family(key[0])(every[wide][:, None])
+        points = whole.take(np.searchsorted(wide, mine))
+        table = Tabulated(self.family(key[0]), every[wide], whole) if wide.size > 1 else None
+        run = _Run(self, table, alive)
         if before is not None:
             last = -1 if up else 0
-            state = np.array([[before["end_x"][0, 0, last], before["end_v"][0, 0, last]]])
+            run.at = float(every[edge])
+            run.state = np.array([before["end_x"][0, 0, last], before["end_v"][0, 0, last]])
+            calm = before["label"][0, 0, last] == PERIODIC
+            run.period = int(before["period"][0, 0, last]) if calm else 0
         found: Arrays = {}
         for name, variable in self.variables().items():
             inner = [self.sizes[d] for d in variable.dims[3:]]
@@ -165,17 +199,18 @@ class RunUpPlan:
         ends = np.full((speeds.size, 2), np.nan)
         for place in order:
             one = np.array([place])
-            settled = settle_with_status(
-                points.flat.take(one), points.status[one], state, self.rule, KEEP, alive
-            )
+            settled = run.step(points.take(one), float(speeds[place]))
             for name, row in outcome_arrays(settled, points.status[one]).items():
                 found[name][0, 0, place] = row[0]
             found["section_x"][0, 0, place] = settled.sections[0, :, 0]
             found["section_v"][0, 0, place] = settled.sections[0, :, 1]
             if bool(np.isfinite(settled.state).all()):
-                state = settled.state
-                ends[place] = state[0]
-            found["end_x"][0, 0, place], found["end_v"][0, 0, place] = state[0]
+                ends[place] = settled.state[0]
+            found["end_x"][0, 0, place], found["end_v"][0, 0, place] = run.state
+            found["left_early"][0, 0, place] = run.early
+            for number, leap in enumerate(run.leaps[:LEAPS]):
+                for name, value in leap.items():
+                    found[name][0, 0, place, number] = value
         for name, values in respond(points, ends, self.record, lines=True, alive=alive).items():
             found[name][0, 0] = values
         return found
@@ -188,8 +223,19 @@ class RunUpPlan:
             "pinion_teeth": self.case.pair.pinion.teeth,
             "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
         }
+        data = _with_jumps(data)
         data.attrs |= range_notices(self.case, data)
-        return _with_jumps(data)
+        early = np.argwhere(data["left_early"].values > 0)
+        if early.size:
+            told = json.loads(data.attrs["notices"])
+            speeds = np.unique(np.array(self.speeds)[early[:, 2]]) / RPM
+            told.append(
+                f"these steps alone would leave a motion before its fold: at "
+                f"{', '.join(f'{s:.4g}' for s in speeds)} rpm the state of the speed before leads "
+                "elsewhere; the run shown follows the motion in finer steps"
+            )
+            data.attrs["notices"] = json.dumps(told)
+        return data
 
 
 def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
@@ -233,68 +279,134 @@ def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     return data
 
 
+class _Run:
+    """A run through the speeds: where it stands, and how the last step went.
+
+    Between two speeds the orbit is followed slowly (:func:`follow`), so that the run leaves its
+    branch at the fold and not where a step happens to be long enough.
+    """
+
+    def __init__(self, plan: RunUpPlan, table: Tabulated | None, alive: Alive) -> None:
+        self.plan = plan
+        self.table = table
+        self.alive = alive
+        self.at = float("nan")
+        self.state = np.array(plan.case.simulation.initial_state, dtype=float)
+        self.period = 0
+        self.leaps: list[dict[str, float]] = []
+        self.early = 0
+
+    def step(self, point: GearPoints, speed: float) -> Settled:
+        """Settle at ``speed`` from where the last step ended."""
+        self.leaps, self.early = [], 0
+        plain = self._settled(point, self.state)
+        chosen = plain
+        if self.period > 0 and self.table is not None and point.status[0] == 0:
+            followed = follow(
+                self._single,
+                "pinion_speed",
+                start=self.at,
+                to=speed,
+                state=self.state,
+                period=self.period,
+                settle=self._settle,
+            )
+            self._keep(followed.leaps)
+            if followed.state is not None:
+                slow = self._settled(point, followed.state)
+                if int(slow.label[0]) == PERIODIC:
+                    chosen = slow
+                    section = ReturnMap(point.flat)
+                    near = section.distance(plain.sections[0], slow.sections[0][-1]).min()
+                    self.early = int(not near < APART)
+        if bool(np.isfinite(chosen.state).all()):
+            self.state = chosen.state[0]
+        self.at = speed
+        self.period = int(chosen.period[0]) if int(chosen.label[0]) == PERIODIC else 0
+        return chosen
+
+    def _single(self, speed: float) -> GearPoints:
+        assert self.table is not None
+        return self.table(np.array([[speed]]))
+
+    def _settled(self, point: GearPoints, state: Floats) -> Settled:
+        return settle_with_status(
+            point.flat, point.status, state[None], self.plan.rule, KEEP, self.alive
+        )
+
+    def _settle(self, speed: float, state: Floats) -> tuple[Floats, int]:
+        settled = self._settled(self._single(speed), state)
+        calm = int(settled.label[0]) == PERIODIC
+        return settled.state[0], int(settled.period[0]) if calm else 0
+
+    def _keep(self, leaps: Sequence[Leap]) -> None:
+        for leap in leaps:
+            if leap.period > LISTED_PERIOD:
+                continue
+            sizes = [
+                self._size(leap.value, leap.state),
+                self._size(leap.landed, leap.found),
+            ]
+            if abs(sizes[1] - sizes[0]) < LISTED * min(sizes):
+                continue
+            row = (leap.value, leap.landed, *sizes, LEAP_KINDS.index(leap.kind))
+            self.leaps.append(dict(zip(LEAP, map(float, row), strict=True)))
+
+    def _size(self, speed: float, state: Floats) -> float:
+        """Peak to peak transmission error of the motion at ``state``."""
+        record = replace(self.plan.record, periods=max(LISTED_PERIOD, 1) * 4)
+        found = respond(self._single(speed), state[None], record, lines=False)
+        return float(found["dte_peak_to_peak"][0])
+
+
 def _with_jumps(data: xr.Dataset) -> xr.Dataset:
-    """Where the motion jumps on the way up or down, and the fold it jumps at."""
-    speeds = data["pinion_speed"].values
+    """Where the followed motion left its branch, on the way up or down, and where it returns."""
     rows: list[dict[str, float | int]] = []
-    folds = _folds(data)
     for state in range(data.sizes["state"]):
+        mine: list[dict[str, float | int]] = []
         for direction, sign in enumerate(DIRECTIONS):
             here = data.isel(state=state, direction=direction)
-            order = np.arange(speeds.size)[::sign]
-            size = here["dte_peak_to_peak"].values
-            # a chaotic motion fluctuates from speed to speed without jumping
-            calm = here["period"].values > 0
-            moves = np.full(speeds.size - 1, np.nan)
-            for step, (a, b) in enumerate(pairwise(order.tolist())):
-                if calm[a] and calm[b]:
-                    moves[step] = abs(size[b] - size[a]) / min(size[a], size[b])
-            for place in np.flatnonzero(moves > JUMP):
-                around = np.delete(
-                    moves[max(0, int(place) - 1) : int(place) + 2], min(1, int(place))
-                )
-                around = around[np.isfinite(around)]
-                # growth behind a period doubling is steep too, but steep on both sides
-                usual = float(around.max()) if around.size else 0.0
-                if moves[place] < STEEP * usual:
-                    continue
-                first, then = int(order[place]), int(order[place + 1])
-                low, high = sorted((float(speeds[first]), float(speeds[then])))
-                between = [f for s, f in folds if s == state and low <= f <= high]
-                rows.append(
+            for place, number in np.argwhere(np.isfinite(here["leap_fold"].values))[::sign]:
+                row = {name: float(here[name].values[place, number]) for name in LEAP}
+                mine.append(
                     {
                         "state": state,
                         "direction": sign,
-                        "from": float(speeds[first]),
-                        "to": float(speeds[then]),
-                        "fold": between[0] if between else float("nan"),
-                        "before": float(size[first]),
-                        "after": float(size[then]),
+                        "kind": int(row["leap_kind"]),
+                        "from": row["leap_fold"],
+                        "to": row["leap_to"],
+                        "fold": row["leap_fold"],
+                        "before": row["leap_before"],
+                        "after": row["leap_after"],
                     }
                 )
-    units = {"from": "rad/s", "to": "rad/s", "fold": "rad/s", "before": "m", "after": "m"}
+        for row_ in mine:
+            way, fold = int(row_["direction"]), float(row_["fold"])
+            back = [float(o["fold"]) for o in mine if int(o["direction"]) == -way]
+            # the first jump that a run back from here meets
+            ahead = [way * f for f in back if way * (fold - f) >= 0.0]
+            row_["return"] = way * max(ahead, default=float("nan"))
+        rows += mine
+    units = {
+        "from": "rad/s", "to": "rad/s", "fold": "rad/s", "return": "rad/s",
+        "before": "m", "after": "m",
+    }  # fmt: skip
     words = {
         "state": "thermal state of the jump",
         "direction": "1 up, -1 down",
+        "kind": "0: at a fold, 1: at a subcritical period doubling",
         "from": "last speed before the jump",
         "to": "first speed after it",
-        "fold": "speed of the fold between them; NaN: none was located",
+        "fold": "speed at which the followed motion leaves its branch",
+        "return": "speed at which a run back from there jumps again; NaN: not in this range",
         "before": "transmission error before, peak to peak",
         "after": "transmission error after, peak to peak",
     }
     for name, long_name in words.items():
-        kind = np.int32 if name in ("state", "direction") else float
+        kind = np.int32 if name in ("state", "direction", "kind") else float
         attributes = {"long_name": long_name} | ({"units": units[name]} if name in units else {})
         data[f"jump_{name}"] = (("jump",), np.array([r[name] for r in rows], kind), attributes)
     return data
-
-
-def _folds(data: xr.Dataset) -> list[tuple[int, float]]:
-    if "bifurcation_kind" not in data:
-        return []
-    kinds = data["bifurcation_kind"].values
-    states, values = data["bifurcation_state"].values, data["bifurcation_value"].values
-    return [(int(s), float(f)) for k, s, f in zip(kinds, states, values, strict=True) if k == 0]
 
 
 def run_up_plan(
@@ -351,9 +463,12 @@ def run_up(
     as the case is); bores, housing and oil go along by the case's rule. Each speed starts from the
     motion at the speed before. Over (state, direction, pinion_speed): dynamic transmission
     error (mean, rms, peak to peak), dynamic mesh force, dynamic factor, contact loss, label and
-    multipliers; ``dte_line`` over order as well, the waterfall. ``jump_...``: where the motion
-    jumps; ``bifurcation_...`` and ``branch_...``: the folds behind it, from continuation of the
-    orbits of up to ``branch_period`` mesh periods (0: none).
+    multipliers; ``dte_line`` over order as well, the waterfall. Between two speeds the orbit is
+    followed slowly, so that jumps do not depend on the step. ``jump_...``: where the motion leaves
+    its branch (``fold``, of orbits of up to 4 periods), and where a run back jumps (``return``);
+    ``left_early``: the step alone would have left it before; ``bifurcation_...`` and
+    ``branch_...``: the folds behind it, from continuation of the orbits of up to
+    ``branch_period`` mesh periods (0: none).
     """
     plan = run_up_plan(
         case,

@@ -13,7 +13,8 @@ import hashlib
 import json
 import os
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -21,23 +22,28 @@ from typing import Any, Self
 import numpy as np
 import xarray as xr
 import zarr
-from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 from zarr.codecs import Crc32cCodec, ZstdCodec
 from zarr.storage import LocalStore, MemoryStore
 
 from thermogear.analysis.plan import Arrays, Key, Plan, dataset_of, empty_arrays, keys_of, region_of
 from thermogear.base.errors import InputError
-from thermogear.base.files import put, require_directory
+from thermogear.base.files import LOCK, PART, held, put, require_directory, sync
+from thermogear.base.stores import (
+    COPY,
+    FORMAT,
+    JOURNAL,
+    MANIFEST,
+    METADATA,
+    RESULT,
+    foreign_names,
+    numbers_hash,
+    read_manifests,
+    read_vouched,
+)
 from thermogear.study.fingerprint import code_version, environment
 
-RESULT = "result.zarr"
-MANIFEST = "manifest.json"
-COPY = "manifest.copy.json"
-JOURNAL = "journal.jsonl"
 QUARANTINE = "quarantine"
-LOCK = "lock"
-FORMAT = 1
 
 _OTHER = "name another directory, or repeat the command the store was begun with"
 
@@ -46,22 +52,7 @@ def put_bytes(path: Path, data: bytes) -> None:
     """Write ``data`` beside ``path``, flush it to the disk, put it in place."""
     path.parent.mkdir(parents=True, exist_ok=True)
     put(path, data)
-    _sync(path.parent)
-
-
-def _sync(directory: Path) -> None:
-    handle = os.open(directory, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
-def numbers_hash(values: NDArray[Any]) -> str:
-    """sha256 of an array's numbers, independent of how they are compressed."""
-    plain = np.ascontiguousarray(values)
-    little = plain.astype(plain.dtype.newbyteorder("<"), copy=False)
-    return hashlib.sha256(little.tobytes()).hexdigest()
+    sync(path.parent)
 
 
 class Staging:
@@ -113,7 +104,7 @@ class Staging:
         return {
             path: data.to_bytes()
             for path, data in sorted(self._files.items())
-            if path.endswith("zarr.json")
+            if path.endswith(METADATA)
         }
 
 
@@ -139,8 +130,8 @@ class Store:
         self.directory = Path(directory)
         self.plan = plan
         self.repaired: list[str] = []
-        self._lock = FileLock(self.directory / LOCK)
-        self._hashes: dict[Key, dict[str, str]] = {}
+        self._held = ExitStack()
+        self._hashes: dict[Key, Mapping[str, str]] = {}
         self._whole = empty_arrays(plan)
         self._readers: dict[str, zarr.Array[Any]] = {}
         self._staging = Staging()
@@ -163,7 +154,8 @@ class Store:
         require_directory(self.directory, "store")
         known = (self.directory / MANIFEST).exists() or (self.directory / COPY).exists()
         inside = [p.name for p in self.directory.iterdir()] if self.directory.is_dir() else []
-        if not known and set(inside) - {LOCK, f".{MANIFEST}.part", f".{COPY}.part"}:
+        begun = {n for n in inside if n.startswith(f".{MANIFEST}.") and n.endswith(PART)}
+        if not known and set(inside) - {LOCK} - begun:
             raise InputError(
                 "store",
                 str(self.directory),
@@ -171,22 +163,12 @@ class Store:
                 fix="name a new or an empty directory",
             )
         self.directory.mkdir(parents=True, exist_ok=True)
-        try:
-            self._lock.acquire(timeout=0)
-        except Timeout:
-            raise InputError(
-                "store",
-                str(self.directory),
-                why="another process is writing into it",
-                fix="wait for it, or name another directory",
-            ) from None
-        try:
+        with ExitStack() as stack:
+            stack.enter_context(held(self.directory, "store"))
             self._agree()
             self._repair_metadata()
-            self._read_journal()
-        except BaseException:
-            self._lock.release()
-            raise
+            self._hashes |= read_vouched(self.directory).chunks
+            self._held = stack.pop_all()
         return self
 
     def __exit__(
@@ -195,14 +177,14 @@ class Store:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._lock.release()
+        self._held.close()
 
     @property
     def result(self) -> Path:
         """The zarr group."""
         return self.directory / RESULT
 
-    def _manifest(self) -> dict[str, Any]:
+    def _manifest(self) -> str:
         content = {
             "format": FORMAT,
             "kind": self.plan.kind,
@@ -211,14 +193,14 @@ class Store:
             "code": code_version(),
             "environment": environment(),
         }
-        return json.loads(json.dumps(content))  # type: ignore[no-any-return]
+        return json.dumps(content, indent=1)
 
     def _agree(self) -> None:
         """Begin a manifest, or refuse a store that was begun with something else."""
-        mine = self._manifest()
-        stored = _read_manifest(self.directory)
+        text = self._manifest()
+        stored = next(iter(read_manifests(self.directory).values()), None)
         if stored is not None:
-            difference = first_difference(stored, mine)
+            difference = first_difference(stored, json.loads(text))
             if difference is not None:
                 field, old, new = difference
                 raise InputError(
@@ -236,7 +218,6 @@ class Store:
                 why="both copies of its manifest are damaged",
                 fix="name another directory",
             )
-        text = json.dumps(mine, indent=1)
         seal = hashlib.sha256(text.encode()).hexdigest()
         whole = f"{seal}\n{text}\n".encode()
         for name in (MANIFEST, COPY):
@@ -247,30 +228,18 @@ class Store:
                 put_bytes(path, whole)
 
     def _repair_metadata(self) -> None:
-        finished = self._extras().get("zarr.json")
+        finished = read_vouched(self.directory).metadata.get(METADATA)
         for path, data in self._staging.metadata().items():
             place = self.result / path
             there = place.read_bytes() if place.exists() else b""
             # a finished store's root carries attributes that a plan does not know
-            own = path == "zarr.json" and hashlib.sha256(there).hexdigest() == finished
+            own = path == METADATA and hashlib.sha256(there).hexdigest() == finished
             if there != data and not own:
                 if place.exists():
                     self.repaired.append(path)
                 put_bytes(place, data)
 
     # --- the journal -----------------------------------------------------------------------
-
-    def _read_journal(self) -> None:
-        for entry in read_journal(self.directory):
-            if "chunk" in entry:
-                self._hashes[tuple(entry["chunk"])] = entry["sha256"]
-
-    def _extras(self) -> dict[str, str]:
-        found: dict[str, str] = {}
-        for entry in read_journal(self.directory):
-            if "extras" in entry:
-                found = entry["extras"]
-        return found
 
     def _note(self, entry: Mapping[str, Any]) -> None:
         text = json.dumps(entry, separators=(",", ":"))
@@ -348,14 +317,16 @@ class Store:
     def _set_aside(self, key: Key) -> None:
         self.repaired.append(f"chunk {key}")
         del self._hashes[key]
+        paths = [path for name in self.plan.variables() for path in self._paths(name, key)]
+        self._quarantine([path for path in paths if path.exists()])
+
+    def _quarantine(self, paths: Iterable[Path]) -> None:
         bin_ = self.directory / QUARANTINE
         bin_.mkdir(exist_ok=True)
         number = sum(1 for _ in bin_.iterdir())
-        for name in self.plan.variables():
-            for path in self._paths(name, key):
-                if path.exists():
-                    words = "-".join(path.relative_to(self.result).parts)
-                    path.replace(bin_ / f"{number}-{words}")
+        for path in paths:
+            words = "-".join(path.relative_to(self.result).parts)
+            path.replace(bin_ / f"{number}-{words}")
 
     # --- the finished whole ----------------------------------------------------------------
 
@@ -393,10 +364,18 @@ class Store:
         staging.attributes(data.attrs | {"coordinates": " ".join(sorted(map(str, data.coords)))})
         for path, content in staging.metadata().items():
             put_bytes(self.result / path, content)
-            if path == "zarr.json":
-                hashes["zarr.json"] = hashlib.sha256(content).hexdigest()
-        if self._extras() != hashes:
-            self._note({"extras": hashes})
+        metadata = self._staging.metadata() | staging.metadata()
+        foreign = foreign_names(self.result, metadata)
+        self.repaired += foreign
+        self._quarantine(self.result / name for name in foreign)
+        whole = {
+            "numbers": hashes,
+            "metadata": {p: hashlib.sha256(raw).hexdigest() for p, raw in metadata.items()},
+            "manifest": hashlib.sha256(self._manifest().encode()).hexdigest(),
+        }
+        before = read_vouched(self.directory)
+        if whole != {name: getattr(before, name) for name in whole}:
+            self._note({"whole": whole})
         return data
 
 
@@ -404,38 +383,6 @@ def _ends_line(path: Path) -> bool:
     with path.open("rb") as file:
         file.seek(-1, os.SEEK_END)
         return file.read(1) == b"\n"
-
-
-def read_journal(directory: Path) -> list[dict[str, Any]]:
-    """The journal's lines that are whole; torn or damaged ones prove nothing."""
-    try:
-        raw = (Path(directory) / JOURNAL).read_bytes()
-    except FileNotFoundError:
-        return []
-    found: list[dict[str, Any]] = []
-    for line in raw.split(b"\n"):
-        seal, _, text = line.partition(b" ")
-        if seal != b"%08x" % zlib.crc32(text) or not text:
-            continue
-        entry = json.loads(text)
-        if isinstance(entry, dict):
-            found.append(entry)
-    return found
-
-
-def _read_manifest(directory: Path) -> dict[str, Any] | None:
-    """The first copy of the manifest whose seal is right."""
-    for name in (MANIFEST, COPY):
-        try:
-            raw = (directory / name).read_bytes()
-        except FileNotFoundError:
-            continue
-        seal, _, text = raw.partition(b"\n")
-        if hashlib.sha256(text.rstrip(b"\n")).hexdigest().encode() == seal:
-            content = json.loads(text)
-            if isinstance(content, dict):
-                return content
-    return None
 
 
 def first_difference(old: Any, new: Any, field: str = "") -> tuple[str, str, str] | None:
@@ -463,61 +410,3 @@ def first_difference(old: Any, new: Any, field: str = "") -> tuple[str, str, str
 def _short(value: object) -> str:
     text = json.dumps(value) if not isinstance(value, str) else value
     return text if len(text) <= 60 else text[:57] + "..."
-
-
-def read_store(directory: str | Path) -> xr.Dataset:
-    """A finished store as a Dataset in memory, every number checked against the journal.
-
-    Raises InputError where the directory is no store, is not finished, or is damaged; the same
-    command as before repairs it.
-    """
-    place = Path(directory)
-    manifest = _read_manifest(place)
-    if manifest is None:
-        raise InputError("store", str(place), why="there is no store, or its manifest is damaged")
-    chunks: dict[tuple[int, ...], dict[str, str]] = {}
-    extras: dict[str, str] = {}
-    for entry in read_journal(place):
-        if "chunk" in entry:
-            chunks[tuple(entry["chunk"])] = entry["sha256"]
-        extras = entry.get("extras", extras)
-    again = "repeat the command that began it"
-    if not extras:
-        raise InputError("store", str(place), why="it is not finished", fix=again)
-    try:
-        if hashlib.sha256((place / RESULT / "zarr.json").read_bytes()).hexdigest() != extras.get(
-            "zarr.json"
-        ):
-            raise ValueError("attributes")
-        with xr.open_zarr(place / RESULT, consolidated=False, mask_and_scale=False) as opened:
-            data: xr.Dataset = opened.load()
-        _check(data, manifest, chunks, extras)
-    except Exception as error:  # whatever a reader makes of broken bytes
-        raise InputError(
-            "store", str(place), why=f"it is damaged ({type(error).__name__}: {error})", fix=again
-        ) from error
-    return data
-
-
-def _check(
-    data: xr.Dataset,
-    manifest: Mapping[str, Any],
-    chunks: Mapping[tuple[int, ...], Mapping[str, str]],
-    extras: Mapping[str, str],
-) -> None:
-    cuts: dict[str, int] = manifest["chunks"]
-    counts = [-(-data.sizes[name] // n) for name, n in cuts.items()]
-    if len(chunks) != int(np.prod(counts)):
-        raise ValueError(f"{len(chunks)} of {int(np.prod(counts))} chunks are vouched for")
-    for key, hashes in chunks.items():
-        ranges = {
-            name: slice(k * n, (k + 1) * n) for k, (name, n) in zip(key, cuts.items(), strict=True)
-        }
-        for name, seal in hashes.items():
-            variable = data[name].variable
-            part = variable[tuple(ranges.get(str(d), slice(None)) for d in variable.dims)]
-            if numbers_hash(part.values) != seal:
-                raise ValueError(f"{name} chunk {key}")
-    for name, seal in extras.items():
-        if name != "zarr.json" and numbers_hash(data[name].values) != seal:
-            raise ValueError(name)

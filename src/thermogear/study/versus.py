@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import attributes, status_attributes
+from thermogear.base.vocabulary import attributes, status_attributes, told_labels
 from thermogear.study.results import write_results
 from thermogear.study.source import overridden, pairs, tables
 
@@ -378,6 +378,13 @@ def _notices(
 # --- joining ------------------------------------------------------------------------------
 
 
+def _told(data: xr.Dataset) -> xr.Dataset:
+    """The group with its labels in words."""
+    if "label" not in data:
+        return data
+    return data.assign(label=(data["label"].dims, told_labels(data)))
+
+
 def _joined(
     cases: Sequence[Stored], bundles: Sequence[Sequence[str]], axes: Mapping[str, list[Any]]
 ) -> xr.Dataset:
@@ -399,7 +406,7 @@ def _joined(
         for name, whole in (("status", status), ("label", label)):
             for data in _groups(case):
                 if name in data:
-                    whole[where] = _laid(data, name)[None]
+                    whole[where] = _laid(_told(data), name)[None]
     widest = {curve: max(_positions(case, curve).size for case in cases) for curve in CURVES}
     for name in FIGURES:
         _fill(variables, name, cases, places, sizes)

@@ -2,44 +2,31 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import os
-import queue
 import shutil
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
 from thermogear.analysis.plan import (
-    Arrays,
-    Key,
     Plan,
     bytes_of,
-    checked,
     computed,
     gather,
-    keep_going,
     keys_of,
 )
 from thermogear.base.errors import InputError
-from thermogear.study.size import SHARE, free_bytes
+from thermogear.study.crew import cluster, computed_on
+from thermogear.study.size import SHARE, duration, free_bytes
 from thermogear.study.store import Store
 
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
-
-PAUSE = 5.0
-"""Seconds after which a cluster that sends nothing is asked for its workers."""
-
-PATIENCE = 300.0
-"""Seconds that a cluster may be without workers."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,17 +59,6 @@ class Estimate:
             f"{self.points} points in {self.chunks} chunks, about {duration(self.seconds)}, "
             f"{self.memory / 2**20:.3g} MiB of memory, {self.disk / 2**20:.3g} MiB of disk"
         )
-
-
-def duration(seconds: float) -> str:
-    """Seconds as a person says them."""
-    if not seconds < 1e9:
-        return "an unknown time"
-    if seconds < 90.0:
-        return f"{max(seconds, 0.1):.2g} s"
-    if seconds < 5400.0:
-        return f"{seconds / 60.0:.2g} min"
-    return f"{seconds / 3600.0:.3g} h"
 
 
 def points_of(plan: Plan) -> int:
@@ -168,8 +144,8 @@ def carry_out(
         return gather(plan, threads=threads, progress=lambda done, _: clock.step(done))
     if directory is None:
         raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
-    cluster = nullcontext() if scheduler is None else _client(scheduler)
-    with cluster as client, Store(directory, plan) as kept:
+    link = nullcontext() if scheduler is None else cluster(scheduler)
+    with link as client, Store(directory, plan) as kept:
         there = kept.finished()
         clock.found = len(there)
         wanted = [key for key in keys_of(plan) if key not in there]
@@ -207,106 +183,3 @@ class _Clock:
         self.report(
             Step(done=done, total=self.total, found=self.found, elapsed=elapsed, remaining=left)
         )
-
-
-def compute_chunk(plan: Plan, key: Key, before: Arrays | None) -> Arrays:
-    """One chunk, on whatever worker this runs."""
-    return checked(plan, key, plan.compute(key, before, keep_going))
-
-
-def itself(plan: Plan) -> Plan:
-    """The plan, as a task of the cluster that all chunks share."""
-    return plan
-
-
-def _client(scheduler: str) -> Any:
-    """A client of the cluster at ``scheduler``; refused where none answers."""
-    try:
-        distributed: Any = importlib.import_module("distributed")
-    except ImportError:
-        raise InputError(
-            "scheduler",
-            scheduler,
-            why="dask is not installed",
-            fix="pip install thermogear[cluster]",
-        ) from None
-    if not scheduler.startswith("inproc:") and not scheduler.rpartition(":")[2].isdecimal():
-        raise InputError(
-            "scheduler", scheduler, allowed="tcp://HOST:PORT", why="the port is missing"
-        )
-    try:
-        return distributed.Client(scheduler, timeout=10, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(
-            "scheduler", scheduler, why=f"no dask scheduler answers there ({type(error).__name__})"
-        ) from None
-
-
-def computed_on(
-    client: Any, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
-) -> Generator[tuple[Key, Arrays], None, None]:
-    """:func:`thermogear.analysis.plan.computed` on the dask cluster of ``client``.
-
-    Chunks of a worker that dies are computed by another one.
-    """
-    # a task's result is made again when its worker dies; scattered data would be lost, for the
-    # scheduler keeps one copy of it however many were sent out
-    there = client.submit(itself, plan, pure=False, retries=5)
-    running: dict[Any, Key] = {}
-    waiting = list(wanted)
-    missing = set(wanted)
-    # a few chunks ahead of the workers: enough to keep them busy, few enough to hold
-    room = 3 * max(1, sum(client.nthreads().values()))
-    ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
-
-    def send() -> None:
-        for key in list(waiting):
-            if len(running) >= room:
-                return
-            need = plan.needs(key)
-            if need is not None and need in missing:
-                continue
-            before = None if need is None else load(need)
-            future = client.submit(
-                compute_chunk,
-                there,
-                key,
-                before,
-                pure=False,
-                retries=5,
-                key=f"chunk-{key}-{id(running)}",
-            )
-            running[future] = key
-            waiting.remove(key)
-            future.add_done_callback(ready.put)
-
-    send()
-    while running:
-        future = _answer(client, lambda pause: ready.get(timeout=pause))
-        key = running.pop(future)
-        arrays = _answer(client, partial(_result, future))
-        # whoever takes the chunk stores it before a chunk that needs it is sent
-        yield key, arrays
-        missing.discard(key)
-        send()
-
-
-def _result(future: Any, pause: float) -> Any:
-    return future.result(timeout=pause)
-
-
-def _answer(client: Any, ask: Callable[[float], Any]) -> Any:
-    """``ask(seconds)`` until it does not time out, as long as the cluster has workers."""
-    alone = 0.0
-    while True:
-        try:
-            return ask(PAUSE)
-        except (queue.Empty, TimeoutError):
-            alone = 0.0 if client.nthreads() else alone + PAUSE
-            if alone >= PATIENCE:
-                raise InputError(
-                    "scheduler",
-                    client.scheduler.address,
-                    why=f"it has had no worker for {duration(alone)}; what is done is stored",
-                    fix="start workers and give the same command",
-                ) from None

@@ -6,6 +6,7 @@ import datetime
 import json
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import xarray as xr
 import thermogear
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
-from thermogear.study.results import claim_directory, write_results, write_summary
+from thermogear.study.results import claimed, write_results, write_summary
 from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section2, section3, section4, section5, section6
 from thermogear.thesis.claim import Claim, Finding, Verdict
@@ -94,14 +95,22 @@ def build(size: Size | None = None, progress: Progress = silent) -> xr.DataTree:
 
 
 def build_to_directory(
-    directory: Path, size: Size | None = None, progress: Progress = silent
+    directory: Path,
+    size: Size | None = None,
+    progress: Progress = silent,
+    also: Callable[[Path], object] = lambda folder: None,
 ) -> dict[str, Any]:
-    """:func:`build`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary."""
-    claim_directory(directory)
-    tree = build(size, progress)
-    found = summary(tree)
-    write_results(tree, directory)
-    write_summary(found, directory)
+    """:func:`build`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
+
+    ``also`` is called with the folder where both stand before they are put into ``directory``;
+    what it writes there is put with them.
+    """
+    with claimed(directory) as folder:
+        tree = build(size, progress)
+        found = summary(tree)
+        write_results(tree, folder)
+        write_summary(found, folder)
+        also(folder)
     return found
 
 

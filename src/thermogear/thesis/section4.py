@@ -6,7 +6,7 @@ import numpy as np
 
 from thermogear.analysis.labels import label as settle
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import UNDEFORMED
+from thermogear.base.vocabulary import UNDEFORMED, told_labels
 from thermogear.thesis import motions
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
@@ -30,10 +30,10 @@ def _no_torus(e: Evidence) -> str:
 
 
 def _labels(e: Evidence, row: str) -> list[tuple[float, str]]:
-    """(value, label) of the ready-made row."""
+    """(value, label in words) of the ready-made row."""
     points = e.groups["base_sets/table-4.2"]
     here = points.isel(point=np.flatnonzero(points["row"].values == row))
-    return list(zip(here["value"].values.tolist(), here["label"].values.tolist(), strict=True))
+    return list(zip(here["value"].values.tolist(), told_labels(here).tolist(), strict=True))
 
 
 def _solver(e: Evidence) -> Finding:
@@ -150,7 +150,7 @@ def _to_torus(e: Evidence) -> Finding:
 
 def _end(e: Evidence, row: str, place: int, wanted: tuple[str, ...], why: str = "") -> Finding:
     value, name = _labels(e, row)[place]
-    holds = name in wanted
+    holds = name.split(" for ")[0] in wanted
     return Finding(
         f"{name} at {SYMBOLS[row]} = {value:g}",
         "the same equation",
@@ -172,7 +172,7 @@ def _multiplier_grows(e: Evidence) -> Finding:
     lost = float(e.flips["value"].sel(row="zeta", heat="none").values[0])
     return Finding(
         f"multiplier {first:.3f} at the start, 1 at ζ = {lost:.6f}; {int(periodic.sum())} values "
-        f"periodic, {chaos} chaotic",
+        f"periodic, {chaos} chaotic by the faster rule",
         "the same equation",
         verdict_of(chaos > 0, assumption=True),
         "Every period loses its stability in turn. " + SET,

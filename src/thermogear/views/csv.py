@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -51,10 +51,16 @@ def write_csv(directory: Path) -> list[Path]:
         for stem, columns in _files(name, data):
             written[f"{_slug(stem)}.csv"] = columns
     folder.mkdir(exist_ok=True)
-    for old in folder.glob("*.csv"):
-        if old.name not in written and _OURS.match(old.stem):
+    files = [put(folder / name, _text(columns)) for name, columns in written.items()]
+    clear_csv(directory, written)
+    return files
+
+
+def clear_csv(directory: Path, kept: Collection[str]) -> None:
+    """Remove what earlier runs left in ``directory/csv``: files of ours not named in ``kept``."""
+    for old in (Path(directory) / "csv").glob("*.csv"):
+        if old.name not in kept and _OURS.match(old.stem):
             old.unlink()
-    return [put(folder / name, _text(columns)) for name, columns in written.items()]
 
 
 def _files(group: str, data: xr.Dataset) -> Iterator[tuple[str, list[Column]]]:

@@ -22,7 +22,7 @@ from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
 from thermogear.views.results import read_tree
 from thermogear.views.style import styled
-from thermogear.views.svg import draw
+from thermogear.views.svg import draw, put_figure
 from thermogear.views.words import number, prose
 
 KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
@@ -53,8 +53,7 @@ def write_pages(path: Path) -> list[Path]:
         figure = make()
         for ending in ("svg", "png"):
             target = directory / f"{kind}.{ending}"
-            figure.savefig(target, dpi=160, facecolor="white")
-            written.append(target)
+            written.append(put_figure(figure, target, resolution=160))
     return written + write_tables(directory, kind, groups)
 
 
@@ -274,13 +273,18 @@ def _cascade_tables(summary: Summary) -> list[Block]:
         rows = []
         for k in range(most):
             cells = [f"{2**k} → {2 ** (k + 1)}"]
-            cells += [f"{c['flips'][k]['value']:.9f}" if k < len(c["flips"]) else "–" for c in own]
+            cells += [_flip_words(c["flips"][k]) if k < len(c["flips"]) else "–" for c in own]
             rows.append(cells)
         rows.append(["branch then", *(c["ended"] for c in own)])
         head = ["period doubling", *(c["heat"] for c in own)]
         span = f", {own[0]['from']:g} to {own[0]['to']:g}"
         found.append(Table(page_words(own[0]["parameter"]) + span, head, rows))
     return found
+
+
+def _flip_words(flip: Summary) -> str:
+    """Its value, and whether the doubled motion takes over smoothly."""
+    return f"{flip['value']:.9f} {str(flip.get('note', '')).split(':')[0]}".strip()
 
 
 def _shared_tables(summary: Summary) -> list[Block]:

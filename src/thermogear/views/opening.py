@@ -8,6 +8,7 @@ from collections import Counter
 import numpy as np
 import xarray as xr
 
+from thermogear.base.vocabulary import told_labels
 from thermogear.views.page import Tile
 from thermogear.views.results import Results
 from thermogear.views.style import names_of
@@ -33,8 +34,8 @@ def summary(results: Results) -> str:
     motion = results.group("motion")
     if motion is not None:
         for state in names_of(motion, "state"):
-            here = motion["label"].isel(state=names_of(motion, "state").index(state))
-            parts.append(f"Motion {state}: {_count(here.values)}.")
+            here = motion.isel(state=names_of(motion, "state").index(state))
+            parts.append(f"Motion {state}: {_count(here)}.")
     return " ".join(part for part in parts if part)
 
 
@@ -98,8 +99,8 @@ def _regime(mesh: xr.Dataset, studied: bool) -> str:
     )
 
 
-def _count(labels: np.ndarray[tuple[int, ...], np.dtype[np.str_]]) -> str:
-    found = Counter(str(name) for name in labels.ravel())
+def _count(motion: xr.Dataset) -> str:
+    found = Counter(map(str, told_labels(motion).flat))
     if len(found) == 1:
         name = next(iter(found))
         return f"{name} throughout"
@@ -111,7 +112,7 @@ def _rows_summary(points: xr.Dataset | None) -> str:
         return "These results hold no group that could be drawn."
     return (
         f"{points.sizes['point']} points of the dimensionless equation of motion; found: "
-        f"{_count(points['label'].values)}. These numbers are not derived from any gear pair."
+        f"{_count(points)}. These numbers are not derived from any gear pair."
     )
 
 
@@ -172,11 +173,11 @@ def tiles(results: Results) -> list[Tile]:
     )
     motion = results.group("motion")
     if motion is not None:
-        labels = motion["label"].isel(bundle=0, state=-1).values
+        here = motion.isel(bundle=0, state=-1)
         found.append(
             Tile(
                 "motion, hot",
-                _count(labels).removesuffix(" throughout"),
+                _count(here).removesuffix(" throughout"),
                 f"{names[0]}, every operating point",
             )
         )

@@ -20,6 +20,7 @@ from thermogear.views.results import KINDS as RUNS
 from thermogear.views.results import read_results, results_of
 from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS
+from thermogear.views.svg import put_figure
 
 KINDS = ("png", "svg", "pdf")
 RESOLUTION = 130
@@ -98,8 +99,7 @@ class _Files(Pictures):
     def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
         path = self.folder / f"{name}.{self.kind}"
         with styled():
-            make().savefig(path, dpi=RESOLUTION, facecolor="white")
-        self.written.append(path)
+            self.written.append(put_figure(make(), path, resolution=RESOLUTION))
 
 
 def write_pictures(directory: Path, folder: Path, kind: str = "png") -> list[Path]:

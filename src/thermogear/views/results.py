@@ -10,6 +10,7 @@ from typing import Any
 
 import xarray as xr
 
+from thermogear.base import netcdf
 from thermogear.base.errors import InputError
 
 RESULTS = "results.nc"
@@ -74,24 +75,11 @@ def read_results(directory: Path, kinds: Collection[str] = KINDS) -> Results:
 
 
 def read_tree(path: Path, fix: str = "") -> Results:
-    """All of a stored netCDF file in memory, whoever wrote it; the root's own group is "".
+    """All of a stored netCDF file in memory, its seal checked; the root's own group is "".
 
     Raises InputError, in one line with ``fix``, where the file is missing or damaged.
     """
-    if not path.is_file():
-        raise InputError("results", str(path), why="there is no such file", fix=fix)
-    import h5py
-
-    try:
-        # h5py first: it refuses a damaged file without a second complaint on stderr
-        with h5py.File(path, "r") as file:
-            file.visititems(lambda name, item: None)
-        with xr.open_datatree(path, engine="h5netcdf") as tree:
-            return results_of(tree)
-    except (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError) as error:
-        raise InputError(
-            "results", str(path), why="it cannot be read as netCDF; it is damaged", fix=fix
-        ) from error
+    return results_of(netcdf.read_tree(path, fix))
 
 
 def results_of(tree: xr.DataTree) -> Results:

@@ -16,7 +16,7 @@ from thermogear.views.page import Block, Code, Gallery, Picture, Section, render
 from thermogear.views.results import Results, read_tree
 from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS, Drawn, Survey
-from thermogear.views.svg import draw
+from thermogear.views.svg import draw, put_figure
 from thermogear.views.words import prose
 
 RESOLUTION = 160
@@ -87,8 +87,7 @@ def _files(directory: Path, kind: str, one: Drawn) -> list[Path]:
         figure = one.make()
         for ending in ("svg", "png"):
             path = directory / f"{kind}_{one.name}.{ending}"
-            figure.savefig(path, dpi=RESOLUTION, facecolor="white")
-            written.append(path)
+            written.append(put_figure(figure, path, resolution=RESOLUTION))
     return written
 
 

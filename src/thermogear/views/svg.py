@@ -5,10 +5,12 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 
+from thermogear.base.files import put
 from thermogear.views.style import styled
 
 _ID = re.compile(r'\bid="([^"]+)"')
@@ -32,6 +34,17 @@ def draw(make: Callable[[], Figure], name: str, title: str) -> Markup:
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return Markup(_inline(stream.getvalue(), name, title))
+
+
+def put_figure(figure: Figure, path: Path, *, resolution: int) -> Path:
+    """Save ``figure`` as ``path`` (its ending says what), white behind, whole or not at all.
+
+    ``resolution`` in dots per inch.
+    """
+    stream = io.BytesIO()
+    kind = path.suffix.removeprefix(".")
+    figure.savefig(stream, format=kind, dpi=resolution, facecolor="white")
+    return put(path, stream.getvalue())
 
 
 def _inline(text: str, name: str, title: str) -> str:

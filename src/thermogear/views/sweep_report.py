@@ -13,13 +13,14 @@ from matplotlib.figure import Figure
 from thermogear import __version__
 from thermogear.base.errors import InputError
 from thermogear.base.files import put
+from thermogear.base.stores import read_store
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.views.page import Block, Pictures, Section, Table, Text, render
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.parameters import page_words, shown
 from thermogear.views.words import number
 
-RESULT = "result.zarr"
 Words = Callable[[xr.Dataset], str]
 TITLES = {
     "diagram": "Orbit diagram",
@@ -30,15 +31,24 @@ TITLES = {
 }
 
 
+JUMPS_AT = ("fold", "subcritical period doubling")
+JUMPS_EXPLAINED = (
+    "Between two speeds the motion is followed slowly, so a jump stands where the motion ends, not "
+    "at a step of the run. Between a jump and the return of the run back two motions exist, and "
+    "which one is seen depends on where the run came from."
+)
+EXPLAINED = {
+    "fold": "Fold: the motion ends here and jumps to another one.",
+    "period doubling": "Period doubling: from here on every second mesh is alike only.",
+    "grazing": "Grazing: the teeth just touch, or just part: a contact begins or ends here.",
+    "period halving": "Period halving: a motion of twice the period ends in one of half of it.",
+    "pitchfork": "Pitchfork: a symmetric motion loses its symmetry here.",
+}
+
+
 def read_result(directory: Path) -> xr.Dataset:
-    """The stored dataset in memory; InputError where there is none."""
-    try:
-        with xr.open_zarr(
-            Path(directory) / RESULT, consolidated=False, mask_and_scale=False
-        ) as opened:
-            data: xr.Dataset = opened.load()
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError("store", str(directory), why="it cannot be read") from error
+    """The stored dataset in memory, checked; InputError where there is none that is whole."""
+    data = read_store(directory)
     if data.attrs.get("kind") not in TITLES:
         raise InputError("store", str(directory), why="it holds no finished result")
     return data
@@ -71,7 +81,8 @@ def _summary(data: xr.Dataset) -> str:
         parts = [
             f"{sweeps.CLASSES[n][0]} {100.0 * np.mean(code == n):.3g} %" for n in np.unique(code)
         ]
-        return f"{TITLES[kind]}, {code.size} points: " + ", ".join(parts) + "."
+        words = f"{TITLES[kind]}, {code.size} points: " + ", ".join(parts) + "."
+        return f"{words} {FASTER_RULE.capitalize()}."
     return TITLES[kind]
 
 
@@ -162,6 +173,8 @@ def _points(data: xr.Dataset) -> Section:
         if not any(row[3] for row in rows):
             head, rows = head[:3], [row[:3] for row in rows]  # type: ignore[misc]
         blocks.append(Table("Located bifurcations", head, rows))
+        kinds = {row[0] for row in rows}
+        blocks.append(Text(" ".join(w for kind, w in EXPLAINED.items() if kind in kinds)))
     if data.sizes.get("jump"):
         jumps = []
         for i in range(data.sizes["jump"]):
@@ -174,23 +187,26 @@ def _points(data: xr.Dataset) -> Section:
                         - ZERO_CELSIUS,
                         4,
                     ),
-                    number(float(shown("pinion_speed", data["jump_from"].values[i])), 6),
-                    number(float(shown("pinion_speed", data["jump_to"].values[i])), 6),
                     number(float(shown("pinion_speed", fold)), 8),
+                    JUMPS_AT[int(data["jump_kind"].values[i])],
+                    _returns(data, i),
                     number(1e6 * float(data["jump_before"].values[i])),
                     number(1e6 * float(data["jump_after"].values[i])),
                 )
             )
-        head = ["run", "gears [°C]", "from [rpm]", "to [rpm]", "fold [rpm]", "p-p before [µm]",
-                "p-p after [µm]"]  # fmt: skip
+        head = ["run", "gears [°C]", "jumps at [rpm]", "which is a", "run back jumps at [rpm]",
+                "p-p before [µm]", "p-p after [µm]"]  # fmt: skip
         blocks.append(Table("Jumps", head, jumps))
+        blocks.append(Text(JUMPS_EXPLAINED))
+    elif str(data.attrs["kind"]) == "run-up":
+        blocks.append(Text("No jump: up and down the motion runs on at every speed."))
     if data.sizes.get("attractor_number"):
         rows_ = []
         for i in range(data.sizes["attractor_number"]):
             period = int(data["attractor_period"].values[i])
             rows_.append(
                 (
-                    f"period {period}" if period else "chaotic",
+                    f"period {period}" if period else "chaotic, estimate",
                     number(float(data["attractor_x"].values[i, 0]), 9),
                     number(float(data["attractor_v"].values[i, 0]), 9),
                     number(float(data["attractor_multiplier"].values[i]), 6),
@@ -206,10 +222,17 @@ def _points(data: xr.Dataset) -> Section:
             Text(
                 f"Basin entropy {entropy['basin_entropy']:.4f}, on borders "
                 f"{entropy['boundary_basin_entropy']:.4f} (above ln 2 = 0.6931 a border is "
-                f"fractal), in boxes of {entropy['box_cells']} x {entropy['box_cells']} starts."
+                f"fractal), in boxes of {entropy['box_cells']} x {entropy['box_cells']} starts. "
+                f"{FASTER_RULE.capitalize()}."
             )
         )
     return Section("points", "Located points", blocks)
+
+
+def _returns(data: xr.Dataset, i: int) -> str:
+    """Where a run back jumps again, in words where it does not."""
+    back = float(data["jump_return"].values[i])
+    return number(float(shown("pinion_speed", back)), 8) if np.isfinite(back) else "not in range"
 
 
 def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]]:

@@ -19,6 +19,7 @@ from thermogear.views.words import (
     exactly,
     html_symbol,
     jam_at,
+    label_text,
     number,
     operating_names,
     percent,
@@ -61,7 +62,7 @@ def motion_word(one: xr.Dataset) -> Cell:
         jam = float(one["jam_temperature"]) if "jam_temperature" in one else math.nan
         at = f" at {celsius(jam)}" if math.isfinite(jam) else ""
         return Markup('<b class="jam">jammed{}</b>').format(at)
-    return str(one["label"].item()) if "label" in one else "–"
+    return label_text(one) if "label" in one else "–"
 
 
 def key_results(mesh: xr.Dataset, path: xr.Dataset | None, motion: xr.Dataset | None) -> Table:
@@ -200,7 +201,9 @@ def row_table(points: xr.Dataset, row: str) -> Table:
         one = data.isel(point=i)
         mark, value, unit = value_parts(one)
         found = str(one["label"].item())
-        line: list[Cell] = [Markup("{} = {}{}").format(html_symbol(mark), value, unit), found]
+        line: list[Cell] = [
+            Markup("{} = {}{}").format(html_symbol(mark), value, unit), label_text(one)
+        ]  # fmt: skip
         if expects:
             wanted = str(one["expected"].item())
             agrees = found in wanted.split(" or ") if wanted else True

@@ -12,7 +12,7 @@ from markupsafe import Markup, escape
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import QUANTITIES, STATUS
+from thermogear.base.vocabulary import QUANTITIES, STATUS, told_labels
 
 Floats = NDArray[np.float64]
 
@@ -81,6 +81,11 @@ def plain(text: object) -> str:
     """Stored text made safe for a picture: no mathematics, no line ends, not endless."""
     flat = " ".join(str(text).split()).replace("\\", "").replace("$", r"\$")
     return flat if len(flat) <= 60 else flat[:57] + "..."
+
+
+def label_text(one: xr.Dataset) -> str:
+    """The label of one stored point, for chaos with how long and from how many starts."""
+    return str(told_labels(one).item())
 
 
 _BELOW = dict(zip("0123456789", "₀₁₂₃₄₅₆₇₈₉", strict=True))

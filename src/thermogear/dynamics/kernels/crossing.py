@@ -19,7 +19,7 @@ MOST_CROSSINGS = 64
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _value(p: Real, u: float) -> float:
+def value_of(p: Real, u: float) -> float:
     total = 0.0
     for m in range(p.shape[0] - 1, -1, -1):
         total = total * u + p[m]
@@ -27,7 +27,7 @@ def _value(p: Real, u: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _slope(p: Real, u: float) -> float:
+def slope(p: Real, u: float) -> float:
     total = 0.0
     for m in range(p.shape[0] - 1, 0, -1):
         total = total * u + m * p[m]
@@ -35,10 +35,10 @@ def _slope(p: Real, u: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _root(p: Real, level: float, low: float, high: float) -> float:
+def root(p: Real, level: float, low: float, high: float) -> float:
     """The root of p(u) = level in a monotone piece [low, high]: Newton inside a bracket."""
-    at_low = _value(p, low) - level
-    at_high = _value(p, high) - level
+    at_low = value_of(p, low) - level
+    at_high = value_of(p, high) - level
     if at_low == 0.0 or (at_low > 0.0) == (at_high > 0.0):
         # both ends on one side: the start is on the edge but for rounding
         return low
@@ -46,8 +46,8 @@ def _root(p: Real, level: float, low: float, high: float) -> float:
     b = high
     # cubic Hermite start from the two ends
     width = high - low
-    s0 = _slope(p, low) * width
-    s1 = _slope(p, high) * width
+    s0 = slope(p, low) * width
+    s1 = slope(p, high) * width
     delta = at_high - at_low
     t = -at_low / delta
     for _ in range(2):
@@ -83,7 +83,7 @@ def _root(p: Real, level: float, low: float, high: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _turns(p: Real, start: float, low: float, high: float, found: Real, work: Real) -> int:
+def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: Real) -> int:
     """Roots of p' in (start, 1), ascending, into ``found``; their number.
 
     A single turn that stays between ``low`` and ``high`` need not be found and is not counted.
@@ -104,16 +104,16 @@ def _turns(p: Real, start: float, low: float, high: float, found: Real, work: Re
     for m in range(3, width):
         bend += m * (m - 1.0) * abs(p[m])
     if 2.0 * abs(p[2]) > bend:
-        first = _slope(p, start)
-        if (first > 0.0) == (_slope(p, 1.0) > 0.0):
+        first = slope(p, start)
+        if (first > 0.0) == (slope(p, 1.0) > 0.0):
             return 0
         swing = first * first / (2.0 * (2.0 * abs(p[2]) - bend))
-        value = _value(p, start)
+        value = value_of(p, start)
         if low < value - swing and value + swing < high:
             return 0
         for m in range(width - 1):
             work[m] = (m + 1.0) * p[m + 1]
-        found[0] = _root(work[: width - 1], 0.0, start, 1.0)
+        found[0] = root(work[: width - 1], 0.0, start, 1.0)
         return 1
     count = 1
     found[0] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
@@ -127,13 +127,13 @@ def _turns(p: Real, start: float, low: float, high: float, found: Real, work: Re
         q = work[: width - level]
         fresh = 0
         a = start
-        fa = _value(q, a)
+        fa = value_of(q, a)
         old = found[:count].copy()
         for i in range(count + 1):
             b = old[i] if i < count else 1.0
-            fb = _value(q, b)
+            fb = value_of(q, b)
             if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < found.shape[0]:
-                found[fresh] = _root(q, 0.0, a, b)
+                found[fresh] = root(q, 0.0, a, b)
                 fresh += 1
             a = b
             fa = fb
@@ -189,39 +189,39 @@ def step_through(
             high = b
         else:
             high = 0.0
-        turns = _turns(p, start, low, high, found, scratch[1])
+        turns = turns_in(p, start, low, high, found, scratch[1])
         a = start
         at = 2.0
         edge = 2
         for i in range(turns + 1):
             e = found[i] if i < turns else 1.0
-            value = _value(p, e)
+            value = value_of(p, e)
             if value < low and skip != 0:
-                at = _root(p, low, a, e)
+                at = root(p, low, a, e)
                 edge = 0
                 break
             if value > high and skip != 1:
-                at = _root(p, high, a, e)
+                at = root(p, high, a, e)
                 edge = 1
                 break
             skip = 2
             a = e
         if edge == 2:
             break
-        y = _slope(p, at) / h
+        y = slope(p, at) / h
         # Phi of the region left behind, at the crossing
         time = h * at
         spent[region + 1] += time
         if region != 0:
-            f11 = _value(polys[lane, PHI], at)
-            f12 = _value(polys[lane, PSI], at)
-            f21 = _slope(polys[lane, PHI], at) / h
-            f22 = _slope(polys[lane, PSI], at) / h
+            f11 = value_of(polys[lane, PHI], at)
+            f12 = value_of(polys[lane, PSI], at)
+            f21 = slope(polys[lane, PHI], at) / h
+            f22 = slope(polys[lane, PSI], at) / h
         else:
             f11 = 1.0
-            f12 = _value(polys[lane, FREE_PSI], at)
+            f12 = value_of(polys[lane, FREE_PSI], at)
             f21 = 0.0
-            f22 = _slope(polys[lane, FREE_PSI], at) / h
+            f22 = slope(polys[lane, FREE_PSI], at) / h
         j11 = f11 * jacobian[0] + f12 * jacobian[2]
         j12 = f11 * jacobian[1] + f12 * jacobian[3]
         j21 = f21 * jacobian[0] + f22 * jacobian[2]
@@ -241,19 +241,19 @@ def step_through(
             skip = 0
         spent[region + 1] -= time
         if region != 0:
-            f11 = _value(polys[lane, PHI], at)
-            f12 = _value(polys[lane, PSI], at)
-            f21 = _slope(polys[lane, PHI], at) / h
-            f22 = _slope(polys[lane, PSI], at) / h
-            x -= _value(polys[lane, NU], at)
-            y -= _slope(polys[lane, NU], at) / h
+            f11 = value_of(polys[lane, PHI], at)
+            f12 = value_of(polys[lane, PSI], at)
+            f21 = slope(polys[lane, PHI], at) / h
+            f22 = slope(polys[lane, PSI], at) / h
+            x -= value_of(polys[lane, NU], at)
+            y -= slope(polys[lane, NU], at) / h
         else:
             f11 = 1.0
-            f12 = _value(polys[lane, FREE_PSI], at)
+            f12 = value_of(polys[lane, FREE_PSI], at)
             f21 = 0.0
-            f22 = _slope(polys[lane, FREE_PSI], at) / h
-            x -= _value(polys[lane, FREE_NU], at)
-            y -= _slope(polys[lane, FREE_NU], at) / h
+            f22 = slope(polys[lane, FREE_PSI], at) / h
+            x -= value_of(polys[lane, FREE_NU], at)
+            y -= slope(polys[lane, FREE_NU], at) / h
         det = f11 * f22 - f12 * f21
         x0 = (f22 * x - f12 * y) / det
         y0 = (f11 * y - f21 * x) / det

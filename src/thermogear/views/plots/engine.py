@@ -38,6 +38,7 @@ MARKS = {
     "period doubling": ("o", "#0072B2"),
     "grazing": ("^", "#009E73"),
     "period halving": ("v", "#CC79A7"),
+    "pitchfork": ("D", "#E69F00"),
 }
 
 

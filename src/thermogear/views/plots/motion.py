@@ -28,6 +28,7 @@ from thermogear.views.style import (
 from thermogear.views.words import (
     axis_label,
     display,
+    label_text,
     number,
     plain,
     shown,
@@ -67,7 +68,7 @@ def moving(one: xr.Dataset) -> bool:
 
 def label_of(one: xr.Dataset) -> str:
     """The label of a point, in words a title can hold."""
-    return plain(one["label"].item())
+    return plain(label_text(one))
 
 
 def orbit_of(one: xr.Dataset) -> Orbit:

@@ -35,13 +35,13 @@ CLASSES = (
     ("period 6", "#F0E442"),
     ("period 7, 8", "#E69F00"),
     ("longer", "#8a5a2b"),
-    ("chaotic", "#D55E00"),
+    ("chaotic, estimate", "#D55E00"),
     ("undecided", "#999999"),
     ("diverged", "#22303c"),
     ("jammed", "#ffffff"),
 )
-KINDS = ("fold", "period doubling", "grazing", "period halving")
-MARKS = ("s", "D", "|", "d")
+KINDS = ("fold", "period doubling", "grazing", "period halving", "pitchfork")
+MARKS = ("s", "D", "|", "d", "P")
 
 
 def classes_of(data: xr.Dataset) -> NDArray[np.int64]:
@@ -140,7 +140,7 @@ def _branches(axes: Axes, data: xr.Dataset, name: str, column: str = "branch_x")
         axes.plot([], [], color=QUIET, linewidth=0.9, linestyle=line, label="unstable branch")
     at = shown(name, data["bifurcation_value"].values)
     kinds = data["bifurcation_kind"].values
-    for kind in (0, 1):
+    for kind in (0, 1, 4):
         chosen = kinds == kind
         if chosen.any():
             axes.plot(
@@ -202,7 +202,7 @@ def basins_picture(data: xr.Dataset) -> Figure:
             x, v, "o", color=colours[n], markeredgecolor="white", markersize=5, zorder=3
         )
         period = int(data["attractor_period"].values[n])
-        kind = f"period {period}" if period else "chaotic"
+        kind = f"period {period}" if period else "chaotic, estimate"
         share = 100.0 * float(data["fraction"].values[n])
         axes[0, 0].plot([], [], "o", color=colours[n], label=f"{kind}: {share:.3g} %")
     axes[0, 0].grid(visible=False)
