@@ -62,6 +62,10 @@ class Lost(ReturnMap):
         found = super().visit(start, periods, sampled=sampled)
         return replace(found, **{self.part: np.full_like(getattr(found, self.part), NAN)})
 
+    def flow(self, start: np.ndarray, halves: int) -> tuple[np.ndarray, np.ndarray]:
+        end, jacobian = super().flow(start, halves)
+        return (end, jacobian * NAN) if self.part == "jacobian" else (end * NAN, jacobian)
+
 
 @pytest.mark.parametrize("part", ["jacobian", "points"])
 def test_newton_does_not_settle_where_the_map_has_no_numbers(orbit: Orbit, part: str) -> None:
@@ -98,7 +102,7 @@ def test_no_point_of_a_branch_without_numbers(
     heading = np.array([0.0, 0.0, 1.0])
     assert curve.correct(guess, normal=heading) is not None
     if lost == "derivative in the parameter":
-        monkeypatch.setattr(curve, "in_parameter", lambda scaled: np.full(2, NAN))
+        monkeypatch.setattr(curve, "in_parameter", lambda *_: (np.full(2, NAN), np.inf))
     else:
 
         class Broken(Lost):
@@ -108,7 +112,7 @@ def test_no_point_of_a_branch_without_numbers(
     # on the curve already, and a step beside it
     for away in (0.0, 1e-3):
         assert curve.correct(guess + np.array([away, 0.0, 0.0]), normal=heading) is None
-    monkeypatch.setattr(Curve, "in_parameter", lambda self, scaled: np.full(2, NAN))
+    monkeypatch.setattr(Curve, "in_parameter", lambda *_: (np.full(2, NAN), np.inf))
     with pytest.raises(ConvergenceError, match=r"^continuation in frequency: the first orbit does"):
         continuation(orbit, "frequency", 1.2)
 

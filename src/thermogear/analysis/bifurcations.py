@@ -37,7 +37,7 @@ LOOK_CLOSER = 1e-3
 """Between points nearer than this no second event of a kind is looked for."""
 SILENT = 1e-11
 """A test function below this is rounding: of orbits that float in the gap it is 0 all along."""
-SMALL = 1e-6
+SMALL = 1e-5
 """Step of the parameter (of its range) in which the coefficients are differentiated."""
 DOUBLED = (1e-4, 3e-5, 1e-3, 1e-5, 3e-4, 3e-3, 1e-2)
 """Amplitudes (scaled) at which a doubled orbit is looked for beside its flip."""
@@ -184,7 +184,7 @@ class Curve:
         else:
             steps = self.period * count
         rates = self._rates(float(value[2]), section)
-        moved, margin = exact.moved_by(maps, rates, value[:2], steps)
+        moved, margin = exact.moved_by(maps, rates=rates, start=value[:2], steps=steps)
         sign = -1.0 if self.symmetric else 1.0
         return sign * moved * self.span / self.unit[:2], margin / section.backlash
 

@@ -48,7 +48,7 @@ Settle = Callable[[float, Floats], tuple[Floats, int]]
 """(value, start) -> the state a motion settles on, and the periods of its orbit (0: none)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Leap:
     """A motion leaves its branch at ``value``: at a fold, or a subcritical period doubling.
 
@@ -126,7 +126,16 @@ def follow(
         if (landed - to) * (to - start) > 0.0:
             landed = to
         found, n_new = settle(landed, _pushed(event))
-        leaps.append(Leap(event.kind, n, event.value, event.state, landed, found))
+        leaps.append(
+            Leap(
+                kind=event.kind,
+                period=n,
+                value=event.value,
+                state=event.state,
+                landed=landed,
+                found=found,
+            )
+        )
         if n_new == 0:
             break
         here, at, n = found, landed, n_new

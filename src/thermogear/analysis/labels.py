@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,6 +53,7 @@ class Label:
     discarded: int
     orbit: Orbit | None = None
     lyapunov: Lyapunov | None = None
+    _: KW_ONLY
     followed: int = 0
     starts: int = 1
 

@@ -206,7 +206,7 @@ def first_half(maps: ExactMaps) -> ExactMaps:
 
 
 def moved_by(
-    maps: ExactMaps, rates: tuple[Floats, Floats, float], start: Floats, steps: int
+    maps: ExactMaps, *, rates: tuple[Floats, Floats, float], start: Floats, steps: int
 ) -> tuple[Floats, float]:
     """d(x, y)/dp after ``steps`` sub-steps of one lane, and the least distance of an extreme of x
     on the way from an edge of the backlash.
