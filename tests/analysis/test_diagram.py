@@ -158,9 +158,7 @@ def test_an_orbit_lies_on_the_line_that_leads_to_it_and_on_no_other():
     family = ModelFamily(BISTABLE, ("frequency",))
     low = periodic_orbit(BISTABLE, 1, (1.1776, 0.0074))
     branch = continuation(low, "frequency", 0.9)
-    line = _Line(
-        1, branch.values, branch.states, branch.multipliers, branch.bifurcations, cut=()
-    )
+    line = _Line(1, branch.values, branch.states, branch.multipliers, branch.bifurcations, cut=())
     turn = int(np.argmax(branch.values))
     assert 2 < turn < branch.values.size - 3
     for value in (0.705, 0.75, 0.7871, float(branch.values[2])):

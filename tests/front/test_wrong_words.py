@@ -91,7 +91,10 @@ def _here(tmp_path, monkeypatch):
         ("runup rig -o file/x", "store: got file/x; file is a file; name a directory"),
         ("thesis -o file/x", "output: got file/x; file is a file; name a directory"),
         ("measure record.csv -o file/x", "output: got file/x; file is a file; name a directory"),
-        ("measure record.csv --pulses 0", "pulses_per_turn: got 0 pulses per turn; allowed 1e-6..1e7"),
+        (
+            "measure record.csv --pulses 0",
+            "pulses_per_turn: got 0 pulses per turn; allowed 1e-6..1e7",
+        ),
         ("check open.toml", "a text ends with the quote it began with"),
     ],
 )
