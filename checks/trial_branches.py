@@ -149,15 +149,11 @@ class Plain:
         trace = float(np.trace(visit.jacobian))
         return 1 - trace + det, 1 + trace + det, (visit.contact_losses, visit.back_impacts)
 
-    def walk(self, length: float) -> tuple[list[Seen], Floats]:
-        """Events on the way over an arclength, or to the end of the range; the last point."""
-        guess = np.append(self.state, self.start) / self.unit
-        upright = np.array([0.0, 0.0, 1.0])
-        here = self.closed(guess, upright)
+    def walk(self, guess: Floats, toward: Floats, length: float) -> tuple[list[Seen], float]:
+        """Events on the way over an arclength, or to the end of the range; how far it came."""
+        here = self.closed(guess, toward)
         assert here is not None
-        first = guess.copy()
-        first[2] += 1e-5 * np.sign(self.to - self.start)
-        after = self.closed(first, upright)
+        after = self.closed(guess + 1e-5 * toward, toward)
         assert after is not None
         tangent = after[0] - here[0]
         tangent /= np.linalg.norm(tangent)
@@ -178,10 +174,10 @@ class Plain:
                     break
                 continue
             chord = there[0] - u
+            if not low - SAME <= there[0][2] <= high + SAME:
+                return seen, length
             gone += float(np.linalg.norm(chord))
             new = self.tests(*there)
-            if not low - SAME <= there[0][2] <= high + SAME:
-                break
             tangent = chord / np.linalg.norm(chord)
             p, q = sorted((float(u[2] * self.span), float(there[0][2] * self.span)))
             # a turn of the parameter inside a step reaches beyond both ends
@@ -199,7 +195,7 @@ class Plain:
                 seen.append(Seen(GRAZING, p - slack, q + slack))
             u, old = there[0], new
             step = min(SHORT_STEP, 2.0 * step)
-        return seen, u
+        return seen, gone
 
 
 @dataclass
@@ -258,7 +254,14 @@ def compare(drawn: Drawn, branch: Branch, found: Found, name: str) -> None:
     plain = Plain(drawn)
     scaled = np.column_stack([branch.states, branch.values]) / plain.unit
     length = float(np.linalg.norm(np.diff(scaled, axis=0), axis=1).sum())
-    seen, _ = plain.walk(length)
+    seen, gone = plain.walk(
+        scaled[0], np.array([0.0, 0.0, np.sign(drawn.to - plain.start)]), length
+    )
+    if gone < length:
+        # its differences straddle a grazing that turns sharply: the rest from the other end
+        found.counts["plain walks that stopped and went on from the other end"] += 1
+        home = (scaled[-2] - scaled[-1]) / np.linalg.norm(scaled[-2] - scaled[-1])
+        seen += plain.walk(scaled[-1], home, length - gone - SHORT_STEP)[0]
     events = [b for b in branch.bifurcations if b.kind != BIRTH]
     left = list(events)
     for one in seen:
