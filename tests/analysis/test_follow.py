@@ -59,3 +59,34 @@ def test_a_cascade_is_followed_into_chaos_without_a_jump(flip):
     assert 1.1 < there.value < flip
     beyond = label(MODEL.replace(frequency=there.value - 1e-4), initial_state=there.state)
     assert beyond.period == 0 or beyond.period > LONGEST_PERIOD
+
+
+def test_a_run_behind_a_jump_may_be_asked_for_its_first_jump_back():
+    """Over a fold and back: the first jump of the way back is the other fold."""
+    model = TorsionalModel(
+        damping_ratio=0.05,
+        frequency=0.7,
+        stiffness_amplitude=0.1,
+        mean_force=0.1,
+        force_amplitude=0.05,
+    )
+    family, _ = family_of(model, "frequency")
+
+    def quick(value, state):
+        found = label(model.replace(frequency=value), initial_state=state, cap=4000)
+        return (found.orbit.state if found.orbit else np.asarray(state)), found.period
+
+    def way(start, to, state):
+        return follow(
+            family, "frequency", start=start, to=to, state=state, period=1, settle=quick,
+            most_leaps=1,
+        )  # fmt: skip
+
+    calm = label(model.replace(frequency=0.75), initial_state=(1.18, 0.007)).orbit
+    up = way(0.75, 0.85, calm.state)
+    (there,) = up.leaps
+    assert (up.value, up.period) == (there.landed, there.found_period)
+    assert there.value == pytest.approx(0.7917368893619342, abs=1e-9)
+    back = way(there.landed, 0.4, there.found)
+    (home,) = back.leaps
+    assert home.value < there.value

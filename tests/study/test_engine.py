@@ -126,6 +126,22 @@ def test_lyapunov_exponent_and_its_sum() -> None:
     assert summary["verdict"] == "chaotic for 22 000 periods, 1 start"
 
 
+def test_chaos_that_has_ended_by_the_end_of_its_record_is_said() -> None:
+    """On its period-5 orbit by 18 000 periods; it was called chaotic for 22 000."""
+    numbers = {
+        "damping_ratio": 0.036281193420631005,
+        "frequency": 0.4856413205292942,
+        "stiffness_amplitude": 0.28745010005734567,
+        "mean_force": 0.3020883356856766,
+        "force_amplitude": 0.5082231342633113,
+        "half_backlash": 1.0579260211766828,
+    }
+    subject = of_numbers(numbers, (-0.22516572016971326, -1.704480535133318))
+    found = lyapunov_results(subject).summary
+    assert found["verdict"] == "not chaotic at its end: period 5 after 22000 periods"
+    assert "says nothing of either" in found["notices"][0]
+
+
 def test_an_interrupted_exponent_keeps_its_batches() -> None:
     def stop(_stage: str, done: int, _total: int) -> None:
         if done == 3:

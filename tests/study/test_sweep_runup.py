@@ -5,6 +5,7 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.study.case import load_case, load_example
+from thermogear.study.notices import difference_notices
 from thermogear.study.response import Recording, respond
 from thermogear.study.runup import notices_of, run_up
 from thermogear.study.sweep import sweep
@@ -109,6 +110,27 @@ def test_jumps_are_the_same_in_coarse_and_in_fine_steps():
     assert lists[0] == pytest.approx([2401.1125, 2251.3559], abs=1e-3)
     assert lists[1] == pytest.approx(lists[0], abs=1e-5)
     assert any("contact is lost at" in text for text in notices_of(data))
+
+
+def test_contact_that_lasts_is_not_called_lost():
+    """A share of 4e-15 was rounding, and the words said that contact is lost at 1800 rpm."""
+    data = run_up(
+        variant(60, 0.05, 10), np.array([1800.0, 2400.0]) * RPM, temperatures=(None,),
+        branch_period=0,
+    )  # fmt: skip
+    assert np.all(data.contact_loss_share.values[..., 0] == 0.0)
+    assert np.all(data.contact_loss_share.values[..., 1] > 0.01)
+    assert "contact is lost at 2400 rpm (in any state, up or down)" in notices_of(data)
+
+
+def test_where_the_runs_differ_is_said(plain):
+    (words,) = [text for text in notices_of(plain) if text.startswith("up and down differ at")]
+    low, high = (float(word) for word in words.split(" rpm")[0].split(" at ")[1].split(" .. "))
+    fold, rise = np.sort(plain.jump_fold.values) / RPM
+    assert fold < low <= fold + 100.0
+    assert rise - 100.0 <= high < rise
+    same = plain.isel(direction=[0, 0])
+    assert difference_notices(same) == []
 
 
 def test_waterfall_holds_the_power_of_the_transmission_error(plain):

@@ -63,7 +63,7 @@ class Leap:
     """A motion leaves its branch at ``value``: at a fold, or a subcritical period doubling.
 
     ``kind`` of bifurcation, ``period`` and ``state`` (2,) there; ``landed`` the parameter just
-    behind, where the new motion stands at ``found`` (2,).
+    behind, where the new motion of ``found_period`` periods (0: no orbit) stands at ``found`` (2,).
     """
 
     kind: str
@@ -72,6 +72,7 @@ class Leap:
     state: Floats
     landed: float
     found: Floats
+    found_period: int
 
 
 @dataclass(frozen=True)
@@ -97,10 +98,12 @@ def follow(
     state: Floats,
     period: int,
     settle: Settle,
+    most_leaps: int = MOST_EVENTS,
 ) -> Followed:
     """Follow the stable orbit of ``period`` periods at ``state`` from ``start`` to ``to``.
 
-    ``family`` value -> model of one lane; ``settle`` finds a motion behind a jump.
+    ``family`` value -> model of one lane; ``settle`` finds a motion behind a jump. It ends behind
+    ``most_leaps`` jumps.
     """
     leaps: list[Leap] = []
     here, at, n = np.asarray(state, dtype=float), start, period
@@ -154,12 +157,15 @@ def follow(
                 state=event.state,
                 landed=landed,
                 found=found,
+                found_period=n_new,
             )
         )
         here, at = found, landed
         if n_new == 0:
             break
         n = n_new
+        if len(leaps) == most_leaps:
+            return Followed(at, here, n, tuple(leaps))
     return Followed(at, here, 0, tuple(leaps))
 
 

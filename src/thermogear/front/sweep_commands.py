@@ -51,15 +51,18 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-_over = click.option(
-    "--over",
-    multiple=True,
-    required=True,
-    metavar="NAME=FROM:TO:COUNT",
-    help="A parameter and its values: rpm, torque, temperature, backlash, damping or a dotted "
-    "field (gears.pinion.face_width=20 mm:30 mm:3) of a gear case; zeta, omega, epsilon, F_m, "
-    "F_h, b, eps_T of a dimensionless one.",
+GEAR_AXES = (
+    "A parameter and its values: rpm, torque, temperature, backlash, damping or a dotted field "
+    "(gears.pinion.face_width=20 mm:30 mm:3) of a gear case"
 )
+
+
+def _over(words: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    return click.option(
+        "--over", multiple=True, required=True, metavar="NAME=FROM:TO:COUNT", help=words
+    )
+
+
 _but = click.option(
     "--but",
     multiple=True,
@@ -70,7 +73,7 @@ _but = click.option(
 
 @click.command()
 @_case
-@_over
+@_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
 @click.option("--start", "starts", multiple=True, metavar="X,V",
               help="A start in half backlashes. May be repeated.")  # fmt: skip
@@ -141,7 +144,7 @@ def bifurcation(
 
 @click.command("map")
 @_case
-@_over
+@_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
 @click.option("--full", is_flag=True, help="Compute every point, give none up to its neighbours.")
 @_common
@@ -224,7 +227,7 @@ def runup(
 
 @click.command()
 @_case
-@_over
+@_over(f"{GEAR_AXES}.")
 @_common
 def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
     """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
@@ -521,6 +524,7 @@ def _run_up_summary(data: xr.Dataset) -> dict[str, Any]:
                 "at": ("fold", "subcritical period doubling")[int(data["jump_kind"].values[i])],
                 "fold_rpm": rpm(float(data["jump_fold"].values[i])),
                 "return_rpm": rpm(float(data["jump_return"].values[i])),
+                "into_period": int(data["jump_into"].values[i]),
                 "before_um": 1e6 * float(data["jump_before"].values[i]),
                 "after_um": 1e6 * float(data["jump_after"].values[i]),
             }

@@ -304,6 +304,16 @@ def lyapunov_results(
     ran = discard + values.size * batch_periods
     chaos = label_words("chaotic", followed=ran, starts=1)
     sure = value > 4.0 * error and values[:half].mean() > 0.0 and values[half:].mean() > 0.0
+    verdict = chaos if sure else "not chaotic" if value < -4.0 * error else "undecided"
+    notices = []
+    # a positive mean says nothing of how long chaos lasts
+    end = label(subject.model, initial_state=state, discard=128, cap=512, starts=2, follow=1)
+    if end.orbit is not None and not verdict.startswith("not"):
+        verdict = f"not chaotic at its end: period {end.period} after {ran} periods"
+        notices.append(
+            "the motion closes by the end of the record: its mean exponent is one of the transient "
+            "and of the orbit, and says nothing of either"
+        )
     data = labelled(
         {
             "lyapunov_batch": (("batch",), values),
@@ -326,9 +336,9 @@ def lyapunov_results(
         "batches": int(values.size),
         "batch_periods": batch_periods,
         "discarded": discard,
-        "verdict": chaos if sure else "not chaotic" if value < -4.0 * error else "undecided",
+        "verdict": verdict,
         "state": [float(c) for c in state],
         "interrupted": cut,
-        "notices": [],
+        "notices": notices,
     }
     return found("lyapunov", {"lyapunov": data}, summary, cut)

@@ -15,6 +15,7 @@ from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
 from thermogear.signals.spectra import amplitude_spectrum, order_amplitudes
 from thermogear.study.case import Simulation
+from thermogear.study.response import lost_share
 
 Floats = NDArray[np.float64]
 Advance = Callable[[int, int], None]
@@ -96,7 +97,7 @@ def follow(
             x, samples_per_period=simulation.samples, periods=periods, orders=[0.5]
         )[..., 0],
         "peak_to_peak_displacement": x.max(axis=1) - x.min(axis=1),
-        "contact_loss_share": missing if share is None else np.maximum(1.0 - share, 0.0),
+        "contact_loss_share": missing if share is None else lost_share(share),
         "back_impacts": missing if impacts is None else impacts,
         "status": status,
         "label": np.array([one.name for one in found]),

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.analysis.settle import PERIODIC
 from thermogear.base.units import RPM
 from thermogear.study.case import GearCase
 
@@ -55,12 +56,35 @@ def contact_notices(data: xr.Dataset) -> list[str]:
     return found
 
 
+def differing(data: xr.Dataset) -> NDArray[np.bool_]:
+    """Where the runs up and down differ, (state, speed).
+
+    Of orbits the period, or the transmission error by 0.1 % of its peak to peak; of chaos, whose
+    extremes are chance, by a quarter of it; an orbit and chaos always.
+    """
+    both = (data["status"].values == 0).all(axis=1)
+    size = data["dte_peak_to_peak"].values
+    period = np.where(data["label"].values == PERIODIC, data["period"].values, 0)
+    apart = np.abs(size[:, 0] - size[:, 1]) / np.maximum(size[:, 0], size[:, 1])
+    least = np.where(period[:, 0] > 0, 1e-3, 0.25)
+    return np.asarray(both & ((period[:, 0] != period[:, 1]) | (apart > least)))
+
+
+def difference_notices(data: xr.Dataset) -> list[str]:
+    """Over which speeds the runs up and down show different motions."""
+    here = np.asarray(differing(data).any(axis=0))
+    if not here.any():
+        return []
+    speeds = data["pinion_speed"].values / RPM
+    return [f"up and down differ at {_stretches(speeds, here)} rpm (in any state)"]
+
+
 def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
     """The stretches of ascending values on which a flag holds, in words."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
     words = []
     for first, last in edges.reshape(-1, 2):
-        low, high = (f"{values[i]:.4g}" for i in (first, last - 1))
+        low, high = (f"{values[i]:.6g}" for i in (first, last - 1))
         words.append(low if low == high else f"{low} .. {high}")
     return ", ".join(words)
 

@@ -50,6 +50,7 @@ class Recording:
 
 
 RECORD = Recording()
+ROUNDING = 1e-12
 
 
 def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Variable]:
@@ -66,6 +67,12 @@ def response_variables(dims: tuple[str, ...], *, lines: bool) -> dict[str, Varia
             {"units": "m", "long_name": "amplitude of a line of the transmission error (peak)"},
         )
     return found
+
+
+def lost_share(drive_share: Floats) -> Floats:
+    """Share of time out of drive-side contact [-], 0 where contact lasts but for rounding."""
+    free = np.clip(1.0 - np.asarray(drive_share, dtype=float), 0.0, 1.0)
+    return np.where(free < ROUNDING, 0.0, free)
 
 
 def respond(
@@ -98,8 +105,8 @@ def respond(
             one = _figures(points, int(lane), samples[:, 0, row], phase, record, lines)
             for name, value in one.items():
                 found[name][lane] = value
-        free = 1.0 - run.spent[2] / (record.periods * lanes.period)
-        found["contact_loss_share"][index] = np.clip(free, 0.0, 1.0)
+        drive = run.spent[2] / (record.periods * lanes.period)
+        found["contact_loss_share"][index] = lost_share(drive)
     here = points.status == 0
     found["mesh_frequency"][here] = points.mesh_frequency[here] / (2.0 * np.pi)
     found["frequency_ratio"][here] = (points.mesh_frequency / points.rate)[here]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.study.case import GearCase, gear_case
 from thermogear.study.gearwords import GearFamily, GearPoints, Tabulated
-from thermogear.study.notices import range_notices
+from thermogear.study.notices import difference_notices, range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
 from thermogear.study.work import Report, carry_out
 
@@ -60,6 +60,9 @@ LEAP = {
     "leap_before": "transmission error before, peak to peak",
     "leap_after": "transmission error after, peak to peak",
     "leap_kind": "0: at a fold, 1: at a subcritical period doubling",
+    "leap_x": "displacement of the new motion, in half backlashes",
+    "leap_v": "its velocity",
+    "leap_period": "periods of the new motion, 0: no orbit",
 }
 
 
@@ -133,9 +136,9 @@ class RunUpPlan:
         found["end_period"] = Variable(
             dims, "int32", 0, {"long_name": "periods of the orbit that is followed, 0: none"}
         )
-        units = {"leap_fold": "rad/s", "leap_to": "rad/s", "leap_kind": "1"}
+        units = {"leap_fold": "rad/s", "leap_to": "rad/s", "leap_before": "m", "leap_after": "m"}
         for name, words in LEAP.items():
-            attributes = {"long_name": words, "units": units.get(name, "m")}
+            attributes = {"long_name": words, "units": units.get(name, "1")}
             found[name] = Variable((*dims, "leap"), "float64", nan, attributes)
         found["left_early"] = Variable(
             dims, "int8", 0,
@@ -239,11 +242,12 @@ class RunUpPlan:
             "pinion_teeth": self.case.pair.pinion.teeth,
             "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
         }
-        data = _with_jumps(data)
+        data = _with_jumps(self, data)
         data.attrs |= range_notices(self.case, data)
+        told = json.loads(data.attrs["notices"]) + difference_notices(data)
+        data.attrs["notices"] = json.dumps(told)
         early = np.argwhere(data["left_early"].values > 0)
         if early.size:
-            told = json.loads(data.attrs["notices"])
             speeds = np.unique(np.array(self.speeds)[early[:, 2]]) / RPM
             told.append(
                 f"these steps alone would leave a motion before its fold: at "
@@ -379,6 +383,23 @@ class _Run:
         calm = int(settled.label[0]) == PERIODIC
         return settled.state[0], int(settled.period[0]) if calm else 0
 
+    def returned(self, leap: Mapping[str, float], end: float) -> float:
+        """Where a run from behind a jump back towards ``end`` first jumps; NaN: nowhere."""
+        period = int(leap["leap_period"])
+        if period == 0 or leap["leap_to"] == end:
+            return float("nan")
+        followed = follow(
+            self._single,
+            "pinion_speed",
+            start=leap["leap_to"],
+            to=end,
+            state=np.array([leap["leap_x"], leap["leap_v"]]),
+            period=period,
+            settle=self._settle,
+            most_leaps=1,
+        )
+        return followed.leaps[0].value if followed.leaps else float("nan")
+
     def _keep(self, leaps: Sequence[Leap]) -> None:
         for leap in leaps:
             if leap.period > LISTED_PERIOD:
@@ -389,7 +410,8 @@ class _Run:
             ]
             if abs(sizes[1] - sizes[0]) < LISTED * min(sizes):
                 continue
-            row = (leap.value, leap.landed, *sizes, LEAP_KINDS.index(leap.kind))
+            new = (*leap.found, leap.found_period)
+            row = (leap.value, leap.landed, *sizes, LEAP_KINDS.index(leap.kind), *new)
             self.leaps.append(dict(zip(LEAP, map(float, row), strict=True)))
 
     def _size(self, speed: float, state: Floats) -> float:
@@ -399,16 +421,19 @@ class _Run:
         return float(found["dte_peak_to_peak"][0])
 
 
-def _with_jumps(data: xr.Dataset) -> xr.Dataset:
+def _with_jumps(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     """Where the followed motion left its branch, on the way up or down, and where it returns."""
     rows: list[dict[str, float | int]] = []
+    speeds = np.array(plan.speeds)
     for state in range(data.sizes["state"]):
-        mine: list[dict[str, float | int]] = []
+        back: _Run | None = None
         for direction, sign in enumerate(DIRECTIONS):
             here = data.isel(state=state, direction=direction)
             for place, number in np.argwhere(np.isfinite(here["leap_fold"].values))[::sign]:
                 row = {name: float(here[name].values[place, number]) for name in LEAP}
-                mine.append(
+                if back is None:
+                    back = _Run(plan, Tabulated.of(plan.family(state), speeds), keep_going)
+                rows.append(
                     {
                         "state": state,
                         "direction": sign,
@@ -418,15 +443,10 @@ def _with_jumps(data: xr.Dataset) -> xr.Dataset:
                         "fold": row["leap_fold"],
                         "before": row["leap_before"],
                         "after": row["leap_after"],
+                        "into": int(row["leap_period"]),
+                        "return": back.returned(row, float(speeds[0 if sign > 0 else -1])),
                     }
                 )
-        for row_ in mine:
-            way, fold = int(row_["direction"]), float(row_["fold"])
-            back = [float(o["fold"]) for o in mine if int(o["direction"]) == -way]
-            # the first jump that a run back from here meets
-            ahead = [way * f for f in back if way * (fold - f) >= 0.0]
-            row_["return"] = way * max(ahead, default=float("nan"))
-        rows += mine
     units = {
         "from": "rad/s", "to": "rad/s", "fold": "rad/s", "return": "rad/s",
         "before": "m", "after": "m",
@@ -438,12 +458,14 @@ def _with_jumps(data: xr.Dataset) -> xr.Dataset:
         "from": "last speed before the jump",
         "to": "first speed after it",
         "fold": "speed at which the followed motion leaves its branch",
-        "return": "speed at which a run back from there jumps again; NaN: not in this range",
+        "return": "speed at which a run back from there jumps again; NaN: not in this range, or "
+        "it runs into chaos before",
+        "into": "periods of the new motion, 0: no orbit",
         "before": "transmission error before, peak to peak",
         "after": "transmission error after, peak to peak",
     }
     for name, long_name in words.items():
-        kind = np.int32 if name in ("state", "direction", "kind") else float
+        kind = np.int32 if name in ("state", "direction", "kind", "into") else float
         attributes = {"long_name": long_name} | ({"units": units[name]} if name in units else {})
         data[f"jump_{name}"] = (("jump",), np.array([r[name] for r in rows], kind), attributes)
     return data

@@ -45,6 +45,7 @@ from thermogear.study.fingerprint import code_version, environment
 
 QUARANTINE = "quarantine"
 
+_KIND = "go on with it where it was begun, by version and kind of machine, or in a new directory"
 _OTHER = "name another directory, or repeat the command the store was begun with"
 
 
@@ -208,7 +209,7 @@ class Store:
                     new,
                     allowed=old,
                     why=f"the store {self.directory} was begun with the latter",
-                    fix=_OTHER,
+                    fix=_KIND if field.startswith(("environment", "code")) else _OTHER,
                 )
         elif (self.directory / MANIFEST).exists() or (self.directory / COPY).exists():
             # both copies are damaged: nothing of what lies here can be trusted or thrown away

@@ -165,9 +165,8 @@ def _headline(kind: str, summary: Summary) -> str:
             f"the sum of both exponents is {summary['sum']:.6g}."
         )
     if kind == "branch":
-        return (
-            f"{len(summary['bifurcations'])} bifurcations on {len(summary['branches'])} branches."
-        )
+        events, legs = len(summary["bifurcations"]), len(summary["branches"])
+        return f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
     if kind == "shared":
         return (
             "Mean stiffness of the load-shared force and of the one spring differ by "

@@ -200,7 +200,16 @@ def _points(data: xr.Dataset) -> Section:
         blocks.append(Table("Jumps", head, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
     elif str(data.attrs["kind"]) == "run-up":
-        blocks.append(Text("No jump: up and down the motion runs on at every speed."))
+        told = json.loads(data.attrs.get("notices", "[]"))
+        apart = [text for text in told if text.startswith("up and down differ")]
+        blocks.append(
+            Text(
+                f"No motion was lost at a fold. Yet {apart[0]}: a motion ended in another way "
+                "there, as chaos does, which is not located."
+                if apart
+                else "No jump: up and down the motion runs on at every speed."
+            )
+        )
     if data.sizes.get("attractor_number"):
         rows_ = []
         for i in range(data.sizes["attractor_number"]):
@@ -233,7 +242,9 @@ def _points(data: xr.Dataset) -> Section:
 def _returns(data: xr.Dataset, i: int) -> str:
     """Where a run back jumps again, in words where it does not."""
     back = float(data["jump_return"].values[i])
-    return number(float(shown("pinion_speed", back)), 8) if np.isfinite(back) else "not in range"
+    if np.isfinite(back):
+        return number(float(shown("pinion_speed", back)), 8)
+    return "not in range" if int(data["jump_into"].values[i]) else "from chaos"
 
 
 def _bifurcations(data: xr.Dataset) -> list[tuple[int, int, float, float | None]]:
