@@ -21,6 +21,7 @@ from thermogear.heat.contact_state import ContactState, PitchPoint
 from thermogear.heat.film import (
     film_parameter,
     film_thickness,
+    mean_roughness_film_parameter,
     pressure_viscosity,
     regime,
     thermal_reduction,
@@ -28,14 +29,12 @@ from thermogear.heat.film import (
 from thermogear.heat.friction import ROUGHNESS_LIMIT, BenedictKelley, ConstantDry, friction_law
 from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity, walther_slope
 from thermogear.heat.moving_source import flash_temperature
+from thermogear.heat.roughness import rms_roughness
 from thermogear.heat.temperature import frictional_heat, heat_partition
 from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
-
-RMS_OF_MEAN_ROUGHNESS = 1.25
-"""Rq over Ra of ground flanks, about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +64,14 @@ class FrictionPath:
     def viscosity(self) -> Floats:
         """eta [Pa s] at the inlet, (count, 1)."""
         return dynamic_viscosity(self.hot.operating.lubricant, self.inlet_temperature)
+
+    @cached_property
+    def bath_viscosity(self) -> Floats:
+        """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction are stated for."""
+        operating = self.hot.operating
+        supplied = np.asarray(operating.oil_temperature, dtype=float)
+        spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]
+        return dynamic_viscosity(operating.lubricant, spread)
 
     @cached_property
     def velocities(self) -> tuple[Floats, Floats]:
@@ -121,12 +128,8 @@ class FrictionPath:
         """Hertzian pressure at the centre [Pa]."""
         return hertz_pressure(self.line_load, self.radius, self.elastic.contact_modulus)
 
-    @cached_property
-    def film(self) -> Floats:
-        """Least film thickness [m], Dowson and Higginson, inlet shear heating included.
-
-        0 at rest, infinite without load.
-        """
+    def _film_by(self, law: str) -> Floats:
+        """Film thickness [m] by a named law at the inlet's temperature, shear heating included."""
         oil, warm = self.hot.operating.lubricant, self.inlet_temperature
         v1, v2 = self.velocities
         entrainment, slide = 0.5 * (v1 + v2), np.abs(v1 - v2)
@@ -141,8 +144,17 @@ class FrictionPath:
             pressure_viscosity(oil, warm),
             self.radius,
             2.0 * self.elastic.contact_modulus,
+            law=law,
             thermal_factor=thin,
         )
+
+    @cached_property
+    def film(self) -> Floats:
+        """Least film thickness [m], Dowson and Higginson, inlet shear heating included.
+
+        0 at rest, infinite without load.
+        """
+        return self._film_by("dowson-higginson")
 
     @cached_property
     def film_parameter(self) -> Floats:
@@ -150,8 +162,18 @@ class FrictionPath:
         pair = self.hot.pair
         return film_parameter(
             self.film,
-            roughness_1=RMS_OF_MEAN_ROUGHNESS * pair.pinion.roughness,
-            roughness_2=RMS_OF_MEAN_ROUGHNESS * pair.wheel.roughness,
+            roughness_1=rms_roughness(pair.pinion.roughness),
+            roughness_2=rms_roughness(pair.wheel.roughness),
+        )
+
+    @cached_property
+    def central_film_parameter(self) -> Floats:
+        """Central film (Grubin, inlet shear heating included) over the flanks' mean Ra."""
+        pair = self.hot.pair
+        return mean_roughness_film_parameter(
+            self._film_by("grubin"),
+            roughness_1=pair.pinion.roughness,
+            roughness_2=pair.wheel.roughness,
         )
 
     @cached_property
@@ -176,6 +198,8 @@ class FrictionPath:
             roughness=0.5 * (pair.pinion.roughness + pair.wheel.roughness),
             kinematic_viscosity=kinematic_viscosity(oil, self.inlet_temperature),
             film_parameter=self.film_parameter,
+            central_film_parameter=self.central_film_parameter,
+            bath_viscosity=self.bath_viscosity,
             pressure_viscosity=pressure_viscosity(oil, self.inlet_temperature),
             pitch_point=PitchPoint(
                 line_load=self.elastic.force[:, None] / pair.face_width,
