@@ -289,7 +289,8 @@ def film_parameter(
     """Lambda = h_min/sqrt(Rq1^2 + Rq2^2) [-].
 
     ``thickness`` [m], ``roughness_1``, ``roughness_2`` rms Rq [m] (from Ra by
-    :func:`~thermogear.heat.roughness.rms_roughness`). Any shape. Raises when both flanks are given as perfectly smooth.
+    :func:`~thermogear.heat.roughness.rms_roughness`). Any shape. Raises when both flanks are
+    given as perfectly smooth.
     """
     both = np.hypot(np.asarray(roughness_1, dtype=float), np.asarray(roughness_2, dtype=float))
     if not np.all(both > 0.0):

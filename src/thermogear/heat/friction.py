@@ -6,7 +6,7 @@ holds a law's own parameters and is called with a :class:`ContactState`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar, Protocol
@@ -34,6 +34,7 @@ Floats = NDArray[np.float64]
 
 __all__ = [
     "LAWS",
+    "LUBRICATED",
     "BenedictKelley",
     "Boundary",
     "ConstantDry",
@@ -42,12 +43,15 @@ __all__ = [
     "Iso13989Flash",
     "Iso13989Integral",
     "LambdaBlend",
+    "LawsTogether",
     "Schlenk",
     "XuKahraman",
     "benedict_kelley",
     "benedict_kelley_as_printed",
+    "beyond",
     "constant_dry",
     "friction_law",
+    "laws_together",
     "outside_range",
 ]
 
@@ -74,12 +78,21 @@ def outside_range(law: FrictionLaw, state: ContactState) -> NDArray[np.bool_]:
     A law's ``ranges`` name fields of :class:`ContactState` with their least and greatest SI
     values; a field the state does not carry is not judged.
     """
-    outside = np.zeros(state.shape, dtype=bool)
+    given = {name: getattr(state, name) for name in law.ranges}
+    return np.broadcast_to(beyond(law, given), state.shape).copy()
+
+
+def beyond(law: FrictionLaw, values: Mapping[str, ArrayLike | None]) -> NDArray[np.bool_]:
+    """Where ``values`` [SI], by field of :class:`ContactState`, leave the law's range.
+
+    Any shapes that broadcast; a field that is not given, or None, is not judged.
+    """
+    outside = np.zeros((), dtype=bool)
     for name, (low, high) in law.ranges.items():
-        value = getattr(state, name)
+        value = values.get(name)
         if value is not None:
             outside = outside | (np.asarray(value) < low) | (np.asarray(value) > high)
-    return outside
+    return np.asarray(outside)
 
 
 def _spread(mu: Floats, state: ContactState) -> Floats:
@@ -228,7 +241,10 @@ class Boundary:
     name: ClassVar[str] = "boundary"
     regime: ClassVar[str] = "boundary"
     source: ClassVar[str] = "0.10 in public gear code for doped oils, 0.12 in bearing practice"
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = _ANY
+    # where the regime of its name ends, by the customary limit
+    ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"film_parameter": (0.0, 1.0)}
+    )
 
     def __post_init__(self) -> None:
         constant_dry(0.0, self.coefficient)
@@ -432,3 +448,45 @@ def friction_law(name: str) -> FrictionLaw:
     if name not in LAWS:
         raise InputError("friction", repr(name), fix=nearest(name, LAWS))
     return LAWS[name]
+
+
+@dataclass(frozen=True, eq=False)
+class LawsTogether:
+    """Laws side by side in one contact: ``names`` and, over (law, *shape of the contact),
+
+    ``coefficient`` |mu| (nan where a law has no value for this oil or roughness) and ``outside``,
+    true where the contact leaves the law's range; ``missing`` says why a law has no value, else "".
+    """
+
+    names: tuple[str, ...]
+    coefficient: Floats
+    outside: NDArray[np.bool_]
+    missing: tuple[str, ...]
+
+    def band(self) -> tuple[Floats, Floats]:
+        """(least, greatest) |mu| of the laws within their range; nan where there is none."""
+        valid = np.isfinite(self.coefficient) & ~self.outside
+        some = valid.any(axis=0)
+        least = np.min(self.coefficient, axis=0, where=valid, initial=np.inf)
+        greatest = np.max(self.coefficient, axis=0, where=valid, initial=-np.inf)
+        return np.where(some, least, np.nan), np.where(some, greatest, np.nan)
+
+
+def laws_together(state: ContactState, laws: Sequence[FrictionLaw]) -> LawsTogether:
+    """Every one of ``laws`` in ``state``; one that refuses it says why and stands as nan."""
+    mu = np.full((len(laws), *state.shape), np.nan)
+    outside = np.zeros(mu.shape, dtype=bool)
+    missing = []
+    for place, law in enumerate(laws):
+        reason = ""
+        try:
+            mu[place] = law(state)
+        except InputError as error:
+            reason = str(error)
+        missing.append(reason)
+        outside[place] = outside_range(law, state)
+    return LawsTogether(tuple(law.name for law in laws), mu, outside, tuple(missing))
+
+
+LUBRICATED = tuple(law for name, law in LAWS.items() if name != ConstantDry.name)
+"""The laws of an oiled contact, whose spread is the band about the chosen one."""
