@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import thermogear
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -156,7 +156,7 @@ def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[N
 def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:
     """Laws of oiled contacts outside their range, with the part of the path [%]."""
     pair = case.pair
-    values = {
+    values: dict[str, ArrayLike | None] = {
         "roughness": 0.5 * (pair.pinion.roughness + pair.wheel.roughness),
         "viscosity": viscosity[:, None],
         "film_parameter": here["film_parameter"].values,

@@ -179,7 +179,7 @@ def friction(data: xr.Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
 
 def band_words(here: xr.Dataset) -> str:
     """How far the laws within their range spread; nothing where that is not stored."""
-    if not BAND <= set(here.data_vars):
+    if not set(here.data_vars) >= BAND:
         return ""
     least = here["friction_coefficient_least"].values
     greatest = here["friction_coefficient_greatest"].values

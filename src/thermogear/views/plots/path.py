@@ -130,7 +130,7 @@ def friction(data: xr.Dataset, bundle: int) -> Figure:
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, S)
     here = hot_state(data).isel(bundle=bundle)
-    if BAND <= set(here.data_vars):
+    if set(here.data_vars) >= BAND:
         _band(axis, here, x)
     dotted = (0, (1, 1.5))
     own = own_law(here, "friction_coefficient")
@@ -164,11 +164,11 @@ def _band(axis: Axes, here: xr.Dataset, x: Floats) -> None:
     least = shown(here, "friction_coefficient_least")[places]
     greatest = shown(here, "friction_coefficient_greatest")[places]
     known = np.isfinite(least).any(axis=0) & np.isfinite(greatest).any(axis=0)
-    if known.any():
+    if np.any(known):
         low = np.min(least, axis=0, where=np.isfinite(least), initial=np.inf)
         high = np.max(greatest, axis=0, where=np.isfinite(greatest), initial=0.0)
         axis.fill_between(
-            x, low, high, where=list(known), color=FAINT, linewidth=0.0, label="laws in their range"
+            x, low, high, where=list(np.ravel(known)), color=FAINT, linewidth=0.0, label="laws in their range"
         )
 
 
