@@ -168,7 +168,13 @@ def _band(axis: Axes, here: xr.Dataset, x: Floats) -> None:
         low = np.min(least, axis=0, where=np.isfinite(least), initial=np.inf)
         high = np.max(greatest, axis=0, where=np.isfinite(greatest), initial=0.0)
         axis.fill_between(
-            x, low, high, where=list(np.ravel(known)), color=FAINT, linewidth=0.0, label="laws in their range"
+            x,
+            low,
+            high,
+            where=list(np.ravel(known)),
+            color=FAINT,
+            linewidth=0.0,
+            label="laws in their range",
         )
 
 
