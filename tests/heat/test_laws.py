@@ -198,7 +198,9 @@ def test_xu_kahraman_takes_rms_of_the_contacts_mean_roughness() -> None:
     assert outside_range(XuKahraman(), state(roughness=1.01 * edge)).all()
 
 
-@pytest.mark.parametrize("name", ["schlenk", "iso-13989-1", "iso-13989-2", "fernandes"])
+@pytest.mark.parametrize(
+    "name", ["benedict-kelley", "schlenk", "iso-13989-1", "iso-13989-2", "fernandes"]
+)
 def test_mean_laws_take_the_supplied_oil_and_local_ones_the_films(name: str) -> None:
     mean, local = friction_law(name), friction_law("xu-kahraman")
     hot = state(viscosity=5e-3, bath_viscosity=0.02)

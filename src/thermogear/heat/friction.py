@@ -192,7 +192,10 @@ def constant_dry(sliding_speed: ArrayLike, coefficient: float = 0.2) -> Floats:
 
 @dataclass(frozen=True, kw_only=True)
 class BenedictKelley:
-    """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`."""
+    """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`.
+
+    Its viscosity is that of the oil supply, as the thesis and gear codes read eta_0.
+    """
 
     pitch_floor: float = 0.01
     ceiling: float = CEILING
@@ -208,7 +211,7 @@ class BenedictKelley:
             state.line_load,
             sliding_speed=state.sliding,
             sum_speed=state.sum_speed,
-            viscosity=state.viscosity,
+            viscosity=state.oil_viscosity,
             roughness=state.roughness,
             pitch_floor=self.pitch_floor,
             ceiling=self.ceiling,

@@ -132,7 +132,7 @@ class FrictionPath:
 
     @cached_property
     def bath_viscosity(self) -> Floats:
-        """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction are stated for."""
+        """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction take."""
         operating = self.hot.operating
         supplied = np.asarray(operating.oil_temperature, dtype=float)
         spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]

@@ -43,7 +43,7 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
     moment = np.linspace(*TORQUES, torques)
     flat = np.repeat(omega, torques), np.tile(moment, speeds)
     # the document's mixed friction, as far as it can be read, feeds the loop too
-    model = MeshModel.consistent().override(friction="benedict-kelley", inlet="oil")
+    model = MeshModel.consistent().override(friction="benedict-kelley")
     given = replace(case.operating, speed=flat[0], torque=flat[1], housing=case.housing)
     closed = heat_balance(
         case.pair,
