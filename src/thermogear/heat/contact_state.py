@@ -48,9 +48,10 @@ class ContactState:
     ``bath_viscosity`` [Pa s] at the temperature of the oil supply, which Benedict and Kelley's
     law and the laws of mean friction take (left out: as ``viscosity``); ``kinematic_viscosity``
     nu [m^2/s] as ``viscosity``; ``roughness`` Ra [m], the mean of both flanks;
-    ``film_parameter`` Lambda [-], least film over combined rms roughness; ``central_film_parameter`` [-], central film over
-    mean Ra, for Doleschel's share; ``pressure_viscosity`` alpha [1/Pa]; ``pitch_point`` for laws
-    of mean friction; ``lubricant_kind`` the base oil's family.
+    ``film_parameter`` Lambda [-], least film over combined rms roughness;
+    ``central_film_parameter`` [-], central film over mean Ra, for Doleschel's share;
+    ``pressure_viscosity`` alpha [1/Pa]; ``pitch_point`` for laws of mean friction;
+    ``lubricant_kind`` the base oil's family.
     """
 
     line_load: ArrayLike
