@@ -78,7 +78,7 @@ QUANTITIES: dict[str, Quantity] = {
     "frictional_power": Quantity("W", "frictional power of the mesh, time mean", "P_f"),
     "pinion_share_of_heat": Quantity("1", "share of the mesh loss into the pinion", "β₁"),
     "mesh_efficiency": Quantity("1", "efficiency of the mesh, load-dependent loss alone", "η"),
-    "dynamic_viscosity": Quantity("Pa s", "oil viscosity at the inlet", "η₀", "ASTM D341"),
+    "dynamic_viscosity": Quantity("Pa s", "oil viscosity where the film forms", "η₀", "ASTM D341"),
     "friction_coefficient": Quantity("1", "friction coefficient of the chosen law", "|μ|"),
     "friction_coefficient_mixed": Quantity(
         "1", "friction coefficient, lubricated", "|μ|", "Benedict and Kelley 1961"
