@@ -93,7 +93,7 @@ trial-hostile: $(STAMP)  ## 5 000 mutated cases, 5 700 mutated records of 12 kin
 trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test, ten minutes; docs/trial_labels.md
 	@$(BIN)/python checks/trial_labels.py
 
-trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, half an hour; docs/trial_branches.md
+trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py
 
 friction-evidence: $(STAMP)  ## every friction law against measurements; docs/friction_evidence.md

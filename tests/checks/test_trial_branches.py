@@ -19,4 +19,4 @@ def test_five_random_branches_show_what_short_steps_show() -> None:
 def test_the_committed_table_is_that_of_this_trial() -> None:
     trial = script("trial_branches")
     text = trial.PAGE.read_text("utf-8")
-    assert f"(seed {trial.SEED}). 30 random branches" in text
+    assert f"(seed {trial.SEED}). 60 random branches" in text

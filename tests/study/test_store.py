@@ -382,6 +382,10 @@ def finished(tmp_path_factory):
     return place
 
 
+def test_what_is_whole_leaves_no_quarantine(finished):
+    assert not (finished / QUARANTINE).exists()
+
+
 @pytest.mark.parametrize(
     "damage",
     [

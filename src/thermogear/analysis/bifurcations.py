@@ -38,7 +38,11 @@ LOOK_CLOSER = 1e-3
 SILENT = 1e-11
 """A test function below this is rounding: of orbits that float in the gap it is 0 all along."""
 SMALL = 1e-5
-"""Step of the parameter (of its range) in which the coefficients are differentiated."""
+"""Step of the parameter (of its range) in which the coefficients are differentiated.
+
+Rounding, 1/SMALL times enlarged, and the curvature, SMALL^2, are alike in size. It turns the
+tangent a little: points slip along the branch, by 1e-13, and not off it.
+"""
 DOUBLED = (1e-4, 3e-5, 1e-3, 1e-5, 3e-4, 3e-3, 1e-2)
 """Amplitudes (scaled) at which a doubled orbit is looked for beside its flip."""
 

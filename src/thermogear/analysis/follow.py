@@ -23,8 +23,16 @@ from thermogear.analysis.bifurcations import (
     Family,
     Point,
 )
-from thermogear.analysis.continuation import REACHED, Branch, Doubled, continuation, switch_branch
-from thermogear.analysis.orbits import Orbit, closed
+from thermogear.analysis.continuation import (
+    BIRTH,
+    REACHED,
+    SHRUNK,
+    Branch,
+    Doubled,
+    continuation,
+    switch_branch,
+)
+from thermogear.analysis.orbits import Orbit, closed, shoot
 from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.base.errors import ConvergenceError
 
@@ -43,6 +51,8 @@ return may lie between."""
 REACH = 0.25
 """Half backlashes an orbit may move in one predicted step."""
 SHORTEST = 1.0 / 64.0
+SAME = 1e-8
+"""Half backlashes between two points that are one."""
 
 Settle = Callable[[float, Floats], tuple[Floats, int]]
 """(value, start) -> the state a motion settles on, and the periods of its orbit (0: none)."""
@@ -68,11 +78,12 @@ class Leap:
 class Followed:
     """Where a slow change from one value of the parameter to another leads.
 
-    ``state`` (2,) and ``period`` at the end, None and 0 where no orbit could be followed so far
-    (chaos, or no further orbit found); ``leaps`` on the way.
+    ``state`` (2,) and ``period`` at ``value``, which is the end; or ``period`` 0 where no orbit
+    could be followed further (chaos, or none found). ``leaps`` on the way.
     """
 
-    state: Floats | None
+    value: float
+    state: Floats
     period: int
     leaps: tuple[Leap, ...]
 
@@ -96,11 +107,12 @@ def follow(
     doubled: Doubled | None = None
     for _ in range(MOST_EVENTS):
         if at == to:
-            return Followed(here, n, tuple(leaps))
+            return Followed(at, here, n, tuple(leaps))
         if doubled is None:
             quick = _straight(family, parameter, at, to, here, n)
             if quick is not None:
-                return Followed(quick, n, tuple(leaps))
+                at, here, n = quick
+                continue
         try:
             branch = _walked(family, parameter, (start, at, to), here, n, doubled)
         except ConvergenceError:
@@ -108,23 +120,31 @@ def follow(
         event = _end_of_life(branch)
         doubled = None
         if event is None:
-            if branch.ended != REACHED:
+            here, at = branch.states[-1], float(branch.values[-1])
+            if branch.ended == REACHED:
+                return Followed(to, here, n, tuple(leaps))
+            if branch.ended != SHRUNK[BIRTH]:
                 break
-            return Followed(branch.states[-1], n, tuple(leaps))
+            # onto the orbit of half its period, stable from here on
+            at = _behind(at, start=start, to=to)
+            mother = shoot(ReturnMap(lanes_of(family(at))), here, n // 2)
+            if mother is None or not mother.stable:
+                break
+            here, n = mother.state, mother.minimal_period
+            continue
         if event.kind == FLIP and event.note != SUBCRITICAL:
+            here, at = _pushed(event), event.value
             if 2 * n > LONGEST_PERIOD:
                 break
             try:
                 doubled = switch_branch(event, family)
             except ConvergenceError:
                 break
-            here, at, n = doubled.orbit.state, doubled.value, doubled.orbit.period
-            if (to - at) * (to - start) <= 0.0:
+            if (to - doubled.value) * (to - start) <= 0.0:
                 break
+            here, at, n = doubled.orbit.state, doubled.value, doubled.orbit.period
             continue
-        landed = event.value + np.sign(to - start) * BEYOND * abs(event.value)
-        if (landed - to) * (to - start) > 0.0:
-            landed = to
+        landed = _behind(event.value, start=start, to=to)
         found, n_new = settle(landed, _pushed(event))
         leaps.append(
             Leap(
@@ -136,15 +156,22 @@ def follow(
                 found=found,
             )
         )
+        here, at = found, landed
         if n_new == 0:
             break
-        here, at, n = found, landed, n_new
-    return Followed(None, 0, tuple(leaps))
+        n = n_new
+    return Followed(at, here, 0, tuple(leaps))
 
 
 def _end_of_life(branch: Branch) -> Bifurcation | None:
     """Where the motion leaves the branch, if it does."""
     return next((b for b in branch.bifurcations if b.kind in (FOLD, FLIP)), None)
+
+
+def _behind(value: float, *, start: float, to: float) -> float:
+    """A little further on the way to ``to``, not beyond it."""
+    there = value + float(np.sign(to - start)) * BEYOND * abs(value)
+    return to if (there - to) * (to - start) > 0.0 else there
 
 
 def _pushed(event: Bifurcation) -> Floats:
@@ -159,8 +186,12 @@ def _pushed(event: Bifurcation) -> Floats:
 
 def _straight(
     family: Family, parameter: str, start: float, to: float, state: Floats, period: int
-) -> Floats | None:
-    """The orbit at ``to`` by steps whose straight prediction holds; None where it does not."""
+) -> tuple[float, Floats, int] | None:
+    """``to``, the state there and its periods by steps whose straight prediction holds.
+
+    As far as the orbit has shrunk into one of fewer periods, where it does; None where the
+    prediction does not hold.
+    """
     curve = Curve(family, parameter, period, start=start, span=abs(to - start))
     upright = np.array([0.0, 0.0, 1.0])
     end = to / curve.span
@@ -168,6 +199,10 @@ def _straight(
     if point is None:
         return None
     while True:
+        least = _least_period(point, curve)
+        if point.scaled[2] == end or least < period:
+            value = to if point.scaled[2] == end else float(point.scaled[2] * curve.span)
+            return value, np.asarray(point.scaled[:2] * curve.unit[:2]), least
         ahead = end - point.scaled[2]
         if abs(point.tangent[2]) < 1e-6:
             return None
@@ -194,8 +229,14 @@ def _straight(
                 break
             step *= 0.5
         point = there
-        if point.scaled[2] == end:
-            return np.asarray(point.scaled[:2] * curve.unit[:2])
+
+
+def _least_period(point: Point, curve: Curve) -> int:
+    """The smallest number of periods after which the orbit closes."""
+    points = point.visit.points / curve.unit[:2]
+    apart = np.max(np.abs(points[1:] - points[0]), axis=1)
+    n = curve.period
+    return next(k for k in range(1, n + 1) if n % k == 0 and (k == n or apart[k - 1] < SAME))
 
 
 def _even(a: Point, b: Point) -> bool:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.kernels.affine import add_harmonic, prepare
+from thermogear.dynamics.kernels.affine import add_harmonics, prepare
 from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.kernels.sensitivity import sensitivity
 from thermogear.dynamics.tables import Lanes, Pieces
@@ -128,22 +129,28 @@ class State:
         self.spent[:] = 0.0
 
 
+@lru_cache(maxsize=64)
+def _turned(ranks: bytes, centres: bytes) -> tuple[Floats, Floats]:
+    """cos and sin of every harmonic's angle at the centres: alike for all lanes of a layout."""
+    turns = np.frombuffer(ranks, np.int64)[:, None] * np.frombuffer(centres)
+    angle = 2.0 * np.pi * np.mod(turns, 1.0)
+    return np.cos(angle), np.sin(angle)
+
+
 def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) -> Floats:
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
     out = np.zeros((centres.size, len(lanes), order + 1))
     out[:, :, 0] = coefficients[:, 0].real
-    for rank in range(1, coefficients.shape[1]):
-        row = coefficients[:, rank]
-        if not np.any(row):
-            continue
-        angle = 2.0 * np.pi * np.mod(rank * centres, 1.0)
-        add_harmonic(
-            np.ascontiguousarray(row.real),
-            np.ascontiguousarray(row.imag),
-            np.cos(angle),
-            np.sin(angle),
-            2.0 * np.pi * rank * half,
+    ranks = 1 + np.flatnonzero(np.any(coefficients[:, 1:], axis=0))
+    if ranks.size:
+        cosine, sine = _turned(ranks.tobytes(), centres.tobytes())
+        add_harmonics(
+            np.ascontiguousarray(coefficients[:, ranks].real.T),
+            np.ascontiguousarray(coefficients[:, ranks].imag.T),
+            cosine,
+            sine,
+            2.0 * np.pi * ranks[:, None] * half,
             out,
         )
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")

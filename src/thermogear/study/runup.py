@@ -40,8 +40,13 @@ RUN_UP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 DIRECTIONS = (1, -1)
 BLOCK = 24
 KEEP = 16
-LEAPS = 4
+PILOT = 24
+"""Speeds computed at most for an estimate of the time."""
+LEAPS = 16
 """Jumps kept of one step of speed."""
+STRIDE = 0.005
+"""Where no orbit can be followed the run goes on in steps of this share of the speed, which stand
+on a grid of their own."""
 LISTED_PERIOD = 4
 """Jumps of longer orbits, which live in windows of chaos, are not listed."""
 LISTED = 1e-3
@@ -122,6 +127,12 @@ class RunUpPlan:
             found[f"end_{name}"] = Variable(
                 dims, "float64", nan, {"long_name": "state carried on", "units": "1"}
             )
+        found["end_speed"] = Variable(
+            dims, "float64", nan, {"long_name": "speed of the state carried on", "units": "rad/s"}
+        )
+        found["end_period"] = Variable(
+            dims, "int32", 0, {"long_name": "periods of the orbit that is followed, 0: none"}
+        )
         units = {"leap_fold": "rad/s", "leap_to": "rad/s", "leap_kind": "1"}
         for name, words in LEAP.items():
             attributes = {"long_name": words, "units": units.get(name, "m")}
@@ -165,12 +176,16 @@ class RunUpPlan:
         return (state, direction, before) if 0 <= before < blocks else None
 
     def pilot(self, points: int) -> int:
-        """Follow about ``points`` speeds spread over the range; how many."""
-        count = min(points, len(self.speeds))
-        some = np.unique(np.linspace(0, len(self.speeds) - 1, count).round().astype(int))
-        small = replace(self, speeds=tuple(self.speeds[i] for i in some), block=len(some))
-        small.compute((0, 0, 0), None, keep_going)
-        return len(some)
+        """Follow about ``points`` speeds, as neighbours of a few places of the range; how many."""
+        count = min(points, len(self.speeds), PILOT)
+        places = max(1, count // 4)
+        length = count // places
+        done = 0
+        for first in np.linspace(0, len(self.speeds) - length, places).round().astype(int):
+            some = self.speeds[first : first + length]
+            replace(self, speeds=some, block=length).compute((0, 0, 0), None, keep_going)
+            done += length
+        return done
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[1] == 0
@@ -186,11 +201,10 @@ class RunUpPlan:
         table = Tabulated(self.family(key[0]), every[wide], whole) if wide.size > 1 else None
         run = _Run(self, table, alive)
         if before is not None:
-            last = -1 if up else 0
-            run.at = float(every[edge])
-            run.state = np.array([before["end_x"][0, 0, last], before["end_v"][0, 0, last]])
-            calm = before["label"][0, 0, last] == PERIODIC
-            run.period = int(before["period"][0, 0, last]) if calm else 0
+            last = 0, 0, -1 if up else 0
+            run.at = float(before["end_speed"][last])
+            run.state = np.array([before["end_x"][last], before["end_v"][last]])
+            run.period = int(before["end_period"][last])
         found: Arrays = {}
         for name, variable in self.variables().items():
             inner = [self.sizes[d] for d in variable.dims[3:]]
@@ -207,6 +221,8 @@ class RunUpPlan:
             if bool(np.isfinite(settled.state).all()):
                 ends[place] = settled.state[0]
             found["end_x"][0, 0, place], found["end_v"][0, 0, place] = run.state
+            found["end_speed"][0, 0, place] = run.at
+            found["end_period"][0, 0, place] = run.period
             found["left_early"][0, 0, place] = run.early
             for number, leap in enumerate(run.leaps[:LEAPS]):
                 for name, value in leap.items():
@@ -280,10 +296,12 @@ def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
 
 
 class _Run:
-    """A run through the speeds: where it stands, and how the last step went.
+    """A run through the speeds: the motion it carries on, and how the last step went.
 
-    Between two speeds the orbit is followed slowly (:func:`follow`), so that the run leaves its
-    branch at the fold and not where a step happens to be long enough.
+    It stands at ``at`` with ``state``. An orbit of ``period`` periods is followed slowly
+    (:func:`follow`), so that the run leaves its branch at the fold and not where a step happens
+    to be long enough; everything else (``period`` 0) settles anew from one speed of a fixed grid
+    to the next. The speeds asked for are looked at and change nothing on the way.
     """
 
     def __init__(self, plan: RunUpPlan, table: Tabulated | None, alive: Alive) -> None:
@@ -297,33 +315,55 @@ class _Run:
         self.early = 0
 
     def step(self, point: GearPoints, speed: float) -> Settled:
-        """Settle at ``speed`` from where the last step ended."""
+        """What is felt at ``speed``, coming from where the last step ended."""
         self.leaps, self.early = [], 0
-        plain = self._settled(point, self.state)
-        chosen = plain
-        if self.period > 0 and self.table is not None and point.status[0] == 0:
-            followed = follow(
-                self._single,
-                "pinion_speed",
-                start=self.at,
-                to=speed,
-                state=self.state,
-                period=self.period,
-                settle=self._settle,
-            )
-            self._keep(followed.leaps)
-            if followed.state is not None:
-                slow = self._settled(point, followed.state)
-                if int(slow.label[0]) == PERIODIC:
-                    chosen = slow
-                    section = ReturnMap(point.flat)
-                    near = section.distance(plain.sections[0], slow.sections[0][-1]).min()
-                    self.early = int(not near < APART)
-        if bool(np.isfinite(chosen.state).all()):
-            self.state = chosen.state[0]
+        first = not np.isfinite(self.at)
+        before = self.state if self.period > 0 else None
+        if self.table is None or first or point.status[0] != 0:
+            self.period = 0
+        else:
+            self._walk(self.table, speed)
+        found = self._settled(point, self.state)
+        calm = int(found.label[0]) == PERIODIC
+        if self.period > 0 and before is not None and calm:
+            alone = self._settled(point, before)
+            section = ReturnMap(point.flat)
+            near = section.distance(alone.sections[0], found.sections[0][-1]).min()
+            self.early = int(not near < APART)
+        if first:
+            self._stand(speed, found)
+        return found
+
+    def _walk(self, table: Tabulated, speed: float) -> None:
+        """Carry the motion on to ``speed``; where it is none that can be followed, towards it."""
+        way = 1.0 if speed > self.at else -1.0
+        while True:
+            if self.period > 0:
+                followed = follow(
+                    self._single,
+                    "pinion_speed",
+                    start=self.at,
+                    to=speed,
+                    state=self.state,
+                    period=self.period,
+                    settle=self._settle,
+                )
+                self._keep(followed.leaps)
+                self.at, self.state, self.period = followed.value, followed.state, followed.period
+                if self.period > 0:
+                    return
+            # the next of the speeds exp(k STRIDE)
+            place = way * np.log(self.at) / STRIDE
+            there = float(np.exp(way * STRIDE * (np.floor(place + 1e-6) + 1.0)))
+            if way * (speed - there) < 0.0:
+                return
+            self._stand(there, self._settled(table(np.array([[there]])), self.state))
+
+    def _stand(self, speed: float, settled: Settled) -> None:
+        if bool(np.isfinite(settled.state).all()):
+            self.state = settled.state[0]
         self.at = speed
-        self.period = int(chosen.period[0]) if int(chosen.label[0]) == PERIODIC else 0
-        return chosen
+        self.period = int(settled.period[0]) if int(settled.label[0]) == PERIODIC else 0
 
     def _single(self, speed: float) -> GearPoints:
         assert self.table is not None
@@ -464,8 +504,10 @@ def run_up(
     motion at the speed before. Over (state, direction, pinion_speed): dynamic transmission
     error (mean, rms, peak to peak), dynamic mesh force, dynamic factor, contact loss, label and
     multipliers; ``dte_line`` over order as well, the waterfall. Between two speeds the orbit is
-    followed slowly, so that jumps do not depend on the step. ``jump_...``: where the motion leaves
-    its branch (``fold``, of orbits of up to 4 periods), and where a run back jumps (``return``);
+    followed slowly, and what is no orbit of up to 16 periods is carried on in steps of 0.5 % of
+    the speed that stand still, so that jumps do not depend on the step of ``speeds``.
+    ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up to 4 periods), and
+    where a run back jumps (``return``);
     ``left_early``: the step alone would have left it before; ``bifurcation_...`` and
     ``branch_...``: the folds behind it, from continuation of the orbits of up to
     ``branch_period`` mesh periods (0: none).

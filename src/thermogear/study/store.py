@@ -13,7 +13,7 @@ import hashlib
 import json
 import os
 import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -320,7 +320,9 @@ class Store:
         paths = [path for name in self.plan.variables() for path in self._paths(name, key)]
         self._quarantine([path for path in paths if path.exists()])
 
-    def _quarantine(self, paths: Iterable[Path]) -> None:
+    def _quarantine(self, paths: Sequence[Path]) -> None:
+        if not paths:
+            return
         bin_ = self.directory / QUARANTINE
         bin_.mkdir(exist_ok=True)
         number = sum(1 for _ in bin_.iterdir())
@@ -367,7 +369,7 @@ class Store:
         metadata = self._staging.metadata() | staging.metadata()
         foreign = foreign_names(self.result, metadata)
         self.repaired += foreign
-        self._quarantine(self.result / name for name in foreign)
+        self._quarantine([self.result / name for name in foreign])
         whole = {
             "numbers": hashes,
             "metadata": {p: hashlib.sha256(raw).hexdigest() for p, raw in metadata.items()},

@@ -106,19 +106,20 @@ def prepare(
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def add_harmonic(real: Real, imag: Real, cosine: Real, sine: Real, reach: Real, out: Real) -> None:
-    """Add the Taylor coefficients of one harmonic to ``out`` (N, lane, K + 1).
+def add_harmonics(real: Real, imag: Real, cosine: Real, sine: Real, reach: Real, out: Real) -> None:
+    """Add the Taylor coefficients of harmonics to ``out`` (N, lane, K + 1).
 
-    ``real``, ``imag`` (lane) of its coefficient, ``cosine``, ``sine`` (N) of its angle at the
-    centres, ``reach`` (N) half a sub-step in its angle.
+    ``real``, ``imag`` (rank, lane) of their coefficients, ``cosine``, ``sine`` (rank, N) of their
+    angles at the centres, ``reach`` (rank, N) half a sub-step in their angle.
     """
-    for n in range(out.shape[0]):
-        for lane in range(out.shape[1]):
-            even = real[lane] * cosine[n] - imag[lane] * sine[n]
-            odd = real[lane] * sine[n] + imag[lane] * cosine[n]
-            power = 1.0
-            for m in range(out.shape[2]):
-                if m > 0:
-                    power = power * reach[n] / m
-                part = (odd if m % 2 else even) * power
-                out[n, lane, m] += part if m % 4 in (0, 3) else -part
+    for k in range(real.shape[0]):
+        for n in range(out.shape[0]):
+            for lane in range(out.shape[1]):
+                even = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
+                odd = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
+                power = 1.0
+                for m in range(out.shape[2]):
+                    if m > 0:
+                        power = power * reach[k, n] / m
+                    part = (odd if m % 2 else even) * power
+                    out[n, lane, m] += part if m % 4 in (0, 3) else -part
