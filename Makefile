@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: trial-branches trial-damage trial-hostile trial-labels trial-pairs audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
+.PHONY: friction-evidence trial-branches trial-damage trial-hostile trial-labels trial-pairs audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -95,6 +95,9 @@ trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test
 
 trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py
+
+friction-evidence: $(STAMP)  ## every friction law against measurements; docs/friction_evidence.md
+	@$(BIN)/python checks/friction_evidence.py
 
 house: $(STAMP)  ## docs/house.md anew: sizes, imports between floors, public names
 	$(BIN)/python checks/house.py > docs/house.md

@@ -502,7 +502,7 @@ def test_roughness_beyond_the_friction_law(rig: Path, failing: Run) -> None:
     assert said == (
         "gears.pinion.roughness: got 1.2 um, the mean of both flanks; allowed < 1.13 um; "
         "the friction law of Benedict and Kelley ends there; "
-        'use smoother flanks, or model.friction = "dry"'
+        'use smoother flanks, or model.friction = "lambda-blend"'
     )
 
 

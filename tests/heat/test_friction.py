@@ -114,6 +114,7 @@ def state(**changed: object) -> ContactState:
         "roughness": 0.4e-6,
         "kinematic_viscosity": 39e-6,
         "film_parameter": 0.8,
+        "central_film_parameter": 1.8,
         "pressure_viscosity": 1.8e-8,
         "pitch_point": PitchPoint(
             line_load=2e5, sum_speed=5.0, reduced_radius=0.016, face_width=0.025

@@ -154,6 +154,8 @@ RESULTS: dict[str, str] = {
     "efficiency": "",
     "fernandes": "",
     "film_parameter": "",
+    "mean_roughness_film_parameter": "",
+    "rms_roughness": "m",
     "film_thickness": "m",
     "flank_flash": "K",
     "frictional_heat": "W/m",
@@ -226,10 +228,12 @@ NUMBERS = {
 }
 IMPOSSIBLE = {"blok_as_printed", "benedict_kelley_as_printed", "flank_growth_as_printed"}
 NOT_FORMULAS = {
+    "beyond",
     "field_uncertainty",
     "flash_factor",
     "friction_law",
     "jam_temperature",
+    "laws_together",
     "outside_range",
 }
 

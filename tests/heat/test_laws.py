@@ -4,16 +4,21 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.contact_state import ContactState, PitchPoint
+from thermogear.heat.film import film_parameter, mean_roughness_film_parameter
 from thermogear.heat.friction import (
     LAWS,
+    LUBRICATED,
+    Boundary,
     Fernandes,
     LambdaBlend,
     XuKahraman,
     friction_law,
+    laws_together,
     outside_range,
 )
 from thermogear.heat.laws import (
@@ -27,6 +32,7 @@ from thermogear.heat.laws import (
     schlenk,
     xu_kahraman,
 )
+from thermogear.heat.roughness import rms_roughness
 
 MEAN = {  # FZG C, 200 Nm, 1500 rpm, b 14: F_bt/b, sum speed and radius at the pitch point
     "line_load": 5912.1 / 0.014,
@@ -126,7 +132,8 @@ def state(**changed: object) -> ContactState:
         "pressure": 0.9e9,
         "viscosity": 0.02,
         "roughness": 0.4e-6,
-        "film_parameter": 0.8,
+        "film_parameter": 0.3,
+        "central_film_parameter": 0.8,
         "pressure_viscosity": 1.8e-8,
         "pitch_point": PitchPoint(
             line_load=2.2e5, sum_speed=5.0, reduced_radius=0.016, face_width=0.025
@@ -137,8 +144,8 @@ def state(**changed: object) -> ContactState:
 
 def test_blend_goes_from_boundary_to_smooth_film() -> None:
     law, film = LambdaBlend(boundary=0.11), XuKahraman(smooth=True)
-    assert np.all(law(state(film_parameter=0.0)) == 0.11)
-    assert np.array_equal(law(state(film_parameter=2.0)), film(state()))
+    assert np.all(law(state(central_film_parameter=0.0)) == 0.11)
+    assert np.array_equal(law(state(central_film_parameter=2.0)), film(state()))
     share = float(doleschel_share(0.8))
     mixed = share * 0.11 + (1.0 - share) * film(state())
     assert law(state()) == pytest.approx(mixed, rel=1e-14)
@@ -153,9 +160,79 @@ def test_mean_laws_are_one_value_along_the_path_and_name_what_they_need(name: st
         friction_law(name)(state(pitch_point=None))
 
 
+def test_doleschels_share_in_both_forms_it_is_printed_in() -> None:
+    """The square, and its expansion in public code; the film over Ra, not over combined rms."""
+    ratio = np.linspace(0.0, 2.0, 9)
+    assert doleschel_share(ratio) == pytest.approx(0.25 * ratio**2 - ratio + 1.0, abs=1e-15)
+    film, rough = 0.3e-6, np.array([0.2e-6, 0.6e-6])
+    own = mean_roughness_film_parameter(film, roughness_1=rough[0], roughness_2=rough[1])
+    assert own == pytest.approx(film / 0.4e-6, rel=1e-15)
+    combined = film_parameter(film, roughness_1=1.25 * 0.4e-6, roughness_2=1.25 * 0.4e-6)
+    equal = mean_roughness_film_parameter(film, roughness_1=0.4e-6, roughness_2=0.4e-6)
+    assert equal == pytest.approx(1.25 * np.sqrt(2.0) * combined, rel=1e-12)
+    with pytest.raises(InputError, match=r"^roughness: got 0.0; allowed > 0 m on one flank"):
+        mean_roughness_film_parameter(film, roughness_1=0.0, roughness_2=0.0)
+
+
+def test_rms_of_mean_roughness_against_gaussian_heights() -> None:
+    heights = ndtri((np.arange(200_000) + 0.5) / 200_000)
+    ratio = np.sqrt(np.mean(heights**2)) / np.mean(np.abs(heights))
+    assert ratio == pytest.approx(np.sqrt(np.pi / 2.0), rel=1e-4)
+    assert rms_roughness(1.0) == pytest.approx(ratio, rel=3e-3)
+    assert rms_roughness([0.0, 0.4e-6]).tolist() == [0.0, 0.5e-6]
+
+
+def test_xu_kahraman_takes_rms_of_the_contacts_mean_roughness() -> None:
+    one = state()
+    by_hand = xu_kahraman(
+        one.pressure,
+        sliding_speed=one.sliding,
+        entrainment=one.entrainment,
+        viscosity=one.viscosity,
+        reduced_radius=one.reduced_radius,
+        roughness=1.25 * 0.4e-6,
+    )
+    assert XuKahraman()(one) == pytest.approx(by_hand, rel=1e-15)
+    edge = 0.8e-6  # 1 um rms
+    assert not outside_range(XuKahraman(), state(roughness=edge)).any()
+    assert outside_range(XuKahraman(), state(roughness=1.01 * edge)).all()
+
+
+@pytest.mark.parametrize(
+    "name", ["benedict-kelley", "schlenk", "iso-13989-1", "iso-13989-2", "fernandes"]
+)
+def test_mean_laws_take_the_supplied_oil_and_local_ones_the_films(name: str) -> None:
+    mean, local = friction_law(name), friction_law("xu-kahraman")
+    hot = state(viscosity=5e-3, bath_viscosity=0.02)
+    assert np.array_equal(mean(hot), mean(state()))
+    assert np.array_equal(local(hot), local(state(viscosity=5e-3)))
+
+
+def test_band_spans_the_laws_within_their_range() -> None:
+    """By hand: the valid ones' extremes; what is outside or has no value counts for nothing."""
+    at = state(film_parameter=1.5)
+    laws = laws_together(at, LUBRICATED)
+    assert "dry" not in laws.names
+    boundary = laws.names.index("boundary")
+    assert laws.outside[boundary].all()
+    inside = [n for n in laws.names if n != "boundary"]
+    values = np.array([friction_law(n)(at) for n in inside])
+    least, greatest = laws.band()
+    assert np.array_equal(least, values.min(axis=0))
+    assert np.array_equal(greatest, values.max(axis=0))
+    rough = laws_together(state(roughness=1.2e-6), LUBRICATED)
+    kelley = rough.names.index("benedict-kelley")
+    assert rough.missing[kelley].startswith("roughness: got 1.2 um; allowed < 1.13 um")
+    assert np.isnan(rough.coefficient[kelley]).all()
+    nothing = laws_together(at, [Boundary()]).band()
+    assert np.isnan(nothing).all()
+
+
 def test_missing_fields_are_named() -> None:
-    with pytest.raises(InputError, match=r"^contact.film_parameter: got nothing; the law 'lambda"):
-        friction_law("lambda-blend")(state(film_parameter=None))
+    with pytest.raises(
+        InputError, match=r"^contact.central_film_parameter: got nothing; the law 'lambda"
+    ):
+        friction_law("lambda-blend")(state(central_film_parameter=None))
     with pytest.raises(InputError, match=r"^contact.pressure_viscosity: got nothing"):
         Fernandes()(state(pressure_viscosity=None))
 

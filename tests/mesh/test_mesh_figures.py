@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from thermogear import GearPair, MeshModel, Operating, mesh_cycle
-from thermogear.base.materials import lubricant
+from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT, friction_law
@@ -214,3 +215,47 @@ def test_the_inlet_is_as_warm_as_its_choice_says(rig: GearPair, hot_rig: Operati
         assert path.inlet_temperature.tolist() == expected
         rough = 1.25 * np.hypot(rig.pinion.roughness, rig.wheel.roughness)
         assert path.film_parameter == pytest.approx(path.film / rough, rel=1e-12)
+
+
+def test_undeformed_the_film_is_as_warm_as_hot(rig: GearPair, hot_rig: Operating) -> None:
+    """State undeformed: bodies as drawn, oil, film and friction those of operation."""
+    s = path_of_contact(rig, 5)
+    model = TEXTBOOK.override(sharing="equal", modulus="constant")
+    drawn = hot_rig.as_drawn()
+    assert drawn.flanks == hot_rig.flanks
+    assert np.all(np.asarray(drawn.temperatures.pinion_addendum) == drawn.temperatures.reference)
+    hot, cold = (FrictionPath(elastic_pair(HotPair(rig, o, model)), s) for o in (hot_rig, drawn))
+    assert np.array_equal(hot.film, cold.film)
+    assert np.array_equal(hot.friction, cold.friction)
+    row = replace(hot_rig, flank_temperature=np.array([350.0, 360.0, 370.0]))
+    assert row.point(1).flanks.tolist() == [360.0]
+    assert row.with_gears_at(380.0).flank_temperature is None
+    with pytest.raises(InputError, match=r"operating.flank_temperature: got 20"):
+        replace(hot_rig, flank_temperature=20.0)
+
+
+def test_a_film_beyond_the_oils_line_is_a_status_and_one_warning(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    row = replace(hot_rig, flank_temperature=ZERO_CELSIUS + np.array([100.0, 150.0, 165.0]))
+    cycle = mesh_cycle(rig, row, MeshModel.consistent(), path_positions=5, mesh_positions=8)
+    assert cycle["film_outside_range"].values.tolist() == [0, 0, 1]
+    path = FrictionPath(elastic_pair(HotPair(rig, row, MeshModel.consistent())), np.array([0.02]))
+    with pytest.warns(ValidityWarning, match=r"film: flanks of 165 .. 165 C leave the range -20"):
+        path.warn_beyond_oil()
+    by_oil = mesh_cycle(rig, row, TEXTBOOK.override(inlet="oil"), path_positions=5)
+    assert not by_oil["film_outside_range"].any()
+
+
+def test_the_band_holds_the_chosen_law_where_that_is_valid(
+    rig: GearPair, hot_rig: Operating
+) -> None:
+    cycle = mesh_cycle(rig, hot_rig, MeshModel.consistent(), path_positions=41, mesh_positions=8)
+    low, high = cycle["friction_coefficient_least"], cycle["friction_coefficient_greatest"]
+    mu = cycle["friction_coefficient"]
+    assert not cycle["friction_outside_range"].any()
+    assert bool(((low <= mu) & (mu <= high)).all())
+    assert bool((high < cycle["friction_coefficient_dry"]).all())
+    # the film is thin all along: boundary friction alone is in its range
+    assert float(cycle["film_parameter"].max()) < 1.0
+    assert bool((high >= 0.10).all())

@@ -33,7 +33,9 @@ def run(rig: GearPair, point: Operating, times: object, **how: object) -> WarmUp
 def test_starts_at_the_ambient_and_ends_at_the_steady_state(
     rig: GearPair, point: Operating
 ) -> None:
-    times = np.array([0.0, 10.0, 100.0, 500.0, 2e3, 8e3, 3e4, 1e5, 3e5, 1e6])
+    times = np.array(
+        [0.0, 10.0, 100.0, 500.0, 2e3, 8e3, 3e4, 1e5, 3e5, 4e5, 5e5, 6e5, 7e5, 8e5, 9e5]
+    )
     found = run(rig, point, times, path_positions=101)
     steady = heat_balance(rig, 200.0, 100.0, point.lubricant, 125e-6, MODEL)
     assert steady.settled.all()

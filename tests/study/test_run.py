@@ -169,6 +169,21 @@ def test_notices_name_the_regime(small: xr.DataTree) -> None:
     texts = [notice["text"] for notice in json.loads(small.attrs["notices"])]
     assert any(text.startswith("Two regimes") for text in texts)
     assert any("textbook sum" in text for text in texts)
+    (film,) = (text for text in texts if "viscosity line" in text)
+    assert film.startswith("consistent: the film forms at flanks that leave the range of M100's")
+    assert "(-20.0 °C to 150.0 °C, from 2 mm²/s on): 160.0 °C." in film
+
+
+def test_a_law_outside_its_range_says_so() -> None:
+    changes = ('model.bundle="consistent"', 'gears.pinion.roughness="1.7 um"')
+    quiet = ("temperatures.row=[]", "draw.base_sets=[]", 'model.friction="xu-kahraman"')
+    case = load_example("rig", [*SMALL, *changes, *quiet])
+    notices = json.loads(run(case).attrs["notices"])
+    said = {notice["text"]: notice["level"] for notice in notices}
+    own = "the friction law xu-kahraman is outside its range on 100 % of the path"
+    assert [level for text, level in said.items() if own in text] == ["important"]
+    band = "the band of friction laws leaves out, where they are outside their range: xu-kahraman"
+    assert [level for text, level in said.items() if band in text] == ["info"]
 
 
 def test_errata_carry_both_values_of_the_flash_temperature(small: xr.DataTree) -> None:

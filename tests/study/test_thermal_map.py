@@ -82,19 +82,22 @@ def test_without_a_load_stage_there_is_no_margin() -> None:
 def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
     checked = tree["conclusion"]
     rising = checked["rising_share"]
-    # flash and growth rise with speed and torque, mixed and dry
-    for quantity in ("flash", "growth"):
-        np.testing.assert_array_equal(rising.sel(quantity=quantity).values, 1.0)
-    # mixed friction rises with torque and falls with speed here; dry is constant
+    # flash and growth rise with speed and torque, but for the mixed flash: the film grows too
+    np.testing.assert_array_equal(rising.sel(quantity="growth").values, 1.0)
+    flash = rising.sel(quantity="flash")
+    np.testing.assert_array_equal(flash.sel(lubrication="dry").values, 1.0)
+    assert float(flash.sel(lubrication="mixed", axis="torque")) == 1.0
+    assert 0.5 < float(flash.sel(lubrication="mixed", axis="speed")) < 1.0
+    # mixed friction falls with speed here; dry is constant
     friction = rising.sel(quantity="friction")
-    assert float(friction.sel(lubrication="mixed", axis="torque")) == 1.0
-    assert float(friction.sel(lubrication="mixed", axis="speed")) < 0.5
+    assert float(friction.sel(lubrication="mixed", axis="speed")) == 0.0
     rank = checked["rank_correlation"].sel(quantity="friction", with_what="speed")
     assert float(rank.sel(lubrication="mixed")) < 0.0
     assert np.isnan(float(rank.sel(lubrication="dry")))
     np.testing.assert_array_equal(checked["mixed_below_dry"].values, 1.0)
     claims = {row["claim"]: row["verdict"] for row in json.loads(tree.attrs["verdicts"])}
-    assert claims["flash temperature rises with speed, mixed"] == "holds"
+    assert claims["flash temperature rises with speed, mixed"] == "holds in part"
+    assert claims["flash temperature rises with speed, dry"] == "holds"
     assert claims["friction coefficient rises with speed, dry"] == "does not hold"
 
 
@@ -174,7 +177,8 @@ def test_a_tight_pair_jams_where_the_teeth_pass_the_jam_temperature() -> None:
 
 @pytest.mark.slow
 def test_a_cooler_keeps_the_oil_on_its_line_and_flash_then_falls_with_speed() -> None:
-    case = rig('gearbox.oil_flow="5 l/min"')
+    # by this law; the film-weighted one rises with speed here
+    case = rig('gearbox.oil_flow="5 l/min"', 'model.friction="benedict-kelley"')
     cooled = thermal_map(case, tuple(RPM * np.array([1000.0, 3500.0, 6000.0])), (100.0, 300.0))
     assert np.all(cooled["map"]["within_oil_range"].values == 1)
     rising = cooled["conclusion"]["rising_share"].sel(lubrication="mixed", quantity="flash")

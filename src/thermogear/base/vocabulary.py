@@ -78,12 +78,20 @@ QUANTITIES: dict[str, Quantity] = {
     "frictional_power": Quantity("W", "frictional power of the mesh, time mean", "P_f"),
     "pinion_share_of_heat": Quantity("1", "share of the mesh loss into the pinion", "β₁"),
     "mesh_efficiency": Quantity("1", "efficiency of the mesh, load-dependent loss alone", "η"),
-    "dynamic_viscosity": Quantity("Pa s", "oil viscosity at the inlet", "η₀", "ASTM D341"),
+    "dynamic_viscosity": Quantity("Pa s", "oil viscosity where the film forms", "η₀", "ASTM D341"),
     "friction_coefficient": Quantity("1", "friction coefficient of the chosen law", "|μ|"),
     "friction_coefficient_mixed": Quantity(
         "1", "friction coefficient, lubricated", "|μ|", "Benedict and Kelley 1961"
     ),
     "friction_coefficient_dry": Quantity("1", "friction coefficient, dry", "|μ|"),
+    "friction_coefficient_least": Quantity(
+        "1", "least friction coefficient of the laws within their range", "|μ|"
+    ),
+    "friction_coefficient_greatest": Quantity(
+        "1", "greatest friction coefficient of the laws within their range", "|μ|"
+    ),
+    "friction_outside_range": Quantity("1", "1 where the contact leaves the law's range"),
+    "film_outside_range": Quantity("1", "1 where the film forms beyond the oil's range"),
     "flash_temperature": Quantity("K", "flash temperature rise", "ΔT_f", "Blok 1937"),
     "flash_temperature_mixed": Quantity("K", "flash temperature rise, lubricated", "ΔT_f"),
     "flash_temperature_dry": Quantity("K", "flash temperature rise, dry", "ΔT_f"),

@@ -11,6 +11,9 @@ from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
 
+FILMS = ("film_parameter", "central_film_parameter")
+"""What is infinite where a pair carries nothing."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PitchPoint:
@@ -41,10 +44,14 @@ class ContactState:
 
     ``line_load`` w [N/m] of this pair; ``speed_1``, ``speed_2`` [m/s] rolling speeds of pinion
     and wheel flank; ``reduced_radius`` R [m]; ``pressure`` greatest Hertz pressure [Pa];
-    ``viscosity`` eta [Pa s] at the oil's temperature and ambient pressure;
-    ``kinematic_viscosity`` nu [m^2/s] likewise; ``roughness`` Ra [m], the mean of both flanks;
-    ``film_parameter`` Lambda [-] where a law blends by it; ``pressure_viscosity`` alpha [1/Pa];
-    ``pitch_point`` for laws of mean friction; ``lubricant_kind`` the base oil's family.
+    ``viscosity`` eta [Pa s] of the oil that enters the contact, at ambient pressure;
+    ``bath_viscosity`` [Pa s] at the temperature of the oil supply, which Benedict and Kelley's
+    law and the laws of mean friction take (left out: as ``viscosity``); ``kinematic_viscosity``
+    nu [m^2/s] as ``viscosity``; ``roughness`` Ra [m], the mean of both flanks;
+    ``film_parameter`` Lambda [-], least film over combined rms roughness;
+    ``central_film_parameter`` [-], central film over mean Ra, for Doleschel's share;
+    ``pressure_viscosity`` alpha [1/Pa]; ``pitch_point`` for laws of mean friction;
+    ``lubricant_kind`` the base oil's family.
     """
 
     line_load: ArrayLike
@@ -56,6 +63,8 @@ class ContactState:
     roughness: ArrayLike
     kinematic_viscosity: ArrayLike | None = None
     film_parameter: ArrayLike | None = None
+    central_film_parameter: ArrayLike | None = None
+    bath_viscosity: ArrayLike | None = None
     pressure_viscosity: ArrayLike | None = None
     pitch_point: PitchPoint | None = None
     lubricant_kind: str = "mineral"
@@ -67,10 +76,12 @@ class ContactState:
             self._check(name, positive=True)
         if self.kinematic_viscosity is not None:
             self._check("kinematic_viscosity", positive=True)
-        if self.film_parameter is not None:
-            self._check("film_parameter", positive=False)
-        if self.pressure_viscosity is not None:
-            self._check("pressure_viscosity", positive=True)
+        for name in FILMS:
+            if getattr(self, name) is not None:
+                self._check(name, positive=False)
+        for name in ("bath_viscosity", "pressure_viscosity"):
+            if getattr(self, name) is not None:
+                self._check(name, positive=True)
 
     def needed(self, name: str, law: str) -> Floats:
         """An optional field as an array, or an error that says which law needs it."""
@@ -91,11 +102,17 @@ class ContactState:
         values = np.asarray(getattr(self, name), dtype=float)
         object.__setattr__(self, name, values)
         good = values > 0.0 if positive else values >= 0.0
-        if not np.all(good & (np.isfinite(values) | (name == "film_parameter"))):
+        if not np.all(good & (np.isfinite(values) | (name in FILMS))):
             worst = values[~good].flat[0] if np.any(~good) else "a value that is not finite"
             raise InputError(
                 f"contact.{name}", worst, allowed="> 0, finite" if positive else ">= 0, finite"
             )
+
+    @property
+    def oil_viscosity(self) -> Floats:
+        """eta [Pa s] of the supplied oil: ``bath_viscosity``, or ``viscosity`` where left out."""
+        given = self.viscosity if self.bath_viscosity is None else self.bath_viscosity
+        return np.asarray(given)
 
     @property
     def sliding(self) -> Floats:

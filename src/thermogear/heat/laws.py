@@ -224,7 +224,8 @@ def xu_kahraman(
 
     ``pressure`` P_h [Pa] greatest Hertz pressure, ``sliding_speed`` v_s [m/s] of either sign,
     ``entrainment`` v_e [m/s], ``viscosity`` eta [Pa s] of the oil at inlet, ambient pressure,
-    ``reduced_radius`` [m], ``roughness`` rms [m] (0 for a smooth contact). Times
+    ``reduced_radius`` [m], ``roughness`` rms Rq [m], from Ra by
+    :func:`~thermogear.heat.roughness.rms_roughness` (0 for a smooth contact). Times
     tanh(|v_s|/(``pitch_floor`` v_e)), which takes it to 0 at pure rolling. Any shape; 0 at zero
     load. Fitted to one oil (75W90); the roughness term grows as exp(S) and is meant for
     smooth flanks. Source: Xu and Kahraman, J. Mech. Des. 129 (2007) 58-68; coefficients as in
@@ -250,10 +251,13 @@ def xu_kahraman(
 
 
 def doleschel_share(film_parameter: ArrayLike) -> Floats:
-    """Share of boundary friction by Doleschel, xi = (1 - Lambda/2)^2 below Lambda = 2 [-].
+    """Share of boundary friction by Doleschel, xi = (1 - lambda/2)^2 below lambda = 2 [-].
 
-    ``film_parameter`` Lambda [-] >= 0, any shape. 1 at Lambda = 0, 0 from Lambda = 2 on, without
-    a kink there (which fixes the exponent 2 as the least whole one).
+    ``film_parameter`` lambda [-] >= 0, any shape: the central film over the mean Ra of both
+    flanks, :func:`~thermogear.heat.film.mean_roughness_film_parameter`, not the Lambda of the
+    regimes. 1 at 0, 0 from 2 on, without a kink there. Source: Doleschel (thesis, Munich 2003)
+    in Arana, Larranaga and Ulacia, Proc. IMechE J 233 (2019) 303-316, table 1 ("a second-order
+    polynomial"); public FZG code expands the same square, 0.25 lambda^2 - lambda + 1.
     """
     reach = 1.0 - 0.5 * np.minimum(np.asarray(film_parameter, dtype=float), 2.0)
     return np.asarray(reach**2)

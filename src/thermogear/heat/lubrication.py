@@ -20,7 +20,8 @@ Floats = NDArray[np.float64]
 
 __all__ = ["density", "dynamic_viscosity", "kinematic_viscosity", "walther_slope"]
 
-_THINNEST = 2.0  # mm^2/s: below it ASTM D341 adds correction terms to the shift 0.7
+THINNEST = 2e-6
+"""Kinematic viscosity [m^2/s] below which ASTM D341 adds correction terms to the shift 0.7."""
 
 
 def _checked(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
@@ -55,9 +56,9 @@ def kinematic_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     Source: ASTM D341.
     """
     nu = _walther(lubricant, _checked(lubricant, temperature)) - 0.7
-    if np.any(nu < _THINNEST):
+    if np.any(nu < THINNEST * 1e6):
         warnings.warn(
-            f"viscosity: {nu.min():.3g} mm^2/s of {lubricant.name} lies below {_THINNEST:g} "
+            f"viscosity: {nu.min():.3g} mm^2/s of {lubricant.name} lies below {THINNEST * 1e6:g} "
             "mm^2/s, where the Walther line with 0.7 no longer holds",
             ValidityWarning,
             stacklevel=2,

@@ -113,7 +113,8 @@ def heat_balance(
     inlet and sharing. The tooth nodes become the addendum temperatures, the shaft nodes the bore
     temperatures of the radial fields. A point that does not settle keeps its last iterate with
     ``settled`` False, and so does one that would run above 700 K; nothing is raised for it. Warns
-    once, at the result, where the oil leaves its viscosity line's range.
+    once, at the result, where the oil, or the film at the flanks, leaves the range of its
+    viscosity line.
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
@@ -157,6 +158,7 @@ def heat_balance(
         hot = HotPair(pair, here, choice)
         elastic = elastic_pair(hot, deviations)
         path = FrictionPath(elastic, path_of_contact(pair, path_positions))
+        path.warn_beyond_oil()
         losses = pair_losses(pair, here, path, box)
         network = thermal_network(
             pair.pinion,

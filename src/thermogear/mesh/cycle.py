@@ -58,7 +58,10 @@ def mesh_cycle(
     is, once when shafts and housing rise in proportion to them; nan where that never jams), and
     ``status``: ``ok``; ``jammed`` where the least half backlash over the phase is <= 0 (the values
     stay, for they say how far it is jammed); ``not_converged`` where the loaded contact did not
-    settle. ``edge_contact`` names the tip corner that carries along the path, where the pressure
+    settle. ``friction_coefficient_least`` and ``_greatest`` span the laws of oiled contacts that
+    are within their range there, ``friction_outside_range`` is 1 where the chosen one is not, and
+    ``film_outside_range`` where the film forms beyond the range of the oil's viscosity line.
+    ``edge_contact`` names the tip corner that carries along the path, where the pressure
     is nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A
     and E too, nan where the stiffness model knows none.
 
@@ -123,6 +126,7 @@ def _contact(path: FrictionPath) -> Variables:
     v1, v2 = path.velocities
     first, second = path.body_temperatures
     flash = path.flash(path.friction)
+    least, greatest = path.band
     found: dict[str, ArrayLike] = {
         "pinion_rolling_velocity": v1,
         "wheel_rolling_velocity": v2,
@@ -137,6 +141,8 @@ def _contact(path: FrictionPath) -> Variables:
         "friction_coefficient": path.friction,
         "friction_coefficient_mixed": path.mixed,
         "friction_coefficient_dry": path.dry,
+        "friction_coefficient_least": least,
+        "friction_coefficient_greatest": greatest,
         "flash_temperature": flash,
         "flash_temperature_mixed": path.flash(path.mixed),
         "flash_temperature_dry": path.flash(path.dry),
@@ -155,6 +161,11 @@ def _contact(path: FrictionPath) -> Variables:
     power, share = (np.where(path.settled, values, np.nan) for values in path.power())
     variables |= {
         "edge_contact": (PATH, path.edge),
+        "friction_outside_range": (
+            PATH,
+            np.broadcast_to(path.outside, shape).astype(np.int8),
+        ),
+        "film_outside_range": (POINT, path.beyond_oil.astype(np.int8)),
         "reduced_radius": (("path_position",), path.radius),
         "normal_force": (POINT, path.elastic.force),
         "dynamic_viscosity": (POINT, path.viscosity[:, 0]),

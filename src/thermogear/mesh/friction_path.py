@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.errors import ConvergenceError
+from thermogear.base.errors import ConvergenceError, ValidityWarning
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.contact import (
     flank_radii,
     hertz_half_width,
@@ -21,21 +24,46 @@ from thermogear.heat.contact_state import ContactState, PitchPoint
 from thermogear.heat.film import (
     film_parameter,
     film_thickness,
+    mean_roughness_film_parameter,
     pressure_viscosity,
     regime,
     thermal_reduction,
 )
-from thermogear.heat.friction import ROUGHNESS_LIMIT, BenedictKelley, ConstantDry, friction_law
-from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity, walther_slope
+from thermogear.heat.friction import (
+    LUBRICATED,
+    ROUGHNESS_LIMIT,
+    BenedictKelley,
+    ConstantDry,
+    friction_law,
+    laws_together,
+    outside_range,
+)
+from thermogear.heat.lubrication import (
+    THINNEST,
+    dynamic_viscosity,
+    kinematic_viscosity,
+    walther_slope,
+)
 from thermogear.heat.moving_source import flash_temperature
+from thermogear.heat.roughness import rms_roughness
 from thermogear.heat.temperature import frictional_heat, heat_partition
 from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
 
-RMS_OF_MEAN_ROUGHNESS = 1.25
-"""Rq over Ra of ground flanks, about."""
+
+class InletOil(NamedTuple):
+    """An oil where the film forms, each (count, 1)."""
+
+    dynamic: Floats
+    """eta [Pa s]"""
+    kinematic: Floats
+    """nu [m^2/s]"""
+    pressure: Floats
+    """alpha [1/Pa]"""
+    slope: Floats
+    """-d ln nu/dT [1/K]"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,16 +83,60 @@ class FrictionPath:
         """Temperature [K] of the oil that enters the contact, (count, 1)."""
         operating = self.hot.operating
         if self.hot.model.inlet == "body":
-            t = operating.temperatures
-            found = 0.5 * (np.asarray(t.pinion_addendum) + np.asarray(t.wheel_addendum))
+            found = operating.flanks
         else:
             found = np.asarray(operating.oil_temperature, dtype=float)
         return np.broadcast_to(found, (self.hot.count,))[:, None]
 
     @cached_property
+    def inlet_oil(self) -> InletOil:
+        """The oil at the film's inlet; beyond the oil's range extrapolated, see ``beyond_oil``."""
+        oil, warm = self.hot.operating.lubricant, self.inlet_temperature
+        with warnings.catch_warnings():
+            if self.hot.model.inlet == "body":
+                # the flanks' temperature is a result: a status, where a given one is warned of
+                warnings.simplefilter("ignore", ValidityWarning)
+            return InletOil(
+                dynamic_viscosity(oil, warm),
+                kinematic_viscosity(oil, warm),
+                pressure_viscosity(oil, warm),
+                walther_slope(oil, warm),
+            )
+
+    @property
     def viscosity(self) -> Floats:
         """eta [Pa s] at the inlet, (count, 1)."""
-        return dynamic_viscosity(self.hot.operating.lubricant, self.inlet_temperature)
+        return self.inlet_oil.dynamic
+
+    @cached_property
+    def beyond_oil(self) -> NDArray[np.bool_]:
+        """Where the film's inlet leaves the range of the oil's viscosity line, (count,)."""
+        low, high = self.hot.operating.lubricant.temperature_range
+        warm = self.inlet_temperature[:, 0]
+        thin = self.inlet_oil.kinematic[:, 0] < THINNEST
+        return np.asarray((warm < low) | (warm > high) | thin)
+
+    def warn_beyond_oil(self) -> None:
+        """ValidityWarning with temperatures and range where ``beyond_oil``."""
+        if not np.any(self.beyond_oil):
+            return
+        oil, warm = self.hot.operating.lubricant, self.inlet_temperature[self.beyond_oil, 0]
+        low, high = (end - ZERO_CELSIUS for end in oil.temperature_range)
+        warnings.warn(
+            f"film: flanks of {warm.min() - ZERO_CELSIUS:.0f} .. {warm.max() - ZERO_CELSIUS:.0f} C "
+            f"leave the range {low:.0f} .. {high:.0f} C, from {THINNEST * 1e6:g} mm^2/s on, of "
+            f"{oil.name}'s viscosity line",
+            ValidityWarning,
+            stacklevel=2,
+        )
+
+    @cached_property
+    def bath_viscosity(self) -> Floats:
+        """eta [Pa s] of the oil supply, (count, 1), which laws of mean friction take."""
+        operating = self.hot.operating
+        supplied = np.asarray(operating.oil_temperature, dtype=float)
+        spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]
+        return dynamic_viscosity(operating.lubricant, spread)
 
     @cached_property
     def velocities(self) -> tuple[Floats, Floats]:
@@ -121,28 +193,32 @@ class FrictionPath:
         """Hertzian pressure at the centre [Pa]."""
         return hertz_pressure(self.line_load, self.radius, self.elastic.contact_modulus)
 
+    def _film_by(self, law: str) -> Floats:
+        """Film thickness [m] by a named law at the inlet's temperature, shear heating included."""
+        oil = self.inlet_oil
+        v1, v2 = self.velocities
+        entrainment, slide = 0.5 * (v1 + v2), np.abs(v1 - v2)
+        ratio = np.divide(slide, entrainment, out=np.zeros_like(slide), where=entrainment > 0.0)
+        conductivity = self.hot.operating.lubricant.thermal_conductivity
+        thin = thermal_reduction(entrainment, ratio, oil.dynamic, oil.slope, conductivity)
+        return film_thickness(
+            self.line_load,
+            entrainment,
+            oil.dynamic,
+            oil.pressure,
+            self.radius,
+            2.0 * self.elastic.contact_modulus,
+            law=law,
+            thermal_factor=thin,
+        )
+
     @cached_property
     def film(self) -> Floats:
         """Least film thickness [m], Dowson and Higginson, inlet shear heating included.
 
         0 at rest, infinite without load.
         """
-        oil, warm = self.hot.operating.lubricant, self.inlet_temperature
-        v1, v2 = self.velocities
-        entrainment, slide = 0.5 * (v1 + v2), np.abs(v1 - v2)
-        ratio = np.divide(slide, entrainment, out=np.zeros_like(slide), where=entrainment > 0.0)
-        thin = thermal_reduction(
-            entrainment, ratio, self.viscosity, walther_slope(oil, warm), oil.thermal_conductivity
-        )
-        return film_thickness(
-            self.line_load,
-            entrainment,
-            self.viscosity,
-            pressure_viscosity(oil, warm),
-            self.radius,
-            2.0 * self.elastic.contact_modulus,
-            thermal_factor=thin,
-        )
+        return self._film_by("dowson-higginson")
 
     @cached_property
     def film_parameter(self) -> Floats:
@@ -150,8 +226,18 @@ class FrictionPath:
         pair = self.hot.pair
         return film_parameter(
             self.film,
-            roughness_1=RMS_OF_MEAN_ROUGHNESS * pair.pinion.roughness,
-            roughness_2=RMS_OF_MEAN_ROUGHNESS * pair.wheel.roughness,
+            roughness_1=rms_roughness(pair.pinion.roughness),
+            roughness_2=rms_roughness(pair.wheel.roughness),
+        )
+
+    @cached_property
+    def central_film_parameter(self) -> Floats:
+        """Central film (Grubin, inlet shear heating included) over the flanks' mean Ra."""
+        pair = self.hot.pair
+        return mean_roughness_film_parameter(
+            self._film_by("grubin"),
+            roughness_1=pair.pinion.roughness,
+            roughness_2=pair.wheel.roughness,
         )
 
     @cached_property
@@ -174,9 +260,11 @@ class FrictionPath:
             pressure=self.pressure,
             viscosity=self.viscosity,
             roughness=0.5 * (pair.pinion.roughness + pair.wheel.roughness),
-            kinematic_viscosity=kinematic_viscosity(oil, self.inlet_temperature),
+            kinematic_viscosity=self.inlet_oil.kinematic,
             film_parameter=self.film_parameter,
-            pressure_viscosity=pressure_viscosity(oil, self.inlet_temperature),
+            central_film_parameter=self.central_film_parameter,
+            bath_viscosity=self.bath_viscosity,
+            pressure_viscosity=self.inlet_oil.pressure,
             pitch_point=PitchPoint(
                 line_load=self.elastic.force[:, None] / pair.face_width,
                 sum_speed=at_1 + at_2,
@@ -203,6 +291,18 @@ class FrictionPath:
         """|mu| by the model's law."""
         name = self.hot.model.friction
         return self.dry if name == "dry" else friction_law(name)(self.state)
+
+    @cached_property
+    def band(self) -> tuple[Floats, Floats]:
+        """(least, greatest) |mu| of the laws of oiled contacts within their range."""
+        return laws_together(self.state, LUBRICATED).band()
+
+    @cached_property
+    def outside(self) -> NDArray[np.bool_]:
+        """Where the contact leaves the range of the model's friction law."""
+        name = self.hot.model.friction
+        law = ConstantDry() if name == ConstantDry.name else friction_law(name)
+        return outside_range(law, self.state)
 
     @cached_property
     def flash_of_unit_friction(self) -> Floats:

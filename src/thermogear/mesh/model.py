@@ -16,15 +16,15 @@ CHOICES: dict[str, dict[str, str]] = {
         "dry": "constant coefficient, `dry_coefficient`",
         "boundary": "boundary lubrication, one constant",
         "xu-kahraman": "elastohydrodynamic, local, Xu and Kahraman 2007",
-        "lambda-blend": "boundary and smooth film by the film parameter (Doleschel)",
+        "lambda-blend": "boundary and smooth film, weighted by the film (Doleschel)",
         "schlenk": "mean of the mesh, ISO/TR 14179-2",
         "iso-13989-1": "mean of the mesh, ISO/TR 13989-1",
         "iso-13989-2": "mean of the mesh, ISO/TR 13989-2 = ISO/TR 15144-1",
         "fernandes": "mean of the mesh, Fernandes 2016",
     },
     "inlet": {
-        "oil": "oil enters the contact at its own temperature",
-        "body": "oil enters at the mean of both addendum temperatures",
+        "oil": "the film forms at the temperature of the oil supply",
+        "body": "the film forms at the flanks' temperature, the mean of both addenda",
     },
     "flash": {
         "blok": "Blok's high-speed limit",
@@ -83,9 +83,9 @@ class MeshModel:
     """Every choice of the quasi-static mesh cycle; see :data:`CHOICES` for the names."""
 
     name: str
-    friction: str = "benedict-kelley"
+    friction: str = "lambda-blend"
     dry_coefficient: float = 0.2
-    inlet: str = "oil"
+    inlet: str = "body"
     flash: str = "peclet"
     heat_distribution: str = "ellipse"
     flank: str = "growth"
@@ -121,6 +121,8 @@ class MeshModel:
         """As printed, with the smallest repair where print is impossible."""
         return cls(
             name="thesis",
+            friction="benedict-kelley",
+            inlet="oil",
             flash="blok",
             heat_distribution="parabola",
             flank="thesis",

@@ -68,8 +68,9 @@ class Operating:
 
     ``speed`` pinion speed [rad/s] > 0, ``torque`` pinion torque [N m] >= 0 (the wheel carries
     torque x ratio), ``half_backlash`` cold half backlash b [m] along the line of action,
-    ``oil_temperature`` [K] of the oil that enters the mesh; ``housing`` the material that moves
-    the axes apart when it is warm.
+    ``oil_temperature`` [K] of the oil supply; ``housing`` the material that moves the axes apart
+    when it is warm. ``flank_temperature`` [K] where the film forms, for a model whose inlet is the
+    body's; left out, the mean of both addenda.
     """
 
     speed: Floats
@@ -79,12 +80,16 @@ class Operating:
     temperatures: Temperatures
     half_backlash: float
     housing: Material = MATERIALS["steel"]
+    flank_temperature: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         t = self.temperatures
         shapes = {name: np.shape(getattr(self, name)) for name in ("speed", "torque")}
         shapes["oil_temperature"] = np.shape(self.oil_temperature)
         shapes |= {name: np.shape(body) for name, body in t.bodies.items()}
+        if self.flank_temperature is not None:
+            shapes["flank_temperature"] = np.shape(self.flank_temperature)
+            bounds.BODY.require("operating.flank_temperature", self.flank_temperature)
         try:
             shape = np.broadcast_shapes((1,), *shapes.values())
         except ValueError:
@@ -117,7 +122,20 @@ class Operating:
             torque=self.torque[place : place + 1],
             oil_temperature=at(self.oil_temperature),
             temperatures=replace(self.temperatures, **bodies),
+            flank_temperature=None if self.flank_temperature is None else at(self.flanks),
         )
+
+    @property
+    def flanks(self) -> Floats:
+        """Temperature [K] of the flanks where the film forms: as given, or both addenda's mean."""
+        t = self.temperatures.bodies
+        mean = 0.5 * (t["pinion_addendum"] + t["wheel_addendum"])
+        return np.asarray(mean if self.flank_temperature is None else self.flank_temperature, float)
+
+    def as_drawn(self) -> Operating:
+        """The same points with bodies as drawn, oil and film as they are: heat moves nothing."""
+        cold = self.temperatures.cold()
+        return replace(self, temperatures=cold, flank_temperature=self.flanks)
 
     def with_gears_at(self, gear_temperature: float) -> Operating:
         """The same points with both addenda at ``gear_temperature`` [K], the rest in proportion.
@@ -155,7 +173,12 @@ class Operating:
         for name in ("pinion_addendum", "wheel_addendum"):
             changed[name] = np.full_like(bodies[name], gear_temperature)
         oil = beside(oil_now, followed["housing"])
-        there = replace(self, oil_temperature=oil, temperatures=replace(t, **changed))
+        there = replace(
+            self,
+            oil_temperature=oil,
+            temperatures=replace(t, **changed),
+            flank_temperature=None,
+        )
         if rise != 0.0:
             for name, excess in followed.items():
                 _warn_of_proportion(f"temperatures.{name}", bodies[name] - base, excess)

@@ -24,6 +24,7 @@ from thermogear.study.balances import celsius
 from thermogear.study.case import GearCase
 from thermogear.study.facts import Fact
 from thermogear.study.facts import facts as case_facts
+from thermogear.study.friction_notices import friction_notices
 from thermogear.study.thesis_cases import of_the_thesis
 
 Floats = NDArray[np.float64]
@@ -71,19 +72,11 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     found.append(
         _notice(
             "info",
-            "Undeformed and hot differ in the temperatures of gears and housing alone; the oil "
-            "that enters the mesh is equally warm in both: friction and flash can be compared.",
+            "Undeformed and hot differ in the temperatures of gears and housing alone; oil and "
+            "film are equally warm in both: friction and flash can be compared.",
         )
     )
-    if np.isfinite(groups["path"]["friction_coefficient_mixed"].values).any():
-        found.append(
-            _notice(
-                "info",
-                "Benedict and Kelley's friction diverges where nothing slides; near the pitch "
-                "point the sliding speed is held above 1 % of the entrainment speed, and the "
-                "coefficient is 0 where the logarithm's argument falls below 1.",
-            )
-        )
+    found += friction_notices(case, groups)
     if case.base_sets and not of_the_thesis(case):
         found.append(
             _notice(

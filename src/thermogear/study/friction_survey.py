@@ -9,12 +9,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import thermogear
-from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import attributes
 from thermogear.gears.contact import path_of_contact
 from thermogear.heat.contact_state import ContactState
 from thermogear.heat.film import FILM_UNCERTAINTY, REGIMES, regime, regime_shares
-from thermogear.heat.friction import LAWS, ConstantDry, FrictionLaw, outside_range
+from thermogear.heat.friction import LAWS, ConstantDry, FrictionLaw, laws_together
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
@@ -53,26 +52,20 @@ def friction_survey(case: GearCase) -> xr.DataTree:
     path = friction_path(case, model, case.path_positions)
     state = path.state
     shape = (case.stated.speed.size, path.s.size)
-    mu = np.full((len(LAWS), *shape), np.nan)
-    outside = np.zeros((len(LAWS), *shape), dtype=np.int8)
-    words: list[dict[str, str]] = []
-    for place, name in enumerate(LAWS):
-        law = law_of(name, model)
-        reason = ""
-        try:
-            mu[place] = np.broadcast_to(law(state), shape)
-        except InputError as error:
-            reason = str(error)
-        outside[place] = np.broadcast_to(outside_range(law, state), shape)
-        words.append(
-            {
-                "law": name,
-                "regime": law.regime,
-                "source": law.source,
-                "range": range_in_words(law),
-                "missing": reason,
-            }
-        )
+    laws = tuple(law_of(name, model) for name in LAWS)
+    together = laws_together(state, laws)
+    mu = np.broadcast_to(together.coefficient, (len(laws), *shape))
+    outside = np.broadcast_to(together.outside, mu.shape).astype(np.int8)
+    words = [
+        {
+            "law": law.name,
+            "regime": law.regime,
+            "source": law.source,
+            "range": range_in_words(law),
+            "missing": reason,
+        }
+        for law, reason in zip(laws, together.missing, strict=True)
+    ]
     along = ("operating", "path_position")
     weight = path.line_load * np.abs(np.subtract(*path.velocities))
     total = np.trapezoid(np.broadcast_to(weight, shape), path.s, axis=-1)
@@ -129,7 +122,11 @@ def friction_survey(case: GearCase) -> xr.DataTree:
 
 def range_in_words(law: FrictionLaw) -> str:
     """A law's range in the units a gear engineer reads; empty where its source gives none."""
-    shown = {"roughness": (1e6, "um", "roughness"), "viscosity": (1e3, "mPa s", "viscosity")}
+    shown = {
+        "roughness": (1e6, "um", "roughness Ra"),
+        "viscosity": (1e3, "mPa s", "viscosity"),
+        "film_parameter": (1.0, "", "film parameter"),
+    }
     parts = []
     for name, (low, high) in law.ranges.items():
         scale, unit, text = shown.get(name, (1.0, "", name))

@@ -282,7 +282,7 @@ class GearFamily:
         if heat != 0.0:
             operating = here.operating_at(heat, model)
         elif self.state == UNDEFORMED:
-            operating = replace(stated, temperatures=stated.temperatures.cold())
+            operating = stated.as_drawn()
         else:
             operating = here.operating_of(model)
         return case.cycle(operating, model)

@@ -78,7 +78,7 @@ def loaded_survey(
     model = case.models[0].override(stiffness="loaded")
     hot = case.operating_of(case.models[0])
     states: dict[str, Operating] = {
-        UNDEFORMED: replace(hot, temperatures=hot.temperatures.cold()),
+        UNDEFORMED: hot.as_drawn(),
         "hot": hot,
     }
     for kelvin in case.gear_temperatures:

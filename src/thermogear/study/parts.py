@@ -261,6 +261,6 @@ def models(file: GearFile, pair: GearPair) -> tuple[MeshModel, ...]:
             f"{1e6 * roughness:.4g} um, the mean of both flanks",
             allowed=f"< {1e6 * ROUGHNESS_LIMIT:.4g} um",
             why="the friction law of Benedict and Kelley ends there",
-            fix='use smoother flanks, or model.friction = "dry"',
+            fix='use smoother flanks, or model.friction = "lambda-blend"',
         )
     return chosen

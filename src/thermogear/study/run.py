@@ -162,7 +162,7 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
         hot = case.operating_of(model)
-        undeformed = replace(hot, temperatures=hot.temperatures.cold())
+        undeformed = hot.as_drawn()
         states = [
             case.cycle(undeformed, model),
             _with_status(case, model, case.cycle(hot, model)),
@@ -348,8 +348,7 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
             for t in map(float, temperatures)
         ]
         hot = case.operating_of(model)
-        cold = replace(hot, temperatures=hot.temperatures.cold())
-        reference = case.cycle(cold, model)["mean_stiffness"].values
+        reference = case.cycle(hot.as_drawn(), model)["mean_stiffness"].values
         axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")
         axis.attrs = attributes("gear_temperature")
         joined = xr.concat(row, axis).assign_attrs(cold_mean_stiffness=reference)

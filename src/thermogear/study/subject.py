@@ -222,7 +222,7 @@ def of_case(
     here = counted("--operating", operating, most=len(case.speeds) * len(case.torques))
     one = case.operating_of(model_of).point(here)
     if state == UNDEFORMED:
-        one = replace(one, temperatures=one.temperatures.cold())
+        one = one.as_drawn()
     gears = Gears(case, model_of, one, state)
     return _of_gears(gears, simulation)
 

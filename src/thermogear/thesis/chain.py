@@ -42,7 +42,8 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
     omega = np.linspace(*SPEEDS, speeds) * RPM
     moment = np.linspace(*TORQUES, torques)
     flat = np.repeat(omega, torques), np.tile(moment, speeds)
-    model = MeshModel.consistent()
+    # the document's mixed friction, as far as it can be read, feeds the loop too
+    model = MeshModel.consistent().override(friction="benedict-kelley")
     given = replace(case.operating, speed=flat[0], torque=flat[1], housing=case.housing)
     closed = heat_balance(
         case.pair,

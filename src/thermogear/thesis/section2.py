@@ -31,9 +31,9 @@ MM = 1e3
 
 
 def contact_at_a(e: Evidence) -> dict[str, float]:
-    """The contact at A, first operating point, hot, consistent bundle (SI)."""
+    """The contact at A, first operating point, hot, consistent bundle, oil as supplied (SI)."""
     here = e.bundle("path", "consistent").isel(operating=0, path_position=0)
-    mesh = e.bundle("mesh", "consistent").isel(operating=0)
+    supplied = e.bundle("mesh", "thesis").isel(operating=0)
     shared = e.groups["path"].isel(operating=0, path_position=0)
     pair = e.case.pair
     return {
@@ -42,7 +42,7 @@ def contact_at_a(e: Evidence) -> dict[str, float]:
         "v2": float(shared["wheel_rolling_velocity"]),
         "width": float(here["hertz_half_width"]),
         "friction": float(here["friction_coefficient_mixed"]),
-        "viscosity": float(mesh["dynamic_viscosity"]),
+        "viscosity": float(supplied["dynamic_viscosity"]),
         "roughness": 0.5 * (pair.pinion.roughness + pair.wheel.roughness),
         "b1": pair.pinion.material.thermal_contact_coefficient,
         "b2": pair.wheel.material.thermal_contact_coefficient,

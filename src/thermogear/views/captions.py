@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.views.plots.curves import hot_state
-from thermogear.views.plots.path import own_law
+from thermogear.views.plots.path import BAND, own_law
 from thermogear.views.style import chosen, names_of, path_points
 from thermogear.views.words import number, operating_names, span
 
@@ -150,17 +150,23 @@ def load_share(data: xr.Dataset, bundles: Mapping[str, Any]) -> str:
 
 
 def friction(data: xr.Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
-    """Of the friction coefficient, lubricated against dry, and by the case's own law."""
+    """Of the friction coefficient by the case's own law, lubricated and dry, and of the band."""
     here = hot_state(data).isel(bundle=bundle)
     name = names_of(data, "bundle")[bundle]
-    values = here["friction_coefficient_mixed"].values
-    known = bool(np.isfinite(values).any())
-    lubricated = "Lubricated by Benedict and Kelley's law, dry a constant."
-    rough = "Dry, a constant; Benedict and Kelley's law has no value for such rough flanks."
-    words = [f"Bundle {name}, hot. {lubricated if known else rough}"]
-    if own_law(here, "friction_coefficient"):
-        law = bundles.get(name, {}).get("friction", "another law")
-        words.append(f"Dotted: {law}, by which the case computes.")
+    own = own_law(here, "friction_coefficient")
+    kelley = here["friction_coefficient_mixed"].values
+    values = here["friction_coefficient"].values if own else kelley
+    known = bool(np.isfinite(kelley).any())
+    law = bundles.get(name, {}).get("friction", "another law")
+    parts = [f"Lines: {law}, by which the case computes"] if own else []
+    if known:
+        line = "dotted: " if own else "Lubricated by "
+        parts.append(f"{line}Benedict and Kelley's law")
+    else:
+        parts.append("Benedict and Kelley's law has no value for such rough flanks")
+    words = [f"Bundle {name}, hot. {'; '.join(parts)}; dry, a constant."]
+    if spread := band_words(here):
+        words.append(spread)
     drawn = [o for o in chosen(len(values)) if np.isfinite(values[o]).any()]
     tops = {top_of(data, values[o]) for o in drawn}
     if tops == {PLACES["C"]}:
@@ -169,6 +175,24 @@ def friction(data: xr.Dataset, bundle: int, bundles: Mapping[str, Any]) -> str:
     if slower:
         words.append(slower)
     return " ".join([*words, regimes(here)]).strip()
+
+
+def band_words(here: xr.Dataset) -> str:
+    """How far the laws within their range spread; nothing where that is not stored."""
+    if not set(here.data_vars) >= BAND:
+        return ""
+    least = here["friction_coefficient_least"].values
+    greatest = here["friction_coefficient_greatest"].values
+    known = np.isfinite(least) & np.isfinite(greatest)
+    if not known.any():
+        return ""
+    low, high = float(least[known].mean()), float(greatest[known].mean())
+    words = (
+        f"Shaded: the laws within their range, on the mean {number(low, 2)} to {number(high, 2)}"
+    )
+    if "friction_outside_range" in here and (here["friction_outside_range"].values == 1).any():
+        words += "; the case's own law is outside its range in places"
+    return f"{words}."
 
 
 def _falls_with_speed(here: xr.Dataset, values: Floats) -> str:

@@ -49,9 +49,10 @@ def friction(results: Results, pictures: Pictures) -> Section | None:
     )  # fmt: skip
     needs = ("friction_coefficient_mixed", "friction_coefficient_dry")
     if all(name in data for name in needs):
+        more = (n for n in ("friction_coefficient", *sorted(path.BAND)) if n in data)
         pictures.add(
             "friction", "Friction coefficient, lubricated against dry",
-            captions.friction(data, 0, results.table("bundles")), data, needs,
+            captions.friction(data, 0, results.table("bundles")), data, (*needs, *more),
             lambda: path.friction(data, 0),
         )  # fmt: skip
     for name, words in path.FLASHES.items():

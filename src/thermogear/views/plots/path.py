@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from thermogear.views.plots.curves import distinct, draw_by_bundle, draw_by_operating, hot_state
 from thermogear.views.style import (
     DRY,
+    FAINT,
     HOT,
     INK,
     OKABE_ITO,
@@ -29,6 +32,8 @@ from thermogear.views.words import (
     plain,
     shown,
 )
+
+Floats = NDArray[np.float64]
 
 S = "path_position"
 FLASHES = {
@@ -118,25 +123,59 @@ def own_law(data: xr.Dataset, name: str) -> bool:
 
 
 def friction(data: xr.Dataset, bundle: int) -> Figure:
-    """Friction coefficient, lubricated against dry, for every operating point.
+    """Friction coefficient by the case's own law, lubricated and dry, for every operating point.
 
-    Dotted by the case's own law, where it is neither of the two.
+    Shaded behind it what the laws within their range span.
     """
     figure, axes = picture()
     axis, x = axes[0, 0], shown(data, S)
     here = hot_state(data).isel(bundle=bundle)
-    draw_by_operating(axis, here, "friction_coefficient_mixed", x, label="lubricated")
+    if set(here.data_vars) >= BAND:
+        _band(axis, here, x)
+    dotted = (0, (1, 1.5))
+    own = own_law(here, "friction_coefficient")
+    if own:
+        draw_by_operating(axis, here, "friction_coefficient", x, label="own law")
+    draw_by_operating(
+        axis,
+        here,
+        "friction_coefficient_mixed",
+        x,
+        label="Benedict and Kelley" if own else "lubricated",
+        linestyle=dotted if own else "-",
+    )
     draw_by_operating(
         axis, here, "friction_coefficient_dry", x, DRY, label="dry", linestyle=(0, (6, 2, 1, 2))
     )
-    if own_law(here, "friction_coefficient"):
-        line = (0, (1, 1.5))
-        draw_by_operating(axis, here, "friction_coefficient", x, label="own law", linestyle=line)
     name_axes(axis, S, "friction_coefficient", y_words="friction coefficient")
     axis.set_ylim(bottom=0.0)
     mark_path(axis, data)
     legend_below(figure, axis, 2)
     return figure
+
+
+BAND = {"friction_coefficient_least", "friction_coefficient_greatest"}
+"""Stored when the laws within their range are: what they span."""
+
+
+def _band(axis: Axes, here: xr.Dataset, x: Floats) -> None:
+    """The span of the laws within their range, over all operating points that are drawn."""
+    places = chosen(here.sizes["operating"])
+    least = shown(here, "friction_coefficient_least")[places]
+    greatest = shown(here, "friction_coefficient_greatest")[places]
+    known = np.isfinite(least).any(axis=0) & np.isfinite(greatest).any(axis=0)
+    if np.any(known):
+        low = np.min(least, axis=0, where=np.isfinite(least), initial=np.inf)
+        high = np.max(greatest, axis=0, where=np.isfinite(greatest), initial=0.0)
+        axis.fill_between(
+            x,
+            low,
+            high,
+            where=list(np.ravel(known)),
+            color=FAINT,
+            linewidth=0.0,
+            label="laws in their range",
+        )
 
 
 def flash(data: xr.Dataset, name: str) -> Figure:
