@@ -184,7 +184,7 @@ def disc_torque(
 
 @cache
 def _gauss(count: int) -> tuple[Floats, Floats]:
-    """Nodes and weights of Gauss and Legendre on -1..1: found once, they cost more than the rest."""
+    """Nodes and weights of Gauss and Legendre on -1..1, which cost more than the rest."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return nodes, weights
 

@@ -80,7 +80,10 @@ def with_free_convection(
     least: dict[str, Floats] = {}
     for (name, gear), share in zip(gears.items(), surroundings.wetted_share, strict=True):
         areas = {
-            f"{name}_tooth": 2.0 * gear.teeth * gear.face_width * (gear.tip_radius - gear.root_radius),
+            f"{name}_tooth": 2.0
+            * gear.teeth
+            * gear.face_width
+            * (gear.tip_radius - gear.root_radius),
             f"{name}_body": 2.0 * np.pi * (gear.root_radius**2 - gear.bore_radius**2),
         }
         for node, area in areas.items():

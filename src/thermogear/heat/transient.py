@@ -84,7 +84,7 @@ class Course:
 
 @dataclass
 class _Law:
-    """The right-hand side: free nodes over ``datum`` [K], then heat in and out over all capacity."""
+    """Rates of the free nodes over ``datum`` [K], then of heat in and out over all capacity."""
 
     stretch: Stretch
     nodes: tuple[str, ...]
@@ -252,9 +252,7 @@ def _crossings(
     return found
 
 
-def _coming_to_rest(
-    law: _Law, capacity: Floats, within: float
-) -> Callable[[float, Floats], float]:
+def _coming_to_rest(law: _Law, capacity: Floats, within: float) -> Callable[[float, Floats], float]:
     """Positive until the slowest mode has at most ``within`` [K] to go; ends the stretch."""
 
     def rest(t: float, y: Floats) -> float:

@@ -329,9 +329,7 @@ class _Chain:
             )
             known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
             full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}
-            return self._scaled(
-                with_free_convection(bare, gears, self.lubricant, around, full)
-            )
+            return self._scaled(with_free_convection(bare, gears, self.lubricant, around, full))
 
         return network
 

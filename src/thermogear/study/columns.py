@@ -26,7 +26,7 @@ _HEAD = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """SI ``values`` of one column, nan where a cell is empty, and its ``unit`` as it was written."""
+    """SI ``values`` of one column, nan where a cell is empty; ``unit`` and ``cells`` as written."""
 
     values: Floats
     unit: str
@@ -95,9 +95,7 @@ def _text(path: Path, field: str) -> str:
     return text
 
 
-def _head(
-    cells: list[str], field: str, kinds: Mapping[str, str], example: str
-) -> dict[str, str]:
+def _head(cells: list[str], field: str, kinds: Mapping[str, str], example: str) -> dict[str, str]:
     """Name to unit of every column."""
     found: dict[str, str] = {}
     for cell in cells:

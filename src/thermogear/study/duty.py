@@ -61,11 +61,23 @@ def read_duty(path: str | Path, case: GearCase, field: str = "duty") -> Duty:
     )
 
 
+def point_duty(case: GearCase, speed: float, torque: float, field: str = "duty") -> Duty:
+    """One operating point, ``speed`` [rad/s] and ``torque`` [N m], held until it is steady."""
+    ambient = case.gearbox.surroundings.ambient
+    most = crushing_torque(case.pair)
+    if not 0.0 <= torque <= most:
+        raise InputError(field, f"{torque:g} N m", allowed=f"0..{most:.4g} N m")
+    bounds.SPEED.require(field, speed)
+    return Duty.steady(speed, torque, ambient=ambient)
+
+
 def _require(column: Column, allowed: Bounds, field: str) -> None:
     for row, value in enumerate(column.values):
         if not allowed.least <= value <= allowed.most * (1.0 + 1e-12):
             raise InputError(
-                field, column.shown(row), allowed=f"{allowed.low:g}..{allowed.high:g} {allowed.unit}"
+                field,
+                column.shown(row),
+                allowed=f"{allowed.low:g}..{allowed.high:g} {allowed.unit}",
             )
 
 

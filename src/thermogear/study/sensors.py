@@ -87,9 +87,7 @@ def _thermocouple(pair: GearPair, table: ThermocoupleTable, course: WarmUp) -> S
     return Shown(name="thermocouple", words=words, shown=shown, true=true)
 
 
-def _ring(
-    pair: GearPair, surroundings: Surroundings, table: RingTable, course: WarmUp
-) -> Shown:
+def _ring(pair: GearPair, surroundings: Surroundings, table: RingTable, course: WarmUp) -> Shown:
     gear = pair.pinion if table.gear == "pinion" else pair.wheel
     fall = shaft_share(gear, surroundings, table.distance)
     true = course.temperatures[f"{table.gear}_shaft"]

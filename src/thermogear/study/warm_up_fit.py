@@ -85,9 +85,7 @@ def until(duty: Duty, end: float) -> Duty:
     )
 
 
-def fit_factors(
-    residuals: Residuals, names: Sequence[str], progress: Progress = silent
-) -> Fit:
+def fit_factors(residuals: Residuals, names: Sequence[str], progress: Progress = silent) -> Fit:
     """Factors on conductances with the least sum of squared residuals, and their intervals.
 
     Least squares over ln factor from 1. The covariance is s^2 (J^T J)^-1 n/n_eff, s^2 the residual

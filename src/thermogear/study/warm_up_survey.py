@@ -65,7 +65,9 @@ def read_measured(path: str | Path, field: str = "measured") -> Measured:
     values = np.stack([c.values for c in table.values()], axis=1) if table else np.empty((0, 0))
     if not np.any(np.isfinite(values)):
         raise InputError(
-            field, "no temperature", allowed="time and one or more of " + ", ".join((*NODES, *SENSORS))
+            field,
+            "no temperature",
+            allowed="time and one or more of " + ", ".join((*NODES, *SENSORS)),
         )
     return Measured(time=when.values, names=tuple(table), values=values)
 
@@ -194,7 +196,7 @@ def _mesh(case: GearCase, operating: Operating, progress: Progress) -> dict[str,
     """Flash, film and stiffness at every moment, solved in blocks."""
     found: dict[str, list[Floats]] = {}
     count = operating.speed.size
-    bodies = operating.temperatures.bodies
+    bodies: dict[str, Any] = operating.temperatures.bodies
     for first in range(0, count, BLOCK):
         progress("mesh", first, count)
         here = slice(first, first + BLOCK)
@@ -203,9 +205,7 @@ def _mesh(case: GearCase, operating: Operating, progress: Progress) -> dict[str,
             speed=operating.speed[here],
             torque=operating.torque[here],
             oil_temperature=np.asarray(operating.oil_temperature)[here],
-            temperatures=replace(
-                operating.temperatures, **{n: np.asarray(t)[here] for n, t in bodies.items()}
-            ),
+            temperatures=replace(operating.temperatures, **{n: t[here] for n, t in bodies.items()}),
         )
         cycle = mesh_cycle(
             case.pair,
@@ -354,7 +354,10 @@ def _steady(case: GearCase, duty: Duty) -> xr.Dataset:
             "half_backlash": dressed(along, left, "m", "least half backlash if held for good"),
             "settled": dressed(along, settled, "1", "1 where there is a steady state"),
             "node_temperature": dressed(
-                ("piece", "node"), np.stack(list(nodes.values()), axis=-1), "K", "steady temperature"
+                ("piece", "node"),
+                np.stack(list(nodes.values()), axis=-1),
+                "K",
+                "steady temperature",
             ),
             "begin": dressed(along, duty.time[:-1], "s", "time at which the piece begins"),
             "pinion_speed": dressed(along, duty.speed, "rad/s", "pinion speed"),
@@ -394,9 +397,7 @@ def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]
 # --- against a record -------------------------------------------------------------------------
 
 
-def _computed(
-    names: Sequence[str], when: Floats, course: WarmUp, shown: Sequence[Shown]
-) -> Floats:
+def _computed(names: Sequence[str], when: Floats, course: WarmUp, shown: Sequence[Shown]) -> Floats:
     """What the named nodes and sensors have at stored times, (rows, columns) [K]."""
     by = {one.name: one.shown for one in shown} | course.temperatures
     place = np.minimum(np.searchsorted(course.time, when), course.time.size - 1)
@@ -420,7 +421,7 @@ def _fitted(
     def residuals(factors: Mapping[str, float]) -> Floats:
         course = _course(case, part, start, factors, times=when, moments=2, progress=silent)
         shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
-        return _computed(measured.names, when, course, shown) - values
+        return np.asarray(_computed(measured.names, when, course, shown) - values)
 
     return fit_factors(residuals, names, progress)
 
