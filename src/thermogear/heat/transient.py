@@ -127,7 +127,7 @@ def follow(
     to rounding if every flow is counted.
 
     ``stretches`` one after the other from time 0; ``start`` [K] of every free node; ``times`` [s]
-    to be stored beside some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
+    to be stored beside some ``moments`` of each stretch; ``tolerance`` [K] of one step's error (some ten times it in all), a
     tenth of it relative; a stretch without end runs until its slowest mode has no more than
     ``settled_within`` [K] to go; ``events`` [K or m, any] of the state that are located where
     they fall through 0. Raises InputError for stretches that do not follow each other, and
@@ -271,6 +271,6 @@ def _moments(begun: float, end: float, count: int, wanted: Floats) -> Floats:
     length = end - begun
     half = max(count // 2, 1)
     even = begun + length * np.linspace(0.0, 1.0, half + 1)
-    early = begun + length * np.geomspace(1e-3, 1.0, count - half + 1)[:-1]
+    early = begun + length * np.geomspace(min(1e-3, 1.0 / length), 1.0, count - half + 1)[:-1]
     inside = wanted[(wanted > begun) & (wanted < end)]
     return np.unique(np.concatenate([[begun, end], even[1:-1], early, inside]))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -385,7 +385,6 @@ class _Chain:
 
     def losses_of(self, course: Course) -> Losses:
         """At the stored moments; warns once where the oil leaves its line."""
-        at = self.operating(course.temperatures, course.stretch)
         parts: list[Losses] = []
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always", ValidityWarning)
@@ -395,11 +394,13 @@ class _Chain:
                 parts.append(self.losses(self.operating(state, course.stretch[here])))
         for text in dict.fromkeys(str(one.message) for one in told):
             warnings.warn(text, ValidityWarning, stacklevel=3)
-        count = at.speed.size
+        shape = (course.time.size,)
 
         def whole(name: str) -> Floats:
-            values = [np.broadcast_to(getattr(p, name), p.mesh.shape) for p in parts]  # type: ignore[union-attr]
-            return np.broadcast_to(np.concatenate(values), (count,))
+            values = [np.asarray(getattr(part, name), dtype=float) for part in parts]
+            sizes = [min(BLOCK, shape[0] - BLOCK * k) for k in range(len(parts))]
+            return np.concatenate(
+                [np.broadcast_to(v, (n,)) for v, n in zip(values, sizes, strict=True)]
+            )
 
-        names = ("mesh", "partition_1", "churning", "bearing_1", "bearing_2")
-        return Losses(**{name: whole(name) for name in names})
+        return Losses(**{entry.name: whole(entry.name) for entry in fields(Losses)})

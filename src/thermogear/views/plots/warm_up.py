@@ -87,7 +87,7 @@ def course(
     _mark(above, below, worst, logarithmic)
     below.set_ylabel("half backlash b′ [µm]")
     _time(below, minutes, logarithmic)
-    legend_below(figure, [above, below], 8)
+    legend_below(figure, [above, below], 6)
     return figure
 
 
