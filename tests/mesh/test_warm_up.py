@@ -22,7 +22,7 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up
 
 sys.path.insert(0, str(Path(__file__).parent))
-import finite_volumes  # noqa: E402
+import finite_volumes
 
 # the quick textbook springs: the heat is the same loop
 MODEL = MeshModel.consistent().override(

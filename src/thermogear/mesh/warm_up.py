@@ -41,7 +41,7 @@ FACTORS = {
     "shafts": "shafts through their bearings to the housing",
 }
 """Named groups of conductances that a factor may multiply."""
-PHASES = 64
+PHASES = 32
 """Mesh phases at which the least half backlash is looked for."""
 BLOCK = 200
 """Moments that are evaluated together: memory, not the result."""

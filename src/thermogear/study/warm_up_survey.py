@@ -34,11 +34,16 @@ from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, unti
 Floats = NDArray[np.float64]
 KIND = "warmup"
 PATH_POSITIONS = 41
+MESH_POSITIONS = 96
 BLOCK = 100
 """Moments whose mesh is solved together: memory and progress, not the result."""
 MOMENTS = 400
 """About so many moments are stored, and at least 12 of each piece of the duty."""
+MOST_OF_ONE = 120
+"""Moments that one piece has at most."""
 MOST_PIECES = 2000
+FIT_TOLERANCE = 3e-3
+"""Of a step's error [K] while factors are looked for: far below any thermometer's."""
 
 ALONG = ("moment",)
 
@@ -85,6 +90,7 @@ def warm_up_survey(
     start: float | None = None,
     measured: Measured | None = None,
     fit: Sequence[str] = (),
+    moments: int = MOMENTS,
     progress: Progress = silent,
 ) -> xr.DataTree:
     """Temperatures, backlash, flash, film and stiffness of a case over its duty.
@@ -93,8 +99,8 @@ def warm_up_survey(
     operating point of the greatest power until it is steady); ``start`` [K] of all nodes (default:
     the first ambient); ``measured``: a record to be set beside the curves; ``fit``: one or two
     factors of :data:`~thermogear.mesh.warm_up.FACTORS` that are fitted to it, the curves then are
-    those with the factors. The first model of the case, its gearbox with the nodes it holds; other
-    temperatures of the case are not used.
+    those with the factors; about so many ``moments`` are stored. The first model of the case, its
+    gearbox with the nodes it holds; other temperatures of the case are not used.
 
     Groups: ``course`` over (moment, node, loss_kind, sensor); ``steady`` over the pieces of the
     duty, each held for good; ``record`` over the rows measured; ``fit``. Attribute ``worst`` (JSON)
@@ -109,7 +115,7 @@ def warm_up_survey(
     work = Duty.steady(speed, torque, ambient=ambient) if duty is None else duty
     if work.pieces > MOST_PIECES:
         raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
-    moments = max(12, min(120, MOMENTS // work.pieces))
+    of_each = max(12, min(MOST_OF_ONE, moments // work.pieces))
     found: Fit | None = None
     with warnings.catch_warnings():
         # told in the notices, with how long
@@ -123,7 +129,7 @@ def warm_up_survey(
             start,
             factors,
             times=() if measured is None else measured.time,
-            moments=moments,
+            moments=of_each,
             progress=progress,
         )
         shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
@@ -168,7 +174,8 @@ def _course(
     *,
     times: Floats | Sequence[float],
     moments: int,
-    progress: Progress,
+    tolerance: float = 1e-3,
+    progress: Progress = silent,
 ) -> WarmUp:
     at = case.stated
     return warm_up(
@@ -185,6 +192,7 @@ def _course(
         factors=factors,
         times=times,
         moments=moments,
+        tolerance=tolerance,
         progress=progress,
     )
 
@@ -213,7 +221,7 @@ def _mesh(case: GearCase, operating: Operating, progress: Progress) -> dict[str,
             case.models[0],
             deviations=case.deviations,
             path_positions=PATH_POSITIONS,
-            mesh_positions=PHASES,
+            mesh_positions=MESH_POSITIONS,
         )
         loaded = part.torque > 0.0
         turning = loaded & (part.speed > 0.0)
@@ -419,7 +427,7 @@ def _fitted(
     part = until(duty, float(when[-1]))
 
     def residuals(factors: Mapping[str, float]) -> Floats:
-        course = _course(case, part, start, factors, times=when, moments=2, progress=silent)
+        course = _course(case, part, start, factors, times=when, moments=2, tolerance=FIT_TOLERANCE)
         shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
         return np.asarray(_computed(measured.names, when, course, shown) - values)
 

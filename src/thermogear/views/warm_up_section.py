@@ -127,6 +127,10 @@ def _degrees(kelvin: float) -> str:
     return number(kelvin - ZERO_CELSIUS, 4) if np.isfinite(kelvin) else "–"
 
 
+def _thousandths(kelvin: float) -> str:
+    return number(round(kelvin, 3) + 0.0)
+
+
 def _moments(data: xr.Dataset, worst: Mapping[str, Any]) -> Table:
     """Start, worst moment, end."""
     places = [0, int(np.argmin(data["half_backlash"].values)), data.sizes["moment"] - 1]
@@ -213,9 +217,9 @@ def _sensors(data: xr.Dataset) -> Table:
         rows.append(
             [
                 name,
-                number(float(own[-1])),
-                number(float(own.min())),
-                number(float(own.max())),
+                _thousandths(float(own[-1])),
+                _thousandths(float(own.min())),
+                _thousandths(float(own.max())),
                 _degrees(float(data["sensor_temperature"].values[-1, place])),
                 _degrees(float(data["true_temperature"].values[-1, place])),
             ]
