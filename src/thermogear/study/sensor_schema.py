@@ -12,6 +12,8 @@ from thermogear.study.fields import Choice, Measure, Number, Several, measure
 from thermogear.study.table import Body, Table
 
 _Gear = Annotated[str, Choice("pinion", "wheel")]
+BAND = (8e-6, 14e-6)
+"""Wavelengths [m] of an uncooled camera."""
 _Share = Number(low=0.01, high=1.0, example="0.9")
 
 
@@ -44,9 +46,9 @@ class InfraredTable(Table):
         default=1.0, description="the camera is set to a black body: nothing is corrected"
     )
     wavelengths: Annotated[
-        tuple[float, ...],
+        tuple[float, ...] | None,
         Several(Measure("length", "0.5 um", "50 um", example="8 um"), least=2, most=2),
-    ] = Field(default=(8e-6, 14e-6), description="8 to 14 um, an uncooled camera")
+    ] = Field(default=None, description="8 to 14 um, an uncooled camera")
     transmission: Annotated[float, _Share] = Field(
         default=0.93, description="0.93, one coated window"
     )
@@ -57,9 +59,15 @@ class InfraredTable(Table):
         default=None, description="the window is as warm as the ambient"
     )
 
+    @property
+    def band(self) -> tuple[float, float]:
+        """The camera's wavelengths [m]."""
+        low, high = self.wavelengths or BAND
+        return low, high
+
     @model_validator(mode="after")
     def _rising(self) -> InfraredTable:
-        low, high = self.wavelengths
+        low, high = self.band
         if low > high:
             raise InputError(
                 "wavelengths",
@@ -72,6 +80,6 @@ class InfraredTable(Table):
 class SensorsTable(Table):
     """What thermometers would show: a thermocouple in a tooth, a ring on a shaft, a camera."""
 
-    thermocouple: ThermocoupleTable = ThermocoupleTable()
-    ring: RingTable = RingTable()
-    infrared: InfraredTable = InfraredTable()
+    thermocouple: ThermocoupleTable | None = Field(default=None, title="every value ours")
+    ring: RingTable | None = Field(default=None, title="every value ours")
+    infrared: InfraredTable | None = Field(default=None, title="every value ours")

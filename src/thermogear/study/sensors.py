@@ -70,9 +70,9 @@ def shown_by(
 ) -> tuple[Shown, ...]:
     """What every sensor of ``table`` shows over the course."""
     return (
-        _thermocouple(pair, table.thermocouple, course),
-        _ring(pair, surroundings, table.ring, course),
-        _infrared(table.infrared, course),
+        _thermocouple(pair, table.thermocouple or ThermocoupleTable(), course),
+        _ring(pair, surroundings, table.ring or RingTable(), course),
+        _infrared(table.infrared or InfraredTable(), course),
     )
 
 
@@ -98,7 +98,6 @@ def _ring(pair: GearPair, surroundings: Surroundings, table: RingTable, course: 
 
 def _infrared(table: InfraredTable, course: WarmUp) -> Shown:
     true = course.temperatures[f"{table.gear}_tooth"]
-    low, high = table.wavelengths
     around = course.temperatures["housing"] if table.surroundings is None else table.surroundings
     path = course.temperatures["ambient"]
     shown = infrared_indication(
@@ -107,7 +106,7 @@ def _infrared(table: InfraredTable, course: WarmUp) -> Shown:
         transmission=table.transmission,
         surroundings=around,
         path=path if table.window_temperature is None else table.window_temperature,
-        band=(low, high),
+        band=table.band,
         indicated_emissivity=table.instrument_emissivity,
     )
     words = (
