@@ -158,6 +158,15 @@ def test_the_crushing_torque_is_where_the_pressure_has_its_limit(case: GearCase)
         point_duty(case, 100.0, 11000.0, "--at")
 
 
+def test_without_a_table_the_air_must_suit_the_oil_too() -> None:
+    cold = load_example("rig", ['gearbox.ambient="-40 degC"'])
+    assert isinstance(cold, GearCase)
+    with pytest.raises(
+        InputError, match=r"^gearbox\.ambient: got -40 degC; allowed -20\.\.150 degC"
+    ):
+        point_duty(cold, 100.0, 50.0)
+
+
 # --- records ---------------------------------------------------------------------------------
 
 

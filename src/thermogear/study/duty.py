@@ -62,8 +62,13 @@ def read_duty(path: str | Path, case: GearCase, field: str = "duty") -> Duty:
 
 
 def point_duty(case: GearCase, speed: float, torque: float, field: str = "duty") -> Duty:
-    """One operating point, ``speed`` [rad/s] and ``torque`` [N m], held until it is steady."""
+    """One operating point, ``speed`` [rad/s] and ``torque`` [N m], held until it is steady.
+
+    Raises InputError for a torque that would crush the flanks, and for an ambient of the case
+    outside the range of the oil's viscosity line.
+    """
     ambient = case.gearbox.surroundings.ambient
+    _require_air(case, ambient, "gearbox.ambient", f"{ambient - ZERO_CELSIUS:g} degC")
     most = crushing_torque(case.pair)
     if not 0.0 <= torque <= most:
         raise InputError(field, f"{torque:g} N m", allowed=f"0..{most:.4g} N m")
@@ -98,13 +103,17 @@ def _require_torque(column: Column, case: GearCase, field: str) -> None:
 
 
 def _require_ambient(column: Column, case: GearCase, field: str) -> None:
+    for row, value in enumerate(column.values):
+        _require_air(case, value, field, column.shown(row))
+
+
+def _require_air(case: GearCase, value: float, field: str, got: str) -> None:
     oil = case.stated.lubricant
     low, high = oil.temperature_range
-    for row, value in enumerate(column.values):
-        if not low <= value <= high:
-            raise InputError(
-                field,
-                column.shown(row),
-                allowed=f"{low - ZERO_CELSIUS:g}..{high - ZERO_CELSIUS:g} degC",
-                why=f"the range of the viscosity line of {oil.name}",
-            )
+    if not low <= value <= high:
+        raise InputError(
+            field,
+            got,
+            allowed=f"{low - ZERO_CELSIUS:g}..{high - ZERO_CELSIUS:g} degC",
+            why=f"the range of the viscosity line of {oil.name}",
+        )

@@ -27,6 +27,7 @@ from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up
 from thermogear.study.balances import LOSSES, dressed
 from thermogear.study.case import GearCase
 from thermogear.study.columns import read_columns, require_times
+from thermogear.study.duty import point_duty
 from thermogear.study.gearbox_schema import NODES
 from thermogear.study.sensors import SENSORS, Shown, shown_by
 from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, until
@@ -110,9 +111,7 @@ def warm_up_survey(
     names = require_factors(fit, "fit") if fit else ()
     if names and measured is None:
         raise InputError("fit", ", ".join(names), why="there is no record to fit to")
-    speed, torque = chosen_point(case)
-    ambient = case.gearbox.surroundings.ambient
-    work = Duty.steady(speed, torque, ambient=ambient) if duty is None else duty
+    work = point_duty(case, *chosen_point(case)) if duty is None else duty
     if work.pieces > MOST_PIECES:
         raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
     of_each = max(12, min(MOST_OF_ONE, moments // work.pieces))
