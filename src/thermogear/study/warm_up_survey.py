@@ -118,7 +118,7 @@ def warm_up_survey(
     found: Fit | None = None
     with warnings.catch_warnings():
         # told in the notices, with how long
-        warnings.filterwarnings("ignore", "(oil temperature|viscosity):", ValidityWarning)
+        warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
         if measured is not None and names:
             found = _fitted(case, work, start, measured, names, progress)
         factors = {} if found is None else {one.name: one.value for one in found.factors}

@@ -104,6 +104,7 @@ def _mark(above: Axes, below: Axes, worst: Mapping[str, Any], logarithmic: bool)
         textcoords="offset points",
         fontsize=8.5,
         color=HOT,
+        zorder=1.5,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1.5},
     )
 
