@@ -19,7 +19,7 @@ from thermogear.mesh.clearance import clearance
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up
+from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up, with_factors
 
 sys.path.insert(0, str(Path(__file__).parent))
 import finite_volumes
@@ -237,6 +237,17 @@ def test_a_factor_acts_on_its_conductances(rig: GearPair, name: str) -> None:
         rise = found.temperatures[into][-1] - AMBIENT
         arrived.append(found.course.heat_out[-1] if name == "housing" else rise)
     assert arrived[1] / arrived[0] == pytest.approx(0.25, rel=1e-3)
+
+
+def test_steady_states_know_the_factors_too(rig: GearPair) -> None:
+    factors = {"housing": 1.4, "oil_housing": 0.6, "wetted": 0.5, "shafts": 2.0}
+    found = run(rig, factors=factors)
+    box = Gearbox(surroundings=with_factors(Surroundings(), factors))
+    steady = heat_balance(rig, 200.0, 100.0, OIL, 125e-6, MODEL, gearbox=box)
+    for name, values in found.course.temperatures.items():
+        assert values[-1] == pytest.approx(float(np.ravel(steady.steady[name])[0]), abs=0.3)
+    with pytest.raises(InputError, match=r"^surroundings\.wetted_share: got .*0 < x <= 1"):
+        with_factors(Surroundings(), {"wetted": 4.0})
 
 
 def test_unknown_factors_and_impossible_duties_are_one_line(rig: GearPair) -> None:

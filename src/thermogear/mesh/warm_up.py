@@ -21,7 +21,7 @@ from thermogear.gears.contact import path_of_contact
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.free_convection import with_free_convection
-from thermogear.heat.gearbox import Losses, thermal_network
+from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
 from thermogear.mesh.balance import NODES, Gearbox, pair_losses
@@ -220,6 +220,26 @@ def warm_up(
         worst=worst,
         jams=course.events["jam"],
         held=chosen.held,
+    )
+
+
+def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Surroundings:
+    """``surroundings`` whose coefficients have the ``factors`` [-] of :data:`FACTORS` in them.
+
+    For steady states: the same conductances as a course with the factors has. Raises InputError
+    where more than the whole of a gear would be wetted.
+    """
+    known = _known(factors)
+    wetted, shafts = known.get("wetted", 1.0), known.get("shafts", 1.0)
+    first, second = surroundings.wetted_share
+    return replace(
+        surroundings,
+        housing_coefficient=surroundings.housing_coefficient * known.get("housing", 1.0),
+        oil_housing_coefficient=surroundings.oil_housing_coefficient
+        * known.get("oil_housing", 1.0),
+        wetted_share=(first * wetted, second * wetted),
+        shaft_length=surroundings.shaft_length / shafts,
+        bearing_conductance=surroundings.bearing_conductance * shafts,
     )
 
 

@@ -23,7 +23,7 @@ from thermogear.mesh.clearance import clearance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up
+from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
 from thermogear.study.balances import LOSSES, dressed
 from thermogear.study.case import GearCase
 from thermogear.study.columns import read_columns, require_times
@@ -133,7 +133,7 @@ def warm_up_survey(
         )
         shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
         data = _course_dataset(case, course, shown, progress)
-        steady = _steady(case, work)
+        steady = _steady(case, work, factors)
     groups = {"course": data, "steady": steady}
     if measured is not None:
         groups["record"] = _record(measured, course, shown)
@@ -320,8 +320,16 @@ def _course_dataset(
 # --- what it is measured against --------------------------------------------------------------
 
 
-def _steady(case: GearCase, duty: Duty) -> xr.Dataset:
-    """Every piece of the duty held for good: temperatures and least half backlash."""
+def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Dataset:
+    """Every piece of the duty held for good: temperatures and least half backlash.
+
+    Nowhere a steady state where a fitted factor would wet more than the whole of a gear.
+    """
+    surroundings, known = case.gearbox.surroundings, True
+    try:
+        surroundings = with_factors(surroundings, factors)
+    except InputError:
+        known = False
     at, model = case.stated, case.models[0]
     left = np.full(duty.pieces, np.nan)
     settled = np.zeros(duty.pieces, np.int8)
@@ -333,7 +341,7 @@ def _steady(case: GearCase, duty: Duty) -> xr.Dataset:
     temperatures: dict[str, Floats] = {}
     for ambient in np.unique(unique[:, 0]):
         here = np.flatnonzero(unique[:, 0] == ambient)
-        around = replace(case.gearbox.surroundings, ambient=float(ambient))
+        around = replace(surroundings, ambient=float(ambient))
         balance = heat_balance(
             case.pair,
             unique[here, 1],
@@ -348,11 +356,12 @@ def _steady(case: GearCase, duty: Duty) -> xr.Dataset:
         )
         hot = HotPair(case.pair, balance.operating, model)
         gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
-        values[here] = np.where(balance.settled, gap.min(axis=1), np.nan)
-        fine[here] = balance.settled
+        settled_here = balance.settled & known
+        values[here] = np.where(settled_here, gap.min(axis=1), np.nan)
+        fine[here] = settled_here
         for name, t in balance.steady.temperatures.items():
             whole = temperatures.setdefault(name, np.full(len(unique), np.nan))
-            whole[here] = np.where(balance.settled, np.broadcast_to(t, here.shape), np.nan)
+            whole[here] = np.where(settled_here, np.broadcast_to(t, here.shape), np.nan)
     left, settled = values[back], fine[back]
     nodes = {name: t[back] for name, t in temperatures.items()}
     along = ("piece",)
