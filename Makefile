@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: friction-evidence trial-branches trial-damage trial-hostile trial-labels trial-pairs audit bench demo licences mutate sbom test check lint unit lock warmup clean look house
+.PHONY: friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -63,6 +63,9 @@ $(BENCH_STAMP): $(STAMP) requirements/bench.txt requirements/bench-fortran.txt
 	  -r requirements/bench-fortran.txt 2> .bench-venv/fortran.log || \
 	  echo "numbalsoda could not be installed (.bench-venv/fortran.log); the table says so"
 	@touch $@
+
+compile: $(STAMP)  ## machine code of the kernels ahead of their first use
+	$(BIN)/python checks/compile_kernels.py
 
 licences: $(STAMP)  ## licence of every locked package; fails on GPL, AGPL or unknown
 	$(BIN)/python checks/supply.py licences

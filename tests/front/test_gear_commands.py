@@ -21,10 +21,15 @@ from thermogear.views.survey_report import write_survey
 SMALL = ["--set", "grid.path_positions=41", "--set", 'operating.speed="2000 rpm"']
 EXTRA = {
     "friction": [],
-    "temperature": ["--speeds", "1000,2000,6000", "--torques", "50:250:3", "--warm-up", "1000,50"],
+    "temperature": ["--speeds", "1000,2000,6000", "--torques", "50:250:3"],
+    "warmup": [],
     "relief": ["--symmetric", "--shape", "parabolic"],
     "contact": ["--torques", "20,100"],
 }
+
+
+DUTY = "time [min],speed [rpm],torque [N m]\n0,2000,100\n2,0,0\n3,0,0\n"
+RECORD = "time [min],pinion_tooth [degC],thermocouple [degC]\n0.5,23,\n1.5,26,25.4\n2.5,25,25\n"
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +46,13 @@ def test_a_survey_leaves_data_page_pictures_and_curves(
     command: str, rig: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
-    code = main([command, str(rig), "-o", str(out), "--json", *SMALL, *EXTRA[command]])
+    extra = list(EXTRA[command])
+    if command == "warmup":
+        for option, text in (("--duty", DUTY), ("--measured", RECORD)):
+            path = tmp_path / f"{option[2:]}.csv"
+            path.write_text(text, encoding="utf-8")
+            extra += [option, str(path)]
+    code = main([command, str(rig), "-o", str(out), "--json", *SMALL, *extra])
     shown = capsys.readouterr()
     assert (code, shown.err) == (0, "")
     told = json.loads(shown.out)
@@ -102,7 +113,16 @@ def test_json_figures_of_the_map_are_those_of_its_grid(
             ["temperature", "--own", "--speeds", "500"],
             "--own: got speeds or torques beside it; leave one out",
         ),
-        (["temperature", "--warm-up", "500"], "--warm-up: got '500'; allowed RPM,NM; write"),
+        (["temperature", "--warm-up", "500,50"], "No such option '--warm-up'"),
+        (["warmup", "--at", "500"], "--at: got '500'; allowed RPM,NM; write 2000,150"),
+        (["warmup", "--at", "500,1e6"], "--at: got 1e+06 N m; allowed 0..1.045e+04 N m"),
+        (["warmup", "--at", "-500,10"], "--at: got -52.3599 rad/s (-500 rpm); allowed 0..500000"),
+        (["warmup", "--start", "-300"], "--start: got -300 degC; allowed -70..600"),
+        (["warmup", "--duty", "none.csv"], "duty: got none.csv; there is no such file"),
+        (["warmup", "--duty", "a", "--at", "1,1"], "--at: got an operating point beside --duty"),
+        (["warmup", "--measured", "none.csv"], "measured: got none.csv; there is no such file"),
+        (["warmup", "--fit", "housing"], "--fit: got housing; there is no record; give --measured"),
+        (["warmup", "--fit", "houses"], "--fit: got 'houses'; allowed housing | oil_housing | wet"),
         (["relief", "--torque", "0"], "--torque: got 0; allowed > 0, finite"),
         (["relief", "--torque", "nan"], "--torque: got nan; allowed > 0, finite"),
         (["relief", "--temperature", "-300"], "--temperature: got -300 degC; allowed -70..600"),

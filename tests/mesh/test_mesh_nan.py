@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,11 +18,12 @@ from thermogear.mesh import balance
 from thermogear.mesh.balance import Gearbox, heat_balance
 from thermogear.mesh.load_shared import pair_springs
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import warm_up
+from thermogear.mesh.warm_up import Duty, warm_up
 
 OIL = lubricant("M100")
 TEXTBOOK = MeshModel.consistent().override(stiffness="textbook-30-degree", sharing="equal")
 NAN = float("nan")
+DUTY = Duty.steady(100.0, 100.0, ambient=293.15)
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,9 @@ def test_a_deviation_without_numbers_is_refused(rig: GearPair, hot_rig: Operatin
     with pytest.raises(InputError, match=why):
         heat_balance(rig, 100.0, 100.0, OIL, 125e-6, deviations=[Broken()])
     with pytest.raises(InputError, match=why):
-        warm_up(rig, _first(hot_rig), [0.0, 10.0], deviations=[Broken()])
+        warm_up(rig, DUTY, OIL, 125e-6, deviations=[Broken()])
     with pytest.raises(InputError, match=why):
         pair_springs(HotPair(rig, hot_rig, MeshModel.consistent()), 0, [Broken()])
-
-
-def _first(operating: Operating) -> Operating:
-    return replace(operating, speed=operating.speed[:1], torque=operating.torque[:1])
 
 
 @pytest.fixture
@@ -71,7 +68,7 @@ def test_a_contact_that_does_not_settle_is_never_ok(rig: GearPair, hot_rig: Oper
     assert not heat_balance(rig, 100.0, 100.0, OIL, 125e-6).settled.any()
     lost = r"^loaded contact: \d+ of \d+ (positions|operating points) did not settle"
     with pytest.raises(ConvergenceError, match=lost):
-        warm_up(rig, _first(hot_rig), [0.0, 10.0])
+        warm_up(rig, DUTY, OIL, 125e-6)
     with pytest.raises(ConvergenceError, match=lost):
         pair_springs(HotPair(rig, hot_rig, MeshModel.consistent()), 0)
 
@@ -128,5 +125,9 @@ def test_measured_temperatures_and_times_must_be_numbers(rig: GearPair, hot_rig:
     assert str(caught.value) == "gearbox.measured.oil: got nan K; allowed -70..600 degC"
     with pytest.raises(InputError, match=r"^tolerance: got nan K; allowed > 0 K$"):
         heat_balance(rig, 100.0, 100.0, OIL, 125e-6, TEXTBOOK, tolerance=NAN)
-    with pytest.raises(InputError, match=r"^times: got 2 values; allowed two or more, rising"):
-        warm_up(rig, _first(hot_rig), [0.0, NAN], TEXTBOOK)
+    with pytest.raises(InputError, match=r"^duty\.time: got 2 times; allowed two or more, rising"):
+        Duty(time=np.array([0.0, NAN]), speed=np.ones(1), torque=np.ones(1), ambient=np.ones(1))
+    for name in ("speed", "torque", "ambient"):
+        given = {"speed": 100.0, "torque": 50.0, "ambient": 293.15} | {name: NAN}
+        with pytest.raises(InputError, match=rf"^duty\.{name}: got nan "):
+            Duty.steady(given["speed"], given["torque"], ambient=given["ambient"])

@@ -10,12 +10,10 @@ import pytest
 import xarray as xr
 
 from thermogear.base.errors import InputError
-from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.heat.scuffing import scuffing_temperature
 from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.cycle import mesh_cycle
-from thermogear.mesh.warm_up import warm_up
 from thermogear.study.body_estimates import ESTIMATES, body_estimates
 from thermogear.study.case import GearCase, load_example
 from thermogear.study.conclusion import _rank, _rank_along, _rises, _verdict
@@ -117,37 +115,6 @@ def test_ranks_and_steps_of_known_rows() -> None:
         "does not hold",
         "nothing to compare",
     ]
-
-
-def test_warm_up_ends_at_the_steady_state_and_starts_at_the_ambient(tree: xr.DataTree) -> None:
-    warm = tree["warm_up"]
-    point = {"pinion_speed": SPEEDS[1], "pinion_torque": TORQUES[1]}
-    assert float(warm.attrs["pinion_speed"]) == pytest.approx(point["pinion_speed"])
-    np.testing.assert_allclose(warm["node_temperature"].isel(time=0).values, 293.15)
-    end = warm["node_temperature"].isel(time=-1)
-    steady = tree["map"]["node_temperature"].sel(**point)
-    for name in ("oil", "pinion_tooth", "wheel_tooth", "housing"):
-        rise = float(steady.sel(node=name)) - 293.15
-        assert float(end.sel(node=name)) - 293.15 == pytest.approx(rise, rel=0.02)
-
-
-def test_finer_intervals_change_the_warm_up_less_and_less() -> None:
-    case = rig('operating.speed="1500 rpm"')
-    oil = []
-    for count in (5, 9, 17):
-        found = warm_up(case.pair, case.operating, np.linspace(0.0, 2000.0, count))
-        oil.append(float(found.temperatures["oil"][-1]))
-    # first order: the differences halve
-    assert abs(oil[2] - oil[1]) < 0.6 * abs(oil[1] - oil[0])
-
-
-def test_a_measured_node_stays_while_the_rest_warms_up() -> None:
-    case = rig('operating.speed="1500 rpm"', 'gearbox.measured.oil="70 degC"')
-    found = warm_up(case.pair, case.operating, [0.0, 100.0, 1000.0], gearbox=case.gearbox)
-    np.testing.assert_allclose(found.temperatures["oil"], ZERO_CELSIUS + 70.0)
-    assert np.all(np.diff(found.temperatures["pinion_tooth"]) > 0.0)
-    with pytest.raises(InputError, match="times: got 2 values; allowed two or more, rising"):
-        warm_up(case.pair, case.operating, [1.0, 2.0])
 
 
 def test_estimates_lie_above_the_oil_and_grow_with_the_loss() -> None:

@@ -1,4 +1,4 @@
-"""``friction``, ``temperature``, ``relief`` and ``contact``: surveys of a gear case."""
+"""``friction``, ``temperature``, ``warmup``, ``relief`` and ``contact``: surveys of a gear case."""
 
 from __future__ import annotations
 
@@ -98,12 +98,6 @@ def friction(case: str, output: str, overrides: tuple[str, ...], as_json: bool) 
     help="Pinion torques, or FROM:TO:COUNT; 50:500:10 if left out.",
 )
 @click.option("--own", is_flag=True, help="Take the speeds and torques of the case instead.")
-@click.option(
-    "--warm-up",
-    "warm_up",
-    metavar="RPM,NM",
-    help="Operating point of the warm-up curve; the middle of the map if left out.",
-)
 @click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
 def temperature(
     case: str,
@@ -113,26 +107,18 @@ def temperature(
     speeds: str | None,
     torques: str | None,
     own: bool,
-    warm_up: str | None,
     force: bool,
 ) -> None:
     """Close the loop of friction and heat over speeds and torques: the map of everything hot.
 
-    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates, warm-up;
-    for the thesis's rig its first conclusion, checked. Temperatures that CASE gives are not used;
-    nodes that [gearbox.measured] holds are. Writes temperature.nc, temperature.html, pictures and
-    CSV.
+    Regime, flash and body temperature, backlash left, scuffing margin, ISO estimates; for the
+    thesis's rig its first conclusion, checked. Steady states alone: `warmup` follows the way there.
+    Temperatures that CASE gives are not used; nodes that [gearbox.measured] holds are. Writes
+    temperature.nc, temperature.html, pictures and CSV.
     """
     read = _gear_case(case, overrides)
     if own and (speeds or torques):
         raise InputError("--own", "speeds or torques beside it", fix="leave one out")
-    at = None
-    if warm_up is not None:
-        pair = _numbers("--warm-up", warm_up)
-        if len(pair) != 2:
-            raise InputError("--warm-up", repr(warm_up), allowed="RPM,NM", fix="write 2000,150")
-        _positive("--warm-up", pair)
-        at = (pair[0] * RPM, pair[1])
 
     from thermogear.study.size import require_points
     from thermogear.study.thermal_map import SPEEDS, TORQUES, thermal_map
@@ -142,7 +128,7 @@ def temperature(
     require_points(len(omega) * len(moment), forced=force)
 
     def make(report: Progress) -> xr.DataTree:
-        return thermal_map(read, omega, moment, warm_up_at=at, progress=report)
+        return thermal_map(read, omega, moment, progress=report)
 
     tree = _carry_out("temperature", Path(output), make, quiet=as_json)
     data = tree["map"].to_dataset()
@@ -178,6 +164,116 @@ def temperature(
     lines = [f"{words:<32} {_reach(values)}" for words, values in figures.items()]
     lines += [f"{one['claim']}: {one['verdict']} ({one['found']})" for one in found["conclusion"]]
     _finish(tree, found, lines, Path(output) / "temperature.html", as_json)
+
+
+@click.command()
+@_common
+@click.option(
+    "--duty",
+    metavar="FILE",
+    help="CSV table of the duty: time [min],speed [rpm],torque [N m],ambient [degC]; each row "
+    "holds until the next, the last says the end.",
+)
+@click.option(
+    "--at",
+    metavar="RPM,NM",
+    help="Operating point that is held until steady, without a table; the case's of the greatest "
+    "power if left out.",
+)
+@click.option(
+    "--start",
+    type=float,
+    metavar="DEGC",
+    help="Temperature of everything at the start; the ambient's if left out.",
+)
+@click.option(
+    "--measured",
+    metavar="FILE",
+    help="CSV record to draw over the curves: time [min],pinion_tooth [degC],oil [degC],...; "
+    "columns named by nodes or sensors.",
+)
+@click.option(
+    "--fit",
+    metavar="NAME[,NAME]",
+    help="Fit one or two heat-transfer factors to the record: housing, oil_housing, wetted, "
+    "shafts.",
+)
+def warmup(
+    case: str,
+    output: str,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    duty: str | None,
+    at: str | None,
+    start: float | None,
+    measured: str | None,
+    fit: str | None,
+) -> None:
+    """Follow CASE through its duty from a cold start: when is the backlash least?
+
+    Temperatures of gears, shafts, housing and oil, half backlash and margin to the jam, flash, film
+    and stiffness over time; what a thermocouple, a ring on the shaft and an infrared camera
+    ([sensors]) would show. Temperatures that CASE gives are not used; nodes that
+    [gearbox.measured] holds are. Writes warmup.nc, warmup.html, pictures and CSV to DIR.
+    """
+    from thermogear.study.allowed import kelvin
+
+    read = _gear_case(case, overrides)
+    begin = None if start is None else kelvin("--start", start)
+    if duty is not None and at is not None:
+        raise InputError("--at", "an operating point beside --duty", fix="leave one out")
+
+    from thermogear.study.duty import point_duty, read_duty
+    from thermogear.study.warm_up_fit import require_factors
+    from thermogear.study.warm_up_survey import read_measured, warm_up_survey
+
+    work = None if duty is None else read_duty(duty, read)
+    if at is not None:
+        point = _numbers("--at", at)
+        if len(point) != 2:
+            raise InputError("--at", repr(at), allowed="RPM,NM", fix="write 2000,150")
+        work = point_duty(read, point[0] * RPM, point[1], "--at")
+    record = None if measured is None else read_measured(measured)
+    names: tuple[str, ...] = ()
+    if fit is not None:
+        names = require_factors([name.strip() for name in fit.split(",")], "--fit")
+        if record is None:
+            raise InputError("--fit", fit, why="there is no record", fix="give --measured FILE too")
+
+    def make(report: Progress) -> xr.DataTree:
+        return warm_up_survey(read, work, start=begin, measured=record, fit=names, progress=report)
+
+    tree = _carry_out("warmup", Path(output), make, quiet=as_json)
+    texts, data = tree.attrs, tree["course"].to_dataset()
+    worst = json.loads(texts["worst"])
+    error = data["sensor_temperature"].values[-1] - data["true_temperature"].values[-1]
+    found: dict[str, Any] = {
+        "worst": worst,
+        "jams_s": json.loads(texts["jams"]),
+        "end_K": {
+            str(node): float(t)
+            for node, t in zip(
+                data["node"].values, data["node_temperature"].values[-1], strict=True
+            )
+        },
+        "sensor_error_at_the_end_K": {
+            str(name): float(e) for name, e in zip(data["sensor"].values, error, strict=True)
+        },
+        "greatest_imbalance": float(texts["greatest_imbalance"]),
+        "evaluations": int(texts["evaluations"]),
+        "seconds": float(texts["seconds"]),
+        "fit": json.loads(texts["fit"]),
+    }
+    from thermogear.views.warm_up_section import answer, fit_sentence
+
+    lines = [answer(worst, float(texts["cold_half_backlash"])).replace("−", "-")]
+    if found["fit"]:
+        lines.append(fit_sentence(found["fit"]).strip())
+    degrees = [(name, f"{t - ZERO_CELSIUS:.1f}") for name, t in found["end_K"].items()]
+    lines.append("at the end [degC]: " + ", ".join(f"{name} {t}" for name, t in degrees))
+    shown = [f"{n} {e:+.2f}" for n, e in found["sensor_error_at_the_end_K"].items()]
+    lines.append("sensors, shown less true at the end [K]: " + ", ".join(shown))
+    _finish(tree, found, lines, Path(output) / "warmup.html", as_json)
 
 
 @click.command()
@@ -326,7 +422,7 @@ def contact(
     _finish(tree, found, lines, Path(output) / "contact.html", as_json)
 
 
-COMMANDS: tuple[click.Command, ...] = (friction, temperature, relief, contact)
+COMMANDS: tuple[click.Command, ...] = (friction, temperature, warmup, relief, contact)
 """For the main group to register."""
 
 

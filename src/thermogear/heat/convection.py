@@ -182,9 +182,16 @@ def disc_torque(
     return np.asarray(np.where(reynolds < TRANSITION, laminar, turbulent))
 
 
+@cache
+def _gauss(count: int) -> tuple[Floats, Floats]:
+    """Nodes and weights of Gauss and Legendre on -1..1, which cost more than the rest."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, weights
+
+
 def _wetted(depth: Floats, power: float) -> Floats:
     """int_0^1 (wetted angle at x) x^power dx for a unit disc dipped by ``depth``."""
-    nodes, weights = np.polynomial.legendre.leggauss(96)
+    nodes, weights = _gauss(96)
     # x = 1 - (1 - a)(1 - s^2): the wetted angle starts with a root at x = a
     start = np.abs(1.0 - depth)[..., None]
     s = 0.5 * (nodes + 1.0)

@@ -23,7 +23,9 @@ __all__ = [
     "InfraredReading",
     "ThermocoupleReading",
     "band_radiance",
+    "buried_temperature",
     "field_uncertainty",
+    "infrared_indication",
     "infrared_signal",
     "infrared_temperature",
     "surface_temperature",
@@ -127,6 +129,44 @@ def infrared_temperature(
     return np.asarray(flat).reshape(reading.shape)
 
 
+def infrared_indication(
+    temperature: ArrayLike,
+    *,
+    emissivity: float,
+    transmission: float,
+    surroundings: ArrayLike,
+    path: ArrayLike,
+    band: Band = None,
+    indicated_emissivity: float = 1.0,
+) -> Floats:
+    """What an infrared instrument says of a surface at ``temperature`` [K].
+
+    Inverse of :func:`infrared_temperature`: T_i with eps_i L(T_i) + (1 - eps_i) L(T_env) = S, S of
+    :func:`infrared_signal`, the instrument set to ``indicated_emissivity`` eps_i and no window.
+
+    ``emissivity``, ``transmission`` in (0, 1]; ``surroundings``, ``path`` [K], any shapes that
+    broadcast with ``temperature``. Raises where the setting leaves nothing for the surface.
+    """
+    for name, value in (
+        ("emissivity", emissivity),
+        ("transmission", transmission),
+        ("indicated emissivity", indicated_emissivity),
+    ):
+        if not 0.0 < value <= 1.0:
+            raise InputError(name, value, allowed="0 < value <= 1")
+    signal = infrared_signal(
+        temperature,
+        emissivity=emissivity,
+        transmission=transmission,
+        surroundings=surroundings,
+        path=path,
+        band=band,
+    )
+    mirrored = (1.0 - indicated_emissivity) * band_radiance(surroundings, band)
+    own = (signal - mirrored) / indicated_emissivity
+    return np.asarray([_invert(float(one), band) for one in np.ravel(own)]).reshape(own.shape)
+
+
 def _corrected(
     indicated: float,
     emissivity: float,
@@ -159,6 +199,17 @@ def surface_temperature(
     """
     drop = np.asarray(flux, dtype=float) * np.asarray(depth) / np.asarray(conductivity)
     return np.asarray(np.asarray(indicated, dtype=float) + drop)
+
+
+def buried_temperature(
+    surface: ArrayLike, flux: ArrayLike, depth: ArrayLike, conductivity: ArrayLike
+) -> Floats:
+    """What an embedded thermocouple says, T - q d/k [K]: inverse of :func:`surface_temperature`.
+
+    ``surface`` T [K], ``flux`` q [W/m^2] inwards, ``depth`` d [m], ``conductivity`` k [W/(m K)].
+    """
+    drop = np.asarray(flux, dtype=float) * np.asarray(depth) / np.asarray(conductivity)
+    return np.asarray(np.asarray(surface, dtype=float) - drop)
 
 
 def _propagate(

@@ -183,6 +183,30 @@ class ThermalNetwork:
             np.asarray(imbalance),
         )
 
+    def laplacian(self) -> Floats:
+        """G [W/K] over all :attr:`nodes`, given ones too; batch axes first."""
+        return self._matrices()[0]
+
+    def flows(self, temperatures: Mapping[str, ArrayLike]) -> tuple[Floats, Floats, Floats]:
+        """What flows at given ``temperatures`` [K] of the free nodes, no steady state assumed [W].
+
+        (heat that each free node keeps, last axis :attr:`free`; heat that the sources set free;
+        heat that leaves through the given nodes). The first adds up to the second less the third.
+        """
+        laplacian, heat, given = self._matrices()
+        free, held = self._indices()
+        names = self.nodes
+        own = [np.asarray(temperatures[names[i]], dtype=float) for i in free]
+        shape = np.broadcast_shapes(self.shape, *(t.shape for t in own))
+        at = np.array(np.broadcast_to(given, (*shape, len(names))))
+        for i, values in zip(free, own, strict=True):
+            at[..., i] = values
+        # from one datum: a flow is a difference, and keeps its digits
+        datum = at[..., held[:1]]
+        flow = heat - np.einsum("...ij,...j->...i", laplacian, at - datum)
+        source = np.broadcast_to(heat.sum(axis=-1), shape)
+        return flow[..., free], np.asarray(source), np.asarray(flow[..., held].sum(axis=-1))
+
     def transient(self, times: ArrayLike, initial: Mapping[str, ArrayLike]) -> dict[str, Floats]:
         """Temperatures [K] at ``times`` [s] from ``initial`` [K] by node, shape (..., times).
 

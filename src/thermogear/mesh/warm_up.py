@@ -1,20 +1,31 @@
-"""Warm-up of a gear pair from the ambient: the closed loop in time."""
+"""A gear pair through its duty: the closed loop of friction and heat in time, from a cold start.
+
+Gears warm before their housing: the backlash is often least on the way and not at the end.
+"""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import minimize_scalar
 
-from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base import bounds
+from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.base.materials import MATERIALS, Lubricant, Material
+from thermogear.base.progress import Progress, silent
 from thermogear.gears.contact import path_of_contact
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
-from thermogear.heat.gearbox import thermal_network
-from thermogear.mesh.balance import Gearbox, pair_losses
+from thermogear.heat.free_convection import with_free_convection
+from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
+from thermogear.heat.network import ThermalNetwork
+from thermogear.heat.transient import Course, State, Stretch, follow
+from thermogear.mesh.balance import NODES, Gearbox, pair_losses
+from thermogear.mesh.clearance import clearance
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
@@ -23,90 +34,393 @@ from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
 
+FACTORS = {
+    "housing": "housing to ambient",
+    "oil_housing": "oil to housing",
+    "wetted": "teeth and faces of both gears to the oil",
+    "shafts": "shafts through their bearings to the housing",
+}
+"""Named groups of conductances that a factor may multiply."""
+PHASES = 32
+"""Mesh phases at which the least half backlash is looked for."""
+BLOCK = 200
+"""Moments that are evaluated together: memory, not the result."""
 
-@dataclass(frozen=True, eq=False)
-class WarmUp:
-    """Node temperatures [K] over ``time`` [s], shape (time,) each, and the mesh loss [W]."""
+
+@dataclass(frozen=True, kw_only=True)
+class Duty:
+    """What a pair has to do: pieces in which speed, torque and ambient stay.
+
+    ``time`` [s], shape (pieces + 1,), rising from 0: the beginning of every piece and the end of
+    the last, which may be inf (until steady). ``speed`` [rad/s] >= 0 and ``torque`` [N m] >= 0 of
+    the pinion and ``ambient`` [K], shape (pieces,). Raises InputError in one line otherwise.
+    """
 
     time: Floats
+    speed: Floats
+    torque: Floats
+    ambient: Floats
+
+    def __post_init__(self) -> None:
+        for name in ("time", "speed", "torque", "ambient"):
+            values = np.atleast_1d(np.asarray(getattr(self, name), dtype=float))
+            object.__setattr__(self, name, values)
+        t = self.time
+        rising = t.ndim == 1 and t.size > 1 and t[0] == 0.0 and bool(np.all(np.diff(t) > 0.0))
+        if not rising:
+            raise InputError("duty.time", f"{t.size} times", allowed="two or more, rising from 0 s")
+        for name, allowed in (
+            ("speed", bounds.SPEED),
+            ("torque", bounds.TORQUE),
+            ("ambient", bounds.BODY),
+        ):
+            values = getattr(self, name)
+            if values.shape != (t.size - 1,):
+                raise InputError(
+                    f"duty.{name}", f"{values.size} values", allowed=f"one a piece, {t.size - 1}"
+                )
+            allowed.require(f"duty.{name}", values)
+
+    @classmethod
+    def steady(cls, speed: float, torque: float, *, ambient: float) -> Duty:
+        """One piece held until it is steady: ``speed`` [rad/s], ``torque`` [N m], ambient [K]."""
+        return cls(
+            time=np.array([0.0, np.inf]),
+            speed=np.array([speed]),
+            torque=np.array([torque]),
+            ambient=np.array([ambient]),
+        )
+
+    @property
+    def pieces(self) -> int:
+        """How many pieces there are."""
+        return int(self.speed.size)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Worst:
+    """The moment of the least half backlash.
+
+    ``time`` [s], ``half_backlash`` [m] (<= 0: jammed), ``margin`` [K] by which both gears could be
+    hotter, the housing as it is, until the backlash is used up (nan where no heat does it),
+    ``temperatures`` [K] of the free nodes, ``piece`` of the duty.
+    """
+
+    time: float
+    half_backlash: float
+    margin: float
+    temperatures: dict[str, float]
+    piece: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WarmUp:
+    """A pair through its duty, arrays (time,); a jump of the duty is there twice, before and after.
+
+    ``time`` [s] and ``piece`` of the duty; ``temperatures`` [K] of all nodes, given ones too;
+    ``losses`` [W]; ``half_backlash`` least over the mesh phase [m]; ``margin`` to the jam [K];
+    ``operating``: the state at every moment; ``course``: heat in, out and kept, and any moment
+    between; ``worst`` moment; ``jams`` [s] when the backlash is used up; ``held`` nodes [K].
+    """
+
+    duty: Duty
+    time: Floats
+    piece: NDArray[np.int64]
     temperatures: dict[str, Floats]
-    mesh_loss: Floats
+    losses: Losses
+    half_backlash: Floats
+    margin: Floats
+    operating: Operating
+    course: Course
+    worst: Worst
+    jams: Floats
+    held: Mapping[str, float]
 
 
 def warm_up(
     pair: GearPair,
-    operating: Operating,
-    times: ArrayLike,
+    duty: Duty,
+    lubricant: Lubricant,
+    half_backlash: float,
     model: MeshModel | None = None,
     *,
     gearbox: Gearbox | None = None,
+    start: float | Mapping[str, float] | None = None,
+    reference: float = 293.15,
+    housing: Material = MATERIALS["steel"],
     deviations: Sequence[Deviation] = (),
+    factors: Mapping[str, float] | None = None,
+    times: ArrayLike = (),
+    moments: int = 60,
     path_positions: int = 61,
+    tolerance: float = 1e-3,
+    progress: Progress = silent,
 ) -> WarmUp:
-    """Temperatures of every node from the start at the ambient's temperature.
+    """Temperatures, half backlash and jam of a pair over its ``duty``.
 
-    Between two of the ``times`` [s], rising from 0, losses and conductances stay those of the
-    interval's beginning and the network is solved exactly; so the viscosity follows the oil from
-    interval to interval. The error is of first order in the intervals: halve them to see it.
+    C dT/dt = q(T) - G(T) T with the losses of the mesh, churning and bearings and every conductance
+    at the present temperatures, as :func:`heat_balance` has them; see
+    :func:`~thermogear.heat.transient.follow`. At rest free convection remains between gears and
+    oil (:func:`~thermogear.heat.free_convection.with_free_convection`).
 
-    ``operating``: one operating point (its temperatures are not used); ``gearbox`` with measured
-    nodes held from the start; the rest as :func:`heat_balance`. Raises InputError for more than
-    one operating point and for times that do not rise from 0.
+    ``lubricant``, ``half_backlash`` [m] cold, ``model``, ``gearbox`` (its measured nodes held from
+    the start; its ambient is the duty's), ``reference`` [K], ``housing`` and ``deviations`` as
+    :func:`heat_balance`; ``start`` [K] of all nodes or by node, else the first ambient;
+    ``factors`` on conductances [-] by the names of :data:`FACTORS`; ``times`` [s] to be stored
+    beside some ``moments`` of each piece; ``tolerance`` [K] of a step's error.
+
+    A jam does not end the course; a node of 700 K does. Raises ConvergenceError where the loaded
+    contact does not settle. Warns once where the oil leaves its viscosity line.
     """
-    time = np.asarray(times, dtype=float)
-    if time.ndim != 1 or time.size < 2 or time[0] != 0.0 or not np.all(np.diff(time) > 0.0):
-        raise InputError("times", f"{time.size} values", allowed="two or more, rising from 0 s")
-    if operating.speed.size != 1:
-        raise InputError("operating", f"{operating.speed.size} points", allowed="one")
     box = Gearbox() if gearbox is None else gearbox
-    choice = MeshModel.consistent() if model is None else model
-    held = {name: float(np.ravel(t)[0]) for name, t in box.measured.items()}
-    cold = box.surroundings.ambient
-    state: dict[str, float] = {}
-    found: dict[str, list[float]] = {}
-    losses: list[float] = []
-    s = path_of_contact(pair, path_positions)
-    reference = operating.temperatures.reference
+    chosen = _Chain(
+        pair=pair,
+        duty=duty,
+        lubricant=lubricant,
+        half_backlash=half_backlash,
+        model=MeshModel.consistent() if model is None else model,
+        box=box,
+        reference=reference,
+        housing=housing,
+        deviations=deviations,
+        factors=_known(factors or {}),
+        s=path_of_contact(pair, path_positions),
+    )
     with warnings.catch_warnings():
-        # a cold start lies below the oil's line: said once, by the caller's steady state
+        # told once, at the stored moments
         warnings.simplefilter("ignore", ValidityWarning)
-        for place, now in enumerate(time):
-            at = {name: held.get(name, state.get(name, cold)) for name in _STATE}
-            here = replace(
-                operating,
-                oil_temperature=at["oil"],
-                temperatures=Temperatures(
-                    reference=reference,
-                    pinion_addendum=at["pinion_tooth"],
-                    pinion_bore=at["pinion_shaft"],
-                    wheel_addendum=at["wheel_tooth"],
-                    wheel_bore=at["wheel_shaft"],
-                    housing=at["housing"],
-                ),
-            )
-            path = FrictionPath(elastic_pair(HotPair(pair, here, choice), deviations), s).checked()
-            sources = pair_losses(pair, here, path, box)
-            network = thermal_network(
-                pair.pinion,
-                pair.wheel,
-                here.speed,
-                sources,
-                here.lubricant,
-                here.oil_temperature,
-                box.surroundings,
-                dict(held),
-            )
-            if not state:
-                state = {name: held.get(name, cold) for name in network.nodes}
-                state |= {n: float(np.ravel(t)[0]) for n, t in network.fixed.items()}
-            for name in network.nodes:
-                found.setdefault(name, []).append(state[name])
-            losses.append(float(np.ravel(sources.mesh)[0]))
-            if place + 1 < time.size:
-                step = network.transient([time[place + 1] - now], state)
-                state = {name: float(np.ravel(values)[-1]) for name, values in step.items()}
-    return WarmUp(time, {k: np.asarray(v) for k, v in found.items()}, np.asarray(losses))
+        begin = chosen.start(start)
+        course = follow(
+            [
+                Stretch(end=float(end), network=chosen.network_of(piece))
+                for piece, end in enumerate(duty.time[1:])
+            ],
+            begin,
+            times=times,
+            moments=moments,
+            tolerance=tolerance,
+            events={"jam": chosen.gap},
+            progress=progress,
+        )
+        worst = chosen.worst(course)
+    left, margin = chosen.clearance_of(course.temperatures, course.stretch)
+    losses = chosen.losses_of(course)
+    held = {name: np.full(course.time.size, t) for name, t in chosen.held.items()}
+    ambient = duty.ambient[course.stretch]
+    return WarmUp(
+        duty=duty,
+        time=course.time,
+        piece=course.stretch,
+        temperatures={**course.temperatures, **held, "ambient": ambient},
+        losses=losses,
+        half_backlash=left,
+        margin=margin,
+        operating=chosen.operating(course.temperatures, course.stretch),
+        course=course,
+        worst=worst,
+        jams=course.events["jam"],
+        held=chosen.held,
+    )
 
 
-_STATE = ("pinion_tooth", "pinion_shaft", "wheel_tooth", "wheel_shaft", "housing", "oil")
-"""The nodes that losses depend on."""
+def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Surroundings:
+    """``surroundings`` whose coefficients have the ``factors`` [-] of :data:`FACTORS` in them.
+
+    For steady states: the same conductances as a course with the factors has. Raises InputError
+    where more than the whole of a gear would be wetted.
+    """
+    known = _known(factors)
+    wetted, shafts = known.get("wetted", 1.0), known.get("shafts", 1.0)
+    first, second = surroundings.wetted_share
+    return replace(
+        surroundings,
+        housing_coefficient=surroundings.housing_coefficient * known.get("housing", 1.0),
+        oil_housing_coefficient=surroundings.oil_housing_coefficient
+        * known.get("oil_housing", 1.0),
+        wetted_share=(first * wetted, second * wetted),
+        shaft_length=surroundings.shaft_length / shafts,
+        bearing_conductance=surroundings.bearing_conductance * shafts,
+    )
+
+
+def _known(factors: Mapping[str, float]) -> dict[str, float]:
+    for name, value in factors.items():
+        if name not in FACTORS:
+            raise InputError(
+                "factors", repr(name), allowed=" | ".join(FACTORS), fix=nearest(name, FACTORS)
+            )
+        if not (np.isfinite(value) and value > 0.0):
+            raise InputError(f"factors.{name}", f"{value:g}", allowed="> 0, finite")
+    return dict(factors)
+
+
+def _group(first: str, second: str) -> str | None:
+    """The factor that a conductance between two nodes belongs to."""
+    ends = {first, second}
+    if ends == {"housing", "ambient"}:
+        return "housing"
+    if ends == {"oil", "housing"}:
+        return "oil_housing"
+    kinds = {end.rpartition("_")[2] for end in ends}
+    if "oil" in ends and kinds & {"tooth", "body"}:
+        return "wetted"
+    if "housing" in ends and "shaft" in kinds:
+        return "shafts"
+    return None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Chain:
+    """From temperatures to losses, conductances and clearance of one pair in one duty."""
+
+    pair: GearPair
+    duty: Duty
+    lubricant: Lubricant
+    half_backlash: float
+    model: MeshModel
+    box: Gearbox
+    reference: float
+    housing: Material
+    deviations: Sequence[Deviation]
+    factors: Mapping[str, float]
+    s: Floats
+    held: dict[str, float] = field(init=False)
+
+    def __post_init__(self) -> None:
+        held = {name: float(np.ravel(t)[0]) for name, t in self.box.measured.items()}
+        object.__setattr__(self, "held", held)
+
+    def start(self, given: float | Mapping[str, float] | None) -> dict[str, float]:
+        """Temperatures [K] of the free nodes at time 0."""
+        cold = float(self.duty.ambient[0])
+        named = given if isinstance(given, Mapping) else {}
+        whole = cold if given is None or isinstance(given, Mapping) else float(given)
+        bounds.BODY.require("start", [whole, *named.values()])
+        free = self.network_of(0)({name: np.array([whole]) for name in NODES}).free
+        for name in named:
+            if name not in free:
+                raise InputError("start", repr(name), allowed=" | ".join(free))
+        return {name: float(named.get(name, whole)) for name in free}
+
+    def operating(self, state: State, piece: ArrayLike) -> Operating:
+        """The operating points of temperatures (count,) in ``piece`` of the duty."""
+        whole = np.broadcast_shapes(*(np.shape(t) for t in state.values()))
+        at = {n: np.full(whole, self.held[n]) if n in self.held else state[n] for n in NODES}
+        place = np.broadcast_to(np.asarray(piece, dtype=int), whole)
+        return Operating(
+            self.duty.speed[place],
+            self.duty.torque[place],
+            self.lubricant,
+            at["oil"],
+            Temperatures(
+                reference=self.reference,
+                pinion_addendum=at["pinion_tooth"],
+                pinion_bore=at["pinion_shaft"],
+                wheel_addendum=at["wheel_tooth"],
+                wheel_bore=at["wheel_shaft"],
+                housing=at["housing"],
+            ),
+            self.half_backlash,
+            self.housing,
+        )
+
+    def losses(self, at: Operating) -> Losses:
+        """Of the whole chain at operating points, no interpolation."""
+        hot = HotPair(self.pair, at, self.model)
+        path = FrictionPath(elastic_pair(hot, self.deviations), self.s).checked()
+        return pair_losses(self.pair, at, path, self.box)
+
+    def network_of(self, piece: int) -> Callable[[State], ThermalNetwork]:
+        """The law of one piece."""
+        around = replace(self.box.surroundings, ambient=float(self.duty.ambient[piece]))
+        gears = {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
+
+        def network(state: State) -> ThermalNetwork:
+            at = self.operating(state, piece)
+            bare = thermal_network(
+                self.pair.pinion,
+                self.pair.wheel,
+                at.speed,
+                self.losses(at),
+                self.lubricant,
+                at.oil_temperature,
+                around,
+                dict(self.held),
+            )
+            known = {name: np.asarray(t) for name, t in bare.fixed.items()} | dict(state)
+            full = {name: known.get(name, np.asarray(around.ambient)) for name in bare.nodes}
+            return self._scaled(with_free_convection(bare, gears, self.lubricant, around, full))
+
+        return network
+
+    def _scaled(self, network: ThermalNetwork) -> ThermalNetwork:
+        if not self.factors:
+            return network
+        links = tuple(
+            replace(
+                link,
+                conductance=np.asarray(link.conductance)
+                * self.factors.get(_group(link.first, link.second) or "", 1.0),
+            )
+            for link in network.links
+        )
+        return replace(network, links=links)
+
+    def clearance_of(self, state: State, piece: ArrayLike) -> tuple[Floats, Floats]:
+        """(least half backlash [m], margin to the jam [K]) of temperatures (count,)."""
+        at = self.operating(state, piece)
+        found = clearance(
+            HotPair(self.pair, at, self.model), np.arange(PHASES) / PHASES, self.deviations
+        )
+        margin = found.jam_temperature - np.asarray(at.temperatures.pinion_addendum)
+        return found.half_backlash.min(axis=1), margin
+
+    def gap(self, state: State) -> float:
+        """Least half backlash [m] of one state; what it does not depend on is no matter."""
+        return float(self.clearance_of(state, 0)[0][0])
+
+    def worst(self, course: Course) -> Worst:
+        """The least half backlash of the course, located between the stored moments."""
+        left, _ = self.clearance_of(course.temperatures, course.stretch)
+        place = int(np.argmin(left))
+        ends = course.time[max(place - 1, 0)], course.time[min(place + 1, left.size - 1)]
+        when = float(course.time[place])
+        if ends[0] < when < ends[1]:
+            found = minimize_scalar(
+                lambda t: self.gap({n: x[None] for n, x in course.at(t).items()}),
+                bounds=ends,
+                method="bounded",
+                options={"xatol": 1e-4 * (ends[1] - ends[0])},
+            )
+            when = float(found.x) if found.fun <= left[place] else when
+        state = {name: np.atleast_1d(t) for name, t in course.at(when).items()}
+        gap, margin = self.clearance_of(state, int(course.stretch[place]))
+        return Worst(
+            time=when,
+            half_backlash=float(gap[0]),
+            margin=float(margin[0]),
+            temperatures={name: float(t[0]) for name, t in state.items()},
+            piece=int(course.stretch[place]),
+        )
+
+    def losses_of(self, course: Course) -> Losses:
+        """At the stored moments; warns once where the oil leaves its line."""
+        parts: list[Losses] = []
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always", ValidityWarning)
+            for first in range(0, course.time.size, BLOCK):
+                here = slice(first, first + BLOCK)
+                state = {name: t[here] for name, t in course.temperatures.items()}
+                parts.append(self.losses(self.operating(state, course.stretch[here])))
+        for text in dict.fromkeys(str(one.message) for one in told):
+            warnings.warn(text, ValidityWarning, stacklevel=3)
+        shape = (course.time.size,)
+
+        def whole(name: str) -> Floats:
+            values = [np.asarray(getattr(part, name), dtype=float) for part in parts]
+            sizes = [min(BLOCK, shape[0] - BLOCK * k) for k in range(len(parts))]
+            return np.concatenate(
+                [np.broadcast_to(v, (n,)) for v, n in zip(values, sizes, strict=True)]
+            )
+
+        return Losses(**{entry.name: whole(entry.name) for entry in fields(Losses)})

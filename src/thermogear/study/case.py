@@ -34,6 +34,7 @@ from thermogear.study.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.study.ready import example_text
 from thermogear.study.rows import Point, points_of
 from thermogear.study.schema import PICTURES, DimensionlessFile, GearFile
+from thermogear.study.sensor_schema import SensorsTable
 from thermogear.study.source import case_text, overridden, pairs, tables
 from thermogear.study.surroundings import Reading, gearbox
 from thermogear.study.units import shown
@@ -101,7 +102,8 @@ class GearCase(Case):
     :meth:`operating_of` computes the hot state from the heat balance of ``gearbox``.
     ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
     the other temperatures go along with it (:data:`~thermogear.study.fields.FOLLOW`).
-    ``deviations`` of the flanks; ``readings`` of thermometers; ``scuffing_load_stage`` of the oil
+    ``deviations`` of the flanks; ``readings`` of thermometers; ``sensors`` that watch a warm-up;
+    ``scuffing_load_stage`` of the oil
     in the FZG test, None where unknown. ``inertias`` [kg m^2];
     ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
     compute with.
@@ -127,6 +129,7 @@ class GearCase(Case):
     deviations: tuple[Deviation, ...] = ()
     gearbox: Gearbox = field(default_factory=Gearbox)
     readings: tuple[Reading, ...] = ()
+    sensors: SensorsTable = field(default_factory=SensorsTable)
     scuffing_load_stage: float | None = None
     computed: bool = False
     follow: str = "proportional"
@@ -353,6 +356,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         deviations=deviations(file, pair),
         gearbox=box,
         readings=readings,
+        sensors=file.sensors or SensorsTable(),
         scuffing_load_stage=file.oil.scuffing_load_stage,
         computed=rule is None,
         follow=given.follow,

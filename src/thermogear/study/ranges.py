@@ -46,11 +46,9 @@ def warn_of_torque(pair: GearPair, torques: ArrayLike) -> None:
     p_0 at the pitch point, cold, the whole load on one tooth pair; p_0 grows as sqrt(torque).
     """
     torque = float(np.max(np.asarray(torques, dtype=float)))
-    line_load = torque / pair.pinion.base_radius / pair.face_width
-    radius = reduced_radius(pair, pair.path.c)
-    pressure = float(hertz_pressure(line_load, radius, pair_reduced_modulus(pair)))
-    if pressure > CRUSHING:
-        most = torque * (CRUSHING / pressure) ** 2
+    most = crushing_torque(pair)
+    if torque > most:
+        pressure = CRUSHING * float(np.sqrt(torque / most))
         warnings.warn(
             f"pinion torque: got {torque:g} N m; valid 0..{most:.4g} N m; "
             f"{1e-9 * pressure:.3g} GPa between the flanks at the pitch point, and above "
@@ -58,6 +56,14 @@ def warn_of_torque(pair: GearPair, torques: ArrayLike) -> None:
             ValidityWarning,
             stacklevel=3,
         )
+
+
+def crushing_torque(pair: GearPair) -> float:
+    """The pinion torque [N m] that presses the flanks with 4 GPa; see :func:`warn_of_torque`."""
+    unit = 1.0 / pair.pinion.base_radius / pair.face_width
+    radius = reduced_radius(pair, pair.path.c)
+    pressure = float(hertz_pressure(unit, radius, pair_reduced_modulus(pair)))
+    return (CRUSHING / pressure) ** 2
 
 
 def _warn(where: str, value: float, material: Material) -> None:

@@ -28,6 +28,7 @@ from thermogear.study.fields import (
 )
 from thermogear.study.flank_schema import ProfileTable, ReliefTable
 from thermogear.study.gearbox_schema import GearboxTable
+from thermogear.study.sensor_schema import SensorsTable
 from thermogear.study.table import Below, Body, Length, Table, not_both, one_of
 
 PICTURES = ("path", "profile", "stiffness", "motion", "temperature", "base-sets")
@@ -475,6 +476,7 @@ class GearFile(Table):
     operating: OperatingTable
     temperatures: TemperaturesTable
     gearbox: GearboxTable | None = Field(default=None, title="every value ours")
+    sensors: SensorsTable | None = Field(default=None, title="every thermometer ours")
     backlash: BacklashTable
     dynamics: DynamicsTable
     transmission_error: TransmissionErrorTable

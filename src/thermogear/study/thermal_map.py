@@ -6,7 +6,6 @@ import json
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +23,6 @@ from thermogear.mesh.balance import HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.mesh.warm_up import warm_up
 from thermogear.study.balances import balance_dataset, dressed
 from thermogear.study.body_estimates import ESTIMATES, body_estimates
 from thermogear.study.case import GearCase
@@ -41,8 +39,6 @@ PATH_POSITIONS = 81
 MESH_POSITIONS = 64
 BLOCK = 60
 """Operating points that are solved together: progress and memory, not the result."""
-WARM_UP = np.concatenate([[0.0], np.geomspace(2e-3, 0.2, 14), np.linspace(0.2, 8.0, 40)[1:]])
-"""Times of the warm-up curve in time constants of housing and oil."""
 GRID = ("pinion_speed", "pinion_torque")
 
 
@@ -51,18 +47,17 @@ def thermal_map(
     speeds: Sequence[float] = SPEEDS,
     torques: Sequence[float] = TORQUES,
     *,
-    warm_up_at: tuple[float, float] | None = None,
     progress: Progress = silent,
 ) -> xr.DataTree:
     """Temperatures, films, flashes, backlash and scuffing margins over ``speeds`` x ``torques``.
 
-    ``speeds`` [rad/s] > 0 and ``torques`` [N m] of the pinion; ``warm_up_at`` (speed, torque) of
-    the warm-up curve, by default the middle of the grid. The first model of the case, its
-    gearbox with the nodes it holds; other temperatures of the case are not used.
+    ``speeds`` [rad/s] > 0 and ``torques`` [N m] of the pinion. The first model of the case, its
+    gearbox with the nodes it holds; other temperatures of the case are not used. Steady states
+    alone: :func:`~thermogear.study.warm_up_survey.warm_up_survey` has the way there.
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
     not_converged) with ``iterations`` and ``residual``; ``conclusion`` (friction, flash and
-    growth, mixed and dry, with rank correlations); ``warm_up`` over time. For the thesis's rig
+    growth, mixed and dry, with rank correlations). For the thesis's rig
     ``verdicts`` (attribute) say what holds of the thesis's first conclusion.
     """
     began = time.perf_counter()
@@ -89,10 +84,8 @@ def thermal_map(
     wholes = {name: xr.concat(parts, "operating") for name, parts in points.items()}
     grids = {name: _on_grid(whole, speeds, torques, shape) for name, whole in wholes.items()}
     checked = conclusion({name: grids[name] for name in LUBRICATIONS})
-    middle = (float(speeds[len(speeds) // 2]), float(torques[len(torques) // 2]))
-    warm = _warm_up(case, models["mixed"], warm_up_at or middle, progress)
     chosen = grids["dry" if model.friction == "dry" else "mixed"]
-    tree = xr.DataTree.from_dict({"map": chosen, "conclusion": checked, "warm_up": warm})
+    tree = xr.DataTree.from_dict({"map": chosen, "conclusion": checked})
     tree.attrs = {
         "thermogear": thermogear.__version__,
         "kind": KIND,
@@ -275,40 +268,6 @@ def _on_grid(
     )
 
 
-def _warm_up(
-    case: GearCase, model: MeshModel, point: tuple[float, float], progress: Progress
-) -> xr.Dataset:
-    """Temperatures of every node over time from the ambient, at one operating point."""
-    progress("warm-up", 0, 1)
-    around = case.gearbox.surroundings
-    # the slowest way out: the housing to the air
-    heat = around.oil_mass * case.stated.lubricant.specific_heat
-    heat += around.housing_mass * around.housing_specific_heat
-    slowest = heat / (around.housing_coefficient * around.housing_area)
-    times = WARM_UP * slowest
-    at = replace(case.stated, speed=np.array([point[0]]), torque=np.array([point[1]]))
-    at = replace(at, temperatures=at.temperatures.cold(), oil_temperature=around.ambient)
-    found = warm_up(case.pair, at, times, model, gearbox=case.gearbox, deviations=case.deviations)
-    progress("warm-up", 1, 1)
-    nodes = list(found.temperatures)
-    return xr.Dataset(
-        {
-            "node_temperature": dressed(
-                ("time", "node"),
-                np.stack([found.temperatures[n] for n in nodes], axis=-1),
-                "K",
-                "temperature of a node",
-            ),
-            "mesh_loss": dressed(("time",), found.mesh_loss, "W", "frictional power of the mesh"),
-        },
-        {
-            "node": nodes,
-            "time": dressed(("time",), found.time, "s", "time from the start"),
-        },
-        {"pinion_speed": point[0], "pinion_torque": point[1]},
-    )
-
-
 def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str, str]]:
     status = grid["status"].values
     settled = status != STATUS.index("not_converged")
@@ -347,6 +306,7 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
             f"{_least(jam[settled])} of the pinion's teeth"
             + _in_proportion(together[settled], case.stated.temperatures.reference),
         )
+    say("info", "The way there, and the least backlash on it: thermogear warmup CASE -o DIR.")
     if case.scuffing_load_stage is None:
         say("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
     say(

@@ -40,6 +40,7 @@ KINDS: dict[str, Kind] = {
     kind.name: kind
     for kind in (
         Kind("length", "m", "mm", "5 mm"),
+        Kind("time", "s", "min", "30 min"),
         Kind("angle", "rad", "deg", "20 deg", _ANGLES),
         Kind("temperature", "K", "degC", "100 degC"),
         Kind("temperature difference", "K", "K", "20 K"),

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
@@ -18,31 +16,9 @@ from thermogear.views import captions
 from thermogear.views import survey_captions as words
 from thermogear.views.page import Table
 from thermogear.views.plots import laws, loaded, relief, thermal_map
+from thermogear.views.survey_parts import Drawn, Groups, Survey
+from thermogear.views.warm_up_section import warm_up
 from thermogear.views.words import exactly, number, operating_names, prose
-
-Groups = Mapping[str, xr.Dataset]
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """A picture to draw: a name for its files, what it shows and what one should see."""
-
-    name: str
-    heading: str
-    caption: str
-    make: Callable[[], Figure]
-    wide: bool = False
-
-
-@dataclass(frozen=True)
-class Survey:
-    """A page to make: its sentence, its pictures, its tables, and lines to copy."""
-
-    summary: str
-    pictures: Sequence[Drawn]
-    tables: Sequence[Table] = ()
-    code: str = ""
-
 
 MOST_PICTURES = 4
 """Operating points that get a picture of their own."""
@@ -114,7 +90,7 @@ def friction(texts: Mapping[str, Any], groups: Groups) -> Survey:
 
 def temperature(texts: Mapping[str, Any], groups: Groups) -> Survey:
     """The closed loop over speed and torque."""
-    data, warm = groups["map"], groups["warm_up"]
+    data = groups["map"]
     pictures = []
     over = words.running(data)
     if over:
@@ -127,16 +103,6 @@ def temperature(texts: Mapping[str, Any], groups: Groups) -> Survey:
                 wide=True,
             )
         )
-    pictures.append(
-        Drawn(
-            "warm_up",
-            "Warm-up from the ambient",
-            "The viscosity follows the oil; losses are renewed from interval to interval. Where a "
-            "curve has a kink the oil on a rotating face turns turbulent and cools better at once.",
-            partial(thermal_map.warm_up, warm),
-            wide=True,
-        )
-    )
     tables = [_corner_table(data), _estimate_table(data)]
     rows = json.loads(texts["verdicts"])
     if rows:
@@ -387,6 +353,7 @@ SURVEYS: dict[str, Callable[[Mapping[str, Any], Groups], Survey]] = {
     "temperature": temperature,
     "relief": tip_relief,
     "contact": contact,
+    "warmup": warm_up,
 }
 """Kind of a stored survey -> what its page holds."""
 

@@ -1,4 +1,4 @@
-"""The map of everything hot over speed and torque, and the warm-up curve."""
+"""The map of everything hot over speed and torque."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
-from thermogear.views.style import INK, OKABE_ITO, QUIET, WIDE, legend_below, note, picture
+from thermogear.views.style import INK, OKABE_ITO, QUIET, WIDE, note, picture
 from thermogear.views.words import CELSIUS, plain
 
 Floats = NDArray[np.float64]
@@ -20,17 +20,6 @@ Floats = NDArray[np.float64]
 AXES = ("pinion speed [rpm]", "pinion torque [N m]")
 SAFE = 50.0
 """Scuffing margin [K] that is advised at least."""
-
-NODE_COLOURS = {
-    "pinion_tooth": (OKABE_ITO[1], "-"),
-    "pinion_body": (OKABE_ITO[1], (0, (4, 1.5))),
-    "pinion_shaft": (OKABE_ITO[1], (0, (1, 1.5))),
-    "wheel_tooth": (OKABE_ITO[0], "-"),
-    "wheel_body": (OKABE_ITO[0], (0, (4, 1.5))),
-    "wheel_shaft": (OKABE_ITO[0], (0, (1, 1.5))),
-    "oil": (OKABE_ITO[2], "-"),
-    "housing": (QUIET, "-"),
-}
 
 
 def thermal_map(data: xr.Dataset) -> Figure:
@@ -187,28 +176,3 @@ def _hatch(axis: Axes, data: xr.Dataset, settled: NDArray[np.bool_]) -> None:
     )
     hatched.set_edgecolor(QUIET)
     hatched.set_linewidth(0.0)
-
-
-def warm_up(data: xr.Dataset) -> Figure:
-    """Node temperatures over time from the ambient."""
-    figure, axes = picture(size=(WIDE, 3.8))
-    axis = axes[0, 0]
-    minutes = data["time"].values / 60.0
-    for name in (str(n) for n in data["node"].values):
-        if name not in NODE_COLOURS:
-            continue
-        colour, line = NODE_COLOURS[name]
-        axis.plot(
-            minutes,
-            CELSIUS(data["node_temperature"].sel(node=name).values),
-            color=colour,
-            linestyle=line,
-            label=name.replace("_", " "),
-        )
-    speed = float(data.attrs["pinion_speed"]) / RPM
-    axis.set_title(f"{speed:.0f} rpm, {float(data.attrs['pinion_torque']):.0f} N m")
-    axis.set_xlabel("time from the start [min]")
-    axis.set_ylabel("temperature T [°C]")
-    axis.set_xlim(0.0, float(minutes[-1]))
-    legend_below(figure, axis, 8)
-    return figure
