@@ -223,6 +223,8 @@ NUMBERS = {
     "rotating_disc_flow",
     "rotating_disc_gradient",
     "rotation_factor",
+    "turbulent_nusselt",
+    "turbulent_share",
 }
 IMPOSSIBLE = {"blok_as_printed", "benedict_kelley_as_printed", "flank_growth_as_printed"}
 NOT_FORMULAS = {

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Lubricant, Material
-from thermogear.heat.convection import rotating_face_convection
+from thermogear.heat.convection import rotating_face_convection, transition_pieces
 from thermogear.heat.expansion import GearLike
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
@@ -134,20 +134,19 @@ def face_conductance(
     :func:`rotating_face_convection` with the excess growing as r^2. Shape of speed and
     temperature; 0 at rest.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-    half = 0.5 * (outer_radius - inner_radius)
-    r = 0.5 * (outer_radius + inner_radius) + half * nodes
     omega, kelvin = np.broadcast_arrays(
         np.asarray(speed, dtype=float), np.asarray(oil_temperature, dtype=float)
     )
+    viscosity = kinematic_viscosity(lubricant, kelvin)
+    r, weights = transition_pieces(omega, viscosity, inner=inner_radius, outer=outer_radius)
     film = rotating_face_convection(
         omega[..., None],
         r,
-        kinematic_viscosity(lubricant, kelvin)[..., None],
+        viscosity[..., None],
         lubricant.thermal_conductivity,
         oil_prandtl(lubricant, kelvin)[..., None],
     )
-    return np.asarray(np.sum(film * 2.0 * np.pi * r * half * weights, axis=-1))
+    return np.asarray(np.sum(film * 2.0 * np.pi * r * weights, axis=-1))
 
 
 def body_conductances(gear: BodyLike) -> tuple[float, float]:
