@@ -138,7 +138,7 @@ def test_heat_and_drag_pass_the_transition_without_a_jump() -> None:
         assert np.abs(np.diff(steps)).max() < 5e-6
     ends = rotating_face_convection([0.999 * low * nu, high * nu], 1.0, nu, 0.135, pr)
     assert ends[0] == pytest.approx(0.135 * float(disc_nusselt(pr)) * np.sqrt(0.999 * low))
-    assert ends[1] == pytest.approx(0.135 * float(turbulent_nusselt(high, pr)))
+    assert ends[1] == pytest.approx(0.135 * float(turbulent_nusselt(high, prandtl=pr)))
 
 
 def test_a_disc_is_laminar_inside_and_turbulent_outside() -> None:
@@ -180,14 +180,16 @@ def test_prandtl_dependence_of_the_turbulent_layer_against_a_mixing_length(
     for prandtl in (1.0, 3.0, 10.0, 100.0, 300.0, 1000.0, 3000.0):
         drop, _ = sublayer_of_mixing_length(prandtl, edge)
         apart = reynolds * prandtl * root / drop
-        assert turbulent_nusselt(reynolds, prandtl) == pytest.approx(apart, rel=0.02)
+        assert turbulent_nusselt(reynolds, prandtl=prandtl) == pytest.approx(apart, rel=0.02)
     # the customary exponent is the slope at Pr = 1 and nowhere else
-    slope = np.log(turbulent_nusselt(reynolds, 1.01) / turbulent_nusselt(reynolds, 1.0))
+    slope = np.log(
+        turbulent_nusselt(reynolds, prandtl=1.01) / turbulent_nusselt(reynolds, prandtl=1.0)
+    )
     assert slope / np.log(1.01) == pytest.approx(0.6, abs=0.06)
-    usual = turbulent_nusselt(reynolds, 1.0) * 300.0**0.6
-    assert usual / turbulent_nusselt(reynolds, 300.0) > 2.4
+    usual = turbulent_nusselt(reynolds, prandtl=1.0) * 300.0**0.6
+    assert usual / turbulent_nusselt(reynolds, prandtl=300.0) > 2.4
     # Chilton and Colburn's cube root is the limit
-    ratio = turbulent_nusselt(reynolds, 8e5) / turbulent_nusselt(reynolds, 1e5)
+    ratio = turbulent_nusselt(reynolds, prandtl=8e5) / turbulent_nusselt(reynolds, prandtl=1e5)
     assert ratio == pytest.approx(2.0, rel=2e-3)
     measured = 300.0**0.704 / 0.0889
     assert measured == pytest.approx(12.7 * 300.0 ** (2.0 / 3.0), rel=0.2)

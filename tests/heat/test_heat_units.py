@@ -149,6 +149,7 @@ RESULTS: dict[str, str] = {
     "churning_loss": "W",
     "conduction_power": "W",
     "contact_temperature": "K",
+    "flank_exchange": "W/m/K",
     "disc_torque": "N*m",
     "dowson_higginson_minimum": "m",
     "efficiency": "",
@@ -370,5 +371,6 @@ def test_printed_deformation_is_no_length() -> None:
 def test_no_public_formula_is_left_out() -> None:
     covered = set(RESULTS) | set(DECLARED) | IMPOSSIBLE | NOT_FORMULAS | NUMBERS | set(GROWTHS)
     covered |= {"flash_temperature", "peclet_flash", "peclet_partition", "body_conductances"}
+    covered |= {"body_places", "body_radius", "tooth_radius"}
     assert set(FUNCTIONS) ^ covered == set()
     assert math.isclose(factor("m"), 1.0 / 0.37)

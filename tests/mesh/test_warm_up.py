@@ -34,7 +34,7 @@ def test_starts_at_the_ambient_and_ends_at_the_steady_state(
     rig: GearPair, point: Operating
 ) -> None:
     times = np.array([0.0, 10.0, 100.0, 500.0, 2e3, 8e3, 3e4, 1e5, 3e5, 1e6])
-    found = run(rig, point, times, path_positions=101)
+    found = run(rig, point, times)
     steady = heat_balance(rig, 200.0, 100.0, point.lubricant, 125e-6, MODEL)
     assert steady.settled.all()
     for name, course in found.temperatures.items():

@@ -150,9 +150,7 @@ def turbulent_share(reynolds: ArrayLike) -> Floats:
     return np.asarray(x * x * (3.0 - 2.0 * x))
 
 
-def turbulent_nusselt(
-    reynolds: ArrayLike, prandtl: ArrayLike, *, exponent: float = 2.0
-) -> Floats:
+def turbulent_nusselt(reynolds: ArrayLike, *, prandtl: ArrayLike, exponent: float = 2.0) -> Floats:
     """Local Nusselt number h r/k of a turbulent layer on a rotating face [-].
 
     1/St = 1/St_1 + 12.7 (Pr^(2/3) - 1)/sqrt(c),   Nu = Re Pr St,
@@ -169,7 +167,7 @@ def turbulent_nusselt(
     Gnielinski's for plates, 0.037 Re^0.8 Pr/[1 + 2.443 Re^-0.1 (Pr^(2/3) - 1)] (VDI Heat Atlas,
     2.443 = 12.7 sqrt(0.037)), meant for Pr 0.6 .. 2000. A mixing-length layer with an eddy
     viscosity growing as the cube of the distance (Notter and Sleicher 1971), integrated in the
-    tests, agrees within 2 % for Pr 1 .. 3000; what dissolves into turbulent pipe flow by measurement,
+    tests, agrees within 2 % for Pr 1 .. 3000; measured mass transfer into turbulent pipe flow,
     K+ = 0.0889 Sc^-0.704 (Shaw and Hanratty 1977, recalled), within 20 % for Sc 10 .. 3000.
     """
     re, pr = np.asarray(reynolds, dtype=float), np.asarray(prandtl, dtype=float)
@@ -205,9 +203,18 @@ def rotating_face_convection(
     )
     reynolds = omega * r**2 / nu
     laminar = disc_nusselt(pr, exponent=exponent) * np.sqrt(reynolds)
-    turbulent = turbulent_nusselt(np.maximum(reynolds, TRANSITION[0]), pr, exponent=exponent)
+    turbulent = turbulent_nusselt(
+        np.maximum(reynolds, TRANSITION[0]), prandtl=pr, exponent=exponent
+    )
     share = turbulent_share(reynolds)
     return np.asarray(k / r * ((1.0 - share) * laminar + share * turbulent))
+
+
+@cache
+def _gauss(count: int) -> tuple[Floats, Floats]:
+    """Nodes and weights of Gauss and Legendre on -1..1, which cost more than the rest."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, weights
 
 
 def transition_pieces(
@@ -226,7 +233,7 @@ def transition_pieces(
     turning = np.maximum(omega, 1e-30)  # a disc at rest is laminar all over
     turns = [np.clip(np.sqrt(re * nu / turning), low, high) for re in TRANSITION]
     ends = np.stack([low, *turns, high], axis=-1)
-    u, w = np.polynomial.legendre.leggauss(nodes)
+    u, w = _gauss(nodes)
     s = 0.5 * (u + 1.0)
     length = np.diff(ends)[..., None]
     radii = ends[..., :-1, None] + length * s**2

@@ -9,16 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError, ValidityWarning
-from thermogear.gears.contact import path_of_contact
+from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.gearbox import thermal_network
-from thermogear.mesh.balance import Gearbox, pair_losses
+from thermogear.mesh.balance import NODES, Gearbox, node_temperatures, pair_losses
 from thermogear.mesh.elastic import elastic_pair
-from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
@@ -41,7 +39,6 @@ def warm_up(
     *,
     gearbox: Gearbox | None = None,
     deviations: Sequence[Deviation] = (),
-    path_positions: int = 61,
 ) -> WarmUp:
     """Temperatures of every node from the start at the ambient's temperature.
 
@@ -65,27 +62,21 @@ def warm_up(
     state: dict[str, float] = {}
     found: dict[str, list[float]] = {}
     losses: list[float] = []
-    s = path_of_contact(pair, path_positions)
     reference = operating.temperatures.reference
     with warnings.catch_warnings():
         # a cold start lies below the oil's line: said once, by the caller's steady state
         warnings.simplefilter("ignore", ValidityWarning)
         for place, now in enumerate(time):
-            at = {name: held.get(name, state.get(name, cold)) for name in _STATE}
+            at = {name: held.get(name, state.get(name, cold)) for name in NODES}
             here = replace(
                 operating,
                 oil_temperature=at["oil"],
-                temperatures=Temperatures(
-                    reference=reference,
-                    pinion_addendum=at["pinion_tooth"],
-                    pinion_bore=at["pinion_shaft"],
-                    wheel_addendum=at["wheel_tooth"],
-                    wheel_bore=at["wheel_shaft"],
-                    housing=at["housing"],
-                ),
+                temperatures=node_temperatures(at, reference),
             )
-            path = FrictionPath(elastic_pair(HotPair(pair, here, choice), deviations), s).checked()
-            sources = pair_losses(pair, here, path, box)
+            elastic = elastic_pair(HotPair(pair, here, choice), deviations)
+            sources, known = pair_losses(pair, here, elastic, box)
+            if not known.all():
+                raise ConvergenceError("loaded contact: 1 of 1 operating points did not settle")
             network = thermal_network(
                 pair.pinion,
                 pair.wheel,
@@ -106,7 +97,3 @@ def warm_up(
                 step = network.transient([time[place + 1] - now], state)
                 state = {name: float(np.ravel(values)[-1]) for name, values in step.items()}
     return WarmUp(time, {k: np.asarray(v) for k, v in found.items()}, np.asarray(losses))
-
-
-_STATE = ("pinion_tooth", "pinion_shaft", "wheel_tooth", "wheel_shaft", "housing", "oil")
-"""The nodes that losses depend on."""
