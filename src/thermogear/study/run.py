@@ -43,8 +43,8 @@ def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
     """Everything that ``case`` asks for, as one tree of datasets (SI, units as attributes).
 
     A jammed operating point, one at whose temperatures a law has no value (nan), a motion that
-    diverges or cannot be labelled is a status in the data, never an exception. Raises InputError where the case as a whole is
-    impossible.
+    diverges or cannot be labelled is a status in the data, never an exception. Raises InputError
+    where the case as a whole is impossible.
     """
     if isinstance(case, DimensionlessCase):
         groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}

@@ -63,8 +63,9 @@ def thermal_map(
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
     not_converged; nan where a law has no value) with ``iterations`` and ``residual``, and
     ``several`` where from hot another state is steady than the one told, from cold;
-    ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations); ``warm_up`` over time. For the thesis's rig
-    ``verdicts`` (attribute) say what holds of the thesis's first conclusion.
+    ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations);
+    ``warm_up`` over time. For the thesis's rig ``verdicts`` (attribute) say what holds of the
+    thesis's first conclusion.
     """
     began = time.perf_counter()
     model = case.models[0]
