@@ -93,6 +93,9 @@ trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an h
 trial-hostile: $(STAMP)  ## 5 000 mutated cases, 5 700 mutated records of 12 kinds; docs/trial_hostile.md
 	@$(BIN)/python checks/trial_hostile.py
 
+trial-heat: $(STAMP)  ## every steady state of the heat balance, from cold, hot and warm-ups, half an hour; docs/trial_heat.md
+	@$(BIN)/python checks/trial_heat.py
+
 trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test, ten minutes; docs/trial_labels.md
 	@$(BIN)/python checks/trial_labels.py
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson, simpson, solve_ivp
+from scipy.optimize import brentq
 
 from conftest import Compared
 from thermogear.base.errors import InputError
@@ -13,6 +14,8 @@ from thermogear.heat.convection import (
     rotating_disc_flow,
     rotating_disc_gradient,
     rotating_face_convection,
+    turbulent_nusselt,
+    turbulent_share,
 )
 
 
@@ -97,7 +100,7 @@ def test_face_coefficient_laminar_turbulent_and_at_rest() -> None:
     expected = 5.4879 * k * np.sqrt(omega / nu)
     assert laminar == pytest.approx(np.full(2, expected), rel=1e-4)
     assert rotating_face_convection(0.0, 0.1, nu, k, pr) == 0.0
-    radius = np.sqrt(2.0 * TRANSITION * nu / omega)
+    radius = np.sqrt(2.0 * TRANSITION[1] * nu / omega)
     turbulent = rotating_face_convection(omega, radius, nu, k, pr)
     assert turbulent > rotating_face_convection(omega, 0.5 * radius, nu, k, pr)
 
@@ -109,13 +112,87 @@ def test_turbulent_law_is_the_analogy_of_von_karmans_torque() -> None:
 
 
 def test_torque_of_a_wholly_immersed_disc() -> None:
-    """C_M = 3.87/sqrt(Re) laminar and 0.146 Re^-0.2 turbulent, both faces."""
+    """C_M = 3.87/sqrt(Re) laminar and 0.146 Re^-0.2 far beyond the transition, both faces."""
     rho, nu, big = 850.0, 4e-5, 0.1
-    for omega, coefficient in ((50.0, 3.87), (4000.0, 0.146)):
+    for omega, coefficient, power in ((50.0, 3.87, -0.5), (4e4, 0.146, -0.2)):
         reynolds = omega * big**2 / nu
-        power = -0.5 if reynolds < TRANSITION else -0.2
         expected = coefficient * reynolds**power * 0.5 * rho * omega**2 * big**5
         assert disc_torque(omega, big, rho, nu) == pytest.approx(expected, rel=5e-3)
+
+
+def test_heat_and_drag_pass_the_transition_without_a_jump() -> None:
+    """Both laws outside are left untouched, and between them nothing turns by a step."""
+    low, high = TRANSITION
+    assert turbulent_share([0.0, low, 0.5 * (low + high), high, 1e9]).tolist() == [0, 0, 0.5, 1, 1]
+    nu, pr = 2e-5, 300.0
+    reynolds = np.linspace(0.9 * low, 1.1 * high, 4001)
+    omega = reynolds * nu  # at a radius of 1 m
+    for values in (
+        rotating_face_convection(omega, 1.0, nu, 0.135, pr),
+        disc_torque(omega, 1.0, 850.0, nu),
+    ):
+        steps = np.diff(np.log(values))
+        assert np.all(steps > 0.0)
+        assert steps.max() < 1.5e-3
+        # the slope has no step either
+        assert np.abs(np.diff(steps)).max() < 5e-6
+    ends = rotating_face_convection([0.999 * low * nu, high * nu], 1.0, nu, 0.135, pr)
+    assert ends[0] == pytest.approx(0.135 * float(disc_nusselt(pr)) * np.sqrt(0.999 * low))
+    assert ends[1] == pytest.approx(0.135 * float(turbulent_nusselt(high, prandtl=pr)))
+
+
+def test_a_disc_is_laminar_inside_and_turbulent_outside() -> None:
+    """The torque is the local stress of the layers by their share of time, ring by ring."""
+    rho, nu, big, omega = 850.0, 2e-5, 0.2, 300.0
+    r = np.linspace(0.0, big, 200_001)
+    reynolds = omega * r**2 / nu
+    share = turbulent_share(reynolds)
+    laminar = 0.615922 * rho * np.sqrt(nu * omega**3) * r
+    turbulent = 0.0267 * rho * (omega * r) ** 2 * np.maximum(reynolds, 1.0) ** -0.2
+    ring = 4.0 * np.pi * r**2 * ((1.0 - share) * laminar + share * turbulent)
+    assert disc_torque(omega, big, rho, nu) == pytest.approx(np.trapezoid(ring, r), rel=1e-6)
+    # Prandtl's correction: the core misses what a layer turbulent from the axis has more
+    far = disc_torque(30.0 * omega, big, rho, nu)
+    everywhere = 4.0 * np.pi / 4.6 * 0.0267 * rho * (30.0 * omega) ** 2 * big**5
+    everywhere *= (30.0 * omega * big**2 / nu) ** -0.2
+    assert 0.998 < far / everywhere < 1.0
+
+
+def sublayer_of_mixing_length(prandtl: float, edge: float) -> tuple[float, float]:
+    """(T+, u+) at ``edge`` [wall units] with kappa y outside and 0.0009 y^3 at the wall."""
+    y = np.concatenate([[0.0], np.geomspace(1e-4, edge, 4000)])
+    length = 0.4 * y * (1.0 - np.exp(-y / 26.0))
+    eddy = 0.5 * (np.sqrt(1.0 + 4.0 * length**2) - 1.0)
+    # at the wall it grows as the cube of the distance (Notter and Sleicher)
+    eddy = np.where(y < 12.0, np.maximum(eddy, 9e-4 * y**3), eddy)
+    return (
+        float(np.trapezoid(1.0 / (1.0 / prandtl + eddy), y)),
+        float(np.trapezoid(1.0 / (1.0 + eddy), y)),
+    )
+
+
+@pytest.mark.parametrize("reynolds", [3e5, 1e6])
+def test_prandtl_dependence_of_the_turbulent_layer_against_a_mixing_length(
+    reynolds: float,
+) -> None:
+    root = np.sqrt(0.0267) * reynolds**-0.1
+    edge = brentq(lambda y: sublayer_of_mixing_length(1.0, y)[1] - 1.0 / root, 20.0, 1e5)
+    for prandtl in (1.0, 3.0, 10.0, 100.0, 300.0, 1000.0, 3000.0):
+        drop, _ = sublayer_of_mixing_length(prandtl, edge)
+        apart = reynolds * prandtl * root / drop
+        assert turbulent_nusselt(reynolds, prandtl=prandtl) == pytest.approx(apart, rel=0.02)
+    # the customary exponent is the slope at Pr = 1 and nowhere else
+    slope = np.log(
+        turbulent_nusselt(reynolds, prandtl=1.01) / turbulent_nusselt(reynolds, prandtl=1.0)
+    )
+    assert slope / np.log(1.01) == pytest.approx(0.6, abs=0.06)
+    usual = turbulent_nusselt(reynolds, prandtl=1.0) * 300.0**0.6
+    assert usual / turbulent_nusselt(reynolds, prandtl=300.0) > 2.4
+    # Chilton and Colburn's cube root is the limit
+    ratio = turbulent_nusselt(reynolds, prandtl=8e5) / turbulent_nusselt(reynolds, prandtl=1e5)
+    assert ratio == pytest.approx(2.0, rel=2e-3)
+    measured = 300.0**0.704 / 0.0889
+    assert measured == pytest.approx(12.7 * 300.0 ** (2.0 / 3.0), rel=0.2)
 
 
 def test_torque_grows_with_immersion_and_halves_at_the_axis() -> None:

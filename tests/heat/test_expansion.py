@@ -453,3 +453,95 @@ def test_impossible_input_is_refused_in_one_line(call, message: str) -> None:  #
     with pytest.raises(InputError) as caught:
         call()
     assert str(caught.value).startswith(message)
+
+
+def kinked(drop: float = 30.0) -> RadialField:
+    """Bore, body, root circle and tooth at temperatures of their own."""
+    hot = ZERO_CELSIUS + 120.0
+    middle = math.sqrt(0.5 * (PINION.bore_radius**2 + PINION.root_radius**2))
+    return RadialField(
+        bore_radius=PINION.bore_radius,
+        tip_radius=PINION.tip_radius,
+        bore_temperature=hot - drop,
+        addendum_temperature=hot,
+        reference=COLD,
+        between=((middle, hot - 0.7 * drop), (PINION.root_radius, hot - 0.2 * drop), (0.0625, hot)),
+    )
+
+
+def test_a_field_through_places_of_one_logarithm_is_that_logarithm() -> None:
+    plain = field_of(PINION, 120.0)
+    places = tuple((r, plain.temperature(r)) for r in (0.035, 0.05, 0.0625))
+    through = RadialField(
+        bore_radius=plain.bore_radius,
+        tip_radius=plain.tip_radius,
+        bore_temperature=plain.bore_temperature,
+        addendum_temperature=plain.addendum_temperature,
+        reference=COLD,
+        between=places,
+    )
+    r = np.linspace(plain.bore_radius, plain.tip_radius, 41)
+    np.testing.assert_allclose(through.temperature(r), plain.temperature(r), rtol=1e-13)
+    np.testing.assert_allclose(through.area_mean(r[1:]), plain.area_mean(r[1:]), rtol=1e-12)
+    for bore in ("free", "rigid", "shaft"):
+        one, other = (
+            radial_displacement(
+                f, r, root_radius=PINION.root_radius, expansion=LAM, poisson=NU, bore=bore
+            )
+            for f in (through, plain)
+        )
+        np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-18)
+
+
+def test_growth_of_a_kinked_field_is_the_integral_of_its_temperature() -> None:
+    """(A1) with J by quadrature of T(r) itself, and a tooth that grows freely above the root."""
+    field, root = kinked(), PINION.root_radius
+    r = np.linspace(PINION.bore_radius, PINION.tip_radius, 400_001)
+    rise = field.temperature(r) - COLD
+    np.testing.assert_allclose(rise, field.rise(r), atol=1e-9)
+    for radius, kelvin in field.between:
+        assert field.temperature(radius) == pytest.approx(float(kelvin), abs=1e-9)
+    moment = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(r) * (rise * r)[1:])])
+    moment += np.concatenate([[0.0], np.cumsum(0.5 * np.diff(r) * (rise * r)[:-1])])
+    rx = PINION.bore_radius
+    whole = float(np.interp(root, r, moment))
+
+    def ring(x: float) -> float:
+        at = float(np.interp(x, r, moment))
+        pulled = (1 + NU) * at + ((1 - NU) * x**2 + (1 + NU) * rx**2) / (root**2 - rx**2) * whole
+        return LAM / x * pulled
+
+    found = radial_displacement(
+        field, [0.03, 0.045, root], root_radius=root, expansion=LAM, poisson=NU
+    )
+    assert found == pytest.approx([ring(x) for x in (0.03, 0.045, root)], rel=1e-8)
+    above = r >= root
+    tooth = ring(root) + LAM * np.trapezoid(rise[above], r[above])
+    tip = radial_displacement(field, PINION.tip_radius, root_radius=root, expansion=LAM, poisson=NU)
+    assert float(tip) == pytest.approx(tooth, rel=1e-4)
+    inside = r <= root
+    mean = np.trapezoid((rise * r)[inside], r[inside]) / (0.5 * (root**2 - rx**2)) + COLD
+    assert float(field.area_mean(root)) == pytest.approx(mean, abs=1e-3)
+    # uniform places grow nothing beyond size, exactly
+    same = RadialField(
+        bore_radius=rx,
+        tip_radius=PINION.tip_radius,
+        bore_temperature=400.0,
+        addendum_temperature=400.0,
+        reference=COLD,
+        between=((0.04, 400.0), (0.0625, 400.0)),
+    )
+    assert all(float(change) == 0.0 for _, change in same.kinks)
+
+
+@pytest.mark.parametrize("radii", [(0.06, 0.05), (0.02,), (0.07,)])
+def test_places_that_do_not_rise_from_bore_to_tip_are_refused(radii: tuple[float, ...]) -> None:
+    with pytest.raises(InputError, match=r"^between: got .* m; allowed rising between bore and"):
+        RadialField(
+            bore_radius=PINION.bore_radius,
+            tip_radius=PINION.tip_radius,
+            bore_temperature=350.0,
+            addendum_temperature=370.0,
+            reference=COLD,
+            between=tuple((r, 360.0) for r in radii),
+        )

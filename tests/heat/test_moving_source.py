@@ -11,6 +11,7 @@ from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.base.materials import MATERIALS
 from thermogear.heat.moving_source import (
+    _kernel_integral,
     exact_two_body,
     flash_temperature,
     moving_source_rise,
@@ -18,7 +19,12 @@ from thermogear.heat.moving_source import (
     peclet_flash,
     peclet_partition,
 )
-from thermogear.heat.temperature import FLASH_FACTORS, blok_flash, heat_partition
+from thermogear.heat.temperature import (
+    FLASH_FACTORS,
+    blok_flash,
+    flank_exchange,
+    heat_partition,
+)
 
 STEEL = MATERIALS["steel"]
 DIFFUSIVITY = STEEL.thermal_conductivity / (STEEL.density * STEEL.specific_heat)
@@ -283,3 +289,21 @@ def test_impossible_input_is_refused(call, message: str) -> None:  # type: ignor
     with pytest.raises(InputError) as caught:
         call()
     assert str(caught.value).startswith(message)
+
+
+def test_exchange_of_two_flanks_against_boundary_elements() -> None:
+    """A band held at one temperature between bodies a kelvin apart, finite Peclet numbers."""
+    edges = -np.cos(np.linspace(0.0, np.pi, 401))
+    centres, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+
+    def rise(peclet: float) -> np.ndarray:
+        reach = _kernel_integral(centres[:, None] - edges[None, :], peclet)
+        return (reach[:, :-1] - reach[:, 1:]) / np.pi
+
+    for one, other, low in ((1000.0, 1000.0, 3e-4), (40.0, 40.0, 0.004), (5.0, 2.5, 0.04)):
+        exact = np.sum(np.linalg.solve(rise(one) + rise(other), np.ones(400)) * width)
+        # lengths in half widths, k = 1: B sqrt(v) is sqrt(Pe)
+        found = flank_exchange(
+            1.0, speed_1=one, speed_2=other, contact_coefficient_1=1.0, contact_coefficient_2=1.0
+        )
+        assert 1.0 - low < found / exact < 1.0 + 1e-4

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from conftest import Compared
-from thermogear import GearPair, InputError, MeshModel, mesh_cycle
+from thermogear import Gear, GearPair, InputError, MeshModel, mesh_cycle
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Surroundings
-from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
+from thermogear.mesh.balance import NODES, Gearbox, HeatBalance, heat_balance
+from thermogear.mesh.warm_up import warm_up
 
 OIL = lubricant("M100")
+QUICK = MeshModel.consistent().override(
+    friction="benedict-kelley", inlet="oil", stiffness="textbook-30-degree", sharing="equal"
+)
+"""Springs of the textbook: the heat is the same loop."""
 
 
 def settle(
@@ -122,6 +130,111 @@ def test_too_few_iterations_are_told_by_the_residual(rig: GearPair) -> None:
     assert not found.settled.any()
     assert found.residual[0] > 1e-6
     assert found.iterations[0] == 1
+
+
+def rough_speeds_and_torques() -> tuple[np.ndarray, np.ndarray]:
+    """A coarse part of the grid of ``checks/trial_heat.py``, and the corner where states meet."""
+    speed, torque = np.meshgrid(
+        np.linspace(500.0, 6000.0, 9), np.linspace(50.0, 500.0, 7), indexing="ij"
+    )
+    near, low = np.meshgrid(np.arange(3900.0, 4101.0, 20.0), [20.0, 50.0], indexing="ij")
+    return np.concatenate([speed.ravel(), near.ravel()]), np.concatenate(
+        [torque.ravel(), low.ravel()]
+    )
+
+
+def from_both_ends(found: HeatBalance) -> None:
+    """The same state to 0.01 K, or both are told; never anything between."""
+    for name in NODES:
+        apart = np.abs(found.hot[name] - found.steady[name])
+        assert np.all(apart[found.settled & ~found.several] <= 0.01)
+    told = found.settled & found.several
+    assert np.all(np.isnan(found.hot["oil"][told]) | (found.hotter()[told] > 0.01))
+    assert np.all(found.hotter()[~found.several] == 0.0)
+
+
+@pytest.mark.parametrize("friction", ["benedict-kelley", "schlenk"])
+def test_a_state_from_cold_and_from_hot_is_the_same_or_both_are_told(
+    rig: GearPair, friction: str
+) -> None:
+    rpm, torque = rough_speeds_and_torques()
+    model = MeshModel.consistent().override(friction=friction, inlet="oil")
+    with pytest.warns(ValidityWarning):
+        found = settle(rig, list(rpm), list(torque), model)
+    from_both_ends(found)
+    assert found.settled.mean() > 0.95
+    # the oil of a pair that turns transitional keeps two temperatures here
+    assert 0 < found.several.sum() < 12
+    assert np.all(found.hotter()[found.several] > 1.0)
+    calm = heat_balance(rig, 100.0, 100.0, OIL, 125e-6, model)
+    assert not calm.several.any()
+    blind = heat_balance(rig, 100.0, 100.0, OIL, 125e-6, model, from_hot=False)
+    assert np.isnan(blind.hot["oil"]).all()
+    assert not blind.several.any()
+
+
+def test_random_pairs_from_both_ends() -> None:
+    random, settled = np.random.default_rng(15), 0
+    for _ in range(6):
+        teeth = int(random.integers(17, 40)), int(random.integers(40, 90))
+        module = float(random.uniform(2e-3, 6e-3))
+        pinion, wheel = (
+            Gear(z, module, face_width=10.0 * module, bore_radius=0.3 * z * 0.5 * module)
+            for z in teeth
+        )
+        pair = GearPair(pinion, wheel)
+        size = pair.pinion.pitch_radius**2 * pair.face_width
+        speed = random.uniform(50.0, 600.0, 12)
+        torque = size * random.uniform(3e5, 2e6, 12)
+        oil = lubricant(str(random.choice(["M68", "M100", "M220", "P150"])))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)
+            found = heat_balance(pair, speed, torque, oil, 1e-4, QUICK)
+        from_both_ends(found)
+        settled += int(found.settled.sum())
+    assert settled > 45
+
+
+def test_warm_up_ends_where_the_balance_from_cold_stands(rig: GearPair) -> None:
+    """Where two states are steady too: a cold start cannot pass the lower one."""
+    gaps, told = [], 0
+    times = np.concatenate([[0.0], np.geomspace(1.0, 2e6, 160)])
+    for rpm, torque in ((4080.0, 20.0), (3914.0, 50.0), (2700.0, 300.0), (1200.0, 80.0)):
+        found = settle(rig, [rpm], torque, QUICK)
+        told += int(found.several[0])
+        at = found.operating
+        start = replace(at, temperatures=at.temperatures.cold())
+        course = warm_up(rig, start, times, QUICK)
+        gaps += [abs(course.temperatures[n][-1] - float(found.steady[n][0])) for n in NODES]
+    assert max(gaps) < 0.01
+    assert told > 0
+
+
+def test_a_point_beyond_a_law_is_a_status_and_the_others_are_the_same_to_the_last_bit(
+    rig: GearPair,
+) -> None:
+    """At -40 C a pair that hardly turns has an oil of Pr = 3e6, thicker than any law."""
+    box = Gearbox(surroundings=Surroundings(ambient=233.15))
+    rpm, torque = [10.0, 1000.0, 2000.0, 10.0], [10.0, 100.0, 200.0, 20.0]
+    found = settle(rig, rpm, torque, gearbox=box)
+    without = settle(rig, rpm[1:3], torque[1:3], gearbox=box)
+    assert list(found.lost) == [0, 3]
+    assert found.lost[0].startswith("prandtl: got ")
+    assert list(found.settled) == [False, True, True, False]
+    assert without.lost == {}
+    lost = [True, False, False, True]
+    for name, values in found.steady.temperatures.items():
+        assert np.isnan(values).tolist() == lost
+        np.testing.assert_array_equal(values[1:3], without.steady[name])
+    for name in ("mesh", "partition_1", "churning", "bearing_1", "bearing_2", "contact"):
+        values = getattr(found.losses, name)
+        assert np.isnan(values).tolist() == lost
+        np.testing.assert_array_equal(values[1:3], getattr(without.losses, name))
+    np.testing.assert_array_equal(found.residual[1:3], without.residual)
+    assert not found.several.any()
+    # what never works is no point's fault
+    with pytest.raises(InputError, match=r"^prandtl: got"):
+        settle(rig, [10.0], 10.0, gearbox=Gearbox(measured={"oil": 223.15}))
 
 
 def test_impossible_settings_are_refused() -> None:

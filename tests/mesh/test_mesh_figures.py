@@ -15,9 +15,11 @@ from thermogear.gears.loaded import LoadedModel, solve_mesh
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT, friction_law
 from thermogear.heat.losses import churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity
-from thermogear.mesh.balance import Gearbox, _aitken, heat_balance
+from thermogear.mesh.balance import Gearbox, heat_balance
 from thermogear.mesh.elastic import TextbookPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
+from thermogear.mesh.heat_loop import aitken
+from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.thermal import HotPair
 
 TEXTBOOK = MeshModel.consistent().override(stiffness="textbook-30-degree", sharing="stiffness")
@@ -91,7 +93,6 @@ def test_churning_is_that_of_the_wheel_as_deep_as_it_dips(rig: GearPair) -> None
             125e-6,
             TEXTBOOK,
             gearbox=Gearbox(immersion=depth),
-            path_positions=31,
         )
         warm = found.operating.oil_temperature
         expected = churning_loss(
@@ -110,12 +111,12 @@ def test_relaxation_is_exact_for_one_straight_unknown_and_keeps_its_factor_on_no
     slope = np.array([0.5, 1.6, -0.4])
     before = slope * 3.0
     after = before - slope * before  # after a full step
-    found = _aitken(np.ones(3), before[:, None], after[:, None])
+    found = aitken(np.ones(3), before=before[:, None], change=after[:, None])
     assert found == pytest.approx(1.0 / slope, rel=1e-12)
     same = np.array([[1.0, 2.0], [0.0, 3.0]])
-    assert _aitken(np.array([0.7, 1.2]), same, same).tolist() == [0.7, 1.2]
+    assert aitken(np.array([0.7, 1.2]), before=same, change=same).tolist() == [0.7, 1.2]
     unknown = np.full((2, 2), np.nan)
-    assert _aitken(np.array([0.7, 1.2]), unknown, same).tolist() == [0.7, 1.2]
+    assert aitken(np.array([0.7, 1.2]), before=unknown, change=same).tolist() == [0.7, 1.2]
 
 
 @pytest.mark.parametrize("flank", ["growth", "thesis"])
@@ -176,7 +177,8 @@ def test_path_of_friction_by_hand(rig: GearPair, hot_rig: Operating) -> None:
     assert path.heat == pytest.approx(mu * path.line_load * sliding, rel=1e-10)
     assert path.flash(2.0 * path.friction) == pytest.approx(2.0 * path.flash(path.friction))
     # the pairs in contact at a phase stand a base pitch apart: their mean heat is the power
-    power, share = path.power()
+    means = mesh_heat(path.elastic)
+    power, share = means.power, means.partition
     phases = np.arange(4000) / 4000 * rig.base_pitch + rig.path.a
     at = phases[:, None] + rig.base_pitch * np.arange(2)
     for point in range(3):
@@ -195,10 +197,9 @@ def test_path_of_friction_by_hand(rig: GearPair, hot_rig: Operating) -> None:
         c * (rig.line_of_action - c) / rig.line_of_action, rel=1e-12
     )
     assert pitch.face_width == rig.face_width
-    still = FrictionPath(
-        elastic_pair(HotPair(rig, replace(hot_rig, speed=np.zeros(3)), model)), s
-    ).power()
-    assert (still[0].tolist(), still[1].tolist()) == ([0.0] * 3, [0.5] * 3)
+    still = mesh_heat(elastic_pair(HotPair(rig, replace(hot_rig, speed=np.zeros(3)), model)))
+    assert (still.power.tolist(), still.partition.tolist()) == ([0.0] * 3, [0.5] * 3)
+    assert still.conductance.tolist() == [0.0] * 3
 
 
 def test_the_inlet_is_as_warm_as_its_choice_says(rig: GearPair, hot_rig: Operating) -> None:

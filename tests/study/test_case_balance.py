@@ -259,3 +259,61 @@ def test_a_point_without_a_steady_temperature_is_a_status_without_motion() -> No
     assert int(motion["status"]) == lost
     texts = [notice["text"] for notice in json.loads(hopeless.attrs["notices"])]
     assert any("no steady temperature" in one for one in texts)
+
+
+COLD_DAY = (
+    'gearbox.ambient="-40 degC"',
+    'temperatures.reference="-50 degC"',
+    'temperatures.row="60 degC"',
+    'operating.speed=["10 rpm", "2000 rpm"]',
+    'operating.torque="150 N m"',
+)
+
+
+def test_a_point_beyond_a_law_costs_no_other_point() -> None:
+    """Oil at -40 C in a pair that hardly turns: nan and a status; the other point bit for bit."""
+    both, alone = (
+        run(left_out(*COLD_DAY, f"operating.speed={speeds}"))
+        for speeds in ('["10 rpm", "2000 rpm"]', '"2000 rpm"')
+    )
+    lost = STATUS.index("not_converged")
+    mesh, path, balance = (both[name].isel(bundle=0) for name in ("mesh", "path", "balance"))
+    assert mesh["status"].sel(state="hot").values.tolist() == [lost, STATUS.index("ok")]
+    assert balance["status"].values.tolist() == [lost, STATUS.index("ok")]
+    for name in ("mean_stiffness", "half_backlash", "frictional_power", "mesh_efficiency"):
+        values = mesh[name].sel(state="hot").values
+        assert np.isnan(values[0])
+        assert values[1] == float(alone["mesh"][name].isel(bundle=0).sel(state="hot")[0])
+    # cold, the teeth are as stiff as they are; what needs an oil is not known
+    cold = mesh.sel(state="undeformed")
+    assert np.all(np.isfinite(cold["mean_stiffness"].values))
+    assert np.isnan(path["film_thickness"].isel(state=0, operating=0).values).all()
+    assert path["regime"].sel(state="hot").isel(operating=0).values.tolist() == [-1] * 31
+    node = alone["balance"]["node_temperature"].isel(bundle=0, operating=0)
+    np.testing.assert_array_equal(balance["node_temperature"].isel(operating=1), node)
+    motion = both["motion"].isel(bundle=0).sel(state="hot")
+    assert motion["label"].values[0] == "not converged"
+    assert both["temperature"]["status"].isel(bundle=0).values[0].tolist()[0] == lost
+    texts = [notice["text"] for notice in json.loads(both.attrs["notices"])]
+    assert any("No value: prandtl: got" in one for one in texts)
+    assert not any("nan" in one for one in texts)
+
+
+def test_two_steady_states_are_said_in_words() -> None:
+    case = left_out(
+        'operating.speed=["1000 rpm", "4085 rpm"]',
+        'operating.torque="20 N m"',
+        'model.friction="benedict-kelley"',
+        'model.inlet="oil"',
+        'draw.pictures=["path"]',
+    )
+    tree = run(case)
+    several = tree["balance"]["several"].isel(bundle=0).values.tolist()
+    assert several == [0, 1]
+    hot = tree["balance"]["hot_node_temperature"] - tree["balance"]["node_temperature"]
+    assert float(hot.isel(bundle=0, operating=1).sel(node="oil")) > 5.0
+    texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
+    told = [one for one in texts if "another steady state" in one]
+    assert len(told) == 1
+    assert "Of 2 points, 1 point has another steady state when it comes from hot" in told[0]
+    assert "reached from cold" in told[0]

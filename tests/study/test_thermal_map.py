@@ -157,3 +157,25 @@ def test_a_huge_map_is_refused_before_it_runs() -> None:
     with pytest.raises(InputError, match=r"map: got about 37.3 GiB for 1000000 operating points"):
         require_points(10**6, free=8 * 2**30)
     assert require_points(10**6, forced=True, free=8 * 2**30) == 40_000_000_000
+
+
+def test_one_point_that_cannot_be_computed_does_not_cost_the_map() -> None:
+    case = rig('gearbox.ambient="-40 degC"')
+    tree = thermal_map(case, tuple(RPM * np.array([10.0, 2000.0])), (10.0, 200.0))
+    grid = tree["map"]
+    lost = STATUS.index("not_converged")
+    np.testing.assert_array_equal(grid["status"].values == lost, [[True, True], [False, False]])
+    for name in ("greatest_flash", "least_half_backlash", "mean_friction"):
+        np.testing.assert_array_equal(np.isnan(grid[name].values), grid["status"].values == lost)
+    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
+    assert any("2 of 4 points have no steady temperature" in one for one in texts)
+    assert any("No value: prandtl: got" in one for one in texts)
+
+
+def test_the_map_says_where_two_states_are_steady() -> None:
+    case = rig('model.friction="benedict-kelley"', 'model.inlet="oil"')
+    tree = thermal_map(case, tuple(RPM * np.array([1000.0, 4085.0])), (20.0,))
+    assert tree["map"]["several"].values.tolist() == [[0], [1]]
+    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
+    (told,) = (one for one in texts if "another steady state" in one)
+    assert told.startswith("Of 2 points, 1 point has another steady state when it comes from hot")

@@ -77,6 +77,12 @@ QUANTITIES: dict[str, Quantity] = {
     "film_parameter": Quantity("1", "film parameter h_min/Rq", "Λ"),
     "frictional_power": Quantity("W", "frictional power of the mesh, time mean", "P_f"),
     "pinion_share_of_heat": Quantity("1", "share of the mesh loss into the pinion", "β₁"),
+    "power_off_the_path": Quantity(
+        "1", "share of the mesh loss off the path of contact, on tip corners"
+    ),
+    "flank_conductance": Quantity(
+        "W/K", "thermal conductance between both flanks through the contact", "G_12"
+    ),
     "mesh_efficiency": Quantity("1", "efficiency of the mesh, load-dependent loss alone", "η"),
     "dynamic_viscosity": Quantity("Pa s", "oil viscosity where the film forms", "η₀", "ASTM D341"),
     "friction_coefficient": Quantity("1", "friction coefficient of the chosen law", "|μ|"),
@@ -290,6 +296,16 @@ def told_labels(data: xr.Dataset) -> NDArray[np.str_]:
         for name, periods, starts in zip(names.flat, seen[0].flat, seen[1].flat, strict=True)
     ]
     return np.array(told, dtype=np.str_).reshape(names.shape)
+
+
+def told_operating(data: xr.Dataset) -> int:
+    """Place of the operating point that stands for the rest: the first with a hot state, else 0."""
+    if "status" not in data or "operating" not in data["status"].dims:
+        return 0
+    status = data["status"].isel(state=-1) if "state" in data["status"].dims else data["status"]
+    known = (status != STATUS.index("not_converged")).transpose("operating", ...).values
+    places = np.flatnonzero(known.reshape(known.shape[0], -1).all(axis=1))
+    return int(places[0]) if places.size else 0
 
 
 FLAGS = {"status": status_attributes, "edge_contact": edge_attributes}

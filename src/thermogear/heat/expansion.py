@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -70,12 +71,15 @@ class GearLike(Protocol):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RadialField:
-    """T(r) of a gear body, logarithmic between bore and addendum circle.
+    """T(r) of a gear body, logarithmic between bore, addendum circle and what stands ``between``.
 
     ``bore_radius`` r_x, ``tip_radius`` r_a [m]; ``bore_temperature`` T_x and
     ``addendum_temperature`` T_a [K], numbers or arrays that broadcast against the radii (shape
     (operating, 1) against radii of shape (position,)); ``reference`` T0 [K], where the
-    drawing's dimensions hold. Raises for r_x <= 0, r_x >= r_a, temperatures <= 0 K.
+    drawing's dimensions hold. ``between``: (radius [m], temperature [K]) of further places in
+    rising order, such as the nodes of a heat network, through which the field passes; with
+    none it is the steady conduction of an annulus. Raises for r_x <= 0, r_x >= r_a, places that
+    do not rise from bore to tip, temperatures <= 0 K.
     """
 
     bore_radius: float
@@ -83,13 +87,24 @@ class RadialField:
     bore_temperature: ArrayLike
     addendum_temperature: ArrayLike
     reference: float
+    between: tuple[tuple[float, ArrayLike], ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("bore_temperature", "addendum_temperature"):
             object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
         if not (np.isfinite(self.reference) and self.reference > 0.0):
             raise InputError("reference temperature", f"{self.reference} K", allowed="> 0 K")
+        placed = tuple((float(r), np.asarray(t, dtype=float)) for r, t in self.between)
+        object.__setattr__(self, "between", placed)
         self.temperature(self.tip_radius)
+        radii = [self.bore_radius, *(r for r, _ in placed), self.tip_radius]
+        if not np.all(np.diff(radii) > 0.0):
+            raise InputError(
+                "between", f"{radii[1:-1]} m", allowed="rising between bore and tip radius"
+            )
+        for _, kelvin in placed:
+            if not np.all(np.isfinite(kelvin) & (kelvin > 0.0)):
+                raise InputError("between", f"{kelvin} K", allowed="> 0 K, finite")
 
     @classmethod
     def uniform(
@@ -111,31 +126,58 @@ class RadialField:
 
     @property
     def gradient(self) -> Floats:
-        """g = (T_a - T_x)/ln(r_a/r_x) [K]; exactly 0 for a uniform field."""
+        """g = (T_a - T_x)/ln(r_a/r_x) [K]; exactly 0 for a uniform field.
+
+        Over the whole body: the gradient everywhere only where nothing stands between.
+        """
         drop = np.asarray(self.addendum_temperature) - np.asarray(self.bore_temperature)
         return np.asarray(drop / np.log(self.tip_radius / self.bore_radius))
 
+    @property
+    def kinks(self) -> tuple[tuple[float, Floats], ...]:
+        """(r_k [m], dg_k [K]) with T(r) = T_x + sum dg_k ln(r/r_k) over the places r_k < r."""
+        if not self.between:
+            return ((self.bore_radius, self.gradient),)
+        places = [
+            (self.bore_radius, np.asarray(self.bore_temperature)),
+            *((r, np.asarray(t)) for r, t in self.between),
+            (self.tip_radius, np.asarray(self.addendum_temperature)),
+        ]
+        found: list[tuple[float, Floats]] = []
+        before: Floats | float = 0.0
+        for (low, cool), (high, warm) in pairwise(places):
+            slope = np.asarray((warm - cool) / np.log(high / low))
+            found.append((low, np.asarray(slope - before)))
+            before = slope
+        return tuple(found)
+
     def temperature(self, radius: ArrayLike) -> Floats:
         """T(r) [K] for r_x <= r <= r_a; raises outside."""
-        return radial_temperature(
+        whole = radial_temperature(
             radius,
             bore_radius=self.bore_radius,
             tip_radius=self.tip_radius,
             bore_temperature=self.bore_temperature,
             addendum_temperature=self.addendum_temperature,
         )
+        return self.rise(radius) + self.reference if self.between else whole
 
     def rise(self, radius: ArrayLike) -> Floats:
-        """tau(r) = t_x + g ln(r/r_x) [K] over the reference."""
+        """tau(r) = t_x + sum dg_k ln(r/r_k) [K] over the reference."""
         r = np.asarray(radius, dtype=float)
-        return np.asarray(self.bore_rise + self.gradient * np.log(r / self.bore_radius))
+        total = self.bore_rise
+        for start, change in self.kinks:
+            total = total + change * np.log(np.maximum(r, start) / start)
+        return np.asarray(total)
 
     def area_mean(self, radius: ArrayLike) -> Floats:
         """Mean temperature over the annulus from the bore to ``radius`` [K], by area."""
         r = np.asarray(radius, dtype=float)
         area = 0.5 * (r**2 - self.bore_radius**2)
-        moment = _log_moment(r, self.bore_radius)
-        return np.asarray(np.asarray(self.bore_temperature) + self.gradient * (moment / area))
+        total = np.asarray(self.bore_temperature)
+        for start, change in self.kinks:
+            total = total + change * (_log_moment(np.maximum(r, start), start) / area)
+        return np.asarray(total)
 
 
 def _log_moment(radius: ArrayLike, bore_radius: ArrayLike) -> Floats:
@@ -177,13 +219,17 @@ def _annulus_excess(
             why="no ring would be left below the teeth",
         )
     r = np.asarray(radius, dtype=float)
-    rx, ro, g = field.bore_radius, outer_radius, field.gradient
+    rx, ro = field.bore_radius, outer_radius
 
     def free(at: Floats) -> Floats:
-        whole = _log_moment(ro, rx) / (ro**2 - rx**2)
-        pulled = (1.0 + poisson) * _log_moment(at, rx)
-        pulled = pulled + ((1.0 - poisson) * at**2 + (1.0 + poisson) * rx**2) * whole
-        return np.asarray(expansion * g * (pulled / at - at * np.log(at / rx)))
+        total: Floats | float = 0.0
+        for start, change in field.kinks:
+            beyond = np.maximum(at, start)
+            whole = _log_moment(max(ro, start), start) / (ro**2 - rx**2)
+            pulled = (1.0 + poisson) * _log_moment(beyond, start)
+            pulled = pulled + ((1.0 - poisson) * at**2 + (1.0 + poisson) * rx**2) * whole
+            total = total + expansion * change * (pulled / at - at * np.log(beyond / start))
+        return np.asarray(total)
 
     excess = free(r)
     if bore == "free":
@@ -241,11 +287,14 @@ def _excess(
     poisson: float,
     bore: str,
 ) -> Floats:
-    """w(r) in ring and tooth; above the root circle dw/dr = -lambda g."""
+    """w(r) in ring and tooth; above the root circle dw/dr = -lambda g, g the gradient there."""
     r = np.asarray(radius, dtype=float)
     inside = np.minimum(r, root_radius)
-    ring = _annulus_excess(field, inside, root_radius, expansion, poisson, bore)
-    return np.asarray(ring - expansion * field.gradient * (r - inside))
+    total = _annulus_excess(field, inside, root_radius, expansion, poisson, bore)
+    for start, change in field.kinks:
+        length = np.maximum(r, start) - np.maximum(inside, start)
+        total = total - expansion * change * length
+    return np.asarray(total)
 
 
 def radial_displacement(

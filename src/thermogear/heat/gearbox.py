@@ -8,6 +8,7 @@ and meant to be replaced by a user who knows better.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, fields
 from typing import Protocol
 
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Lubricant, Material
-from thermogear.heat.convection import rotating_face_convection
+from thermogear.heat.convection import rotating_face_convection, transition_pieces
 from thermogear.heat.expansion import GearLike
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
@@ -29,9 +30,12 @@ __all__ = [
     "Losses",
     "Surroundings",
     "body_conductances",
+    "body_places",
+    "body_radius",
     "face_conductance",
     "oil_prandtl",
     "thermal_network",
+    "tooth_radius",
 ]
 
 
@@ -94,7 +98,8 @@ class Losses:
     """Heat sources [W], numbers or arrays over operating points.
 
     ``mesh`` and the share ``partition_1`` of it that enters the pinion's flank; ``churning`` into
-    the oil; ``bearing_1``, ``bearing_2`` (with seals) into the shafts.
+    the oil; ``bearing_1``, ``bearing_2`` (with seals) into the shafts. ``contact`` [W/K] is no
+    loss but comes of the same contact: the conductance between both flanks.
     """
 
     mesh: ArrayLike
@@ -102,15 +107,25 @@ class Losses:
     churning: ArrayLike = 0.0
     bearing_1: ArrayLike = 0.0
     bearing_2: ArrayLike = 0.0
+    contact: ArrayLike = 0.0
 
     def __post_init__(self) -> None:
         for entry in fields(self):
             values = np.asarray(getattr(self, entry.name), dtype=float)
             object.__setattr__(self, entry.name, values)
             if not np.all(np.isfinite(values) & (values >= 0.0)):
-                raise InputError(f"losses.{entry.name}", f"{values} W", allowed=">= 0, finite")
+                unit = "W/K" if entry.name == "contact" else "W"
+                raise InputError(f"losses.{entry.name}", f"{values} {unit}", allowed=">= 0, finite")
         if np.any(np.asarray(self.partition_1) > 1.0):
             raise InputError("losses.partition_1", self.partition_1, allowed="0 .. 1")
+
+    def unknown_where(self, lost: NDArray[np.bool_]) -> Losses:
+        """The same with nan where nothing is known; such losses heat no network."""
+        found = copy(self)
+        for entry in fields(self):
+            values = np.broadcast_to(np.asarray(getattr(self, entry.name), float), lost.shape)
+            object.__setattr__(found, entry.name, np.where(lost, np.nan, values))
+        return found
 
 
 def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
@@ -134,38 +149,75 @@ def face_conductance(
     :func:`rotating_face_convection` with the excess growing as r^2. Shape of speed and
     temperature; 0 at rest.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-    half = 0.5 * (outer_radius - inner_radius)
-    r = 0.5 * (outer_radius + inner_radius) + half * nodes
     omega, kelvin = np.broadcast_arrays(
         np.asarray(speed, dtype=float), np.asarray(oil_temperature, dtype=float)
     )
+    viscosity = kinematic_viscosity(lubricant, kelvin)
+    r, weights = transition_pieces(omega, viscosity, inner=inner_radius, outer=outer_radius)
     film = rotating_face_convection(
         omega[..., None],
         r,
-        kinematic_viscosity(lubricant, kelvin)[..., None],
+        viscosity[..., None],
         lubricant.thermal_conductivity,
         oil_prandtl(lubricant, kelvin)[..., None],
     )
-    return np.asarray(np.sum(film * 2.0 * np.pi * r * half * weights, axis=-1))
+    return np.asarray(np.sum(film * 2.0 * np.pi * r * weights, axis=-1))
+
+
+def body_radius(gear: BodyLike) -> float:
+    """Radius [m] of a gear's body node, sqrt((r_x^2 + r_f^2)/2): it halves the ring's area."""
+    return float(np.sqrt(0.5 * (gear.bore_radius**2 + gear.root_radius**2)))
+
+
+def tooth_radius(gear: BodyLike) -> float:
+    """Radius [m] of a gear's tooth node: the pitch circle, held within the tooth.
+
+    A large profile shift puts the pitch circle off the tooth; a tenth of the tooth's height is
+    left to root and tip circle.
+    """
+    margin = 0.1 * (gear.tip_radius - gear.root_radius)
+    return float(min(max(gear.pitch_radius, gear.root_radius + margin), gear.tip_radius - margin))
+
+
+def _outer_resistances(gear: BodyLike) -> tuple[float, float]:
+    """(root circle to body node, tooth node to root circle) [K/W]."""
+    k, b, at = gear.material.thermal_conductivity, gear.face_width, tooth_radius(gear)
+    thickness = 2.0 * at * float(gear.half_thickness_angle(at))
+    ring = float(np.log(gear.root_radius / body_radius(gear))) / (2.0 * np.pi * k * b)
+    return ring, (at - gear.root_radius) / (k * b * thickness * gear.teeth)
 
 
 def body_conductances(gear: BodyLike) -> tuple[float, float]:
     """(tooth to body, body to bore) conductances of a gear by steady conduction [W/K].
 
-    The body node lies at r_m = sqrt((r_x^2 + r_f^2)/2), which halves the ring's area:
-    ring parts 2 pi k b/ln(r_o/r_i). The teeth carry the heat from the pitch circle to the root
-    circle through z times the pitch thickness. In series, without other exchange, bore and
-    root circle differ by Q ln(r_f/r_x)/(2 pi k b), the radial field's own value.
+    The body node lies at :func:`body_radius`: ring parts 2 pi k b/ln(r_o/r_i). The teeth carry
+    the heat from the tooth node (:func:`tooth_radius`) to the root circle through z times the
+    thickness there. In series, without other exchange, bore and root circle differ by
+    Q ln(r_f/r_x)/(2 pi k b), the radial field's own value.
     """
     k, b = gear.material.thermal_conductivity, gear.face_width
-    middle = float(np.sqrt(0.5 * (gear.bore_radius**2 + gear.root_radius**2)))
-    ring = 2.0 * np.pi * k * b
-    pitch = gear.pitch_radius
-    thickness = 2.0 * pitch * float(gear.half_thickness_angle(pitch))
-    through_teeth = (pitch - gear.root_radius) / (k * b * thickness * gear.teeth)
-    outer = through_teeth + np.log(gear.root_radius / middle) / ring
-    return float(1.0 / outer), float(ring / np.log(middle / gear.bore_radius))
+    inner = 2.0 * np.pi * k * b / np.log(body_radius(gear) / gear.bore_radius)
+    return float(1.0 / sum(_outer_resistances(gear))), float(inner)
+
+
+def body_places(
+    gear: BodyLike, *, body: ArrayLike, tooth: ArrayLike
+) -> tuple[tuple[float, Floats], ...]:
+    """(radius [m], temperature [K]) of body node, root circle and tooth node.
+
+    ``body``, ``tooth`` [K] of the nodes, any shape. The root circle's temperature is where the
+    heat between both nodes has it, T_f = T_b + (T_t - T_b) R_ring/(R_ring + R_teeth), so that a
+    field through these places carries the heat of :func:`body_conductances`. Above the tooth
+    node nothing is conducted: there the tooth has its node's temperature up to the tip.
+    """
+    low, high = np.asarray(body, dtype=float), np.asarray(tooth, dtype=float)
+    ring, teeth = _outer_resistances(gear)
+    root = low + (high - low) * (ring / (ring + teeth))
+    return (
+        (body_radius(gear), low),
+        (gear.root_radius, np.asarray(root)),
+        (tooth_radius(gear), high),
+    )
 
 
 def _heat_capacity(material: Material, area: float, width: float) -> float:
@@ -191,8 +243,8 @@ def thermal_network(
     are taken (a guess; repeat with the result), ``surroundings`` (default: ours), ``measured``
     temperatures [K] that hold single nodes, such as {"oil": 353.15} of a tempered bath.
     Arrays over operating points of one shape. Flanks and faces give heat to the oil by the
-    similarity solution over the wetted share, teeth with the coefficient at their pitch
-    circle.
+    boundary layer's solution over the wetted share, teeth with the coefficient at their node;
+    the flanks exchange heat through their contact.
     """
     around = surroundings or Surroundings()
     omega_1 = np.asarray(speed, dtype=float)
@@ -221,7 +273,7 @@ def thermal_network(
         height = gear.tip_radius - gear.root_radius
         flanks = 2.0 * gear.teeth * gear.face_width * height
         film = rotating_face_convection(
-            omega, gear.pitch_radius, nu, lubricant.thermal_conductivity, prandtl
+            omega, tooth_radius(gear), nu, lubricant.thermal_conductivity, prandtl
         )
         faces = 2.0 * face_conductance(
             omega,
@@ -247,6 +299,7 @@ def thermal_network(
         capacities[shaft] = _heat_capacity(
             steel, np.pi * bore**2, gear.face_width + 2.0 * around.shaft_length
         )
+    links.append(Link("pinion_tooth", "wheel_tooth", losses.contact))
     heat = np.asarray(losses.mesh)
     sources = {
         "pinion_tooth": heat * losses.partition_1,

@@ -1,7 +1,8 @@
 """The closed loop: friction -> heat -> body and oil temperatures -> viscosity -> friction.
 
 The thermal network of the pair is solved with the losses of the mesh at its present
-temperatures until nothing changes; every operating point goes its own way in one call.
+temperatures until nothing changes; every operating point goes its own way in one call. Where
+more than one state is steady, the one reached from cold is the answer.
 """
 
 from __future__ import annotations
@@ -16,24 +17,40 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
-from thermogear.gears.contact import path_of_contact
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
 from thermogear.heat.losses import bearing_loss, churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import SteadyState, ThermalNetwork
-from thermogear.mesh.elastic import elastic_pair
-from thermogear.mesh.friction_path import FrictionPath
+from thermogear.mesh.elastic import ElasticPair, elastic_pair
+from thermogear.mesh.heat_loop import HOTTEST, Course, Response, asked, follow
+from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
-HOTTEST = 700.0
-"""Iterates [K] are held below it; a point that ends there has no steady state worth a name."""
+SAME = 0.01
+"""Two steady states that differ by less [K] at every node are one."""
+
+STAND_IN, OVER = 313.15, 20.0
+"""A point without a state stands in ``operating`` at 40 C, or 20 K over a hotter reference [K]."""
+
+NODES = (
+    "pinion_tooth",
+    "pinion_body",
+    "pinion_shaft",
+    "wheel_tooth",
+    "wheel_body",
+    "wheel_shaft",
+    "housing",
+    "oil",
+)
+"""The nodes of the network whose temperature is computed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,9 +83,16 @@ class Gearbox:
 class HeatBalance:
     """A settled (or not) thermal state of every operating point, arrays (count,).
 
-    ``operating`` carries the computed temperatures; ``steady`` the network's nodes and heat
-    flows; ``losses`` [W]; ``iterations``, ``residual`` [K] (greatest change of a node in the last
-    iteration) and ``settled``.
+    The state reached from cold: ``operating`` carries the computed temperatures; ``steady`` the
+    network's nodes and heat flows; ``losses`` [W]; ``iterations``, ``residual`` [K] (greatest
+    change of a node in the last iteration) and ``settled``.
+
+    ``hot`` are the node temperatures [K] of the state reached from hot, nan where none is (or
+    none was asked for); ``several`` says where it is another state, by more than 0.01 K.
+
+    ``lost``: place of a point -> in one line why it has no value, such as an oil too thick for
+    the law of convection. Its numbers are nan; in ``operating`` and ``network`` it stands at
+    40 C (20 K over a hotter reference), because those hold numbers only.
     """
 
     operating: Operating
@@ -77,13 +101,18 @@ class HeatBalance:
     losses: Losses
     iterations: NDArray[np.int64]
     residual: Floats
-    settled: NDArray[np.bool_]
+    settled: Flags
+    several: Flags
+    hot: Mapping[str, Floats]
+    lost: Mapping[int, str] = field(default_factory=dict)
 
+    def hotter(self) -> Floats:
+        """How much hotter [K] the hottest node is in the state reached from hot, (count,).
 
-PATIENCE = 30
-"""Iterations after which a point that has not settled takes smaller steps."""
-
-NODES = ("pinion_tooth", "pinion_shaft", "wheel_tooth", "wheel_shaft", "housing", "oil")
+        0 where it is the same state, nan where from hot none is reached.
+        """
+        each = [self.hot[name] - self.steady.temperatures[name] for name in NODES]
+        return np.where(self.several, np.max(each, axis=0), 0.0)
 
 
 def heat_balance(
@@ -98,136 +127,222 @@ def heat_balance(
     reference: float = 293.15,
     housing: Material = MATERIALS["steel"],
     deviations: Sequence[Deviation] = (),
-    path_positions: int = 101,
     tolerance: float = 1e-6,
-    most_iterations: int = 100,
+    most_iterations: int = 200,
+    from_hot: bool = True,
 ) -> HeatBalance:
     """Steady temperatures of gears, shafts, oil and housing from the losses they cause.
 
-    T = N(losses(T)), N the steady :func:`~thermogear.heat.gearbox.thermal_network`; fixed-point
-    iteration, each operating point relaxed by Aitken's factor, until no node changes by more
-    than ``tolerance`` [K].
+    T = N(losses(T)), N the steady :func:`~thermogear.heat.gearbox.thermal_network`, iterated
+    until no node changes by more than ``tolerance`` [K]. More than one state may be steady:
+    hotter oil is thinner, its layer on the gears turns turbulent and drags more. The iteration
+    (:func:`~thermogear.mesh.heat_loop.follow`) starts with everything at the ambient's
+    temperature and rises to the state that is reached from cold: that is the answer. With
+    ``from_hot`` it also starts at 700 K and falls to the one that is reached from hot, which
+    ``hot`` and ``several`` tell.
 
     ``speed`` [rad/s] and ``torque`` [N m] of the pinion, one axis or numbers that broadcast;
     ``half_backlash`` [m] cold; ``reference`` [K] of the drawing; ``model`` gives friction law,
     inlet and sharing. The tooth nodes become the addendum temperatures, the shaft nodes the bore
-    temperatures of the radial fields. A point that does not settle keeps its last iterate with
-    ``settled`` False, and so does one that would run above 700 K; nothing is raised for it. Warns
-    once, at the result, where the oil, or the film at the flanks, leaves the range of its
-    viscosity line.
+    temperatures of the radial fields, which pass through the body nodes. A point that does not
+    settle keeps its last iterate with ``settled`` False, and so does one that would run above
+    700 K; a point at which a law has no value is ``lost``: nan, not settled, with the reason.
+    Nothing is raised for either, and no other point notices. Warns once, at the result, where
+    the oil, or the film at the flanks, leaves the range of the viscosity line. Raises for
+    impossible arguments, and where no point has a value even with everything but the given nodes
+    at 40 C.
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
     if most_iterations < 1:
         raise InputError("most_iterations", most_iterations, allowed=">= 1")
     box = Gearbox() if gearbox is None else gearbox
-    given = dict(box.measured)
-    choice = MeshModel.consistent() if model is None else model
     omega, moment = np.broadcast_arrays(
         np.atleast_1d(np.asarray(speed, dtype=float)),
         np.atleast_1d(np.asarray(torque, dtype=float)),
     )
-    count = omega.size
-    start = box.measured.get("oil", box.surroundings.ambient + 30.0)
-    state = np.broadcast_to(np.asarray(start, dtype=float), (count,))
-    nodes = np.array(np.repeat(state[:, None], len(NODES), axis=1))
+    loop = _Loop(
+        pair,
+        omega,
+        moment,
+        lubricant,
+        half_backlash,
+        MeshModel.consistent() if model is None else model,
+        box,
+        reference,
+        housing,
+        tuple(deviations),
+    )
+    loop.refuse_what_never_works()
+    stand_in, held = np.full((loop.count, len(NODES)), max(STAND_IN, reference + OVER)), loop.held
 
-    def operating(at: Floats, index: Indices) -> Operating:
-        t = dict(zip(NODES, at.T, strict=True))
-        return Operating(
-            omega[index],
-            moment[index],
-            lubricant,
-            t["oil"],
-            Temperatures(
-                reference=reference,
-                pinion_addendum=t["pinion_tooth"],
-                pinion_bore=t["pinion_shaft"],
-                wheel_addendum=t["wheel_tooth"],
-                wheel_bore=t["wheel_shaft"],
-                housing=t["housing"],
-            ),
-            half_backlash,
-            housing,
+    def course(kelvin: float) -> Course:
+        return follow(
+            loop.respond,
+            loop.at(kelvin),
+            held,
+            tolerance=tolerance,
+            most_iterations=most_iterations,
         )
 
-    def respond(
-        at: Floats, index: Indices
-    ) -> tuple[ThermalNetwork, SteadyState, Losses, Floats, NDArray[np.bool_]]:
-        here = operating(at, index)
-        hot = HotPair(pair, here, choice)
-        elastic = elastic_pair(hot, deviations)
-        path = FrictionPath(elastic, path_of_contact(pair, path_positions))
-        path.warn_beyond_oil()
-        losses = pair_losses(pair, here, path, box)
-        network = thermal_network(
-            pair.pinion,
-            pair.wheel,
-            omega[index],
-            losses,
-            lubricant,
-            here.oil_temperature,
-            box.surroundings,
-            {name: np.broadcast_to(np.asarray(t), (count,))[index] for name, t in given.items()},
-        )
-        steady = network.steady()
-        found = [np.broadcast_to(steady[name], (index.size,)) for name in NODES]
-        reached = np.minimum(np.stack(found, axis=1), HOTTEST)
-        return network, steady, losses, reached, path.settled
-
-    everything = np.arange(count)
-    factor = np.ones(count)
-    before = np.full((count, len(NODES)), np.nan)
-    iterations = np.zeros(count, np.int64)
-    residual = np.full(count, np.inf)
-    going = everything
-    with warnings.catch_warnings():
-        # iterates on the way may leave an oil's range; the result is asked once more below
-        warnings.simplefilter("ignore", ValidityWarning)
-        for turn in range(most_iterations):
-            change = respond(nodes[going], going)[3] - nodes[going]
-            residual[going] = np.abs(change).max(axis=1)
-            iterations[going] += 1
-            # a point that circles is slowed down
-            most = 1.5 if turn < PATIENCE else 0.3
-            factor[going] = np.clip(_aitken(factor[going], before[going], change), 0.05, most)
-            before[going] = change
-            still = residual[going] > tolerance
-            going = going[still]
-            if not going.size:
-                break
-            moved = nodes[going] + (factor[going, None] * change[still])
-            nodes[going] = np.clip(moved, BODY.least, BODY.most)
-    settled = residual <= tolerance
+    cold = course(box.surroundings.ambient)
+    lost = np.zeros(loop.count, np.bool_)
+    lost[list(cold.lost)] = True
+    settled = cold.settled(tolerance)
+    hot, several = np.full(cold.nodes.shape, np.nan), np.zeros(loop.count, np.bool_)
+    if from_hot:
+        warm = course(HOTTEST)
+        down = warm.settled(tolerance)
+        hot[down] = warm.nodes[down]
+        same = down & (np.abs(warm.nodes - cold.nodes).max(axis=1) <= SAME)
+        several = settled & ~same
+    nodes = np.where(lost[:, None], stand_in, cold.nodes)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", ValidityWarning)
-        network, steady, losses, _, contact = respond(nodes, everything)
+        network, losses, known = loop.network(nodes, loop.everything)
     for text in dict.fromkeys(str(one.message) for one in told):
         warnings.warn(text, ValidityWarning, stacklevel=2)
-    settled = settled & contact & (nodes < HOTTEST).all(axis=1)
     return HeatBalance(
-        operating=operating(nodes, everything),
+        operating=loop.operating(nodes, loop.everything),
         network=network,
-        steady=steady,
-        losses=losses,
-        iterations=iterations,
-        residual=residual,
-        settled=settled,
+        steady=_unknown_where(lost, network.steady()),
+        losses=losses.unknown_where(lost),
+        iterations=cold.iterations,
+        residual=np.where(lost, np.nan, cold.residual),
+        settled=settled & known & ~lost,
+        several=several,
+        hot={name: hot[:, place] for place, name in enumerate(NODES)},
+        lost=dict(sorted(cold.lost.items())),
     )
 
 
-def _aitken(factor: Floats, before: Floats, change: Floats) -> Floats:
-    """Aitken's relaxation factor of each point from its last two changes."""
-    turn = change - before
-    square = np.einsum("ij,ij->i", turn, turn)
-    along = np.einsum("ij,ij->i", before, turn)
-    known = np.isfinite(square) & (square > 0.0)
-    return np.asarray(-factor * np.divide(along, square, out=-np.ones_like(factor), where=known))
+def _unknown_where(lost: Flags, steady: SteadyState) -> SteadyState:
+    """``steady`` with nan at the points that are lost."""
+
+    def blanked(values: ArrayLike) -> Floats:
+        return np.where(lost, np.nan, np.broadcast_to(np.asarray(values, float), lost.shape))
+
+    return SteadyState(
+        {name: blanked(t) for name, t in steady.temperatures.items()},
+        {name: blanked(q) for name, q in steady.heat_out.items()},
+        blanked(steady.residual),
+    )
 
 
-def pair_losses(pair: GearPair, operating: Operating, path: FrictionPath, box: Gearbox) -> Losses:
-    """Mesh, churning and bearing losses [W] at the present temperatures, (count,)."""
-    mesh, share = path.power()
+@dataclass(frozen=True, eq=False)
+class _Loop:
+    """What stays the same in the closed loop of a batch; states are (count, nodes) [K]."""
+
+    pair: GearPair
+    speed: Floats
+    torque: Floats
+    lubricant: Lubricant
+    half_backlash: float
+    model: MeshModel
+    box: Gearbox
+    reference: float
+    housing: Material
+    deviations: tuple[Deviation, ...]
+
+    @property
+    def count(self) -> int:
+        return self.speed.size
+
+    @property
+    def everything(self) -> Indices:
+        return np.arange(self.count)
+
+    @property
+    def measured(self) -> dict[str, Floats]:
+        """Given temperatures [K] of nodes, (count,)."""
+        given = self.box.measured.items()
+        return {name: np.broadcast_to(np.asarray(t, float), (self.count,)) for name, t in given}
+
+    @property
+    def held(self) -> Flags:
+        """Which nodes are held at a given temperature, (count, nodes)."""
+        row = np.array([name in self.box.measured for name in NODES])
+        return np.broadcast_to(row, (self.count, row.size))
+
+    def at(self, kelvin: float) -> Floats:
+        """The state with every free node at one temperature."""
+        nodes = np.full((self.count, len(NODES)), float(kelvin))
+        for name, values in self.measured.items():
+            if name in NODES:
+                nodes[:, NODES.index(name)] = values
+        return nodes
+
+    def refuse_what_never_works(self) -> None:
+        """Raise what is wrong with the whole: no state of any point would have a value."""
+        nodes, lost = self.at(max(STAND_IN, self.reference + OVER)), dict[int, str]()
+        self.operating(nodes, self.everything)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)
+            asked(self.respond, nodes, self.everything, lost)
+            if len(lost) == self.count:
+                self.respond(nodes[:1], self.everything[:1])
+
+    def operating(self, nodes: Floats, index: Indices) -> Operating:
+        """The operating points ``index`` in the state ``nodes``."""
+        t = dict(zip(NODES, nodes.T, strict=True))
+        return Operating(
+            self.speed[index],
+            self.torque[index],
+            self.lubricant,
+            t["oil"],
+            node_temperatures(t, self.reference),
+            self.half_backlash,
+            self.housing,
+        )
+
+    def network(self, nodes: Floats, index: Indices) -> tuple[ThermalNetwork, Losses, Flags]:
+        """The network with the losses of the state, and whether its loaded contact is known."""
+        here = self.operating(nodes, index)
+        elastic = elastic_pair(HotPair(self.pair, here, self.model), self.deviations)
+        losses, known = pair_losses(self.pair, here, elastic, self.box)
+        network = thermal_network(
+            self.pair.pinion,
+            self.pair.wheel,
+            here.speed,
+            losses,
+            self.lubricant,
+            here.oil_temperature,
+            self.box.surroundings,
+            {name: values[index] for name, values in self.measured.items()},
+        )
+        return network, losses, known
+
+    def respond(self, nodes: Floats, index: Indices) -> Response:
+        """The steady state of that network; one beyond 700 K is none."""
+        network, _, known = self.network(nodes, index)
+        steady = network.steady()
+        found = [np.broadcast_to(steady[name], (index.size,)) for name in NODES]
+        reached = np.stack(found, axis=1)
+        return Response(np.minimum(reached, HOTTEST), known & (reached < HOTTEST).all(axis=1))
+
+
+def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Temperatures:
+    """The body temperatures [K] that the ``nodes`` of the network stand for."""
+    return Temperatures(
+        reference=reference,
+        pinion_addendum=nodes["pinion_tooth"],
+        pinion_bore=nodes["pinion_shaft"],
+        wheel_addendum=nodes["wheel_tooth"],
+        wheel_bore=nodes["wheel_shaft"],
+        housing=nodes["housing"],
+        pinion_body=nodes["pinion_body"],
+        wheel_body=nodes["wheel_body"],
+    )
+
+
+def pair_losses(
+    pair: GearPair, operating: Operating, elastic: ElasticPair, box: Gearbox
+) -> tuple[Losses, Flags]:
+    """Mesh, churning and bearing losses [W] and the flanks' conductance [W/K], (count,).
+
+    At the present temperatures; with them whether the loaded contact is known, (count,).
+    """
+    means = mesh_heat(elastic)
     oil = operating.lubricant
     wheel_speed = operating.speed / pair.ratio
     churning = (
@@ -239,13 +354,19 @@ def pair_losses(pair: GearPair, operating: Operating, path: FrictionPath, box: G
             box.immersion,
         )
         if box.immersion > 0.0
-        else np.zeros_like(mesh)
+        else np.zeros_like(means.power)
     )
-    half = 0.5 * path.elastic.force
+    half = 0.5 * elastic.force
     first, second = (
         2.0 * bearing_loss(half, 2.0 * gear.bore_radius, omega, box.bearing_coefficient)
         for gear, omega in ((pair.pinion, operating.speed), (pair.wheel, wheel_speed))
     )
-    return Losses(
-        mesh=mesh, partition_1=share, churning=churning, bearing_1=first, bearing_2=second
+    losses = Losses(
+        mesh=means.power,
+        partition_1=means.partition,
+        churning=churning,
+        bearing_1=first,
+        bearing_2=second,
+        contact=means.conductance,
     )
+    return losses, means.settled

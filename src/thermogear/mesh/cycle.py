@@ -21,11 +21,13 @@ from thermogear.gears.contact import (
 from thermogear.gears.deviations import Deviation, PitchError
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.expansion import base_circle_growth
+from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency
 from thermogear.heat.temperature import conduction_power, contact_temperature
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.elastic import ElasticPair, elastic_pair, mean_stiffness_of_body
 from thermogear.mesh.friction_path import FrictionPath
+from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
@@ -158,7 +160,11 @@ def _contact(path: FrictionPath) -> Variables:
         name: (PATH, np.where(known, np.broadcast_to(np.asarray(values), shape), np.nan))
         for name, values in found.items()
     }
-    power, share = (np.where(path.settled, values, np.nan) for values in path.power())
+    means = mesh_heat(path.elastic)
+    power, share, beyond, conductance = (
+        np.where(means.settled, values, np.nan)
+        for values in (means.power, means.partition, means.beyond, means.conductance)
+    )
     variables |= {
         "edge_contact": (PATH, path.edge),
         "friction_outside_range": (
@@ -171,6 +177,8 @@ def _contact(path: FrictionPath) -> Variables:
         "dynamic_viscosity": (POINT, path.viscosity[:, 0]),
         "frictional_power": (POINT, power),
         "pinion_share_of_heat": (POINT, share),
+        "power_off_the_path": (POINT, beyond),
+        "flank_conductance": (POINT, conductance),
         "mesh_efficiency": (
             POINT,
             efficiency(power=hot.operating.speed * hot.operating.torque, loss=power),
@@ -189,17 +197,19 @@ def _deformation(hot: HotPair, s: Floats) -> Variables:
         "deformation_sum": (PATH, first + second),
     }
     t = operating.temperatures
-    for name, gear, bore, tip in (
-        ("pinion", pair.pinion, t.pinion_bore, t.pinion_addendum),
-        ("wheel", pair.wheel, t.wheel_bore, t.wheel_addendum),
+    for name, gear, bore, body, tip in (
+        ("pinion", pair.pinion, t.pinion_bore, t.pinion_body, t.pinion_addendum),
+        ("wheel", pair.wheel, t.wheel_bore, t.wheel_body, t.wheel_addendum),
     ):
+        # what passes the body node enters the bore; without one the whole field carries it
+        known = body is not None and hot.model.flank != "thesis"
         growth = base_circle_growth(gear, hot.field(gear), hot.model.bore)
         variables[f"{name}_base_growth"] = (POINT, np.broadcast_to(growth.ravel(), (hot.count,)))
         power = conduction_power(
             bore_radius=gear.bore_radius,
-            tip_radius=gear.tip_radius,
+            tip_radius=body_radius(gear) if known else gear.tip_radius,
             bore_temperature=bore,
-            addendum_temperature=tip,
+            addendum_temperature=tip if body is None or not known else body,
             conductivity=gear.material.thermal_conductivity,
             face_width=gear.face_width,
         )

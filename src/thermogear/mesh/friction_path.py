@@ -46,7 +46,7 @@ from thermogear.heat.lubrication import (
 )
 from thermogear.heat.moving_source import flash_temperature
 from thermogear.heat.roughness import rms_roughness
-from thermogear.heat.temperature import frictional_heat, heat_partition
+from thermogear.heat.temperature import flank_exchange, frictional_heat, heat_partition
 from thermogear.mesh.elastic import ElasticPair, PathShare
 from thermogear.mesh.thermal import HotPair
 
@@ -68,10 +68,14 @@ class InletOil(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FrictionPath:
-    """The lubricated contact of one tooth pair at ``s`` [m], results (count, positions), SI."""
+    """The lubricated contact of one tooth pair at ``s`` [m], results (count, positions), SI.
+
+    ``shares`` of the load at ``s`` where they are known already; else the model's rule says.
+    """
 
     elastic: ElasticPair
     s: Floats
+    shares: PathShare | None = None
 
     @property
     def hot(self) -> HotPair:
@@ -145,7 +149,7 @@ class FrictionPath:
 
     @cached_property
     def _solved(self) -> PathShare:
-        return self.elastic.share(self.s)
+        return self.elastic.share(self.s) if self.shares is None else self.shares
 
     @cached_property
     def settled(self) -> NDArray[np.bool_]:
@@ -356,16 +360,15 @@ class FrictionPath:
         v1, v2 = self.velocities
         return frictional_heat(self.friction, self.line_load, speed_1=v1, speed_2=v2)
 
-    def power(self) -> tuple[Floats, Floats]:
-        """(frictional power [W], share of it into the pinion), time means over all pairs.
-
-        The time mean over all pairs in contact is the integral along one pair's path over the
-        base pitch. Half the heat of both is the share where nothing is lost. (count,) each.
-        """
+    @cached_property
+    def exchange(self) -> Floats:
+        """Heat from flank to flank per width and kelvin of their difference [W/(m K)]."""
         pair = self.hot.pair
-        scale = pair.face_width / pair.base_pitch
-        total = np.asarray(np.trapezoid(self.heat, self.s, axis=-1) * scale)
-        into = self.heat * self.heat_share
-        first = np.asarray(np.trapezoid(into, self.s, axis=-1) * scale)
-        share = np.divide(first, total, out=np.full_like(total, 0.5), where=total > 0.0)
-        return total, share
+        v1, v2 = self.velocities
+        return flank_exchange(
+            self.half_width,
+            speed_1=v1,
+            speed_2=v2,
+            contact_coefficient_1=pair.pinion.material.thermal_contact_coefficient,
+            contact_coefficient_2=pair.wheel.material.thermal_contact_coefficient,
+        )

@@ -17,7 +17,9 @@ Floats = NDArray[np.float64]
 
 LEADERS = {
     "pinion_bore": "the pinion's addendum",
+    "pinion_body": "the pinion's addendum",
     "wheel_bore": "the wheel's addendum",
+    "wheel_body": "the wheel's addendum",
     "housing": "the mean of both addenda",
 }
 """Whose excess over the reference a body's excess goes along with."""
@@ -30,6 +32,9 @@ class Temperatures:
     """Given body temperatures [K]; each a number or an array over operating points.
 
     ``reference`` T0 is where the drawing's dimensions and the cold backlash hold.
+    ``pinion_body`` and ``wheel_body``: the body nodes of a heat balance
+    (:func:`~thermogear.heat.gearbox.body_radius`), through which the radial field then passes;
+    None: the field is logarithmic from bore to addendum.
     """
 
     reference: float
@@ -38,16 +43,20 @@ class Temperatures:
     wheel_addendum: ArrayLike
     wheel_bore: ArrayLike
     housing: ArrayLike
+    pinion_body: ArrayLike | None = None
+    wheel_body: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            bounds.BODY.require(f"temperatures.{field.name}", getattr(self, field.name))
+            value = getattr(self, field.name)
+            if value is not None:
+                bounds.BODY.require(f"temperatures.{field.name}", value)
 
     @classmethod
     def uniform(cls, temperature: ArrayLike, *, reference: float) -> Temperatures:
         """Gears and housing all at ``temperature``: nothing but size changes."""
-        bodies = [field.name for field in fields(cls) if field.name != "reference"]
-        return cls(reference=reference, **dict.fromkeys(bodies, temperature))
+        outer = [f.name for f in fields(cls) if f.name != "reference" and f.default is not None]
+        return cls(reference=reference, **dict.fromkeys(outer, temperature))
 
     def cold(self) -> Temperatures:
         """Everything at the reference temperature."""
@@ -55,9 +64,10 @@ class Temperatures:
 
     @property
     def bodies(self) -> dict[str, Floats]:
-        """Every body's temperature [K] by its field's name; the reference is no body."""
+        """Every known body's temperature [K] by its field's name; the reference is no body."""
         names = (f.name for f in fields(self) if f.name != "reference")
-        return {name: np.asarray(getattr(self, name), dtype=float) for name in names}
+        known = {name: getattr(self, name) for name in names}
+        return {name: np.asarray(t, dtype=float) for name, t in known.items() if t is not None}
 
 
 @dataclass(frozen=True)
@@ -149,7 +159,12 @@ class Operating:
         t, base = self.temperatures, self.temperatures.reference
         bodies = t.bodies
         pinion, wheel = bodies["pinion_addendum"] - base, bodies["wheel_addendum"] - base
-        followed = {"pinion_bore": pinion, "wheel_bore": wheel, "housing": 0.5 * (pinion + wheel)}
+        leading = {"pinion": pinion, "wheel": wheel, "housing": 0.5 * (pinion + wheel)}
+        followed = {
+            name: leading[name.partition("_")[0]]
+            for name in ("pinion_bore", "wheel_bore", "housing", "pinion_body", "wheel_body")
+            if name in bodies
+        }
         rise = gear_temperature - base
         still = [LEADERS[name] for name, excess in followed.items() if np.any(excess == 0.0)]
         if rise != 0.0 and still:

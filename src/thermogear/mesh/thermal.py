@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ from thermogear.gears.contact import flank_radii, pair_positions
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.geometry import Gear, GearPair
 from thermogear.heat.expansion import RadialField, centre_distance_growth, flank_growth
+from thermogear.heat.gearbox import body_places
 from thermogear.heat.thesis_profile import thesis_flank_growth
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
@@ -48,19 +50,30 @@ class HotPair:
         return self.operating.temperatures
 
     def field(self, gear: Gear) -> RadialField:
-        """The radial field of one of the two gears, temperatures of shape (count, 1)."""
+        """The radial field of one of the two gears, temperatures of shape (count, 1).
+
+        Through bore, body, root circle and tooth where the body's node is known
+        (:func:`~thermogear.heat.gearbox.body_places`); the thesis's flank keeps the one
+        logarithm from bore to addendum that it is printed for.
+        """
         t = self.temperatures
-        bore, tip = (
-            (t.pinion_bore, t.pinion_addendum)
+        bore, body, tip = (
+            (t.pinion_bore, t.pinion_body, t.pinion_addendum)
             if gear is self.pair.pinion
-            else (t.wheel_bore, t.wheel_addendum)
+            else (t.wheel_bore, t.wheel_body, t.wheel_addendum)
         )
+        between: tuple[tuple[float, ArrayLike], ...] = ()
+        if body is not None and self.model.flank != "thesis":
+            between = body_places(
+                gear, body=_column(body, self.count), tooth=_column(tip, self.count)
+            )
         return RadialField(
             bore_radius=gear.bore_radius,
             tip_radius=gear.tip_radius,
             bore_temperature=_column(bore, self.count),
             addendum_temperature=_column(tip, self.count),
             reference=t.reference,
+            between=between,
         )
 
     def drawn(self) -> HotPair:
@@ -71,13 +84,10 @@ class HotPair:
     def warmed(self, rise: float) -> HotPair:
         """The same pair with both gears hotter by ``rise`` [K] everywhere, housing as it is."""
         t = self.temperatures
-        hotter = replace(
-            t,
-            pinion_addendum=np.asarray(t.pinion_addendum) + rise,
-            pinion_bore=np.asarray(t.pinion_bore) + rise,
-            wheel_addendum=np.asarray(t.wheel_addendum) + rise,
-            wheel_bore=np.asarray(t.wheel_bore) + rise,
-        )
+        gears: dict[str, Any] = {
+            name: kelvin + rise for name, kelvin in t.bodies.items() if name != "housing"
+        }
+        hotter = replace(t, **gears)
         return replace(self, operating=replace(self.operating, temperatures=hotter))
 
     # --- growth ---------------------------------------------------------------------

@@ -14,22 +14,20 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
 from thermogear.base import bounds
-from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning, nearest
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.progress import Progress, silent
-from thermogear.gears.contact import path_of_contact
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.free_convection import with_free_convection
 from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
-from thermogear.mesh.balance import NODES, Gearbox, pair_losses
+from thermogear.mesh.balance import NODES, Gearbox, node_temperatures, pair_losses
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.elastic import elastic_pair
-from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
@@ -152,7 +150,6 @@ def warm_up(
     factors: Mapping[str, float] | None = None,
     times: ArrayLike = (),
     moments: int = 60,
-    path_positions: int = 61,
     tolerance: float = 1e-3,
     progress: Progress = silent,
 ) -> WarmUp:
@@ -184,7 +181,6 @@ def warm_up(
         housing=housing,
         deviations=deviations,
         factors=_known(factors or {}),
-        s=path_of_contact(pair, path_positions),
     )
     with warnings.catch_warnings():
         # told once, at the stored moments
@@ -283,7 +279,6 @@ class _Chain:
     housing: Material
     deviations: Sequence[Deviation]
     factors: Mapping[str, float]
-    s: Floats
     held: dict[str, float] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -312,14 +307,7 @@ class _Chain:
             self.duty.torque[place],
             self.lubricant,
             at["oil"],
-            Temperatures(
-                reference=self.reference,
-                pinion_addendum=at["pinion_tooth"],
-                pinion_bore=at["pinion_shaft"],
-                wheel_addendum=at["wheel_tooth"],
-                wheel_bore=at["wheel_shaft"],
-                housing=at["housing"],
-            ),
+            node_temperatures(at, self.reference),
             self.half_backlash,
             self.housing,
         )
@@ -327,8 +315,13 @@ class _Chain:
     def losses(self, at: Operating) -> Losses:
         """Of the whole chain at operating points, no interpolation."""
         hot = HotPair(self.pair, at, self.model)
-        path = FrictionPath(elastic_pair(hot, self.deviations), self.s).checked()
-        return pair_losses(self.pair, at, path, self.box)
+        losses, known = pair_losses(self.pair, at, elastic_pair(hot, self.deviations), self.box)
+        if not known.all():
+            count = int(np.count_nonzero(~known))
+            raise ConvergenceError(
+                f"loaded contact: {count} of {known.size} operating points did not settle"
+            )
+        return losses
 
     def network_of(self, piece: int) -> Callable[[State], ThermalNetwork]:
         """The law of one piece."""

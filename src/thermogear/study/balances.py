@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -29,6 +29,11 @@ _MEANING = {
     "heat_to_ambient": ("W", "heat that leaves the housing"),
     "iterations": ("1", "iterations of the closed loop"),
     "residual": ("K", "greatest change of a node in the last iteration"),
+    "hot_node_temperature": (
+        "K",
+        "temperature of a node in the steady state reached from hot, nan where there is none",
+    ),
+    "several": ("1", "1 where from hot another steady state is reached than from cold"),
 }
 
 
@@ -68,9 +73,15 @@ def balance_dataset(balance: HeatBalance) -> xr.Dataset:
         "heat_to_ambient": (("operating",), heat),
         "iterations": (("operating",), balance.iterations),
         "residual": (("operating",), balance.residual),
+        "hot_node_temperature": (
+            ("operating", "node"),
+            np.stack([balance.hot.get(name, held) for name, held in nodes.items()], axis=-1),
+        ),
+        "several": (("operating",), balance.several.astype(np.int8)),
     }
     data = xr.Dataset({name: dressed(*entry, *_MEANING[name]) for name, entry in values.items()})
     data["status"] = status_of(balance)
+    data.attrs["lost"] = json.dumps({str(place): why for place, why in balance.lost.items()})
     return data.assign_coords(
         {
             "node": list(nodes),
@@ -81,11 +92,70 @@ def balance_dataset(balance: HeatBalance) -> xr.Dataset:
     )
 
 
+STATED = ("normal_force", "cold_half_backlash")
+"""What an operating point has without any temperature."""
+OF_OIL = (
+    "dynamic_viscosity",
+    "film_thickness",
+    "film_parameter",
+    "friction_coefficient",
+    "friction_coefficient_mixed",
+    "flash_temperature",
+    "flash_temperature_mixed",
+    "contact_temperature",
+    "frictional_power",
+    "pinion_share_of_heat",
+    "power_off_the_path",
+    "mesh_efficiency",
+)
+"""What of an undeformed pair depends on the oil's temperature."""
+
+
+def blanked(
+    data: xr.Dataset, lost: NDArray[np.bool_], names: Sequence[str] | None = None
+) -> xr.Dataset:
+    """``data`` with nan in the numbers ``names`` (all) of the operating points that are ``lost``.
+
+    Positions, phases and what else belongs to no point stay, and so do flags: the status says
+    what they are worth.
+    """
+    if not lost.any():
+        return data
+    asked = set(map(str, data.data_vars) if names is None else names) - set(STATED)
+    known = xr.DataArray(~lost, dims="operating")
+    numbers = {
+        str(name): values.where(known).transpose(*values.dims).assign_attrs(values.attrs)
+        for name, values in data.data_vars.items()
+        if str(name) in asked and "operating" in values.dims and values.dtype.kind == "f"
+    }
+    return data.assign(numbers)
+
+
+def reasons(balance: xr.Dataset, bundle: str) -> str:
+    """Why points have no value at all, each reason once."""
+    why = json.loads(balance.attrs.get("lost", "{}")).get(bundle, {})
+    return f" No value: {'; '.join(dict.fromkeys(why.values()))}." if why else ""
+
+
+def several_words(*, several: int, count: int, hotter: float) -> str:
+    """That points have two steady states, and which one is told; ``hotter`` [K], nan: unknown."""
+    some = "1 point has" if several == 1 else f"{several} points have"
+    some = "The point has" if count == 1 else f"Of {count} points, {some}"
+    far = f", up to {hotter:.1f} K hotter" if np.isfinite(hotter) else ""
+    return (
+        f"{some} another steady state when they come from hot{far}: thinner oil lets the layer on "
+        "the gears turn turbulent, which drags more. All figures are those of the state reached "
+        "from cold."
+    ).replace("when they come", "when it comes" if several == 1 else "when they come")
+
+
 def balances(case: GearCase) -> xr.Dataset:
     """The heat balance of every bundle of a case whose temperatures are computed."""
     each = [balance_dataset(case.balance(model)) for model in case.models]
     axis = xr.DataArray([model.name for model in case.models], dims="bundle", name="bundle")
-    whole = xr.concat(each, axis)
+    why = [json.loads(data.attrs.pop("lost")) for data in each]
+    lost = dict(zip((model.name for model in case.models), why, strict=True))
+    whole = xr.concat(each, axis).assign_attrs(lost=json.dumps(lost))
     readings = [
         {
             "node": one.node,
@@ -134,6 +204,7 @@ def carried_uncertainty(case: GearCase) -> Floats:
                 reference=at.temperatures.reference,
                 housing=at.housing,
                 deviations=case.deviations,
+                from_hot=False,
             )
             hot = HotPair(case.pair, moved.operating, model)
             gap = clearance(hot, phase, case.deviations)

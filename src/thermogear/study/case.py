@@ -227,6 +227,14 @@ class GearCase(Case):
         held = None if self.follow == "proportional" else gear_temperature
         return self.balance(model, held).settled
 
+    def lost_at(self, gear_temperature: float | None, model: MeshModel) -> NDArray[np.bool_]:
+        """Where that heat balance has no value because a law has none, per point."""
+        lost = np.zeros(self.stated.speed.size, dtype=np.bool_)
+        if self.computed:
+            held = None if self.follow == "proportional" else gear_temperature
+            lost[list(self.balance(model, held).lost)] = True
+        return lost
+
 
 def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
     """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 import thermogear
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import DIMENSIONLESS, STATUS
+from thermogear.base.vocabulary import DIMENSIONLESS, STATUS, told_operating
 from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
-from thermogear.study.balances import celsius
+from thermogear.study.balances import celsius, reasons, several_words
 from thermogear.study.case import GearCase
 from thermogear.study.facts import Fact
 from thermogear.study.facts import facts as case_facts
@@ -162,11 +162,18 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
                 _notice(
                     "important",
                     f"{bundle}: {lost} of {settled.size} operating points have no steady "
-                    "temperature; their status is not_converged and they have no motion.",
+                    "temperature; their status is not_converged and they have no motion."
+                    + reasons(balance, str(bundle)),
                 )
             )
         if not settled.any():
             continue
+        several = settled & (here["several"].values == 1)
+        if several.any():
+            oil = here["hot_node_temperature"] - here["node_temperature"]
+            far = float(oil.sel(node="oil").values[several].max())
+            text = several_words(several=int(several.sum()), count=settled.size, hotter=far)
+            found.append(_notice("important", f"{bundle}: {text}"))
         steady = here.isel(operating=np.flatnonzero(settled))
         teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])
         oil = steady["node_temperature"].sel(node="oil")
@@ -351,11 +358,14 @@ def _row_jams(row: xr.Dataset) -> list[Notice]:
 def _difference(mesh: xr.Dataset) -> Notice:
     parts = []
     for place, bundle in enumerate(mesh["bundle"].values):
-        here = mesh.isel(bundle=place, operating=0)
+        here = mesh.isel(bundle=place, operating=told_operating(mesh))
         cold, hot = (float(here["mean_stiffness"].isel(state=i)) for i in (0, -1))
         b = float(here["half_backlash"].isel(state=-1)) * 1e6
+        if math.isnan(b):
+            continue
         parts.append(f"{bundle}: stiffness {100 * (hot / cold - 1):+.1f} %, b' = {b:.1f} um")
-    return _notice("important", "What heat does depends on the bundle. " + "; ".join(parts) + ".")
+    told = "; ".join(parts) or "no point has a hot state"
+    return _notice("important", f"What heat does depends on the bundle. {told}.")
 
 
 def dimensionless_notices(points: xr.Dataset) -> list[Notice]:
@@ -399,7 +409,7 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
         fact = Fact("mesh stiffness by ISO 6336-1 method B (knows no bore)", at, value, "N/m")
         if fact not in table:
             table.append(fact)
-    hot = mesh.isel(bundle=0, state=-1, operating=0)
+    hot = mesh.isel(bundle=0, state=-1, operating=told_operating(mesh))
     for name in ("pinion", "wheel"):
         heat = float(hot[f"{name}_shaft_heat"])
         table.append(Fact("heat the assumed field sends into the shaft", name, heat, "W"))
@@ -408,7 +418,7 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
         here = path.isel(operating=place)
         rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
         at = f"at {rpm:.0f} rpm, {torque:.0f} N m"
-        loss = _friction_power(here, case.pair.face_width, case.pair.base_pitch)
+        loss = float(mesh["frictional_power"].isel(bundle=0, state=-1, operating=place))
         table.append(Fact("frictional power of the mesh", at, loss, "W"))
     table += _balance_facts(groups)
     return [asdict(fact) for fact in table]
@@ -435,6 +445,9 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
             here = balance.isel(bundle=place, operating=o)
             rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
             group = f"heat balance, {bundle}, {rpm:.0f} rpm, {torque:.0f} N m"
+            if np.isnan(here["residual"]):
+                found.append(Fact(group, "temperatures", "no value"))
+                continue
             for node, kelvin in zip(
                 here["node"].values, here["node_temperature"].values, strict=True
             ):
@@ -444,17 +457,6 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
             found.append(Fact(group, "iterations", int(here["iterations"])))
             found.append(Fact(group, "residual", float(here["residual"]), "K"))
     return found
-
-
-def _friction_power(path: xr.Dataset, width: float, base_pitch: float) -> float:
-    """Mean frictional power [W]: sum over the pairs in contact, mean over a base pitch."""
-    s = path["path_position"].values
-    heat = (
-        np.abs(path["friction_coefficient"].values)
-        * path["line_load"].values
-        * np.abs(path["sliding_velocity"].values)
-    )
-    return float(np.trapezoid(heat, s) / base_pitch * width)
 
 
 def choice_meanings() -> dict[str, dict[str, str]]:

@@ -194,13 +194,13 @@ def stacked(points: Sequence[Operating]) -> Operating:
 def apart(point: Operating, difference: float) -> Operating:
     """``point`` with the pinion hotter by half the ``difference`` [K], the wheel colder by it."""
     t, half = point.temperatures, 0.5 * difference
-    moved = replace(
-        t,
-        pinion_addendum=np.asarray(t.pinion_addendum) + half,
-        pinion_bore=np.asarray(t.pinion_bore) + half,
-        wheel_addendum=np.asarray(t.wheel_addendum) - half,
-        wheel_bore=np.asarray(t.wheel_bore) - half,
-    )
+    signs = {"pinion": half, "wheel": -half}
+    gears: dict[str, Any] = {
+        name: kelvin + signs[name.partition("_")[0]]
+        for name, kelvin in t.bodies.items()
+        if name != "housing"
+    }
+    moved = replace(t, **gears)
     return replace(point, temperatures=moved)
 
 

@@ -30,7 +30,7 @@ from thermogear.heat.film import regime
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.study import errata, findings
-from thermogear.study.balances import balances, regime_attributes
+from thermogear.study.balances import OF_OIL, balances, blanked, regime_attributes
 from thermogear.study.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.study.citations import citations
 from thermogear.study.motion import Motion, follow, follow_gears
@@ -42,8 +42,9 @@ from thermogear.study.thesis_cases import of_the_thesis
 def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
     """Everything that ``case`` asks for, as one tree of datasets (SI, units as attributes).
 
-    A jammed operating point, a motion that diverges or cannot be labelled is a status in the
-    data, never an exception. Raises InputError where the case as a whole is impossible.
+    A jammed operating point, one at whose temperatures a law has no value (nan), a motion that
+    diverges or cannot be labelled is a status in the data, never an exception. Raises InputError
+    where the case as a whole is impossible.
     """
     if isinstance(case, DimensionlessCase):
         groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}
@@ -164,7 +165,7 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
         hot = case.operating_of(model)
         undeformed = hot.as_drawn()
         states = [
-            case.cycle(undeformed, model),
+            blanked(case.cycle(undeformed, model), case.lost_at(None, model), OF_OIL),
             _with_status(case, model, case.cycle(hot, model)),
         ]
         found[model.name] = _with_numbers(
@@ -177,11 +178,12 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
 def _with_status(
     case: GearCase, model: MeshModel, cycle: xr.Dataset, gear_temperature: float | None = None
 ) -> xr.Dataset:
-    """``cycle``, its points not_converged where its temperatures did not settle."""
+    """``cycle``, its points not_converged where nothing settled, and nan where nothing is known."""
     settled = case.settled_at(gear_temperature, model)
     status = cycle["status"]
     values = np.where(settled, status.values, STATUS.index("not_converged")).astype(np.int8)
-    return cycle.assign(status=(status.dims, values, status.attrs))
+    flagged = cycle.assign(status=(status.dims, values, status.attrs))
+    return blanked(flagged, case.lost_at(gear_temperature, model))
 
 
 def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
@@ -240,7 +242,10 @@ def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
     rest = [str(n) for n in whole.data_vars if n not in along]
     path = whole[along].drop_vars("mesh_phase", errors="ignore")
     film = path["film_parameter"]
-    path["regime"] = (film.dims, regime(film.values).astype(np.int8), regime_attributes())
+    # a point without a film has no regime: a place that is no flag's
+    known = ~np.isnan(film.values)
+    acting = np.where(known, regime(np.where(known, film.values, 0.0)), -1)
+    path["regime"] = (film.dims, acting.astype(np.int8), regime_attributes())
     return {"path": path, "mesh": whole[rest]}
 
 

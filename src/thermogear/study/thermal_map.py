@@ -23,7 +23,7 @@ from thermogear.mesh.balance import HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.study.balances import balance_dataset, dressed
+from thermogear.study.balances import balance_dataset, blanked, dressed, several_words
 from thermogear.study.body_estimates import ESTIMATES, body_estimates
 from thermogear.study.case import GearCase
 from thermogear.study.conclusion import QUANTITIES, conclusion, verdicts
@@ -56,9 +56,11 @@ def thermal_map(
     alone: :func:`~thermogear.study.warm_up_survey.warm_up_survey` has the way there.
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
-    not_converged) with ``iterations`` and ``residual``; ``conclusion`` (friction, flash and
-    growth, mixed and dry, with rank correlations). For the thesis's rig
-    ``verdicts`` (attribute) say what holds of the thesis's first conclusion.
+    not_converged; nan where a law has no value) with ``iterations`` and ``residual``, and
+    ``several`` where from hot another state is steady than the one told, from cold;
+    ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations).
+    For the thesis's rig ``verdicts`` (attribute) say what holds of the
+    thesis's first conclusion.
     """
     began = time.perf_counter()
     model = case.models[0]
@@ -81,10 +83,12 @@ def thermal_map(
             done += 1
     progress("closed loop", total, total)
     seconds = time.perf_counter() - began
+    chosen_law = "dry" if model.friction == "dry" else "mixed"
+    why = [r for part in points[chosen_law] for r in json.loads(part.attrs["lost"]).values()]
     wholes = {name: xr.concat(parts, "operating") for name, parts in points.items()}
     grids = {name: _on_grid(whole, speeds, torques, shape) for name, whole in wholes.items()}
     checked = conclusion({name: grids[name] for name in LUBRICATIONS})
-    chosen = grids["dry" if model.friction == "dry" else "mixed"]
+    chosen = grids[chosen_law]
     tree = xr.DataTree.from_dict({"map": chosen, "conclusion": checked})
     tree.attrs = {
         "thermogear": thermogear.__version__,
@@ -102,7 +106,7 @@ def thermal_map(
         "cold_half_backlash": case.cold_backlash.half,
         "seconds": seconds,
         "verdicts": json.dumps(verdicts(checked) if of_the_thesis(case) else []),
-        "notices": json.dumps(_notices(case, chosen, seconds)),
+        "notices": json.dumps(_notices(case, chosen, seconds, why)),
     }
     return tree
 
@@ -237,7 +241,9 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     merged["tempered"] = dressed(
         along, (teeth > hottest).astype(np.int8), "1", "1 where the steel is tempered"
     )
-    return merged.assign_coords(
+    lost = np.zeros(status.size, dtype=np.bool_)
+    lost[list(settled.lost)] = True
+    return blanked(merged, lost).assign_coords(
         regime_name=list(REGIMES),
         estimate=list(ESTIMATES),
         path_position=("path_position", cycle["path_position"].values, attributes("path_position")),
@@ -268,7 +274,9 @@ def _on_grid(
     )
 
 
-def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str, str]]:
+def _notices(
+    case: GearCase, grid: xr.Dataset, seconds: float, why: Sequence[str]
+) -> list[dict[str, str]]:
     status = grid["status"].values
     settled = status != STATUS.index("not_converged")
     count = status.size
@@ -282,8 +290,15 @@ def _notices(case: GearCase, grid: xr.Dataset, seconds: float) -> list[dict[str,
         say(
             "important",
             f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
-            "picture.",
+            "picture." + (f" No value: {'; '.join(dict.fromkeys(why))}." if why else ""),
         )
+    several = settled & (grid["several"].values == 1)
+    if several.any():
+        hotter = grid["hot_node_temperature"].sel(node="oil") - grid["node_temperature"].sel(
+            node="oil"
+        )
+        far = float(np.max(hotter.values[several]))
+        say("important", several_words(several=int(several.sum()), count=count, hotter=far))
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
     if outside.any():

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.vocabulary import told_operating
 from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
 from thermogear.views.style import chosen, names_of, path_points
@@ -237,7 +238,7 @@ def growth(data: xr.Dataset) -> str:
         return "Growth of the hot flanks."
     hot = hot_state(data)
     words = where(hot, "deformation_sum")
-    here = hot.isel(operating=0)
+    here = hot.isel(operating=told_operating(data))
     first, second = (here[f"{gear}_deformation"].values for gear in ("pinion", "wheel"))
     finite = np.isfinite(first).all() and np.isfinite(second).all()
     if finite and np.array_equal(first.argmin(axis=-1), second.argmax(axis=-1)):
@@ -262,7 +263,8 @@ def profile(factor: int, printed: bool, at: str) -> str:
 
 def gap_over_phase(mesh: xr.Dataset) -> str:
     """Of the half backlash over a mesh period."""
-    curves = mesh["half_backlash_curve"].isel(operating=0).transpose("bundle", "state", ...).values
+    drawn = mesh["half_backlash_curve"].isel(operating=told_operating(mesh))
+    curves = drawn.transpose("bundle", "state", ...).values
     told = {}
     for b, name in enumerate(names_of(mesh, "bundle")):
         cold, hot = curves[b, 0], curves[b, -1]
@@ -319,7 +321,7 @@ def row_grid(*, columns: int, most: int, rows: int) -> str:
 
 def stiffness(mesh: xr.Dataset, bundle: int) -> str:
     """Of the mesh stiffness over a mesh period."""
-    one = mesh.isel(operating=0, bundle=bundle)["mean_stiffness"].values
+    one = mesh.isel(operating=told_operating(mesh), bundle=bundle)["mean_stiffness"].values
     change = 100.0 * (float(one[-1]) / float(one[0]) - 1.0)
     words = where(mesh, "mean_stiffness")
     ratio = float(mesh.attrs.get("contact_ratio", np.nan))
@@ -333,7 +335,7 @@ def bars(mesh: xr.Dataset) -> str:
     names = names_of(mesh, "bundle")
     springs, softer = [], []
     for b, name in enumerate(names):
-        here = mesh.isel(bundle=b, operating=0)
+        here = mesh.isel(bundle=b, operating=told_operating(mesh))
         cold, hot = here.isel(state=0), here.isel(state=-1)
         if "thermal_stiffness" in here and bool((hot["thermal_stiffness"] > 0.0).any()):
             springs.append(name)
@@ -352,7 +354,7 @@ def bars(mesh: xr.Dataset) -> str:
 
 def one_pair(mesh: xr.Dataset) -> str:
     """Of the stiffness of one tooth pair."""
-    values = mesh["pair_stiffness"].isel(bundle=0, state=-1, operating=0).values
+    values = mesh["pair_stiffness"].isel(bundle=0, state=-1, operating=told_operating(mesh)).values
     at = f", stiffest {top_of(mesh, values)}" if np.isfinite(values).any() else ""
     return f"{where(mesh, 'pair_stiffness')}One pair alone along its path of contact{at}."
 

@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 import xarray as xr
 
-from thermogear.base.vocabulary import told_labels
+from thermogear.base.vocabulary import told_labels, told_operating
 from thermogear.views.page import Tile
 from thermogear.views.results import Results
 from thermogear.views.style import names_of
@@ -130,7 +130,8 @@ def tiles(results: Results) -> list[Tile]:
     if mesh is None:
         return []
     names = names_of(mesh, "bundle")
-    cold, hot = mesh.isel(state=0, operating=0), mesh.isel(state=-1, operating=0)
+    told = mesh.isel(operating=told_operating(mesh))
+    cold, hot = told.isel(state=0), told.isel(state=-1)
     jammed = hot["status"].values == JAMMED
     gaps = [
         "jammed" if stuck else f"{number(1e6 * float(b))} µm"

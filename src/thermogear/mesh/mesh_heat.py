@@ -1,0 +1,102 @@
+"""What the contact makes and carries of heat in the time mean, load off the path included."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.gears.geometry import GearPair
+from thermogear.mesh.elastic import ElasticPair, LoadedPair, PathShare
+from thermogear.mesh.friction_path import FrictionPath
+
+Floats = NDArray[np.float64]
+
+PHASES = 48
+"""Phases of the mesh period at which the loaded contact is asked."""
+GAUSS = 12
+"""Nodes on each part of the path between two changes of the number of pairs."""
+
+
+class MeshHeat(NamedTuple):
+    """Time means over the mesh, (count,) each.
+
+    ``power`` [W] of friction, ``partition`` [-] of it into the pinion, ``conductance`` [W/K]
+    between both flanks, ``beyond`` [-] the share of the power off the path of contact (tip
+    corners), ``settled`` whether the loaded contact is known.
+    """
+
+    power: Floats
+    partition: Floats
+    conductance: Floats
+    beyond: Floats
+    settled: NDArray[np.bool_]
+
+
+def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
+    """Friction power, its partition and the conductance between the flanks, time means.
+
+    P = (b/p_b) int |mu| w |v_1 - v_2| ds,   G = (b/p_b) int g ds
+
+    with g of :func:`~thermogear.heat.temperature.flank_exchange`: the time mean over all pairs
+    in contact is the integral along one pair's way over the base pitch. Where the loaded
+    contact shares the load the way goes on beyond A and E as far as tip corners carry, and the
+    integral is the mean over ``phases`` of the sum over all pairs, both of which are periodic
+    and continuous; 48 phases give the power of 400 within 0.2 %. The rules of thumb end at A
+    and E with a step: Gauss's rule between the steps and the pitch point.
+
+    Off the path a corner slides at (omega_1 + omega_2)(s - s_C) to first order in the distance
+    from the path's end (the corner moves along the line of action as the involute's point
+    would), with the friction coefficient of flanks of the involutes' curvature there.
+    """
+    pair = elastic.hot.pair
+    beyond = elastic.hot.model.sharing == "loaded"
+    if beyond:
+        s, weights, shares = _around(elastic, phases)
+    else:
+        s, weights = _between_steps(pair)
+        shares = None
+    path = FrictionPath(elastic, s, shares)
+    path.warn_beyond_oil()
+    scale = pair.face_width / pair.base_pitch * weights
+    heat = np.asarray(path.heat * scale)
+    power = heat.sum(axis=-1)
+    first = (heat * path.heat_share).sum(axis=-1)
+    # a position stands for what lies half a weight to each of its sides
+    off = np.clip((pair.path.a - s) / weights + 0.5, 0.0, 1.0)
+    off += np.clip((s - pair.path.e) / weights + 0.5, 0.0, 1.0)
+    outside = (heat * off).sum(axis=-1) * beyond
+    busy = power > 0.0
+    return MeshHeat(
+        power=power,
+        partition=np.divide(first, power, out=np.full_like(power, 0.5), where=busy),
+        conductance=np.asarray((path.exchange * scale).sum(axis=-1)),
+        beyond=np.divide(outside, power, out=np.zeros_like(power), where=busy),
+        settled=path.settled,
+    )
+
+
+def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, PathShare]:
+    """Positions [m] of every candidate at uniform phases, their weights [m] and shares."""
+    pair, count = elastic.pair, elastic.hot.count
+    solved = LoadedPair(elastic.hot, elastic.deviations).solve(np.arange(phases) / phases)
+    s = solved.points.s.ravel()
+    # beyond the tangent points there is no flank: no candidate carries there
+    margin = 1e-3 * pair.base_pitch
+    inside = (s > margin) & (s < pair.line_of_action - margin)
+    shares = PathShare(
+        solved.share.reshape(count, -1)[:, inside], solved.edge.reshape(count, -1)[:, inside]
+    )
+    return s[inside], np.full(int(inside.sum()), pair.base_pitch / phases), shares
+
+
+def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
+    """Gauss's nodes and weights [m] from A to E, split where a pair enters or leaves and at C."""
+    a, c, e = pair.path.a, pair.path.c, pair.path.e
+    whole = np.arange(int(np.ceil(pair.contact_ratio)) + 1) * pair.base_pitch
+    cuts = np.concatenate([a + whole, e - whole, [a, c, e]])
+    ends = np.unique(np.clip(cuts, a, e))
+    u, w = np.polynomial.legendre.leggauss(GAUSS)
+    half, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
+    return (middle + half * u).ravel(), (half * w).ravel()
