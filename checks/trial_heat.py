@@ -23,7 +23,7 @@ from thermogear.base.materials import lubricant
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.mesh.balance import NODES, Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.operating import Operating
-from thermogear.mesh.warm_up import warm_up
+from thermogear.mesh.warm_up import Duty, warm_up
 from thermogear.study.case import GearCase, gear_case, load_example
 
 Floats = NDArray[np.float64]
@@ -114,17 +114,16 @@ def end_of_warm_up(
     place: int,
 ) -> float:
     """How far [K] a warm-up from the ambient ends from the state from cold."""
-    intervals = INTERVALS
-    for _ in range(REPEATS):
-        times = np.concatenate([[0.0], np.geomspace(1.0, LONGEST, intervals)])
-        course = warm_up(pair, at, times, model, gearbox=box).temperatures
-        gap = max(float(abs(course[n][-1] - balance.steady[n][place])) for n in NODES)
-        still = max(float(abs(course[n][-1] - course[n][-2])) for n in NODES)
-        # losses stand still within an interval: where states nearly meet it takes more of them
-        if gap <= SAME or still < AT_REST * SAME or intervals > 4000:
-            return gap
-        intervals *= 3
-    return gap
+    duty = Duty(
+        time=np.array([0.0, LONGEST]),
+        speed=at.speed,
+        torque=at.torque,
+        ambient=np.array([box.surroundings.ambient]),
+    )
+    course = warm_up(
+        pair, duty, at.lubricant, at.half_backlash, model, gearbox=box, moments=4
+    ).temperatures
+    return max(float(abs(course[n][-1] - balance.steady[n][place])) for n in NODES)
 
 
 def random_pairs(law: str, count: int) -> Found:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,9 +13,10 @@ from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Surroundings
 from thermogear.mesh.balance import NODES, Gearbox, HeatBalance, heat_balance
-from thermogear.mesh.warm_up import warm_up
+from thermogear.mesh.warm_up import Duty, warm_up
 
 OIL = lubricant("M100")
+AMBIENT = Surroundings().ambient
 QUICK = MeshModel.consistent().override(
     friction="benedict-kelley", inlet="oil", stiffness="textbook-30-degree", sharing="equal"
 )
@@ -198,13 +198,13 @@ def test_random_pairs_from_both_ends() -> None:
 def test_warm_up_ends_where_the_balance_from_cold_stands(rig: GearPair) -> None:
     """Where two states are steady too: a cold start cannot pass the lower one."""
     gaps, told = [], 0
-    times = np.concatenate([[0.0], np.geomspace(1.0, 2e6, 160)])
     for rpm, torque in ((4080.0, 20.0), (3914.0, 50.0), (2700.0, 300.0), (1200.0, 80.0)):
         found = settle(rig, [rpm], torque, QUICK)
         told += int(found.several[0])
-        at = found.operating
-        start = replace(at, temperatures=at.temperatures.cold())
-        course = warm_up(rig, start, times, QUICK)
+        duty = Duty(
+            time=[0.0, 2e6], speed=[rpm * np.pi / 30.0], torque=[torque], ambient=[AMBIENT]
+        )
+        course = warm_up(rig, duty, OIL, 125e-6, QUICK)
         gaps += [abs(course.temperatures[n][-1] - float(found.steady[n][0])) for n in NODES]
     assert max(gaps) < 0.01
     assert told > 0

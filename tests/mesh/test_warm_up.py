@@ -14,10 +14,9 @@ from thermogear.base.errors import InputError
 from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Losses
 from thermogear.heat.transient import State, Stretch, follow
-from thermogear.mesh.balance import Gearbox, heat_balance
+from thermogear.mesh.balance import Gearbox, heat_balance, node_temperatures
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Temperatures
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up, with_factors
 
@@ -68,7 +67,7 @@ def steadily(rig: GearPair) -> WarmUp:
 def test_starts_at_the_ambient_and_ends_at_the_steady_state(
     rig: GearPair, steadily: WarmUp
 ) -> None:
-    steady = heat_balance(rig, 200.0, 100.0, OIL, 125e-6, MODEL, path_positions=61)
+    steady = heat_balance(rig, 200.0, 100.0, OIL, 125e-6, MODEL)
     assert steady.settled.all()
     assert steadily.course.settled
     for name, values in steadily.temperatures.items():
@@ -159,11 +158,7 @@ def test_a_heavy_housing_makes_the_worst_moment_one_on_the_way(rig: GearPair) ->
 
 
 def _gap(found: WarmUp, pair: GearPair, state: dict[str, np.ndarray]) -> np.ndarray:
-    bodies = Temperatures(
-        reference=AMBIENT, pinion_addendum=state["pinion_tooth"],
-        pinion_bore=state["pinion_shaft"], wheel_addendum=state["wheel_tooth"],
-        wheel_bore=state["wheel_shaft"], housing=state["housing"],
-    )  # fmt: skip
+    bodies = node_temperatures(state, AMBIENT)
     count = state["oil"].size
     at = replace(
         found.operating,

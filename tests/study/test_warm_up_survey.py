@@ -318,7 +318,7 @@ def test_answers_in_words() -> None:
     jammed = answer(numbers | {"half_backlash_m": -1e-6, "margin_K": -2.0}, 110e-6)
     assert "cold: the pair is jammed." in jammed
     assert "hotter" not in jammed
-    assert "at the start: heat never takes any of it" in answer(
+    assert "at the start, heat never takes any of it" in answer(
         numbers | {"at_the_start": True}, 110e-6
     )
     end = answer(numbers | {"at_the_end": True, "below_steady_m": -1e-6}, 110e-6)

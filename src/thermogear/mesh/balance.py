@@ -24,6 +24,7 @@ from thermogear.heat.losses import bearing_loss, churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import SteadyState, ThermalNetwork
 from thermogear.mesh.elastic import ElasticPair, elastic_pair
+from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.heat_loop import HOTTEST, Course, Response, asked, follow
 from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.model import MeshModel
@@ -340,9 +341,11 @@ def pair_losses(
 ) -> tuple[Losses, Flags]:
     """Mesh, churning and bearing losses [W] and the flanks' conductance [W/K], (count,).
 
-    At the present temperatures; with them whether the loaded contact is known, (count,).
+    At the present temperatures; with them whether the loaded contact is known, (count,). Warns
+    where the film at the flanks leaves the range of the oil's viscosity line.
     """
     means = mesh_heat(elastic)
+    FrictionPath(elastic, np.array([pair.path.c])).warn_beyond_oil()
     oil = operating.lubricant
     wheel_speed = operating.speed / pair.ratio
     churning = (

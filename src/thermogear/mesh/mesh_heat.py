@@ -58,7 +58,6 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
         s, weights = _between_steps(pair)
         shares = None
     path = FrictionPath(elastic, s, shares)
-    path.warn_beyond_oil()
     scale = pair.face_width / pair.base_pitch * weights
     heat = np.asarray(path.heat * scale)
     power = heat.sum(axis=-1)

@@ -534,7 +534,8 @@ def _notices(
     if not steady["settled"].values.all():
         count = int((steady["settled"].values == 0).sum())
         say("important", f"{count} of {steady.sizes['piece']} pieces have no steady state.")
-    if not np.isfinite(course.duty.time[-1]) and not course.course.settled:
+    endless = not np.isfinite(course.duty.time[-1])
+    if endless and not (course.course.settled or course.course.too_hot):
         say("important", "The pair does not come to rest in 40 time constants.")
     if measured is not None and np.any(measured.time > course.time[-1]):
         left = int((measured.time > course.time[-1]).sum())

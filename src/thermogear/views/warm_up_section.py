@@ -63,7 +63,7 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
         f"{exactly(float(worst['pinion_torque_Nm']))} N m"
     )
     if worst["at_the_start"]:
-        when = "at the start: heat never takes any of it"
+        when = "at the start, heat never takes any of it"
     elif worst["at_the_end"]:
         when = f"at the end, after {number(minutes)} min"
     else:
