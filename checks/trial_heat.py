@@ -131,7 +131,7 @@ def random_pairs(law: str, count: int) -> Found:
     random, found, began = np.random.default_rng(SEED), Found(), time.perf_counter()
     model = MeshModel.consistent().override(friction=law, inlet="oil")
     for _ in range(count):
-        teeth = int(random.integers(17, 45)), int(random.integers(30, 100))
+        teeth = int(random.integers(18, 45)), int(random.integers(30, 100))
         module, width = float(random.uniform(1.5e-3, 8e-3)), float(random.uniform(6.0, 14.0))
         bore = float(random.uniform(0.2, 0.5))
         first, second = (
