@@ -34,10 +34,8 @@ LAWS = ("benedict-kelley", "schlenk")
 SPEEDS, TORQUES = (500.0, 6000.0), (50.0, 500.0)
 PAIRS, POINTS = 60, 20
 SAME = 0.01
-INTERVALS, LONGEST = 150, 3e6
-"""Intervals of a warm-up and its length [s]; repeated until it rests."""
-AT_REST, REPEATS = 1e-3, 40
-"""A course whose nodes change by less [K] over its last interval is at its end."""
+LONGEST = 3e6
+"""Length [s] of a warm-up."""
 
 
 @dataclass

@@ -111,6 +111,7 @@ ARGUMENTS: dict[str, tuple[object, str]] = {
     "speed_1": (3.0, "m/s"),
     "speed_2": (2.0, "m/s"),
     "sum_speed": (5.0, "m/s"),
+    "surface": (380.0, "K"),
     "surroundings": (300.0, "K"),
     "teeth_1": (25.0, ""),
     "temperature": (360.0, "K"),
@@ -145,6 +146,7 @@ RESULTS: dict[str, str] = {
     "blok_flash": "K",
     "body_temperature_13989_1": "K",
     "body_temperature_13989_2": "K",
+    "buried_temperature": "K",
     "centre_distance_growth": "m",
     "churning_loss": "W",
     "conduction_power": "W",
@@ -164,6 +166,7 @@ RESULTS: dict[str, str] = {
     "grubin_central": "m",
     "heat_partition": "",
     "hot_half_backlash": "m",
+    "infrared_indication": "K",
     "infrared_temperature": "K",
     "integral_temperature": "K",
     "iso_15144_film": "m",
@@ -205,7 +208,10 @@ DECLARED = {
     "band_radiance": "up to a constant factor",
     "infrared_signal": "up to a constant factor",
     "face_conductance": "the oil's own line",
+    "free_face_convection": "the earth's gravity, m/s^2",
+    "oil_expansion": "the oil's own line",
     "oil_prandtl": "the oil's own line",
+    "with_free_convection": "the oil's own line",
     "thermal_network": "the oil's own line; its parts are checked one by one",
 }
 # pure numbers in, a pure number out
@@ -231,9 +237,11 @@ NUMBERS = {
 }
 IMPOSSIBLE = {"blok_as_printed", "benedict_kelley_as_printed", "flank_growth_as_printed"}
 NOT_FORMULAS = {
+    "State",
     "beyond",
     "field_uncertainty",
     "flash_factor",
+    "follow",
     "friction_law",
     "jam_temperature",
     "laws_together",

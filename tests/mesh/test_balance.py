@@ -201,9 +201,7 @@ def test_warm_up_ends_where_the_balance_from_cold_stands(rig: GearPair) -> None:
     for rpm, torque in ((4080.0, 20.0), (3914.0, 50.0), (2700.0, 300.0), (1200.0, 80.0)):
         found = settle(rig, [rpm], torque, QUICK)
         told += int(found.several[0])
-        duty = Duty(
-            time=[0.0, 2e6], speed=[rpm * np.pi / 30.0], torque=[torque], ambient=[AMBIENT]
-        )
+        duty = Duty(time=[0.0, 2e6], speed=[rpm * np.pi / 30.0], torque=[torque], ambient=[AMBIENT])
         course = warm_up(rig, duty, OIL, 125e-6, QUICK)
         gaps += [abs(course.temperatures[n][-1] - float(found.steady[n][0])) for n in NODES]
     assert max(gaps) < 0.01
