@@ -30,8 +30,9 @@ Floats = NDArray[np.float64]
 
 SEED = 15_2026
 PAGE = Path(__file__).parents[1] / "docs" / "trial_heat.md"
-LAWS = ("benedict-kelley", "schlenk")
-SPEEDS, TORQUES = (500.0, 6000.0), (50.0, 500.0)
+LAWS = {"lambda-blend": "body", "benedict-kelley": "oil"}
+"""Friction laws, each with what its film forms of."""
+SPEEDS, TORQUES = (500.0, 6000.0), (20.0, 500.0)
 PAIRS, POINTS = 60, 20
 SAME = 0.01
 LONGEST = 3e6
@@ -81,7 +82,7 @@ def on_the_rig(case: GearCase, law: str, side: int, *, warm: bool) -> Found:
             RPM * np.linspace(*SPEEDS, side), np.linspace(*TORQUES, side), indexing="ij"
         )
     )
-    model = MeshModel.consistent().override(friction=law, inlet="oil")
+    model = MeshModel.consistent().override(friction=law, inlet=LAWS[law])
     at = case.stated
     balance = heat_balance(
         case.pair, speed, torque, at.lubricant, at.half_backlash, model, gearbox=case.gearbox
@@ -127,7 +128,7 @@ def end_of_warm_up(
 def random_pairs(law: str, count: int) -> Found:
     """Pairs, oils and loads drawn at random, from both ends."""
     random, found, began = np.random.default_rng(SEED), Found(), time.perf_counter()
-    model = MeshModel.consistent().override(friction=law, inlet="oil")
+    model = MeshModel.consistent().override(friction=law, inlet=LAWS[law])
     for _ in range(count):
         teeth = int(random.integers(18, 45)), int(random.integers(30, 100))
         module, width = float(random.uniform(1.5e-3, 8e-3)), float(random.uniform(6.0, 14.0))
@@ -191,7 +192,10 @@ def page(rows: Sequence[tuple[str, Found]], side: int) -> str:
         "",
         "| set | rpm | N m | °C from cold | °C from hot |",
         "|---|---:|---:|---:|---:|",
-        *(f"| {n} | {s:.0f} | {t:.1f} | {c:.1f} | {h:.1f} |" for n, s, t, c, h in several),
+        *(
+            f"| {n} | {s:.0f} | {t:.1f} | {c:.1f} | {f'{h:.1f}' if h < np.inf else 'runs away'} |"
+            for n, s, t, c, h in several
+        ),
         "",
     ]
     return "\n".join(lines)

@@ -13,8 +13,8 @@ def test_both_ends_and_the_warm_up_agree_on_a_few_points() -> None:
     trial = script("trial_heat")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
-        rig = trial.on_the_rig(gear_case(load_example("rig")), "schlenk", 1, warm=True)
-        pairs = trial.random_pairs("schlenk", 2)
+        rig = trial.on_the_rig(gear_case(load_example("rig")), "lambda-blend", 1, warm=True)
+        pairs = trial.random_pairs("lambda-blend", 2)
     assert (rig.points, rig.settled, rig.warm_ups) == (1, 1, 1)
     assert rig.warm_up_gap < trial.SAME
     assert pairs.points == 2 * trial.POINTS

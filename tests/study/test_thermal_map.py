@@ -80,12 +80,11 @@ def test_without_a_load_stage_there_is_no_margin() -> None:
 def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
     checked = tree["conclusion"]
     rising = checked["rising_share"]
-    # flash and growth rise with speed and torque, but for the mixed flash: the film grows too
+    # flash and growth rise with speed and torque
     np.testing.assert_array_equal(rising.sel(quantity="growth").values, 1.0)
     flash = rising.sel(quantity="flash")
     np.testing.assert_array_equal(flash.sel(lubrication="dry").values, 1.0)
-    assert float(flash.sel(lubrication="mixed", axis="torque")) == 1.0
-    assert 0.5 < float(flash.sel(lubrication="mixed", axis="speed")) < 1.0
+    np.testing.assert_array_equal(flash.sel(lubrication="mixed").values, 1.0)
     # mixed friction falls with speed here; dry is constant
     friction = rising.sel(quantity="friction")
     assert float(friction.sel(lubrication="mixed", axis="speed")) == 0.0
@@ -94,7 +93,7 @@ def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
     assert np.isnan(float(rank.sel(lubrication="dry")))
     np.testing.assert_array_equal(checked["mixed_below_dry"].values, 1.0)
     claims = {row["claim"]: row["verdict"] for row in json.loads(tree.attrs["verdicts"])}
-    assert claims["flash temperature rises with speed, mixed"] == "holds in part"
+    assert claims["flash temperature rises with speed, mixed"] == "holds"
     assert claims["flash temperature rises with speed, dry"] == "holds"
     assert claims["friction coefficient rises with speed, dry"] == "does not hold"
 
