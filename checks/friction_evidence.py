@@ -36,6 +36,7 @@ from thermogear.heat.lubrication import dynamic_viscosity
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
+from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.thermal import HotPair
 from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET
 
@@ -242,7 +243,7 @@ def compute(
         return teeth_of(closed_loop(given, group, model, wetted))
     path = isothermal(given, group, model)
     if kind == "loss":
-        power, _ = path.power()
+        power = mesh_heat(path.elastic).power
         through = path.hot.operating.speed * path.hot.operating.torque
         return np.asarray(100.0 * power / through)
     v1, v2 = path.velocities
