@@ -383,8 +383,9 @@ SHORT = """\
 What falls short: the measured losses of the polished gears lie above the default, by the figures
 above. There the film is two roughnesses thick and more, so that the blend is its smooth film
 alone; the thesis that prints these losses finds errors of 24 to 36 % with the same film law. The
-laws of mean friction for ground gears (ISO/TR 13989) lie nearer to them and run too hot at FZG's
-heavy stages."""
+law of mean losses, `schlenk`, lies nearer to both: it is one number for the whole mesh, without
+the course of friction along the path that flash temperature and film need, which is why it stays
+the law for losses and not the default."""
 
 
 def page(

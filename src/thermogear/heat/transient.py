@@ -115,7 +115,7 @@ def follow(
     times: ArrayLike = (),
     moments: int = 60,
     tolerance: float = 1e-3,
-    settled_within: float = 0.1,
+    settled_within: float = 0.01,
     events: Mapping[str, Callable[[State], float]] | None = None,
     progress: Progress = silent,
 ) -> Course:

@@ -122,7 +122,7 @@ def _points(case: GearCase, model: MeshModel, speed: Floats, torque: Floats) -> 
     """Everything that the map shows, over ``operating``."""
     with warnings.catch_warnings():
         # told once, with the number of points, in the notices
-        warnings.filterwarnings("ignore", "(oil temperature|viscosity):", ValidityWarning)
+        warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
         return _gathered(case, *_solved(case, model, speed, torque))
 
 
@@ -308,6 +308,15 @@ def _notices(
             f"{low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C of its viscosity line: such "
             "a pair needs an oil cooler (gearbox.oil_flow). They are hatched, and left out of the "
             "rank correlations.",
+        )
+    teeth = grid["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).mean("node").values
+    beyond = settled & (teeth > high)
+    if beyond.any():
+        say(
+            "warning",
+            f"At {int(beyond.sum())} of {count} points the flanks are hotter than the "
+            f"{high - ZERO_CELSIUS:.0f} °C up to which the oil's viscosity line is trusted: the "
+            "film there is an estimate.",
         )
     jam, together = (grid[n].values for n in ("jam_temperature", "proportional_jam_temperature"))
     least = grid["least_half_backlash"].values

@@ -144,6 +144,8 @@ def fit_factors(residuals: Residuals, names: Sequence[str], progress: Progress =
         variance = float(one @ one) / max(count - x.size, 1)
         covariance = variance * np.linalg.inv(normal) * count / effective
         spread = np.sqrt(np.diag(covariance)) * student.ppf(0.5 + 0.5 * CONFIDENCE, freedom)
+        # an interval wider than the search says nothing
+        spread = np.where(spread < reach, spread, np.nan)
         if x.size == 2:
             correlation = covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1])
     progress("fit", MOST_RUNS, MOST_RUNS)

@@ -15,6 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import thermogear
+from thermogear.base import bounds
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -35,6 +36,8 @@ from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, unti
 Floats = NDArray[np.float64]
 KIND = "warmup"
 PATH_POSITIONS = 41
+LEAST_LOSS = 5e-9
+"""A steady loss of backlash [m] below which another one is no share of it."""
 MESH_POSITIONS = 96
 BLOCK = 100
 """Moments whose mesh is solved together: memory and progress, not the result."""
@@ -75,6 +78,8 @@ def read_measured(path: str | Path, field: str = "measured") -> Measured:
             "no temperature",
             allowed="time and one or more of " + ", ".join((*NODES, *SENSORS)),
         )
+    for name, column in table.items():
+        bounds.BODY.require(f"{field}.{name}", column.values[np.isfinite(column.values)])
     return Measured(time=when.values, names=tuple(table), values=values)
 
 
@@ -338,6 +343,7 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
     unique, back = np.unique(points, axis=0, return_inverse=True)
     values = np.full(len(unique), np.nan)
     fine = np.zeros(len(unique), np.int8)
+    twice = np.zeros(len(unique), np.int8)
     temperatures: dict[str, Floats] = {}
     for ambient in np.unique(unique[:, 0]):
         here = np.flatnonzero(unique[:, 0] == ambient)
@@ -356,7 +362,9 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         )
         hot = HotPair(case.pair, balance.operating, model)
         gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
-        settled_here = balance.settled & known
+        # at rest the balance knows no free convection, which the course has
+        settled_here = balance.settled & known & (unique[here, 1] > 0.0)
+        twice[here] = balance.several & settled_here
         values[here] = np.where(settled_here, gap.min(axis=1), np.nan)
         fine[here] = settled_here
         for name, t in balance.steady.temperatures.items():
@@ -369,6 +377,7 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         {
             "half_backlash": dressed(along, left, "m", "least half backlash if held for good"),
             "settled": dressed(along, settled, "1", "1 where there is a steady state"),
+            "several": dressed(along, twice[back], "1", "1 where from hot another one is reached"),
             "node_temperature": dressed(
                 ("piece", "node"),
                 np.stack(list(nodes.values()), axis=-1),
@@ -389,7 +398,7 @@ def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]
     one, cold = course.worst, case.stated.half_backlash
     rest = float(steady["half_backlash"][one.piece])
     lost, lost_for_good = cold - one.half_backlash, cold - rest
-    ratio = lost / lost_for_good - 1.0 if lost_for_good > 0.0 else np.nan
+    ratio = lost / lost_for_good - 1.0 if lost_for_good > LEAST_LOSS else np.nan
     numbers = {
         "time_s": one.time,
         "half_backlash_m": one.half_backlash,
@@ -406,6 +415,8 @@ def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]
     found["piece"] = one.piece
     found["temperatures_K"] = one.temperatures
     found["at_the_end"] = bool(one.time >= course.time[-1])
+    first = {name: float(t[0]) for name, t in course.temperatures.items()}
+    found["warmed"] = one.temperatures["pinion_tooth"] > first["pinion_tooth"]
     found["at_the_start"] = bool(one.time <= course.time[0])
     return found
 
@@ -531,9 +542,19 @@ def _notices(
             f"For {spent:.1f} min the oil is outside the {low - ZERO_CELSIUS:.0f} to "
             f"{high - ZERO_CELSIUS:.0f} C of its viscosity line.",
         )
-    if not steady["settled"].values.all():
-        count = int((steady["settled"].values == 0).sum())
-        say("important", f"{count} of {steady.sizes['piece']} pieces have no steady state.")
+    unknown = (steady["settled"].values == 0) & (course.duty.speed > 0.0)
+    if unknown.any():
+        say(
+            "important",
+            f"Of {int(unknown.sum())} of {unknown.size} pieces no steady state is known.",
+        )
+    if steady["several"].values.any():
+        say(
+            "important",
+            "More than one thermal state is steady at "
+            f"{int(steady['several'].values.sum())} of {unknown.size} pieces: the one reached from "
+            "cold is told; a hot start may end in the other.",
+        )
     endless = not np.isfinite(course.duty.time[-1])
     if endless and not (course.course.settled or course.course.too_hot):
         say("important", "The pair does not come to rest in 40 time constants.")

@@ -76,7 +76,8 @@ def answer(worst: Mapping[str, Any], cold: float) -> str:
             text += f" That is {number(1e6 * below)} um below the steady {number(1e6 * rest, 4)} um"
             if worst["loss_above_steady"] is not None:
                 text += (
-                    f"; the loss is {number(100.0 * worst['loss_above_steady'])} % above its own"
+                    f"; the loss of backlash is {number(100.0 * worst['loss_above_steady'])} % "
+                    "greater than the steady one"
                 )
             text += "."
         else:
@@ -102,15 +103,20 @@ def fit_sentence(fit: Mapping[str, Any]) -> str:
 
 
 def _interval(one: Mapping[str, Any]) -> str:
-    if one["low"] is None:
-        return f"times {number(one['value'])} (no interval: too few independent readings)"
+    if one["low"] is None or one["high"] is None:
+        return f"times {number(one['value'])} (no interval: the record says too little of it)"
     return f"times {number(one['value'])} ({number(one['low'])} to {number(one['high'])})"
 
 
 def _course_words(worst: Mapping[str, Any], logarithmic: bool, measured: bool) -> str:
     words = ["Dotted: the moment of the least half backlash."]
     if not (worst["at_the_end"] or worst["at_the_start"]):
-        words.append("Gears warm before the housing, which then follows and opens the axes again.")
+        warmed = worst["warmed"]
+        words.append(
+            "Gears warm before the housing, which then follows and opens the axes again."
+            if warmed
+            else "The housing cools before the gears and closes the axes on them."
+        )
     words.append("Dashed below: what would be left if the point were held for good.")
     if measured:
         words.append("Circles: the record.")

@@ -84,9 +84,9 @@ def course(
     below.axhline(1e6 * cold, color=OKABE_ITO[5], linewidth=1.1, label="cold")
     if left.min() <= 0.0:
         below.axhline(0.0, color=HOT, linewidth=1.1, label="jammed below")
-    _mark(above, below, worst, logarithmic)
     below.set_ylabel("half backlash b′ [µm]")
     _time(below, minutes, logarithmic)
+    _mark(above, below, worst, logarithmic)
     legend_below(figure, [above, below], 6)
     return figure
 
@@ -97,10 +97,14 @@ def _mark(above: Axes, below: Axes, worst: Mapping[str, Any], logarithmic: bool)
     for axis in (above, below):
         axis.axvline(at, color=HOT, linewidth=1.0, linestyle=(0, (1, 1.5)), zorder=0.6)
     below.plot([at], [least], marker="o", markersize=6, color=HOT, zorder=5)
+    low, high = below.get_xlim()
+    share = np.log(at / low) / np.log(high / low) if logarithmic else (at - low) / (high - low)
+    right = bool(share > 0.75)
     below.annotate(
         f"least: {number(least, 4)} µm\nat {number(when)} min",
         (at, least),
-        xytext=(8, 10),
+        xytext=(-8 if right else 8, 10),
+        ha="right" if right else "left",
         textcoords="offset points",
         fontsize=8.5,
         color=HOT,
