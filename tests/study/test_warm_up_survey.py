@@ -312,8 +312,9 @@ def test_answers_in_words() -> None:
     said = answer(numbers, 110e-6)
     assert said == (
         "The half backlash is least 17.0 min after the start, at 3000 rpm and 100 N m: 60.00 um of "
-        "110.0 um cold. That is 10.0 um below the steady 70.00 um; the loss is 25.0 % above its "
-        "own. Both gears could then be 61.0 K hotter, the housing as it is, until the pair jams."
+        "110.0 um cold. That is 10.0 um below the steady 70.00 um; the loss of backlash is 25.0 % "
+        "greater than the steady one. Both gears could then be 61.0 K hotter, the housing as it "
+        "is, until the pair jams."
     )
     jammed = answer(numbers | {"half_backlash_m": -1e-6, "margin_K": -2.0}, 110e-6)
     assert "cold: the pair is jammed." in jammed

@@ -362,8 +362,10 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         )
         hot = HotPair(case.pair, balance.operating, model)
         gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
-        # at rest the balance knows no free convection, which the course has
-        settled_here = balance.settled & known & (unique[here, 1] > 0.0)
+        # at rest the balance knows no free convection: it matters where anything but the ambient
+        # has a temperature of its own
+        runs = (unique[here, 1] > 0.0) | (around.oil_flow == 0.0 and not case.gearbox.measured)
+        settled_here = balance.settled & known & runs
         twice[here] = balance.several & settled_here
         values[here] = np.where(settled_here, gap.min(axis=1), np.nan)
         fine[here] = settled_here
