@@ -61,7 +61,7 @@ class FileTable:
         self._file.close()
 
 
-class _Unnamed:
+class UnnamedFile:
     """An unnamed file that lives as long as whoever reads from it."""
 
     def __init__(self) -> None:
@@ -78,7 +78,7 @@ class StoredColumn:
     column's numbers of each block begin.
     """
 
-    def __init__(self, where: _Unnamed, *, firsts: list[int], offsets: list[int]) -> None:
+    def __init__(self, where: UnnamedFile, *, firsts: list[int], offsets: list[int]) -> None:
         self._where, self._firsts, self._offsets = where, firsts, offsets
 
     def __len__(self) -> int:
@@ -105,7 +105,7 @@ class ColumnStore:
     def __init__(self, columns: int) -> None:
         self.rows = 0
         self._parts: list[list[Floats]] = [[] for _ in range(columns)]
-        self._where: _Unnamed | None = None
+        self._where: UnnamedFile | None = None
         self._firsts, self._starts = [0], [0]
 
     def append(self, table: Floats) -> None:
@@ -118,7 +118,7 @@ class ColumnStore:
             self._spill()
 
     def _spill(self) -> None:
-        self._where = self._where or _Unnamed()
+        self._where = self._where or UnnamedFile()
         for part in self._parts:
             for piece in part:
                 self._where.file.write(piece.tobytes())
