@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import gzip
+import os
 import struct
-import time
 import zipfile
 import zlib
 from contextlib import suppress
@@ -22,12 +22,17 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 
 
+def spent() -> float:
+    """Processor seconds of this process and of those it has waited for."""
+    return sum(os.times()[:4])
+
+
 def refusal(path: Path, limit: int | None = None) -> str:
     """What a file is refused with, at once."""
-    begun = time.process_time()
+    begun = spent()
     with pytest.raises(InputError) as caught:
         read_record(path, limit=limit)
-    assert time.process_time() - begun < 20.0
+    assert spent() - begun < 2.0
     return str(caught.value)
 
 
@@ -54,9 +59,9 @@ def test_a_long_time_that_stands_still_is_seen_at_once(tmp_path: Path) -> None:
     path = tmp_path / "still.csv"
     rows = "".join(f"0,{i % 7}\n" for i in range(100_000))
     path.write_text("time [s],acc [g]\n" + rows, encoding="utf-8")
-    begun = time.process_time()
+    begun = spent()
     assert read_record(path).rate is None
-    assert time.process_time() - begun < 20.0
+    assert spent() - begun < 2.0
 
 
 @pytest.mark.parametrize("step", ["1e-320", "1e-200", "1e200", "1e307"])
@@ -170,13 +175,13 @@ def test_long_lines_cost_no_more_than_their_length(
 ) -> None:
     path = tmp_path / "long.csv"
     path.write_text(text, encoding="utf-8")
-    begun = time.process_time()
+    begun = spent()
     if why is None:
         with suppress(InputError):
             read_record(path)
     else:
         assert why in refusal(path)
-    assert time.process_time() - begun < 20.0
+    assert spent() - begun < 2.0
 
 
 def test_a_name_stored_four_thousand_times_is_sorted_out_at_once(tmp_path: Path) -> None:
@@ -185,10 +190,10 @@ def test_a_name_stored_four_thousand_times_is_sorted_out_at_once(tmp_path: Path)
         ",".join(str(i * j % 7) for i in range(4000)) for j in (1, 2)
     ]
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
-    begun = time.process_time()
+    begun = spent()
     record = read_record(path)
     assert len(set(record.names)) == len(record.names) > 1000
-    assert time.process_time() - begun < 20.0
+    assert spent() - begun < 5.0
 
 
 def test_columns_on_disk_are_the_columns_in_memory(

@@ -239,6 +239,8 @@ class Crowd:
 
         with Client(self.address, timeout=200, set_as_default=False) as client:
             client.wait_for_workers(count, timeout=400)
+            # imports take long on a busy machine: who is slow to load is not who does not answer
+            client.run(loaded, on_error="return")
             there = client.scheduler_info(n_workers=-1)["workers"]
             return {address: one["name"] for address, one in there.items()}
 
@@ -247,6 +249,13 @@ class Crowd:
         for one in (self.scheduler, *self.workers.values()):
             one.kill()
             one.wait()
+
+
+def loaded() -> None:
+    """On a worker: load what it is asked with."""
+    from thermogear.study.crew import introduced
+
+    introduced()
 
 
 def crowd(directory: Path, _: int) -> dict:

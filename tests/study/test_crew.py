@@ -84,12 +84,12 @@ def test_a_worker_that_differs_is_refused_by_name_and_once(answer: object, why: 
 def test_a_worker_that_does_not_answer_holds_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(crew, "_ASKED", 0.05)
     scheduler = Scheduler({GOOD: introduced(), OTHER: introduced()})
-    scheduler.slow[OTHER] = 120.0
+    scheduler.slow[OTHER] = 5.0
     one = crew.Crew(scheduler)
     begun = time.monotonic()
     one.look()
     one.look()
-    assert time.monotonic() - begun < 60.0
+    assert time.monotonic() - begun < 2.0
     assert (list(one.good), one.refused, one.silent) == ([GOOD], {}, 1)
     assert scheduler.asked == [GOOD, OTHER]
 
@@ -132,7 +132,7 @@ def test_a_scheduler_that_is_lost_is_one_line(error: Exception) -> None:
     begun = time.monotonic()
     with pytest.raises(InputError, match="it is lost"):
         one.look()
-    assert time.monotonic() - begun < 60.0
+    assert time.monotonic() - begun < 1.0
 
 
 class Answers(Scheduler):

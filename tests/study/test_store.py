@@ -438,15 +438,15 @@ def test_stores_of_another_format_say_so(finished, tmp_path):
 def test_cluster_of_good_old_bare_and_dying_workers_and_a_dying_scheduler(tmp_path):
     found = trial("crowd", tmp_path)
     assert found["same"], found
-    # on a machine that is busy the good ones may have done all before the other is asked
-    expected = {"old": "its code is", "bare": "it cannot import thermogear"}
-    assert found["refused"]
-    assert found["refused"].items() <= expected.items()
+    assert found["refused"] == {
+        "old": "its code is",
+        "bare": "it cannot import thermogear",
+    }
     assert found["dead"] == ["dying"]
     assert "it is lost; what is done is stored; start it" in found["lost"]
-    assert found["lost_after_s"] < 120.0
+    assert found["lost_after_s"] < 10.0
     assert found["kept"] > 10
     assert found["same_resumed"]
     assert "none of its workers can be believed" in found["alone"]
     assert "it cannot import thermogear" in found["alone"]
-    assert found["alone_after_s"] < 240.0
+    assert found["alone_after_s"] < 30.0
