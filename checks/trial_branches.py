@@ -362,8 +362,8 @@ def draw_pair(rng: Random) -> tuple[dict[str, str], float]:
 
 def run_ups(count: int, found: Found) -> None:
     """``count`` pairs up and down, undeformed, in coarse and in fine steps."""
-    from thermogear.study.case import load_case
-    from thermogear.study.runup import run_up
+    from thermogear.case.case import load_case
+    from thermogear.study.run_up import run_up
 
     rng = np.random.default_rng(SEED + 1)
     for number in range(count):

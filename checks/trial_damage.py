@@ -31,17 +31,17 @@ import xarray as xr
 
 from thermogear.analysis.diagram import diagram_plan
 from thermogear.analysis.maps import map_plan
-from thermogear.analysis.plan import Plan, Variable, ranges_of
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
 from thermogear.base.netcdf import read_tree
+from thermogear.base.plan import Plan, Variable, ranges_of
 from thermogear.base.stores import RESULT, read_store
+from thermogear.case.case import load_example
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.study.case import load_example
-from thermogear.study.friction_survey import friction_survey
-from thermogear.study.results import write_results
+from thermogear.results.files import write_results
+from thermogear.results.work import carry_out
+from thermogear.study.friction import friction_survey
 from thermogear.study.run import run_to_directory
-from thermogear.study.work import carry_out
 
 SEED = 14_2026
 COUNT = 300

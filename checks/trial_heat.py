@@ -21,10 +21,10 @@ from thermogear import Gear, GearPair, MeshModel
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import lubricant
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.case.case import GearCase, gear_case, load_example
 from thermogear.mesh.balance import NODES, Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.warm_up import Duty, warm_up
-from thermogear.study.case import GearCase, gear_case, load_example
 
 Floats = NDArray[np.float64]
 

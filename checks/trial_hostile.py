@@ -176,7 +176,7 @@ def mutated_case(text: str, rng: Random) -> bytes:
 
 def cases() -> dict[str, str]:
     """The ready-made cases as they are and with more of their tables filled."""
-    from thermogear.study.ready import EXAMPLES, example_text
+    from thermogear.case.examples import EXAMPLES, example_text
 
     return {f"{name}.toml": example_text(name) for name in EXAMPLES}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from thermogear.study.schema import json_schema
+from thermogear.case.schema import json_schema
 
 TITLES = {
     "GearFile": "A gear pair",

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from thermogear import load_case, run
-from thermogear.study.errata import errata
+from thermogear.thesis.errata import errata
 from thermogear.thesis.report import build_to_directory
 
 TEXTS = ("number", "place", "kind", "words", "as_in_the_thesis", "consistent", "verdict")

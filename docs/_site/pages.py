@@ -29,9 +29,11 @@ FLOORS = {
     "heat": "lubricant, friction, temperature, thermal deformation",
     "mesh": "the choices of the mesh model, the quasi-static cycle, the heat balance",
     "verify": "finite-element checks",
-    "study": "case files, runs, surveys, sweeps, stores, comparisons",
-    "views": "pictures, pages, tables from stored results",
+    "case": "what a case file holds: schema, units, defaults, families of operating points",
+    "results": "what is stored: results, files, stores of long work, workers",
+    "study": "one module for each study: run, motion, orbit, branches, sweeps, comparisons",
     "thesis": "the claims of the thesis and their evidence",
+    "views": "pictures, pages, tables from stored results",
     "front": "the command line",
 }
 GENERATED = "generated"

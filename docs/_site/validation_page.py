@@ -16,6 +16,8 @@ FLOORS = {
     "verify": "Finite elements",
     "dynamics": "Equations of motion",
     "analysis": "Orbits, bifurcations, exponents, labels",
+    "case": "Case files",
+    "results": "Stores",
     "study": "From case to result",
     "signals": "Spectra and lines",
     "measured": "Records",

@@ -7,7 +7,7 @@ from thermogear.analysis.basins import _spread, basin_plan
 from thermogear.analysis.diagram import DIAGRAM_RULE, diagram_plan, orbit_diagram
 from thermogear.analysis.family import ModelFamily
 from thermogear.analysis.maps import map_plan, parameter_map
-from thermogear.analysis.plan import bytes_of, empty_arrays
+from thermogear.base.plan import bytes_of, empty_arrays
 from thermogear.dynamics.models import TorsionalModel
 
 BISTABLE = TorsionalModel(

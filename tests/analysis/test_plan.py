@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.family import ModelFamily, axis_values, family_for, lanes_and_status
-from thermogear.analysis.plan import (
+from thermogear.analysis.section import Ensemble, ReturnMap, starts_of
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Periodic
+from thermogear.base.plan import (
     Stopped,
     Variable,
     axis_coordinates,
@@ -21,9 +24,6 @@ from thermogear.analysis.plan import (
     keys_of,
     region_of,
 )
-from thermogear.analysis.section import Ensemble, ReturnMap, starts_of
-from thermogear.base.errors import InputError
-from thermogear.base.excitation import Periodic
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 
 ROWS, LENGTH, CUT = 3, 11, 4

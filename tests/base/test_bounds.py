@@ -13,15 +13,15 @@ from thermogear.base import bounds
 from thermogear.base.bounds import Bounds
 from thermogear.base.errors import InputError
 from thermogear.base.materials import lubricant
+from thermogear.case.fields import Count, Measure, Number, Several
+from thermogear.case.refusals import reader_at
+from thermogear.case.schema import GearFile
+from thermogear.case.units import read_quantity
 from thermogear.gears.deviations import FlankTable, PitchError, PressureAngleError
 from thermogear.gears.stiffness import Moduli
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading, ThermocoupleReading
 from thermogear.mesh.balance import Gearbox
-from thermogear.study.complaints import reader_at
-from thermogear.study.fields import Count, Measure, Number, Several
-from thermogear.study.schema import GearFile
-from thermogear.study.units import read_quantity
 
 WARM = {"pinion_addendum": 373.15, "pinion_bore": 353.15, "wheel_addendum": 373.15}
 WARM |= {"wheel_bore": 353.15, "housing": 333.15, "reference": 293.15}

@@ -127,7 +127,7 @@ def test_hdf5_that_cannot_write_does_not_fall(tmp_path: Path) -> None:
     code = (
         "import resource, sys, numpy as np, xarray as xr\n"
         "from pathlib import Path\n"
-        "from thermogear.study.results import write_results\n"
+        "from thermogear.results.files import write_results\n"
         "tree = xr.DataTree(xr.Dataset({'x': ('n', np.arange(1e5))}))\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))\n"
         "try:\n"

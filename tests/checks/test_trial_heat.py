@@ -6,7 +6,7 @@ import numpy as np
 from scripts import script
 
 from thermogear.base.errors import ValidityWarning
-from thermogear.study.case import gear_case, load_example
+from thermogear.case.case import gear_case, load_example
 
 
 def test_both_ends_and_the_warm_up_agree_on_a_few_points() -> None:

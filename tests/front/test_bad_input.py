@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from thermogear.case.examples import example_text
 from thermogear.front.cli import main
-from thermogear.study.ready import example_text
 
 Run = Callable[..., str]
 

@@ -15,12 +15,12 @@ import pytest
 
 import thermogear
 from thermogear.base.errors import ThermogearError
+from thermogear.case.case import Case, load_case
+from thermogear.case.examples import EXAMPLES, example_text
 from thermogear.front import cli as command_line
 from thermogear.front.cli import main
 from thermogear.front.lines import one_line, system_error
 from thermogear.front.progress import progress
-from thermogear.study.case import Case, load_case
-from thermogear.study.ready import EXAMPLES, example_text
 
 HEAVY = (
     "numpy",
@@ -299,7 +299,7 @@ def test_a_case_too_large_needs_force(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("thermogear.study.size.free_bytes", lambda: 2**20)
+    monkeypatch.setattr("thermogear.case.size.free_bytes", lambda: 2**20)
     results = tmp_path / "results"
     assert main(["run", str(rig), "-o", str(results)]) == 2
     assert "70 % of the free memory" in capsys.readouterr().err

@@ -91,7 +91,7 @@ def test_symbols_of_a_cascade_are_drawn_not_spelt_as_tags(tmp_path: Path) -> Non
 def test_ctrl_c_keeps_what_is_done(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from thermogear.study import engine
+    from thermogear.study import orbit as engine
 
     called = 0
     real = engine.lyapunov_exponents

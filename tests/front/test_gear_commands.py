@@ -13,9 +13,9 @@ import pytest
 import xarray as xr
 
 from thermogear.base.errors import InputError
+from thermogear.case.examples import example_text
 from thermogear.front.cli import cli, main
-from thermogear.study.ready import example_text
-from thermogear.study.results import MARK, claimed, is_ours
+from thermogear.results.files import MARK, claimed, is_ours
 from thermogear.views.survey_report import write_survey
 
 SMALL = ["--set", "grid.path_positions=41", "--set", 'operating.speed="2000 rpm"']

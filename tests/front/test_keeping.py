@@ -14,9 +14,9 @@ from thermogear.base import files
 from thermogear.base.files import held
 from thermogear.base.netcdf import write_tree
 from thermogear.front.cli import main
+from thermogear.results.files import MARK
+from thermogear.results.work import Step
 from thermogear.study import run as running
-from thermogear.study.results import MARK
-from thermogear.study.work import Step
 
 TREE = xr.DataTree.from_dict({"points": xr.Dataset({"x": ("point", np.arange(3.0))})})
 TREE.attrs = {"thermogear": "0.0.0", "kind": "dimensionless", "title": "Rows", "notices": "[]"}
@@ -129,7 +129,7 @@ def test_damaged_results_are_not_compared(
 def test_a_stopped_sweep_says_what_stays(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from thermogear.study import work
+    from thermogear.results import work
 
     def carry_out(plan: object, store: Path, *, report: Any, **options: object) -> None:
         report(Step(done=2, total=7, found=0, elapsed=1.0, remaining=2.0))

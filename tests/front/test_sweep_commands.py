@@ -6,8 +6,8 @@ import pytest
 from click.testing import CliRunner
 
 from thermogear.base.errors import InputError
+from thermogear.case.examples import example_text
 from thermogear.front.sweep_commands import COMMANDS
-from thermogear.study.ready import example_text
 
 BY_NAME = {command.name: command for command in COMMANDS}
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from thermogear.case.case import load_example
+from thermogear.case.examples import example_text
 from thermogear.front.cli import main
-from thermogear.study.case import load_example
-from thermogear.study.ready import example_text
 from thermogear.study.run import run_to_directory
 
 FEW = ["simulation.periods=16", "simulation.discard=16"]

@@ -10,13 +10,13 @@ import pytest
 
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS
+from thermogear.case.case import GearCase, load_case, load_example
+from thermogear.case.examples import example_text
+from thermogear.case.family import GearFamily
+from thermogear.case.subject import family, of_case
 from thermogear.gears.relief import optimise_tip_relief
 from thermogear.mesh.operating import Temperatures
-from thermogear.study.case import GearCase, load_case, load_example
-from thermogear.study.gearwords import GearFamily
-from thermogear.study.ready import example_text
 from thermogear.study.relief import relief_survey
-from thermogear.study.subject import family, of_case
 
 T0 = ZERO_CELSIUS + 20.0
 GIVEN = r"(pinion|wheel)_(addendum|bore_below_addendum)|housing_below_addendum|row"

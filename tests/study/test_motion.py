@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thermogear.case.case import Simulation
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.study.case import Simulation
 from thermogear.study.motion import PROOFS, follow
 
 SIMULATION = Simulation(

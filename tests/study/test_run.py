@@ -12,10 +12,10 @@ import xarray as xr
 from thermogear import InputError, run
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import FLAGS, STATUS
-from thermogear.study.case import load_example
-from thermogear.study.findings import _jams, summary
-from thermogear.study.results import RESULTS, SUMMARY
+from thermogear.case.case import load_example
+from thermogear.results.files import RESULTS, SUMMARY
 from thermogear.study.run import run_to_directory
+from thermogear.study.run_notices import _jams, summary
 
 SMALL = [
     "grid.path_positions=41",

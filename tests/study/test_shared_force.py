@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.study.case import gear_case, load_case, load_example
-from thermogear.study.ready import example_text
+from thermogear.case.case import gear_case, load_case, load_example
+from thermogear.case.examples import example_text
+from thermogear.case.subject import SHORT, of_case, of_numbers
 from thermogear.study.shared_force import shared_results
-from thermogear.study.subject import SHORT, of_case, of_numbers
 
 
 def test_where_the_two_forms_part() -> None:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.case.case import gear_case, load_case
 from thermogear.gears import mesh_system
-from thermogear.study.case import gear_case, load_case
-from thermogear.study.fitting import fit
+from thermogear.study.fit import fit
 from thermogear.study.relief import relief_survey
 
 NAN = float("nan")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.study.case import load_case, load_example
+from thermogear.case.case import load_case, load_example
 from thermogear.study.notices import difference_notices
 from thermogear.study.response import Recording, respond
-from thermogear.study.runup import notices_of, run_up
+from thermogear.study.run_up import notices_of, run_up
 from thermogear.study.sweep import sweep
 
 RPM = np.pi / 30.0
@@ -172,7 +172,7 @@ def test_jammed_corner_of_a_sweep_is_a_status(rig):
 def test_response_of_a_motion_in_lasting_contact_is_linear(rig):
     """Twice the record length changes no figure of a period-1 motion."""
     from thermogear.analysis.settle import Rule, settle
-    from thermogear.study.gearwords import GearFamily
+    from thermogear.case.family import GearFamily
 
     points = GearFamily(rig, ("pinion_speed",))(np.array([[1000.0 * RPM]]))
     state = settle(points.flat, np.zeros((1, 2)), Rule(settled=1e-9)).state

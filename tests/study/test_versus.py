@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from thermogear import InputError, run
-from thermogear.study.case import load_example
+from thermogear.case.case import load_example
 from thermogear.study.versus import (
     MOST_CASES,
     OWN,

@@ -10,8 +10,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from thermogear.base.errors import InputError
+from thermogear.case.examples import example_text
 from thermogear.front.verify_commands import verify
-from thermogear.study.ready import example_text
 
 pytestmark = pytest.mark.slow
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thermogear.study.case import GearCase, load_example
-from thermogear.study.loaded_survey import loaded_survey
-from thermogear.study.results import write_results
+from thermogear.case.case import GearCase, load_example
+from thermogear.results.files import write_results
+from thermogear.study.contact import loaded_survey
 from thermogear.views.plots.loaded import along_path
 from thermogear.views.survey_report import write_survey
 

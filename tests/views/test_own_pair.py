@@ -12,16 +12,16 @@ import pytest
 import xarray as xr
 
 from own_pair import OWN_PAIR
+from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.front.cli import main
-from thermogear.study.case import GearCase, load_case, load_example
-from thermogear.study.friction_survey import friction_survey
-from thermogear.study.loaded_survey import loaded_survey
+from thermogear.results.result import Results, results_of
+from thermogear.study.contact import loaded_survey
+from thermogear.study.friction import friction_survey
 from thermogear.study.relief import relief_survey
 from thermogear.study.run import run
-from thermogear.study.thermal_map import thermal_map
+from thermogear.study.temperature import thermal_map
 from thermogear.views import captions, report, survey_report
 from thermogear.views.plots import thermal_map as map_plots
-from thermogear.views.results import Results, results_of
 from thermogear.views.survey_sections import SURVEYS
 
 pytestmark = pytest.mark.filterwarnings("ignore:foundation of the gear")

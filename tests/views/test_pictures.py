@@ -8,8 +8,8 @@ import pytest
 import xarray as xr
 
 from thermogear import InputError, load_case, pictures, run, save_results, write_report
-from thermogear.study.case import load_example
-from thermogear.study.results import write_results
+from thermogear.case.case import load_example
+from thermogear.results.files import write_results
 from thermogear.views.pictures import write_pictures
 
 

@@ -11,8 +11,8 @@ import pytest
 import synthetic_results as synthetic
 
 from thermogear.base.errors import InputError, UnsealedWarning
+from thermogear.results.result import read_results
 from thermogear.study.versus import Stored, store, versus
-from thermogear.views.results import read_results
 from thermogear.views.versus_report import read_versus, write_versus
 
 

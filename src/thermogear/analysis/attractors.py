@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from thermogear.analysis.plan import Alive, keep_going
 from thermogear.analysis.settle import (
     CHAOTIC,
     DIVERGED,
@@ -19,6 +18,7 @@ from thermogear.analysis.settle import (
     settle,
     units_of,
 )
+from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics import exact
 from thermogear.dynamics.tables import Lanes
 

@@ -22,7 +22,10 @@ from thermogear.analysis.attractors import (
 )
 from thermogear.analysis.family import ModelFamily, axis_values
 from thermogear.analysis.outcome import LABEL_ATTRIBUTES, rule_inputs
-from thermogear.analysis.plan import (
+from thermogear.analysis.section import lanes_of
+from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, UNDECIDED, Rule, settle
+from thermogear.base.errors import InputError
+from thermogear.base.plan import (
     Alive,
     Arrays,
     Key,
@@ -32,9 +35,6 @@ from thermogear.analysis.plan import (
     keep_going,
     ranges_of,
 )
-from thermogear.analysis.section import lanes_of
-from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, UNDECIDED, Rule, settle
-from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import STATUS, status_attributes
 
 Floats = NDArray[np.float64]

@@ -22,7 +22,9 @@ from thermogear.analysis.outcome import (
     rule_inputs,
     settle_with_status,
 )
-from thermogear.analysis.plan import (
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
+from thermogear.base.plan import (
     Alive,
     Arrays,
     Key,
@@ -32,8 +34,6 @@ from thermogear.analysis.plan import (
     keep_going,
     ranges_of,
 )
-from thermogear.analysis.settle import Rule
-from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
 

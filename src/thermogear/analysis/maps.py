@@ -18,7 +18,9 @@ from thermogear.analysis.outcome import (
     settle_with_status,
     start_of,
 )
-from thermogear.analysis.plan import (
+from thermogear.analysis.settle import CHAOTIC, PERIODIC, Rule
+from thermogear.base.errors import InputError
+from thermogear.base.plan import (
     Alive,
     Arrays,
     Key,
@@ -29,8 +31,6 @@ from thermogear.analysis.plan import (
     keep_going,
     ranges_of,
 )
-from thermogear.analysis.settle import CHAOTIC, PERIODIC, Rule
-from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
 

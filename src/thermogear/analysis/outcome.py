@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.plan import Alive, Arrays, Variable, keep_going
 from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
+from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
 from thermogear.dynamics.tables import Lanes
 

@@ -10,3 +10,14 @@ Progress = Callable[[str, int, int], None]
 
 def silent(stage: str, done: int, total: int) -> None:
     """No progress wanted."""
+
+
+def duration(seconds: float) -> str:
+    """Seconds as a person says them."""
+    if not seconds < 1e9:
+        return "an unknown time"
+    if seconds < 90.0:
+        return f"{max(seconds, 0.1):.2g} s"
+    if seconds < 5400.0:
+        return f"{seconds / 60.0:.2g} min"
+    return f"{seconds / 3600.0:.3g} h"

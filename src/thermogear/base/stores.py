@@ -3,7 +3,7 @@
 A store is a directory: ``result.zarr`` (zarr v3), ``manifest.json`` (what the work is, twice) and
 ``journal.jsonl``: what is finished, with a hash of every chunk's numbers, and, once all is there,
 of every other array's numbers, of every ``zarr.json`` (units, meanings, names of the axes) and of
-the manifest. :mod:`thermogear.study.store` writes them.
+the manifest. :mod:`thermogear.results.store` writes them.
 """
 
 from __future__ import annotations

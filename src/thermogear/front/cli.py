@@ -29,7 +29,7 @@ from thermogear.front import (
 from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
-    from thermogear.study.case import DimensionlessCase, GearCase
+    from thermogear.case.case import DimensionlessCase, GearCase
 
 USER_ERROR = 2
 INTERRUPTED = 130
@@ -93,8 +93,8 @@ def run(
     reference: bool,
 ) -> None:
     """Run CASE and write results.nc, summary.json, CSV curves and report.html to DIR."""
-    from thermogear.study.results import require_ours
-    from thermogear.study.size import require_room
+    from thermogear.case.size import require_room
+    from thermogear.results.files import require_ours
 
     read = _load(case, (*overrides, "model.flash=exact") if reference else overrides)
     require_room(read, forced=force)
@@ -103,6 +103,7 @@ def run(
 
     from thermogear.front.progress import progress
     from thermogear.study.run import run_to_directory
+    from thermogear.thesis.errata import with_errata
     from thermogear.views.csv import clear_csv, write_csv
 
     curves: list[str] = []
@@ -113,7 +114,12 @@ def run(
 
     with progress(wanted=not as_json) as report_progress:
         summary = run_to_directory(
-            read, directory, case_text=_text_of(read), progress=report_progress, also=pages
+            read,
+            directory,
+            case_text=_text_of(read),
+            progress=report_progress,
+            complete=with_errata,
+            also=pages,
         )
     clear_csv(directory, curves)
     if as_json:
@@ -143,8 +149,8 @@ def report(directory: str, pictures: str | None, kind: str) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
 def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Check CASE without running it, and print the numbers it amounts to."""
-    from thermogear.study.facts import facts
-    from thermogear.study.size import estimated_bytes
+    from thermogear.case.derived import facts
+    from thermogear.case.size import estimated_bytes
 
     read = _load(case, overrides)
     found = facts(read)
@@ -175,7 +181,7 @@ _to_file = click.option("-o", "--output", metavar="FILE", help="Write a new FILE
 @_to_file
 def example(name: str | None, output: str | None) -> None:
     """Print the ready-made case NAME; without a name, list them."""
-    from thermogear.study.ready import EXAMPLES, example_text
+    from thermogear.case.examples import EXAMPLES, example_text
 
     if name is None:
         if output is not None:
@@ -190,7 +196,7 @@ def example(name: str | None, output: str | None) -> None:
 @_to_file
 def schema(output: str | None) -> None:
     """Print the JSON schema of a case file."""
-    from thermogear.study.schema import json_schema
+    from thermogear.case.schema import json_schema
 
     _put(json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n", output)
 
@@ -221,7 +227,7 @@ for _list in (
 
 
 def _load(case: str, overrides: Sequence[str]) -> GearCase | DimensionlessCase:
-    from thermogear.study.case import load_case
+    from thermogear.case.case import load_case
 
     return load_case(Path(case), overrides)
 

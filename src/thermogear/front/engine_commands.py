@@ -18,8 +18,8 @@ from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
 
 if TYPE_CHECKING:
-    from thermogear.study.engine import Found
-    from thermogear.study.subject import Subject
+    from thermogear.case.subject import Subject
+    from thermogear.study.orbit import Found
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -81,7 +81,7 @@ def _start(text: str | None) -> tuple[float, float] | None:
 
 def _numbers(options: dict[str, Any]) -> dict[str, float]:
     """The given numbers of the equation, by their long names."""
-    from thermogear.study.subject import SHORT
+    from thermogear.case.subject import SHORT
 
     given = {name.replace("_", "-"): options[name] for name in SYMBOLS}
     return {SHORT[name]: float(v) for name, v in given.items() if v is not None}
@@ -89,7 +89,7 @@ def _numbers(options: dict[str, Any]) -> dict[str, float]:
 
 def _case(options: dict[str, Any]) -> Any:
     """The case named on the command line: a file, or a ready-made one; None without."""
-    from thermogear.study.case import load_case
+    from thermogear.case.case import load_case
 
     name = options["case"]
     if name is None:
@@ -100,7 +100,7 @@ def _case(options: dict[str, Any]) -> Any:
 
 
 def _subject(options: dict[str, Any], case: Any) -> Subject:
-    from thermogear.study.subject import of_case, of_numbers
+    from thermogear.case.subject import of_case, of_numbers
 
     start, numbers = _start(options["start"]), _numbers(options)
     if case is None:
@@ -124,7 +124,7 @@ def _carry_out(
 ) -> None:
     """Claim the directory, compute, store, draw, print; Ctrl+C is passed on after that."""
     from thermogear.front.progress import Stopped, progress
-    from thermogear.study.results import claimed
+    from thermogear.results.files import claimed
 
     output = options["output"]
     with nullcontext() if output is None else claimed(Path(output)) as folder:
@@ -161,7 +161,7 @@ def orbit(period: int | None, direct: bool, **options: Any) -> None:
       thermogear orbit table-4.2 --row zeta --point 2
       thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2
     """
-    from thermogear.study.engine import orbit_results
+    from thermogear.study.orbit import orbit_results
 
     subject = _subject(options, _case(options))
 
@@ -215,7 +215,7 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
     \b
       thermogear lyapunov table-4.2 --row zeta --point 4
     """
-    from thermogear.study.engine import lyapunov_results
+    from thermogear.study.orbit import lyapunov_results
 
     if batches > MOST_BATCHES:
         raise InputError("--batches", batches, allowed=f"4..{MOST_BATCHES}")
@@ -290,8 +290,8 @@ def continue_(
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
     """
-    from thermogear.study.cascades import branch_results, cascade_results
-    from thermogear.study.subject import parameter_name, parameter_value
+    from thermogear.case.subject import parameter_name, parameter_value
+    from thermogear.study.branches import branch_results, cascade_results
 
     case = _case(options)
     if cascade is not None:
@@ -328,9 +328,9 @@ def _sweeps(
     options: dict[str, Any], case: Any, parameter: str | None, begin: str | None, to: str | None
 ) -> tuple[Any, str]:
     """What a cascade runs through: the parameter, the case's rows, or those of table 4.2."""
-    from thermogear.study.cascades import on_numbers, sweep_of_subject, sweeps_of
-    from thermogear.study.case import DimensionlessCase, load_example
-    from thermogear.study.subject import of_numbers, parameter_name, parameter_value
+    from thermogear.case.case import DimensionlessCase, load_example
+    from thermogear.case.subject import of_numbers, parameter_name, parameter_value
+    from thermogear.study.branches import on_numbers, sweep_of_subject, sweeps_of
 
     if parameter is not None:
         subject = _subject(options, case)

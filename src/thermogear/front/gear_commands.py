@@ -18,7 +18,7 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 if TYPE_CHECKING:
     import xarray as xr
 
-    from thermogear.study.case import GearCase
+    from thermogear.case.case import GearCase
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -57,7 +57,7 @@ def friction(case: str, output: str, overrides: tuple[str, ...], as_json: bool) 
     read = _gear_case(case, overrides)
 
     def make(report: Progress) -> xr.DataTree:
-        from thermogear.study.friction_survey import friction_survey
+        from thermogear.study.friction import friction_survey
 
         return friction_survey(read)
 
@@ -120,8 +120,8 @@ def temperature(
     if own and (speeds or torques):
         raise InputError("--own", "speeds or torques beside it", fix="leave one out")
 
-    from thermogear.study.size import require_points
-    from thermogear.study.thermal_map import SPEEDS, TORQUES, thermal_map
+    from thermogear.case.size import require_points
+    from thermogear.study.temperature import SPEEDS, TORQUES, thermal_map
 
     omega = _axis("--speeds", speeds, RPM, SPEEDS) if not own else read.speeds
     moment = _axis("--torques", torques, 1.0, TORQUES) if not own else read.torques
@@ -216,16 +216,16 @@ def warmup(
     ([sensors]) would show. Temperatures that CASE gives are not used; nodes that
     [gearbox.measured] holds are. Writes warmup.nc, warmup.html, pictures and CSV to DIR.
     """
-    from thermogear.study.allowed import kelvin
+    from thermogear.case.allowed import kelvin
 
     read = _gear_case(case, overrides)
     begin = None if start is None else kelvin("--start", start)
     if duty is not None and at is not None:
         raise InputError("--at", "an operating point beside --duty", fix="leave one out")
 
-    from thermogear.study.duty import point_duty, read_duty
+    from thermogear.case.duty import point_duty, read_duty
+    from thermogear.study.warm_up import read_measured, warm_up_survey
     from thermogear.study.warm_up_fit import require_factors
-    from thermogear.study.warm_up_survey import read_measured, warm_up_survey
 
     work = None if duty is None else read_duty(duty, read)
     if at is not None:
@@ -314,7 +314,7 @@ def relief(
     Least peak-to-peak static transmission error, drawn against the unrelieved pair; prints the
     lines for the case file. Writes relief.nc, relief.html, pictures and CSV to DIR.
     """
-    from thermogear.study.allowed import kelvin
+    from thermogear.case.allowed import kelvin
 
     read = _gear_case(case, overrides)
     for name, value in (("--torque", torque), ("--largest", largest)):
@@ -393,7 +393,7 @@ def contact(
     moments = _axis("--torques", torques, 1.0, ())
 
     def make(report: Progress) -> xr.DataTree:
-        from thermogear.study.loaded_survey import loaded_survey
+        from thermogear.study.contact import loaded_survey
 
         return loaded_survey(read, moments, body=body, progress=report)
 
@@ -430,7 +430,7 @@ COMMANDS: tuple[click.Command, ...] = (friction, temperature, warmup, relief, co
 
 
 def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
-    from thermogear.study.case import gear_case, load_case
+    from thermogear.case.case import gear_case, load_case
 
     return gear_case(load_case(Path(case), overrides))
 
@@ -440,7 +440,7 @@ def _carry_out(
 ) -> xr.DataTree:
     """Claim the directory, compute, store, draw."""
     from thermogear.front.progress import progress
-    from thermogear.study.results import claimed, write_results
+    from thermogear.results.files import claimed, write_results
     from thermogear.views.survey_report import write_survey
 
     with claimed(directory) as folder:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from thermogear.measured.reduction import Measurement
-    from thermogear.study.comparison import Comparison
+    from thermogear.study.compare import Comparison
 
 
 def _supplies(command: Any) -> Any:
@@ -161,7 +161,7 @@ def compare(
 ) -> None:
     """Compare CASE (a case, a directory of results, or thesis-5.2) with a record or a table."""
     from thermogear.measured.published import PUBLISHED
-    from thermogear.study import comparison
+    from thermogear.study import compare as comparison
 
     _require_gear(options)
     speed = options["speed"]
@@ -226,14 +226,14 @@ def _print(found: Comparison) -> None:
 
 def _claimed(output: str | None) -> AbstractContextManager[Path | None]:
     """The folder that ``output`` gets its files from at the end; None where none is named."""
-    from thermogear.study.results import claimed
+    from thermogear.results.files import claimed
 
     return nullcontext() if output is None else claimed(Path(output))
 
 
 def _store(tree: xr.DataTree, folder: Path, name: str) -> None:
     """Store the tree and draw its page."""
-    from thermogear.study.results import write_results
+    from thermogear.results.files import write_results
     from thermogear.views.measured_report import write_measured_report
 
     write_measured_report(write_results(tree, folder, f"{name}.nc"), folder / f"{name}.html")

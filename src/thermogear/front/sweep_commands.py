@@ -21,9 +21,9 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 if TYPE_CHECKING:
     import xarray as xr
 
-    from thermogear.analysis.plan import Plan
-    from thermogear.study.case import DimensionlessCase, GearCase
-    from thermogear.study.work import Report, Step
+    from thermogear.base.plan import Plan
+    from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.results.work import Report, Step
 
 _case = click.argument("case", metavar="CASE")
 
@@ -95,7 +95,7 @@ def bifurcation(
     **options: Any,
 ) -> None:
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
-    from thermogear.study.analyses import case_diagram, moved_points, parse_axis
+    from thermogear.study.diagrams import case_diagram, moved_points, parse_axis
 
     read = _load(case, options["overrides"])
     if len(over) != 1:
@@ -158,7 +158,7 @@ def map_(
     **options: Any,
 ) -> None:
     """Map of the regimes of CASE over two parameters (--over twice)."""
-    from thermogear.study.analyses import case_map, parse_axes
+    from thermogear.study.diagrams import case_map, parse_axes
 
     read = _load(case, options["overrides"])
     if len(over) != 2:
@@ -181,7 +181,7 @@ def basins(
     case: str, but: tuple[str, ...], x: str, v: str, output: str, as_json: bool, **options: Any
 ) -> None:
     """Basins of attraction of CASE at its base set (a gear case: first speed and torque)."""
-    from thermogear.study.analyses import case_basins
+    from thermogear.study.diagrams import case_basins
 
     read = _load(case, options["overrides"])
     plan = case_basins(
@@ -211,9 +211,9 @@ def runup(
     **options: Any,
 ) -> None:
     """Run CASE up and down in speed, without heat and hot: error, mesh force, K_v, jumps."""
-    from thermogear.study.allowed import kelvin
-    from thermogear.study.case import gear_case
-    from thermogear.study.runup import run_up_plan
+    from thermogear.case.allowed import kelvin
+    from thermogear.case.case import gear_case
+    from thermogear.study.run_up import run_up_plan
 
     read = gear_case(_load(case, options["overrides"]))
     speeds = _grid("rpm", rpm) * RPM
@@ -231,8 +231,8 @@ def runup(
 @_common
 def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
     """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
-    from thermogear.study.analyses import parse_axes
-    from thermogear.study.case import gear_case
+    from thermogear.case.case import gear_case
+    from thermogear.study.diagrams import parse_axes
     from thermogear.study.sweep import sweep_plan
 
     read = gear_case(_load(case, options["overrides"]))
@@ -249,13 +249,13 @@ COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, sweep)
 
 
 def _load(case: str, overrides: tuple[str, ...]) -> GearCase | DimensionlessCase:
-    from thermogear.study.case import load_case
+    from thermogear.case.case import load_case
 
     return load_case(Path(case), overrides)
 
 
 def _state(text: str) -> str | float:
-    from thermogear.study.allowed import kelvin
+    from thermogear.case.allowed import kelvin
 
     if text in ("hot", "undeformed"):
         return text
@@ -279,8 +279,8 @@ def _split(text: str) -> tuple[str, str]:
 
 
 def _numbers(texts: tuple[str, ...]) -> dict[str, float]:
-    from thermogear.study.allowed import dimensionless_reader, read_value
-    from thermogear.study.analyses import dimensionless_name
+    from thermogear.case.allowed import dimensionless_reader, read_value
+    from thermogear.study.diagrams import dimensionless_name
 
     found: dict[str, float] = {}
     for text in texts:
@@ -314,7 +314,7 @@ def _grid(name: str, text: str) -> Any:
 
 
 def _show(name: str) -> Callable[[float], float]:
-    from thermogear.study.gearwords import WORDS
+    from thermogear.case.family import WORDS
 
     one = WORDS.get(name)
     return (lambda v: v) if one is None else (lambda v: one.factor * (v - one.zero))
@@ -332,7 +332,7 @@ def _watched() -> Iterator[Report]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
 
-    from thermogear.study.size import duration
+    from thermogear.base.progress import duration
 
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[left]}"))
     with Progress(*columns, console=Console(stderr=True)) as bars:
@@ -351,7 +351,7 @@ def _watched() -> Iterator[Report]:
 def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -> xr.Dataset | None:
     """Carry ``plan`` out and draw its page; None where only an estimate was wanted."""
     from thermogear.front.lines import say
-    from thermogear.study.work import carry_out, estimate, require_space
+    from thermogear.results.work import carry_out, estimate, require_space
 
     require_space(plan, directory, threads=options["threads"], forced=options["force"])
     if options["only_estimate"] or sys.stderr.isatty():

@@ -85,9 +85,10 @@ def sensitivity(
     Ranges and conclusions are those of the thesis's rig: CASE is the ready-made case `rig`, or a
     copy of it with the same gears and values; any other is refused.
     """
+    from thermogear.case.case import gear_case, load_case
+    from thermogear.case.thesis_cases import require_of_the_thesis
     from thermogear.front.progress import progress
-    from thermogear.study.case import gear_case, load_case
-    from thermogear.study.results import claimed
+    from thermogear.results.files import claimed
     from thermogear.study.sensitivity import (
         ABOUT,
         Plan,
@@ -97,7 +98,6 @@ def sensitivity(
         store,
     )
     from thermogear.study.sensitivity import sensitivity as study
-    from thermogear.study.thesis_cases import require_of_the_thesis
 
     require_salib()
     if speed is not None and not 0.0 < speed < 1e6:

@@ -12,7 +12,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
-    from thermogear.study.case import GearCase
+    from thermogear.case.case import GearCase
     from thermogear.verify.checks import GrowthCheck, StiffnessCheck
     from thermogear.verify.pairs import CheckedPair
 
@@ -200,7 +200,7 @@ def pairs(refine: int, near: str, as_json: bool) -> None:
 
 
 def _gear_case(case: str, overrides: tuple[str, ...]) -> GearCase:
-    from thermogear.study.case import gear_case, load_case
+    from thermogear.case.case import gear_case, load_case
 
     return gear_case(load_case(Path(case), overrides))
 

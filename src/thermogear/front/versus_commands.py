@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from thermogear.study.case import DimensionlessCase, GearCase
+    from thermogear.case.case import DimensionlessCase, GearCase
 
 
 @click.command()
@@ -32,11 +32,11 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     directory = Path(output)
     paths = [_existing(Path(given)) for given in results]
 
+    from thermogear.case.case import load_case
+    from thermogear.case.size import require_room
     from thermogear.front.progress import Stopped, progress
-    from thermogear.study.case import load_case
-    from thermogear.study.results import claimed
-    from thermogear.study.size import require_room
-    from thermogear.views.results import Results, read_results
+    from thermogear.results.files import claimed
+    from thermogear.results.result import Results, read_results
     from thermogear.views.versus_report import write_versus
 
     # everything is read and checked before the first case runs
@@ -86,7 +86,7 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
 def _existing(path: Path) -> Path:
     """``path`` where it is there or names a ready-made case; else the nearest name beside it."""
     from thermogear.base.errors import InputError
-    from thermogear.study.ready import EXAMPLES
+    from thermogear.case.examples import EXAMPLES
 
     if path.exists() or str(path) in EXAMPLES:
         return path

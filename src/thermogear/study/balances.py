@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, status_attributes
+from thermogear.case.case import GearCase
 from thermogear.heat.film import REGIMES
 from thermogear.mesh.balance import HeatBalance, heat_balance
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.thermal import HotPair
-from thermogear.study.case import GearCase
 
 Floats = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
 from thermogear.study.balances import celsius
-from thermogear.study.case import GearCase
 
 Floats = NDArray[np.float64]
 Notice = dict[str, str]

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from thermogear.analysis.labels import Label, labels
 from thermogear.base.excitation import Excitation
 from thermogear.base.vocabulary import STATUS
+from thermogear.case.case import Simulation
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
 from thermogear.signals.spectra import amplitude_spectrum, order_amplitudes
-from thermogear.study.case import Simulation
 from thermogear.study.response import lost_share
 
 Floats = NDArray[np.float64]

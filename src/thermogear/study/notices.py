@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.units import RPM
-from thermogear.study.case import GearCase
+from thermogear.case.case import GearCase
 
 NO_BACK_IMPACT = (
     "the teeth never reach the back flanks anywhere in this range: a wider or narrower gap would "

@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.case.case import GearCase
+from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
-from thermogear.study.case import GearCase
-from thermogear.study.thesis_cases import of_the_thesis
 
 Floats = NDArray[np.float64]
 

@@ -14,6 +14,8 @@ import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import edge_attributes
+from thermogear.case.case import GearCase
+from thermogear.case.flanks import relief_text
 from thermogear.gears.deviations import Contacts, Relief
 from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
 from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
@@ -22,8 +24,6 @@ from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.study.balances import dressed
-from thermogear.study.case import GearCase
-from thermogear.study.flanks import relief_text
 
 Floats = NDArray[np.float64]
 KIND = "relief"

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.plan import Alive, Arrays, Variable, keep_going
+from thermogear.base.plan import Alive, Arrays, Variable, keep_going
+from thermogear.case.family import GearPoints
 from thermogear.dynamics import exact
 from thermogear.signals.spectra import order_amplitudes
-from thermogear.study.gearwords import GearPoints
 
 Floats = NDArray[np.float64]
 

@@ -25,18 +25,18 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATES, STATUS, attributes, label
+from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
+from thermogear.case.citations import citations
+from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
-from thermogear.study import errata, findings
+from thermogear.results.files import claimed, write_results, write_summary
+from thermogear.study import run_notices as findings
 from thermogear.study.balances import OF_OIL, balances, blanked, regime_attributes
-from thermogear.study.case import Case, DimensionlessCase, GearCase, load_example
-from thermogear.study.citations import citations
 from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
-from thermogear.study.results import claimed, write_results, write_summary
-from thermogear.study.thesis_cases import of_the_thesis
 
 
 def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
@@ -54,7 +54,7 @@ def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
         groups = _gear_groups(case, progress)
         notices = findings.notices(case, groups)
         own = {
-            "errata": json.dumps(errata.errata(case, groups) if of_the_thesis(case) else []),
+            "errata": "[]",
             "facts": json.dumps(findings.facts(case, groups)),
             "bundles": json.dumps({m.name: m.choices() for m in case.models}),
             "choices": json.dumps(findings.choice_meanings()),
@@ -87,6 +87,7 @@ def run_to_directory(
     *,
     case_text: str | None = None,
     progress: Progress = silent,
+    complete: Callable[[Case, xr.DataTree], xr.DataTree] = lambda case, tree: tree,
     also: Callable[[Path], None] = lambda folder: None,
 ) -> dict[str, Any]:
     """:func:`run`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
@@ -98,7 +99,7 @@ def run_to_directory(
     """
     with claimed(directory) as folder:
         tree = run(case if case_text is None else replace(case, text=case_text), progress=progress)
-        summary = _write(tree, folder)
+        summary = _write(complete(case, tree), folder)
         also(folder)
     return summary
 

@@ -26,6 +26,8 @@ from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.materials import LUBRICANTS, Lubricant
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.case import GearCase
+from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import from_excitation
 from thermogear.gears.geometry import GearPair
@@ -34,9 +36,7 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import disc_inertia, excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
-from thermogear.study.case import GearCase
-from thermogear.study.results import write_results, write_summary
-from thermogear.study.thesis_cases import require_of_the_thesis
+from thermogear.results.files import write_results, write_summary
 
 Floats = NDArray[np.float64]
 PATH, PHASES, HARMONICS = 41, 64, 16

@@ -12,14 +12,14 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.pair_springs import PairSprings
 from thermogear.base.progress import Progress, silent
+from thermogear.case.subject import Gears, Subject
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
-from thermogear.study.engine import Found, found
-from thermogear.study.subject import Gears, Subject
+from thermogear.study.orbit import Found, found
 
 POSITIONS = 240
 FACTORS = np.geomspace(0.01, 4.0, 25)

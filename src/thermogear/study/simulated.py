@@ -20,7 +20,7 @@ from thermogear.measured.record import Channel, Record
 if TYPE_CHECKING:
     import xarray as xr
 
-    from thermogear.study.case import Case
+    from thermogear.case.case import Case
 
 Floats = NDArray[np.float64]
 
@@ -75,8 +75,8 @@ def case_lines(
     u_num: float | None,
 ) -> CaseLines:
     """The case simulated, its step doubled for u_num, and sampled within its tolerances."""
-    from thermogear.study.case import Case as CaseType
-    from thermogear.study.case import load_case
+    from thermogear.case.case import Case as CaseType
+    from thermogear.case.case import load_case
     from thermogear.study.run import run
 
     if isinstance(case, CaseType):
@@ -138,7 +138,7 @@ def _steps(text: str, changes: Mapping[str, str]) -> int:
     try:
         return int(_stated(text, changes, "simulation.steps_per_period"))
     except InputError:
-        from thermogear.study.case import load_case
+        from thermogear.case.case import load_case
 
         return load_case(text, changes).simulation.steps_per_period
 

@@ -18,7 +18,9 @@ from thermogear.analysis.outcome import (
     rule_inputs,
     settle_with_status,
 )
-from thermogear.analysis.plan import (
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
+from thermogear.base.plan import (
     Alive,
     Arrays,
     Key,
@@ -27,13 +29,11 @@ from thermogear.analysis.plan import (
     keep_going,
     ranges_of,
 )
-from thermogear.analysis.settle import Rule
-from thermogear.base.errors import InputError
-from thermogear.study.case import GearCase, gear_case
-from thermogear.study.gearwords import GearFamily, gear_axes
+from thermogear.case.case import GearCase, gear_case
+from thermogear.case.family import GearFamily, gear_axes
+from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
-from thermogear.study.work import Report, carry_out
 
 Floats = NDArray[np.float64]
 

@@ -22,8 +22,8 @@ import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import attributes, status_attributes, told_labels
-from thermogear.study.results import write_results
-from thermogear.study.source import overridden, pairs, tables
+from thermogear.case.source import overridden, pairs, tables
+from thermogear.results.files import write_results
 
 VERSUS = "versus.nc"
 MOST_CASES = 6

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
+from thermogear.case.case import GearCase
+from thermogear.case.subject import of_case
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import PairModel, from_excitation
 from thermogear.gears.contact import flank_radii, path_of_contact, rolling_velocities
@@ -20,8 +22,6 @@ from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
-from thermogear.study.case import GearCase
-from thermogear.study.subject import of_case
 
 Floats = NDArray[np.float64]
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
+from thermogear.case.case import DimensionlessCase, GearCase, gear_case, load_example
 from thermogear.mesh.model import MeshModel
-from thermogear.study.case import DimensionlessCase, GearCase, gear_case, load_example
-from thermogear.study.comparison import Comparison, compare
+from thermogear.study.compare import Comparison, compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import chain, motions

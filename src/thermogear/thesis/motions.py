@@ -15,9 +15,9 @@ from thermogear.analysis.labels import label as settle_label
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import InputError
+from thermogear.case.case import DimensionlessCase, Point
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.study.case import DimensionlessCase, Point
 
 Floats = NDArray[np.float64]
 

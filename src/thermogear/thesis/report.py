@@ -16,7 +16,7 @@ import xarray as xr
 import thermogear
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
-from thermogear.study.results import claimed, write_results, write_summary
+from thermogear.results.files import claimed, write_results, write_summary
 from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section2, section3, section4, section5, section6
 from thermogear.thesis.claim import Claim, Finding, Verdict

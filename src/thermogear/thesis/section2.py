@@ -497,7 +497,7 @@ def _claims() -> tuple[Claim, ...]:
          (f"{FRICTION}.constant_dry", f"{HEAT}.blok_flash"), "flash-dry"),
         ("2.2.6", "2.2", "statement",
          "Curves of both states were computed for a pair whose parameters follow.", _curves,
-         (CYCLE, "thermogear.study.case.load_example"), "friction"),
+         (CYCLE, "thermogear.case.case.load_example"), "friction"),
         ("2.3.1", "2.3", "statement", "Hot teeth expand radially and in circumference.", _expands,
          ("thermogear.heat.expansion.radial_displacement",), "profile-0"),
         ("2.3.2", "2.3", "statement", "The rise of the surface temperature is what expands them.",

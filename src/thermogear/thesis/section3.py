@@ -348,7 +348,7 @@ _ROWS = (
      (f"{MODELS}.PairModel",), ""),
     ("3.3.3", "3.3, symbols of the equations", "statement",
      "Inertias, base radii, damping, stiffness, backlash function and torques enter.",
-     _motion_symbols, ("thermogear.study.case.GearCase",), ""),
+     _motion_symbols, ("thermogear.case.case.GearCase",), ""),
     ("3.3.4", "3.3, relative displacement", "formula",
      "Displacement along the line of action, less an error.", _relative,
      (f"{MODELS}.PairModel",), ""),

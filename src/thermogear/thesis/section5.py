@@ -8,12 +8,12 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.measured.published import THESIS_5_2, SpeedLine, unstated_processing
 from thermogear.signals.integration import trapezoid_factor
-from thermogear.study.comparison import Row
+from thermogear.study.compare import Row
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
 
 PUBLISHED = "thermogear.measured.published.THESIS_5_2"
-COMPARE = "thermogear.study.comparison.compare"
+COMPARE = "thermogear.study.compare.compare"
 MODELS = ("with heat", "without heat")
 QUANTITIES = {"frequency": ("Hz", 1.0), "displacement": ("µm", 1e6)}
 

@@ -132,7 +132,7 @@ _ROWS = (
      ("thermogear.analysis.continuation.cascade",), "diagram-zeta"),
     ("6.4.1", "6, conclusion 4", "statement",
      "The tests confirm that the model with heat predicts better.", _simulation_or_test,
-     ("thermogear.study.comparison.compare",), "experiment"),
+     ("thermogear.study.compare.compare",), "experiment"),
 )  # fmt: skip
 
 CLAIMS = tuple(Claim(*row) for row in _ROWS)

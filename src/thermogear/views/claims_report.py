@@ -12,11 +12,11 @@ from markupsafe import Markup
 
 from thermogear.base.files import put
 from thermogear.base.units import RPM
+from thermogear.results.result import Results, read_results
 from thermogear.views import gear_sections, row_sections
 from thermogear.views.closing import closing
 from thermogear.views.page import Block, Cell, Gallery, Pictures, Section, Table, Text, Tile, render
 from thermogear.views.plots import claims as plots
-from thermogear.views.results import Results, read_results
 from thermogear.views.words import celsius, html_symbol, number, prose
 
 REPORT = "report.html"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from thermogear.results.result import Results
 from thermogear.views import tables
 from thermogear.views.page import Code, Section, Text
-from thermogear.views.results import Results
 from thermogear.views.words import field_name, prose
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.files import put
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.views.results import read_results
+from thermogear.results.result import read_results
 
 CURVES = {
     "path_position": "path",

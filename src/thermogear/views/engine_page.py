@@ -15,12 +15,12 @@ from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
 from thermogear.base.files import put
+from thermogear.results.result import read_tree
 from thermogear.views.csv import quoted
 from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text, render
 from thermogear.views.plots import engine as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
-from thermogear.views.results import read_tree
 from thermogear.views.style import styled
 from thermogear.views.svg import draw, put_figure
 from thermogear.views.words import number, prose

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from thermogear.results.result import Results
 from thermogear.views import captions, tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import backlash, deformation, motion, path, stiffness, temperature
-from thermogear.views.results import Results
 from thermogear.views.style import chosen, names_of
 from thermogear.views.words import celsius, jam_words, operating_names
 

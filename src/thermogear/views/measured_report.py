@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from thermogear.base.errors import InputError
 from thermogear.base.files import put
 from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.results.result import Results, read_tree
 from thermogear.views import tables
 from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text, render
-from thermogear.views.results import Results, read_tree
 from thermogear.views.style import COLD, HOT, INK, WIDE, log_axis, picture
 from thermogear.views.words import html_symbol, number, prose
 

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from thermogear.base.vocabulary import told_labels, told_operating
+from thermogear.results.result import Results
 from thermogear.views.page import Tile
-from thermogear.views.results import Results
 from thermogear.views.style import names_of
 from thermogear.views.tables import JAMMED
 from thermogear.views.words import celsius, display, jam_at, number, percent, span

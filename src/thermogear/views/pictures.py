@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
 from thermogear.base.files import require_directory
+from thermogear.results.result import KINDS as RUNS
+from thermogear.results.result import read_results, results_of
 from thermogear.views.page import Picture, Pictures
 from thermogear.views.report import ORDER, with_hot_temperature
-from thermogear.views.results import KINDS as RUNS
-from thermogear.views.results import read_results, results_of
 from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS
 from thermogear.views.svg import put_figure

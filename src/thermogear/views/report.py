@@ -7,10 +7,10 @@ from pathlib import Path
 import xarray as xr
 
 from thermogear.base.files import put
+from thermogear.results.result import Results, read_results
 from thermogear.views import gear_sections, opening, row_sections, tables
 from thermogear.views.closing import closing
 from thermogear.views.page import Pictures, Section, render
-from thermogear.views.results import Results, read_results
 
 REPORT = "report.html"
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import xarray as xr
 
+from thermogear.results.result import Results
 from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import rows
-from thermogear.views.results import Results
 from thermogear.views.words import number
 
 PREFIX = "base_sets/"

@@ -12,8 +12,8 @@ import xarray as xr
 
 from thermogear.base.errors import InputError
 from thermogear.base.files import put
+from thermogear.results.result import Results, read_tree
 from thermogear.views.page import Block, Code, Gallery, Picture, Section, render
-from thermogear.views.results import Results, read_tree
 from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS, Drawn, Survey
 from thermogear.views.svg import draw, put_figure

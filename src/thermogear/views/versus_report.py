@@ -12,10 +12,10 @@ import xarray as xr
 from thermogear.base.errors import InputError
 from thermogear.base.files import put
 from thermogear.base.vocabulary import STATUS
+from thermogear.results.result import read_tree
 from thermogear.views.csv import table_text
 from thermogear.views.page import Block, Cell, Code, Pictures, Section, Table, Text, render
 from thermogear.views.plots import versus as plots
-from thermogear.views.results import read_tree
 from thermogear.views.style import chosen
 from thermogear.views.tables import is_jammed
 from thermogear.views.words import (

@@ -1,0 +1,193 @@
+"""The values that are ours: declared in the file's table ``[ours]``, or left to a default.
+
+A declared reason holds for the value that stands beside it and for no other: where the case has
+another value, whoever edited, overrode or left it out, the entry is silent. A reason without a
+value, as older files have them, is left out with a warning.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
+from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.case.alike import same
+from thermogear.case.refusals import dotted, table_at
+from thermogear.case.units import short
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """A value that no source states: where it stands, what it is, why it was taken."""
+
+    field: str
+    value: str
+    reason: str
+
+
+def assumptions(data: dict[str, Any], file: BaseModel) -> tuple[Assumption, ...]:
+    """Declared assumptions that hold, in the file's order, then the defaults left to act."""
+    declared = _declared(data.get("ours", {}), data, file)
+    covered = {a.field for a in declared}
+    silent = [
+        a
+        for a in _defaults(file, ())
+        if not any(a.field == c or a.field.startswith(f"{c}.") for c in covered)
+    ]
+    return (*declared, *silent)
+
+
+def _declared(table: dict[str, Any], data: dict[str, Any], file: BaseModel) -> list[Assumption]:
+    found, bare = [], []
+    for path, entry in _entries(table):
+        _require_field(path, type(file))
+        if isinstance(entry, str) and entry.strip():
+            bare.append(path)
+            continue
+        value, reason = _spoken(path, entry)
+        if _holds(path, value, data, file):
+            found.append(Assumption(path, _value(data, path), " ".join(reason.split())))
+    if bare:
+        warnings.warn(
+            f"ours: {len(bare)} reasons without the value they speak of are left out; write "
+            f'"{bare[0]}" = {{ value = ..., reason = "..." }}',
+            ValidityWarning,
+            stacklevel=4,
+        )
+    return found
+
+
+def _entries(table: dict[str, Any], above: str = "") -> list[tuple[str, Any]]:
+    """(dotted path, entry), nested or with a quoted dotted key alike."""
+    found: list[tuple[str, Any]] = []
+    for key, value in table.items():
+        path = f"{above}.{key}" if above else key
+        nested = isinstance(value, dict) and not _is_entry(value)
+        found += _entries(value, path) if nested else [(path, value)]
+    return found
+
+
+def _is_entry(table: dict[str, Any]) -> bool:
+    """Whether a table is an entry; a field may be named "value" too, its entry is a table."""
+    return "reason" in table or not isinstance(table.get("value", {}), dict)
+
+
+def _spoken(path: str, entry: Any) -> tuple[Any, str]:
+    """Value and reason of an entry."""
+    reason = entry.get("reason") if isinstance(entry, dict) else None
+    whole = isinstance(entry, dict) and set(entry) == {"value", "reason"}
+    if not (whole and isinstance(reason, str) and reason.strip()):
+        raise InputError(
+            f"ours.{path}",
+            short(entry),
+            why="a reason holds for one value: an entry needs a value and a reason",
+            fix=f'write "{path}" = {{ value = ..., reason = "..." }}',
+        )
+    return entry["value"], reason
+
+
+def _holds(path: str, value: Any, data: dict[str, Any], file: BaseModel) -> bool:
+    """Whether the case has the ``value`` that an entry speaks of, by value and not by text."""
+    parts = _split(path)
+    if _in_table(data, parts) == (True, value):
+        return True
+    found: Any = file
+    for part in parts:
+        found = found.get(part) if isinstance(found, dict) else getattr(found, part, None)
+    above = table_at(type(file), parts[:-1])
+    if found is None or above is None:
+        return False
+    try:
+        return same(_reader(above, parts[-1]).validate_python(value), found)
+    except (ValidationError, InputError):
+        return False
+
+
+@lru_cache(maxsize=512)
+def _reader(table: type[BaseModel], name: str) -> TypeAdapter[Any]:
+    """What reads one field of a table."""
+    return TypeAdapter(table.model_fields[name].rebuild_annotation())
+
+
+def _split(path: str) -> tuple[str, ...]:
+    """The parts of a dotted path; a part in quotes may hold points."""
+    parts, rest = [], path
+    while rest:
+        if rest[0] in "\"'" and rest.find(rest[0], 1) > 0:
+            end = rest.find(rest[0], 1)
+            parts.append(rest[1:end])
+            rest = rest[end + 1 :].removeprefix(".")
+        else:
+            part, _, rest = rest.partition(".")
+            parts.append(part)
+    return tuple(parts)
+
+
+def _require_field(path: str, file: type[BaseModel]) -> None:
+    parts = _split(path)
+    for depth, part in enumerate(parts):
+        above = table_at(file, parts[:depth])
+        if above is None:
+            if table_at(file, parts[: depth + 1]) is None:
+                break
+            continue  # a name of the user's own: rows.zeta, materials.bronze
+        if part not in above.model_fields:
+            break
+    else:
+        if parts:
+            return
+    above_it = dotted(parts[:depth]) if parts else ""
+    known = table_at(file, parts[:depth]) if parts else file
+    names = known.model_fields if known else {}
+    fields = [f"{above_it}.{name}" if above_it else name for name in names]
+    raise InputError(
+        "ours", repr(path), why="no such field", fix=nearest(path, fields) if fields else None
+    )
+
+
+def _in_table(data: dict[str, Any], parts: tuple[str, ...]) -> tuple[bool, Any]:
+    """Whether the file states a field, and what it states."""
+    entry: Any = data
+    for part in parts:
+        if not isinstance(entry, dict) or part not in entry:
+            return False, None
+        entry = entry[part]
+    return True, entry
+
+
+def _value(data: dict[str, Any], path: str) -> str:
+    stated, entry = _in_table(data, _split(path))
+    return in_words(entry) if stated else "left out"
+
+
+def in_words(entry: Any) -> str:
+    """A TOML value as a reader would write it, without quotes."""
+    if isinstance(entry, dict):
+        return ", ".join(f"{key} = {in_words(value)}" for key, value in entry.items())
+    if isinstance(entry, list | tuple):
+        return ", ".join(in_words(value) for value in entry)
+    return entry if isinstance(entry, str) else short(entry)
+
+
+def _defaults(table: BaseModel, above: tuple[str, ...]) -> list[Assumption]:
+    found = []
+    for name, field in type(table).model_fields.items():
+        value = getattr(table, name)
+        if isinstance(value, BaseModel):
+            found += _defaults(value, (*above, name))
+        elif isinstance(value, dict) and value:
+            for key, entry in value.items():
+                if isinstance(entry, BaseModel):
+                    found += _defaults(entry, (*above, name, key))
+        elif name not in table.model_fields_set and field.description and name not in _SILENT:
+            text = "left out" if value is None else in_words(value)
+            reason = f"not in the file; the default: {field.description}"
+            found.append(Assumption(dotted((*above, name)), text, reason))
+    return found
+
+
+_SILENT = ("materials", "ours", "row", "pictures", "base_sets", "expected")

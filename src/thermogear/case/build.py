@@ -1,0 +1,266 @@
+"""The parts of a gear case, each made from the tables of the file that describe it.
+
+What the floors below find impossible comes back under the field of the file it came from.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+from thermogear.base import materials
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.excitation import Periodic
+from thermogear.base.materials import Lubricant, Material
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.backlash import Backlash, from_tolerances, from_value
+from thermogear.case.fields import BODY
+from thermogear.case.schema import GearFile, GearTable
+from thermogear.case.units import short, shown
+from thermogear.gears.geometry import LEFT_OUT, Gear, GearPair, Rack
+from thermogear.heat.friction import ROUGHNESS_LIMIT
+from thermogear.mesh.excite import disc_inertia
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Temperatures
+
+_Made = TypeVar("_Made")
+
+
+@dataclass(frozen=True)
+class Follows:
+    """A temperature [K] given outright, or as ``value`` kelvins below an addendum's."""
+
+    value: float
+    below: bool
+
+    def at(self, addendum: float) -> float:
+        """The temperature [K] beside an ``addendum`` [K]."""
+        return addendum - self.value if self.below else self.value
+
+    def checked(self, addendum: float, field: str) -> float:
+        """The same, refused under the name of its ``field`` where no such body may be."""
+        temperature = self.at(addendum)
+        if not self.below:
+            return temperature
+        try:
+            return BODY.within(temperature)
+        except InputError as error:
+            raise InputError(
+                f"{field}_below_addendum",
+                f"{self.value:.6g} K below {shown(addendum, 'temperature')} = {error.got}",
+                allowed=error.allowed,
+            ) from error
+
+
+@dataclass(frozen=True)
+class TemperatureRule:
+    """How bores, housing and oil go along with the addendum temperatures.
+
+    Housing and oil follow the pinion's addendum where they follow at all.
+    """
+
+    reference: float
+    pinion_bore: Follows
+    wheel_bore: Follows
+    housing: Follows
+    oil: Follows
+
+    def at(self, *, pinion_addendum: float, wheel_addendum: float) -> Temperatures:
+        """All body temperatures beside the two addenda [K]."""
+        return Temperatures(
+            reference=self.reference,
+            pinion_addendum=pinion_addendum,
+            pinion_bore=self.pinion_bore.checked(pinion_addendum, "temperatures.pinion_bore"),
+            wheel_addendum=wheel_addendum,
+            wheel_bore=self.wheel_bore.checked(wheel_addendum, "temperatures.wheel_bore"),
+            housing=self.housing.checked(pinion_addendum, "temperatures.housing"),
+        )
+
+    def oil_at(self, pinion_addendum: float) -> float:
+        """The oil's temperature [K] beside the pinion's addendum [K]."""
+        return self.oil.checked(pinion_addendum, "oil.temperature")
+
+
+def own_materials(file: GearFile) -> dict[str, Material]:
+    """The materials that the file describes itself."""
+    own = {}
+    for name, table in file.materials.items():
+        values = table.model_dump(exclude_none=True)
+        own[name] = _under(f"materials.{name}", partial(Material, name=name, **values))
+    return own
+
+
+def named_material(name: str, at: str, known: Mapping[str, Material]) -> Material:
+    """The material of the field ``at``, or an error that says the nearest name."""
+    if name not in known:
+        raise InputError(
+            at,
+            short(name),
+            allowed=" | ".join(known),
+            fix=f"{nearest(name, known)} Or describe it in [materials.{name}]"
+            if name.isidentifier()
+            else nearest(name, known),
+        )
+    return known[name]
+
+
+def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
+    """What ``make`` makes; its complaints speak of the field of the file."""
+    try:
+        return make()
+    except InputError as error:
+        inner, got = error.field, error.got
+        for start in ("material.", "lubricant."):
+            inner = inner.removeprefix(start)
+        where = f"{prefix}.{inner}"
+        if inner in ("module", "pressure_angle") or inner.startswith("rack."):
+            where = f"gears.{inner}"
+        if inner.endswith("tip_radius"):
+            where = where.removesuffix("tip_radius") + "tip_diameter"
+            got = f"a radius of {got}"
+        raise type(error)(
+            where, got, allowed=error.allowed, why=error.why, fix=error.fix
+        ) from error
+
+
+def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Material]) -> Gear:
+    gears = file.gears
+    tip = LEFT_OUT if table.tip_diameter is None else 0.5 * table.tip_diameter
+    material = named_material(table.material, f"{prefix}.material", known)
+    # a rack left out is the gear's own to choose, with a fillet that fits its pressure angle
+    rack = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
+    return _under(
+        prefix,
+        lambda: Gear(
+            teeth=table.teeth,
+            module=gears.module,
+            pressure_angle=gears.pressure_angle,
+            profile_shift=table.profile_shift,
+            face_width=table.face_width,
+            bore_radius=table.bore_radius,
+            tip_radius=tip,
+            material=material,
+            roughness=table.roughness,
+            allow_undercut=table.allow_undercut,
+            **rack,
+        ),
+    )
+
+
+def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
+    """The two gears and their centre distance."""
+    distance = file.gears.centre_distance
+    pinion = _gear(file.gears.pinion, file, "gears.pinion", known)
+    wheel = _gear(file.gears.wheel, file, "gears.wheel", known)
+    return _under(
+        "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)
+    )
+
+
+def temperature_rule(file: GearFile) -> TemperatureRule | None:
+    """How bores, housing and oil go along with the addenda; None where those are computed."""
+    table = file.temperatures
+    if table.pinion_addendum is None or table.wheel_addendum is None:
+        return None
+
+    def follows(given: float | None, below: float | None) -> Follows:
+        return Follows(below or 0.0, True) if given is None else Follows(given, False)
+
+    return TemperatureRule(
+        table.reference,
+        follows(table.pinion_bore, table.pinion_bore_below_addendum),
+        follows(table.wheel_bore, table.wheel_bore_below_addendum),
+        follows(table.housing, table.housing_below_addendum),
+        follows(file.oil.temperature, file.oil.temperature_below_addendum),
+    )
+
+
+def lubricant(file: GearFile) -> Lubricant:
+    """The named oil, or the one through the two viscosities."""
+    oil = file.oil
+    if oil.viscosity_40 is None or oil.viscosity_100 is None:
+        try:
+            return materials.lubricant(oil.name)
+        except InputError as error:
+            own = "give viscosity_40, viscosity_100 and density_15"
+            raise InputError(
+                "oil.name",
+                short(oil.name),
+                allowed=" | ".join(materials.LUBRICANTS),
+                fix=f"{error.fix}, or {own}",
+            ) from error
+    cold, hot = (
+        (ZERO_CELSIUS + 40.0, oil.viscosity_40),
+        (ZERO_CELSIUS + 100.0, oil.viscosity_100),
+    )
+    return _under(
+        "oil",
+        lambda: Lubricant.from_two_points(oil.name, cold, hot, density_15=oil.density_15),
+    )
+
+
+def cold_backlash(file: GearFile, pair: GearPair, housing: Material) -> Backlash:
+    """The cold half backlash out of whatever kind the file gives."""
+    table = file.backlash
+    if table.tolerances is not None:
+        parts = table.tolerances
+        return from_tolerances(
+            pinion=parts.pinion_tooth_thickness,
+            wheel=parts.wheel_tooth_thickness,
+            distance=parts.centre_distance,
+            pair=pair,
+        )
+    rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
+    assert table.value is not None  # the schema holds exactly one of the two
+    return from_value(
+        table.value,
+        str(table.direction),
+        str(table.extent),
+        rise,
+        pair,
+        housing.thermal_expansion,
+    )
+
+
+def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
+    """Both moments of inertia [kg m^2], and in words what they are."""
+    table = file.inertia
+    if table.pinion is not None and table.wheel is not None:
+        return (table.pinion, table.wheel), "given"
+    radius, bored = table.radius or "pitch", bool(table.bored)
+
+    def disc(gear: Gear) -> float:
+        outer = gear.pitch_radius if radius == "pitch" else gear.tip_radius
+        inner = gear.bore_radius if bored else 0.0
+        return disc_inertia(gear, radius=outer, bore_radius=inner)
+
+    words = f"solid discs of {radius} radius, {'bored' if bored else 'unbored'}"
+    return (disc(pair.pinion), disc(pair.wheel)), words
+
+
+def transmission_error(file: GearFile) -> Periodic:
+    """The kinematic error e [m] over the mesh phase."""
+    parts = {h.order: cmath.rect(h.amplitude, h.phase) for h in file.transmission_error.harmonics}
+    return Periodic(0.0, tuple(parts.get(q, 0j) for q in range(1, max(parts, default=0) + 1)))
+
+
+def models(file: GearFile, pair: GearPair) -> tuple[MeshModel, ...]:
+    """The bundles to compute with, single choices put in their place."""
+    choices = file.model.model_dump(exclude_none=True)
+    bundle = choices.pop("bundle")
+    bundles = {"consistent": MeshModel.consistent, "thesis": MeshModel.thesis}
+    names = tuple(bundles) if bundle == "both" else (bundle,)
+    chosen = tuple(bundles[name]().override(**choices) for name in names)
+    roughness = 0.5 * (pair.pinion.roughness + pair.wheel.roughness)
+    if roughness >= ROUGHNESS_LIMIT and any(m.friction == "benedict-kelley" for m in chosen):
+        raise InputError(
+            "gears.pinion.roughness",
+            f"{1e6 * roughness:.4g} um, the mean of both flanks",
+            allowed=f"< {1e6 * ROUGHNESS_LIMIT:.4g} um",
+            why="the friction law of Benedict and Kelley ends there",
+            fix='use smoother flanks, or model.friction = "lambda-blend"',
+        )
+    return chosen

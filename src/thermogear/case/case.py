@@ -1,0 +1,390 @@
+"""A case: the file read, checked and turned into frozen SI dataclasses.
+
+Read it with :func:`load_case`; a ready-made one with :func:`load_example`. What leaves knows
+nothing of TOML, texts or units any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Periodic
+from thermogear.base.materials import MATERIALS, Material
+from thermogear.case import build as parts
+from thermogear.case.assumptions import Assumption, assumptions
+from thermogear.case.backlash import Backlash
+from thermogear.case.build import TemperatureRule
+from thermogear.case.dimensionless import Point, points_of
+from thermogear.case.examples import example_text
+from thermogear.case.flanks import deviations
+from thermogear.case.gearbox import Reading, gearbox
+from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
+from thermogear.case.refusals import first_complaint
+from thermogear.case.schema import PICTURES, DimensionlessFile, GearFile
+from thermogear.case.sensor_schema import SensorsTable
+from thermogear.case.source import case_text, overridden, pairs, tables
+from thermogear.case.units import shown
+from thermogear.gears.deviations import Deviation
+from thermogear.gears.geometry import GearPair
+from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating, Temperatures
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "PICTURES",
+    "Assumption",
+    "Backlash",
+    "Case",
+    "DimensionlessCase",
+    "GearCase",
+    "Point",
+    "Simulation",
+    "TemperatureRule",
+    "load_case",
+    "load_example",
+]
+
+MOST_POINTS = 1_000_000
+"""Speeds times torques, at most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulation:
+    """How long and how finely the motion is followed; periods are mesh periods.
+
+    ``initial_state`` is (X, X'), the displacement over the cold half backlash and its derivative
+    by omega_n t.
+    """
+
+    periods: int
+    discard: int
+    most_discarded: int
+    steps_per_period: int
+    samples: int
+    sample_periods: int
+    initial_state: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """What every case has; ``text`` is the file as it was read, without the ``overrides``."""
+
+    title: str
+    text: str
+    simulation: Simulation
+    assumptions: tuple[Assumption, ...] = ()
+    overrides: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """``"gear"`` or ``"dimensionless"``."""
+        return "gear" if isinstance(self, GearCase) else "dimensionless"
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearCase(Case):
+    """A gear pair with its operating points, from friction to vibration (SI, K, rad).
+
+    ``stated`` holds every speed with every torque, the speed the slow axis, in the hot state;
+    where the temperatures are left out (``computed``) it is all at the reference temperature, and
+    :meth:`operating_of` computes the hot state from the heat balance of ``gearbox``.
+    ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
+    the other temperatures go along with it (:data:`~thermogear.case.fields.FOLLOW`).
+    ``deviations`` of the flanks; ``readings`` of thermometers; ``sensors`` that watch a warm-up;
+    ``scuffing_load_stage`` of the oil
+    in the FZG test, None where unknown. ``inertias`` [kg m^2];
+    ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
+    compute with.
+    """
+
+    pair: GearPair
+    stated: Operating
+    temperature_rule: TemperatureRule | None
+    gear_temperatures: tuple[float, ...]
+    inertias: tuple[float, float]
+    inertia_kind: str
+    damping_ratio: float
+    transmission_error: Periodic
+    cold_backlash: Backlash
+    models: tuple[MeshModel, ...]
+    speeds: tuple[float, ...]
+    torques: tuple[float, ...]
+    harmonics: int
+    mesh_positions: int
+    path_positions: int
+    pictures: tuple[str, ...] = PICTURES
+    base_sets: tuple[str, ...] = ()
+    deviations: tuple[Deviation, ...] = ()
+    gearbox: Gearbox = field(default_factory=Gearbox)
+    readings: tuple[Reading, ...] = ()
+    sensors: SensorsTable = field(default_factory=SensorsTable)
+    scuffing_load_stage: float | None = None
+    computed: bool = False
+    follow: str = "proportional"
+    _balances: dict[tuple[MeshModel, float | None], HeatBalance] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
+
+    @property
+    def housing(self) -> Material:
+        """The material of the housing."""
+        return self.stated.housing
+
+    @property
+    def operating(self) -> Operating:
+        """The hot state of every operating point, by the first model where it is computed."""
+        return self.operating_of(self.models[0])
+
+    def operating_of(self, model: MeshModel) -> Operating:
+        """The hot state of every operating point under ``model``."""
+        return self.balance(model).operating if self.computed else self.stated
+
+    def cycle(
+        self, operating: Operating, model: MeshModel, path_positions: int | None = None
+    ) -> xr.Dataset:
+        """The mesh cycle at ``operating`` under ``model``: the case's housing, flanks and grids.
+
+        ``path_positions`` replaces the case's number along the path of contact.
+        """
+        return mesh_cycle(
+            self.pair,
+            replace(operating, housing=self.housing),
+            model,
+            deviations=self.deviations,
+            path_positions=path_positions or self.path_positions,
+            mesh_positions=self.mesh_positions,
+        )
+
+    def balance(self, model: MeshModel, gear_temperature: float | None = None) -> HeatBalance:
+        """The heat balance of every operating point, computed once.
+
+        ``gear_temperature`` [K] holds the teeth of both gears there.
+        """
+        key = (model, gear_temperature)
+        if key not in self._balances:
+            at, box = self.stated, self.gearbox
+            if gear_temperature is not None:
+                teeth = dict.fromkeys(("pinion_tooth", "wheel_tooth"), gear_temperature)
+                box = replace(box, measured={**box.measured, **teeth})
+            self._balances[key] = heat_balance(
+                self.pair,
+                at.speed,
+                at.torque,
+                at.lubricant,
+                at.half_backlash,
+                model,
+                gearbox=box,
+                reference=at.temperatures.reference,
+                housing=at.housing,
+                deviations=self.deviations,
+            )
+        return self._balances[key]
+
+    @property
+    def equivalent_mass(self) -> float:
+        """m_e = I1 I2/(I1 r_b2^2 + I2 r_b1^2) [kg]."""
+        (i1, i2), r1, r2 = self.inertias, self.pair.pinion.base_radius, self.pair.wheel.base_radius
+        return i1 * i2 / (i1 * r2**2 + i2 * r1**2)
+
+    def operating_at(self, gear_temperature: float, model: MeshModel | None = None) -> Operating:
+        """The operating points with both addenda at ``gear_temperature`` [K].
+
+        ``follow`` "proportional": every excess over the drawing temperature keeps its proportion
+        to the gears' in the hot state under ``model`` (default: the first), so that at the drawing
+        temperature all is as it is drawn. "fixed": distances in kelvins and temperatures given
+        outright stay, and the heat balance computes what is left out. Raises InputError where a
+        body or the oil would leave the range of a case file.
+        """
+        chosen = model or self.models[0]
+        if self.follow == "proportional":
+            return _in_proportion(self.operating_of(chosen), gear_temperature)
+        if self.temperature_rule is None:
+            return self.balance(chosen, gear_temperature).operating
+        return replace(
+            self.stated,
+            oil_temperature=self.temperature_rule.oil_at(gear_temperature),
+            temperatures=self.temperature_rule.at(
+                pinion_addendum=gear_temperature, wheel_addendum=gear_temperature
+            ),
+        )
+
+    def settled_at(self, gear_temperature: float | None, model: MeshModel) -> NDArray[np.bool_]:
+        """Whether the heat balance behind :meth:`operating_at` (None: hot) settled, per point."""
+        if not self.computed:
+            return np.ones(self.stated.speed.size, dtype=np.bool_)
+        held = None if self.follow == "proportional" else gear_temperature
+        return self.balance(model, held).settled
+
+    def lost_at(self, gear_temperature: float | None, model: MeshModel) -> NDArray[np.bool_]:
+        """Where that heat balance has no value because a law has none, per point."""
+        lost = np.zeros(self.stated.speed.size, dtype=np.bool_)
+        if self.computed:
+            held = None if self.follow == "proportional" else gear_temperature
+            lost[list(self.balance(model, held).lost)] = True
+        return lost
+
+
+def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
+    """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
+    try:
+        return hot.with_gears_at(gear_temperature)
+    except InputError as error:
+        why = f"in the hot state {error.why}"
+        if error.field != "gear temperature":
+            name = error.field.rpartition(".")[2]
+            why = f"{name} in proportion to it would be at {error.got}; allowed {error.allowed}"
+        raise InputError(
+            "gear temperature",
+            shown(gear_temperature, "temperature"),
+            why=why,
+            fix='give the addenda other temperatures, or write temperatures.follow = "fixed"',
+        ) from error
+
+
+@dataclass(frozen=True, kw_only=True)
+class DimensionlessCase(Case):
+    """Rows of points of the dimensionless equation; no gear stands behind them."""
+
+    points: tuple[Point, ...]
+
+
+def load_case(
+    source: str | Path, overrides: Mapping[str, str] | Sequence[str] = ()
+) -> GearCase | DimensionlessCase:
+    """The case in the file ``source``, or in the text itself, with ``overrides`` put in.
+
+    ``overrides`` map dotted fields to values as a file would hold them, or are texts
+    ``"gears.pinion.teeth=30"``. Raises :class:`InputError` in one line; warns with
+    :class:`ValidityWarning` where a value leaves the range of its data.
+    """
+    name, text = case_text(source)
+    changes = pairs(overrides)
+    data = overridden(tables(name, text), changes)
+    kind = data.get("kind", "gear")
+    file = DimensionlessFile if kind == "dimensionless" else GearFile
+    try:
+        read: GearFile | DimensionlessFile = file.model_validate(data)
+    except ValidationError as error:
+        raise first_complaint(error, file) from error
+    common: dict[str, Any] = {
+        "title": read.title,
+        "text": text,
+        "simulation": Simulation(**read.simulation.model_dump()),
+        "assumptions": assumptions(data, read),
+        "overrides": changes,
+    }
+    if isinstance(read, DimensionlessFile):
+        return DimensionlessCase(points=points_of(read), **common)
+    return _gear_case(read, common)
+
+
+def gear_case(case: object) -> GearCase:
+    """``case`` itself if it has gears; InputError otherwise."""
+    if isinstance(case, GearCase):
+        return case
+    raise InputError(
+        "case",
+        f"kind = {getattr(case, 'kind', type(case).__name__)!r}",
+        allowed="kind = 'gear'",
+        why="there is no gear in it",
+    )
+
+
+def load_example(
+    name: str, overrides: Mapping[str, str] | Sequence[str] = ()
+) -> GearCase | DimensionlessCase:
+    """The ready-made case ``name``; an unknown name says the nearest."""
+    return load_case(example_text(name), overrides)
+
+
+def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
+    materials = MATERIALS | parts.own_materials(file)
+    housing = parts.named_material(file.housing.material, "housing.material", materials)
+    pair = parts.pair_of(file, materials)
+    rule = parts.temperature_rule(file)
+    given = file.temperatures
+    if rule is None or given.pinion_addendum is None or given.wheel_addendum is None:
+        cold = given.reference
+        temperatures, oil = Temperatures.uniform(cold, reference=cold), file.oil.temperature or cold
+    else:
+        temperatures = rule.at(
+            pinion_addendum=given.pinion_addendum, wheel_addendum=given.wheel_addendum
+        )
+        oil = rule.oil_at(given.pinion_addendum)
+    box, readings = gearbox(file, pair)
+    backlash = parts.cold_backlash(file, pair, housing)
+    speeds, torques = file.operating.speed, file.operating.torque
+    count = len(speeds) * len(torques)
+    if count > MOST_POINTS:
+        raise InputError(
+            "operating",
+            f"{len(speeds)} speeds x {len(torques)} torques = {count} points",
+            allowed=f"1..{MOST_POINTS} points",
+            fix="split the case",
+        )
+    inertias, inertia_kind = parts.inertias(file, pair)
+    case = GearCase(
+        pair=pair,
+        stated=Operating(
+            speed=np.repeat(speeds, len(torques)),
+            torque=np.tile(torques, len(speeds)),
+            lubricant=parts.lubricant(file),
+            oil_temperature=oil,
+            temperatures=temperatures,
+            half_backlash=backlash.half,
+            housing=housing,
+        ),
+        temperature_rule=rule,
+        gear_temperatures=file.temperatures.row,
+        inertias=inertias,
+        inertia_kind=inertia_kind,
+        damping_ratio=file.dynamics.damping_ratio,
+        transmission_error=parts.transmission_error(file),
+        cold_backlash=backlash,
+        models=parts.models(file, pair),
+        speeds=speeds,
+        torques=torques,
+        harmonics=file.grid.harmonics,
+        mesh_positions=file.grid.mesh_positions,
+        path_positions=file.grid.path_positions,
+        pictures=file.draw.pictures,
+        base_sets=file.draw.base_sets,
+        deviations=deviations(file, pair),
+        gearbox=box,
+        readings=readings,
+        sensors=file.sensors or SensorsTable(),
+        scuffing_load_stage=file.oil.scuffing_load_stage,
+        computed=rule is None,
+        follow=given.follow,
+        **common,
+    )
+    warn_of_torque(pair, torques)
+    if case.computed:
+        return case
+    warn_of_temperatures(pair, {"temperatures": case.stated} | _row_of(case))
+    return case
+
+
+def _row_of(case: GearCase) -> dict[str, Operating]:
+    """The operating points of every temperature of the row by its field, where it is drawn."""
+    found = {}
+    for place, temperature in enumerate(case.gear_temperatures):
+        field = f"temperatures.row[{place}]"
+        if "temperature" in case.pictures:
+            try:
+                found[field] = case.operating_at(temperature)
+            except InputError as error:
+                raise error.named(field) from error
+    return found

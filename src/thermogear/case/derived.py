@@ -1,0 +1,143 @@
+"""What a case amounts to before anything is computed: geometry, masses, frequencies."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.case.case import Case, DimensionlessCase, GearCase
+from thermogear.case.schema import PARAMETERS
+from thermogear.gears.geometry import Gear
+from thermogear.heat.lubrication import kinematic_viscosity
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A number of the case with the unit it is shown in; ``value`` may be a text."""
+
+    group: str
+    name: str
+    value: float | int | str
+    unit: str = ""
+
+
+def facts(case: Case) -> tuple[Fact, ...]:
+    """The derived numbers of a case, in groups, in the units a gear engineer reads."""
+    if isinstance(case, GearCase):
+        return (
+            *_pair(case),
+            *_gear("pinion", case.pair.pinion),
+            *_gear("wheel", case.pair.wheel),
+            *_dynamics(case),
+            *_oil(case.operating.lubricant),
+            *_operating(case),
+            *_held(case),
+        )
+    return _rows(case) if isinstance(case, DimensionlessCase) else ()
+
+
+def _pair(case: GearCase) -> list[Fact]:
+    pair, path = case.pair, case.pair.path
+    group = "pair"
+    found = [
+        Fact(group, "ratio", pair.ratio),
+        Fact(group, "centre distance", 1e3 * pair.centre_distance, "mm"),
+        Fact(group, "operating pressure angle", math.degrees(pair.operating_pressure_angle), "deg"),
+        Fact(group, "base pitch", 1e3 * pair.base_pitch, "mm"),
+        Fact(group, "contact ratio", pair.contact_ratio),
+        Fact(group, "common face width", 1e3 * pair.face_width, "mm"),
+    ]
+    found += [
+        Fact("path of contact from the pinion's tangent point", name, 1e3 * value, "mm")
+        for name, value in zip("ABCDE", path, strict=True)
+    ]
+    cold = case.cold_backlash
+    found.append(
+        Fact("backlash on the line of action", "cold half backlash", 1e6 * cold.half, "um")
+    )
+    if cold.least != cold.most:
+        group = "backlash on the line of action"
+        found.append(Fact(group, "least cold half backlash", 1e6 * cold.least, "um"))
+        found.append(Fact(group, "most cold half backlash", 1e6 * cold.most, "um"))
+    found.append(Fact("backlash on the line of action", "from", cold.origin))
+    return found
+
+
+def _gear(name: str, gear: Gear) -> list[Fact]:
+    return [
+        Fact(name, "teeth", gear.teeth),
+        Fact(name, "pitch radius", 1e3 * gear.pitch_radius, "mm"),
+        Fact(name, "base radius", 1e3 * gear.base_radius, "mm"),
+        Fact(name, "root radius", 1e3 * gear.root_radius, "mm"),
+        Fact(name, "form radius", 1e3 * gear.form_radius, "mm"),
+        Fact(name, "tip radius", 1e3 * gear.tip_radius, "mm"),
+        Fact(name, "tip thickness", 1e3 * gear.tip_thickness, "mm"),
+        Fact(name, "least profile shift without undercut", gear.minimum_profile_shift),
+    ]
+
+
+def _dynamics(case: GearCase) -> list[Fact]:
+    group = "inertia"
+    first, second = case.inertias
+    return [
+        Fact(group, "pinion", first, "kg m^2"),
+        Fact(group, "wheel", second, "kg m^2"),
+        Fact(group, "equivalent mass on the line of action", case.equivalent_mass, "kg"),
+        Fact(group, "model", case.inertia_kind),
+    ]
+
+
+def _oil(oil: Lubricant) -> list[Fact]:
+    nu = 1e6 * kinematic_viscosity(oil, ZERO_CELSIUS + np.array([40.0, 100.0]))
+    return [
+        Fact("oil", "name", f"{oil.name}, {LUBRICANT_KINDS[oil.kind]}"),
+        Fact("oil", "viscosity at 40 degC", float(nu[0]), "mm^2/s"),
+        Fact("oil", "viscosity at 100 degC", float(nu[1]), "mm^2/s"),
+    ]
+
+
+def _operating(case: GearCase) -> list[Fact]:
+    found = []
+    for speed in case.speeds:
+        rpm = f"{speed / RPM:.6g} rpm"
+        mesh = case.pair.pinion.teeth * speed / (2.0 * math.pi)
+        found.append(Fact("mesh frequency", f"at {rpm}", mesh, "Hz"))
+    for torque in case.torques:
+        force = torque / case.pair.pinion.base_radius
+        found.append(Fact("normal force", f"at {torque:.6g} N m", force, "N"))
+    return found
+
+
+def _held(case: GearCase) -> list[Fact]:
+    """What is known beforehand of temperatures that are computed, and of the flanks."""
+    found = [
+        Fact("deviations of the flanks", str(place), type(one).__name__)
+        for place, one in enumerate(case.deviations, 1)
+    ]
+    if not case.computed:
+        return found
+    group = "temperatures computed from the heat balance"
+    held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
+    for name, kelvin in held.items():
+        found.append(Fact(group, f"{name} is held at", kelvin - ZERO_CELSIUS, "degC"))
+    for one in case.readings:
+        found.append(Fact(group, f"{one.node}, {one.kind} reading", one.indicated, "K"))
+        found.append(Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"))
+        found.append(Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"))
+    return found or [Fact(group, "held nodes", "none")]
+
+
+def _rows(case: DimensionlessCase) -> tuple[Fact, ...]:
+    found = []
+    for point in case.points:
+        value = point.value - ZERO_CELSIUS if point.unit == "K" else point.value
+        unit = "degC" if point.unit == "K" else ""
+        numbers = ", ".join(f"{name} {getattr(point, name):.7g}" for name in PARAMETERS)
+        found.append(
+            Fact(f"row {point.row}", f"{point.parameter} {value:.7g} {unit}".strip(), numbers)
+        )
+    return tuple(found)

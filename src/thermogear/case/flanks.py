@@ -1,0 +1,86 @@
+"""Deviations of the flanks out of the case file, checked against the pair before a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from thermogear.base.errors import InputError
+from thermogear.case.flank_schema import ReliefTable
+from thermogear.case.schema import GearFile, GearTable
+from thermogear.gears.candidates import mesh_points
+from thermogear.gears.deviations import (
+    Deviation,
+    FlankTable,
+    PitchError,
+    PressureAngleError,
+    Relief,
+)
+from thermogear.gears.geometry import GearPair
+
+
+def deviations(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
+    """Every deviation that the file gives, pinion's first.
+
+    What does not fit the gears (a relief longer than the active profile, pitch errors that are
+    not one for each tooth) is refused under its field of the file.
+    """
+    contacts = mesh_points(pair, [0.0]).contacts
+    found: list[Deviation] = []
+    for gear, table in (("pinion", file.gears.pinion), ("wheel", file.gears.wheel)):
+        for field, make in _given(gear, table):
+            try:
+                deviation = make()
+                deviation.gap(contacts)
+            except InputError as error:
+                inner = error.field.rsplit(".", 1)[-1]
+                part = f".{inner}" if inner in ("amount", "length", "radius", "added") else ""
+                raise type(error)(
+                    f"gears.{gear}.{field}{part}",
+                    error.got,
+                    allowed=error.allowed,
+                    why=error.why,
+                    fix=error.fix,
+                ) from error
+            found.append(deviation)
+    return tuple(found)
+
+
+def _given(gear: str, table: GearTable) -> Iterator[tuple[str, Callable[[], Deviation]]]:
+    """(field, maker) of what one gear's table holds."""
+    for end, relief in (("tip", table.tip_relief), ("root", table.root_relief)):
+        if relief is not None:
+            yield f"{end}_relief", partial(_relief, gear, end, relief)
+    if table.pitch_errors is not None:
+        yield "pitch_errors", partial(PitchError, gear, table.pitch_errors)
+    if table.pressure_angle_error is not None:
+        yield "pressure_angle_error", partial(PressureAngleError, gear, table.pressure_angle_error)
+    if table.profile is not None:
+        flank = table.profile
+        yield (
+            "profile",
+            partial(FlankTable, gear, radius=flank.radius, added=flank.added, flank=flank.flank),
+        )
+
+
+def _relief(gear: str, end: str, table: ReliefTable) -> Relief:
+    return Relief(
+        gear,
+        amount=table.amount,
+        length=table.length,
+        end=end,
+        shape=table.shape,
+        flank=table.flank,
+    )
+
+
+def relief_text(gear: str, relief: Relief) -> str:
+    """A tip relief as lines to paste into a case file; lengths to a nanometre."""
+    return "\n".join(
+        [
+            f"[gears.{gear}.{relief.end}_relief]",
+            f'amount = "{1e6 * relief.amount:.3f} um"',
+            f'length = "{1e3 * relief.length:.6f} mm"',
+            f'shape = "{relief.shape}"',
+        ]
+    )

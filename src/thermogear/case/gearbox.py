@@ -1,0 +1,144 @@
+"""The gearbox of a case and its thermometers, out of the file's tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from thermogear.base.errors import InputError
+from thermogear.base.materials import Material
+from thermogear.case.gearbox_schema import NODES, GearboxTable, ReadingTable
+from thermogear.case.schema import GearFile
+from thermogear.gears.geometry import GearPair
+from thermogear.heat.gearbox import Surroundings
+from thermogear.heat.measured_temperature import InfraredReading, ThermocoupleReading
+from thermogear.mesh.balance import Gearbox
+
+STATED = {
+    "housing": "housing",
+    "pinion_bore": "pinion_shaft",
+    "wheel_bore": "wheel_shaft",
+}
+"""Temperatures of the file's table that hold a node where the addenda are computed."""
+
+ROOM = 293.15
+"""Window temperature [K] of an infrared reading that gives none."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """A corrected thermometer reading [K] of one node with its standard uncertainty [K]."""
+
+    node: str
+    kind: str
+    indicated: float
+    temperature: float
+    uncertainty: float
+
+
+def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...]]:
+    """What heats and cools the pair, and the readings that hold nodes of it."""
+    table = GearboxTable() if file.gearbox is None else file.gearbox
+    readings = tuple(_readings(table, pair))
+    held: dict[str, float] = {one.node: one.temperature for one in readings}
+    if table.measured is not None:
+        held |= table.measured.model_dump(exclude_none=True)
+    if file.temperatures.computed:
+        held |= _stated(file, held)
+    wetted = table.wetted_share
+    around = Surroundings(
+        ambient=table.ambient,
+        housing_area=table.housing_area,
+        housing_coefficient=table.housing_coefficient,
+        oil_housing_coefficient=table.oil_housing_coefficient,
+        wetted_share=(wetted[0], wetted[-1]),
+        shaft_length=table.shaft_length,
+        bearing_conductance=table.bearing_conductance,
+        oil_mass=table.oil_mass,
+        housing_mass=table.housing_mass,
+        housing_specific_heat=table.housing_specific_heat,
+        oil_flow=table.oil_flow,
+        supply_temperature=table.supply_temperature,
+    )
+    return Gearbox(
+        surroundings=around,
+        immersion=table.immersion,
+        bearing_coefficient=table.bearing_coefficient,
+        measured=held,
+    ), readings
+
+
+def _stated(file: GearFile, held: Mapping[str, float]) -> dict[str, float]:
+    """Nodes that [temperatures] and [oil] hold where the addenda are computed."""
+    given = {
+        f"temperatures.{name}": (node, getattr(file.temperatures, name))
+        for name, node in STATED.items()
+    }
+    given["oil.temperature"] = ("oil", file.oil.temperature)
+    found: dict[str, float] = {}
+    for field, (node, value) in given.items():
+        if value is None:
+            continue
+        if node in held:
+            raise InputError(
+                field,
+                "a temperature of a node that [gearbox] holds too",
+                allowed="one of the two",
+                fix=f"leave it out, or leave out {node} in [gearbox.measured] and its reading",
+            )
+        found[node] = value
+    return found
+
+
+def _readings(table: GearboxTable, pair: GearPair) -> list[Reading]:
+    found = []
+    for node in NODES:
+        entry: ReadingTable | None = getattr(table.readings, node) if table.readings else None
+        if entry is None:
+            continue
+        material = (pair.wheel if node.startswith("wheel") else pair.pinion).material
+        try:
+            made = _corrected(entry, material)
+            temperature, sigma = made.temperature(), made.uncertainty()
+        except InputError as error:
+            raise InputError(
+                f"gearbox.readings.{node}",
+                f"{entry.kind} reading {entry.indicated:.6g} K",
+                allowed=error.allowed,
+                why=error.why or str(error),
+                fix=error.fix,
+            ) from error
+        found.append(
+            Reading(
+                node=node,
+                kind=entry.kind,
+                indicated=entry.indicated,
+                temperature=temperature,
+                uncertainty=sigma,
+            )
+        )
+    return found
+
+
+def _corrected(entry: ReadingTable, material: Material) -> InfraredReading | ThermocoupleReading:
+    if entry.kind == "infrared":
+        waves = entry.wavelengths
+        return InfraredReading(
+            indicated=entry.indicated,
+            emissivity=float(entry.emissivity or 1.0),
+            surroundings=float(entry.surroundings or ROOM),
+            transmission=entry.transmission or 1.0,
+            path=entry.window_temperature or ROOM,
+            band=None if waves is None else (waves[0], waves[1]),
+            u_indicated=entry.indicated_uncertainty,
+            u_emissivity=entry.emissivity_uncertainty or 0.0,
+        )
+    return ThermocoupleReading(
+        indicated=entry.indicated,
+        flux=entry.flux or 0.0,
+        depth=entry.depth or 0.0,
+        conductivity=material.thermal_conductivity,
+        u_indicated=entry.indicated_uncertainty,
+        u_flux=entry.flux_uncertainty or 0.0,
+        u_depth=entry.depth_uncertainty or 0.0,
+    )

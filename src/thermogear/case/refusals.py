@@ -1,0 +1,126 @@
+"""What pydantic found wrong, said in one line: field, value, what is allowed, what to do."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.case.fields import Reader
+from thermogear.case.units import short
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_RANK = {"extra_forbidden": 0, "missing": 2}  # a misspelt key explains the missing one
+_SHAPES = {
+    "model_type": ("a table", None),
+    "dict_type": ("a table", None),
+    "tuple_type": ("a list", None),
+    "bool_type": ("true or false", None),
+    "bool_parsing": ("true or false", None),
+    "string_type": ("a text", None),
+}
+
+
+def first_complaint(error: ValidationError, file: type[BaseModel]) -> InputError:
+    """The gravest of pydantic's complaints; the message says how many more there are."""
+    found = sorted(error.errors(include_url=False), key=lambda e: _RANK.get(e["type"], 1))
+    if any("helix" in str(e["loc"][-1]) for e in found if e["loc"]):
+        found.sort(key=lambda e: "helix" not in str(e["loc"][-1:]))
+    complaint = _said(dict(found[0]), file)
+    if len(found) == 1:
+        return complaint
+    more = f"{len(found) - 1} more after this"
+    fix = f"{complaint.fix} ({more})" if complaint.fix else f"({more})"
+    return InputError(
+        complaint.field, complaint.got, allowed=complaint.allowed, why=complaint.why, fix=fix
+    )
+
+
+def dotted(location: tuple[int | str, ...]) -> str:
+    """``("gears", "pinion", "teeth")`` as ``gears.pinion.teeth``, list places in brackets."""
+    text = ""
+    for part in location:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            key = part if _BARE.fullmatch(part) else repr(part)
+            text += f".{key}" if text else key
+    return text
+
+
+def _said(complaint: dict[str, Any], file: type[BaseModel]) -> InputError:
+    location, kind, raw = complaint["loc"], complaint["type"], complaint["input"]
+    field = dotted(location)
+    cause = complaint.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        joint = "" if not field or not cause.field or cause.field.startswith("[") else "."
+        return cause.named(field + joint + cause.field or "case")
+    if kind == "extra_forbidden":
+        return _unknown_key(location, field, file)
+    if kind == "missing":
+        reader = reader_at(file, location)
+        key = location[-1]
+        fix = f"write {key} = {reader.example}" if reader else f"add the table [{field}]"
+        return InputError(field, "nothing", why="needed", fix=fix)
+    if kind in _SHAPES:
+        allowed, why = _SHAPES[kind]
+        table = f"write [{field}]" if allowed == "a table" else None
+        return InputError(field, short(raw), allowed=allowed, why=why, fix=table)
+    return InputError(field or "case", short(raw), why=complaint["msg"])
+
+
+def _unknown_key(location: tuple[int | str, ...], field: str, file: type[BaseModel]) -> InputError:
+    key = str(location[-1])
+    if "helix" in key:
+        return InputError(
+            field,
+            "a helix angle",
+            why="thermogear treats spur gears only",
+            fix="leave it out",
+        )
+    table = table_at(file, location[:-1])
+    known = set(table.model_fields) if table else set()
+    where = f"[{dotted(location[:-1])}]" if len(location) > 1 else "the case file"
+    return InputError(
+        field, "an unknown key", why=f"{where} does not have it", fix=nearest(key, known)
+    )
+
+
+def table_at(file: type[BaseModel], location: tuple[int | str, ...]) -> type[BaseModel] | None:
+    """The model that reads the table at ``location``, or None where there is none."""
+    table: type[BaseModel] | None = file
+    waiting: type[BaseModel] | None = None  # entries of a dict or a list: one more step to go
+    for part in location:
+        if waiting is not None:
+            table, waiting = waiting, None
+            continue
+        if table is None or str(part) not in table.model_fields:
+            return None
+        annotation = table.model_fields[str(part)].annotation
+        table, waiting = _models_of(annotation)
+    return table
+
+
+def _models_of(annotation: Any) -> tuple[type[BaseModel] | None, type[BaseModel] | None]:
+    """(model, None) of a table, (None, model) of a dict or list of tables."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation, None
+    inner = [a for a in get_args(annotation) if isinstance(a, type) and issubclass(a, BaseModel)]
+    if not inner:
+        return None, None
+    collection = getattr(annotation, "__origin__", None) in (dict, tuple)
+    return (None, inner[0]) if collection else (inner[0], None)
+
+
+def reader_at(file: type[BaseModel], location: tuple[int | str, ...]) -> Reader | None:
+    """What reads the field at ``location``, or None where there is no such field."""
+    table = table_at(file, location[:-1])
+    if table is None or str(location[-1]) not in table.model_fields:
+        return None
+    field = table.model_fields[str(location[-1])]
+    readers = [m for m in field.metadata if isinstance(m, Reader)]
+    for inner in get_args(field.annotation):
+        readers += [m for m in getattr(inner, "__metadata__", ()) if isinstance(m, Reader)]
+    return readers[0] if readers else None

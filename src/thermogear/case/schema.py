@@ -1,0 +1,586 @@
+"""The case file as pydantic models: what may be written, before anything is computed from it.
+
+A field without a default must stand in the file. A described default is a value that is ours:
+whoever leaves it out finds it among the assumptions of the case, the description as the reason.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field, StrictBool, create_model, model_validator
+from pydantic.json_schema import models_json_schema
+
+from thermogear.base import bounds
+from thermogear.base.errors import InputError
+from thermogear.case.fields import (
+    BODY,
+    FOLLOW,
+    Choice,
+    Count,
+    Measure,
+    Number,
+    NumberOrTemperature,
+    Several,
+    Words,
+    measure,
+)
+from thermogear.case.flank_schema import ProfileTable, ReliefTable
+from thermogear.case.gearbox_schema import GearboxTable
+from thermogear.case.sensor_schema import SensorsTable
+from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
+from thermogear.mesh.model import CHOICES
+
+PICTURES = ("path", "profile", "stiffness", "motion", "temperature", "base-sets")
+BASE_SETS = ("table-4.2", "section-4.1")
+PARAMETERS = (
+    "damping_ratio",
+    "frequency",
+    "stiffness_amplitude",
+    "mean_force",
+    "force_amplitude",
+    "half_backlash",
+    "thermal_stiffness",
+)
+"""The numbers of the dimensionless equation, in the order of its keywords."""
+
+Shape = Annotated[float, Number(low=bounds.RACK.low, high=bounds.RACK.high, example="1.25")]
+Allowance = Annotated[
+    tuple[float, ...],
+    Several(Measure("length", "-10 mm", "10 mm", example="-0.08 mm"), least=1, most=2),
+]
+Inertia = Annotated[float, Measure("moment of inertia", "1e-9 kg m^2", "1e6 kg m^2")]
+
+
+class RackTable(Table):
+    """The basic rack, lengths in modules."""
+
+    addendum: Shape = Field(default=1.0, description="basic rack of ISO 53: addendum 1 module")
+    dedendum: Shape = Field(default=1.25, description="basic rack of ISO 53: dedendum 1.25 modules")
+    fillet_radius: Shape = Field(
+        default=0.38, description="basic rack of ISO 53: fillet 0.38 module"
+    )
+
+
+class GearTable(Table):
+    """One gear."""
+
+    teeth: Annotated[int, Count(low=bounds.LEAST_TEETH, high=bounds.MOST_TEETH)]
+    face_width: Length
+    bore_radius: Length
+    profile_shift: Annotated[
+        float,
+        Number(low=bounds.PROFILE_SHIFT.low, high=bounds.PROFILE_SHIFT.high, example="0.2"),
+    ] = Field(default=0.0, description="no profile shift")
+    tip_diameter: Annotated[
+        float | None, Measure("length", "0.1 mm", "20000 mm", example="135 mm")
+    ] = Field(default=None, description="pitch diameter + 2 (addendum + profile shift) modules")
+    material: Annotated[str, Words('"steel"')]
+    roughness: Annotated[float, measure("length", bounds.ROUGHNESS, example="0.4 um")]
+    tip_relief: ReliefTable | None = Field(default=None, title="no tip relief")
+    root_relief: ReliefTable | None = Field(default=None, title="no root relief")
+    pitch_errors: Annotated[
+        tuple[float, ...] | None,
+        Several(measure("length", bounds.PITCH_ERROR, example="3 um"), least=1, most=2000),
+    ] = Field(default=None, title="one for each tooth; none")
+    pressure_angle_error: Annotated[
+        float | None, measure("angle", bounds.ANGLE_ERROR, example="0.02 deg")
+    ] = Field(default=None, title="none")
+    profile: ProfileTable | None = Field(default=None, title="no table of added material")
+    allow_undercut: StrictBool = Field(
+        default=False, title="an undercut tooth is refused unless true"
+    )
+
+
+class GearsTable(Table):
+    """What both gears share, and the two of them."""
+
+    module: Annotated[float, measure("length", bounds.MODULE)]
+    pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)]
+    centre_distance: Annotated[
+        float | None, measure("length", bounds.CENTRE_DISTANCE, example="250 mm")
+    ] = Field(default=None, title="left out: the mesh of the profile shifts without backlash")
+    rack: RackTable | None = Field(
+        default=None, description="left out: basic rack of ISO 53, its fillet as round as fits"
+    )
+    pinion: GearTable
+    wheel: GearTable
+
+
+class MaterialTable(Table):
+    """A material of the user's own."""
+
+    youngs_modulus: Annotated[float, measure("pressure", bounds.YOUNGS_MODULUS)]
+    poisson_ratio: Annotated[float, Number(low=0.0, high=0.499, example="0.3")]
+    density: Annotated[float, measure("density", bounds.DENSITY)]
+    thermal_conductivity: Annotated[float, measure("thermal conductivity", bounds.CONDUCTIVITY)]
+    specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)]
+    thermal_expansion: Annotated[float, measure("thermal expansion", bounds.EXPANSION)]
+    modulus_slope: Annotated[
+        float, measure("thermal expansion", bounds.MODULUS_SLOPE, example="3.3e-4 1/K")
+    ] = Field(default=0.0, description="Young's modulus taken as independent of temperature")
+    tempering_temperature: Annotated[
+        float | None, measure("temperature", bounds.TEMPERING, example="180 degC")
+    ] = Field(default=None, description="no limit known")
+
+
+class HousingTable(Table):
+    """The housing, which carries the axes."""
+
+    material: Annotated[str, Words('"steel"')]
+
+
+class OilTable(Table):
+    """The oil: a named set, or two viscosities."""
+
+    name: Annotated[str, Words('"M100"')]
+    viscosity_40: Annotated[
+        float | None, Measure("kinematic viscosity", "1 mm^2/s", "100000 mm^2/s")
+    ] = Field(default=None, title="from the named set")
+    viscosity_100: Annotated[
+        float | None,
+        Measure("kinematic viscosity", "0.8 mm^2/s", "10000 mm^2/s", example="11 mm^2/s"),
+    ] = Field(default=None, title="from the named set")
+    density_15: Annotated[
+        float | None, measure("density", bounds.OIL_DENSITY, example="885 kg/m^3")
+    ] = Field(default=None, title="from the named set")
+    temperature: Body | None = None
+    temperature_below_addendum: Below | None = None
+    scuffing_load_stage: Annotated[
+        float | None,
+        Number(low=1.0, high=14.0, example="12", why="load stages of the FZG test A/8.3/90"),
+    ] = Field(default=None, title="unknown: no scuffing margin")
+
+    @model_validator(mode="after")
+    def _complete(self) -> OilTable:
+        not_both(self, "temperature", "temperature_below_addendum")
+        own = (self.viscosity_40, self.viscosity_100, self.density_15)
+        if any(v is not None for v in own) and any(v is None for v in own):
+            raise InputError(
+                "",
+                "a part of an oil",
+                allowed="viscosity_40, viscosity_100 and density_15 together, or the name alone",
+            )
+        if own[0] is not None and own[1] is not None and own[1] >= own[0]:
+            raise InputError(
+                "viscosity_100",
+                "a viscosity not below viscosity_40",
+                why="an oil grows thinner as it warms up",
+            )
+        return self
+
+
+class InertiaTable(Table):
+    """Moments of inertia: given, or those of steel discs made of the gears."""
+
+    model: Annotated[str, Choice("solid disc", "given")]
+    radius: Annotated[str | None, Choice("pitch", "tip")] = Field(
+        default=None, description="radius of the disc; pitch"
+    )
+    bored: StrictBool | None = Field(
+        default=None, description="whether the bore is taken out; it is not"
+    )
+    pinion: Inertia | None = Field(default=None, title="from the disc")
+    wheel: Inertia | None = Field(default=None, title="from the disc")
+
+    @model_validator(mode="after")
+    def _complete(self) -> InertiaTable:
+        numbers = (self.pinion, self.wheel)
+        if self.model == "given":
+            for name, value in zip(("pinion", "wheel"), numbers, strict=True):
+                if value is None:
+                    raise InputError(
+                        name,
+                        "nothing",
+                        why='needed with model = "given"',
+                        fix=f'write {name} = "0.01 kg m^2"',
+                    )
+            if self.radius is not None or self.bored is not None:
+                raise InputError(
+                    "",
+                    'radius or bored beside model = "given"',
+                    fix='leave them out, or write model = "solid disc"',
+                )
+        elif any(value is not None for value in numbers):
+            raise InputError("", 'numbers beside model = "solid disc"', fix='write model = "given"')
+        return self
+
+
+class OperatingTable(Table):
+    """The operating points: every speed with every torque."""
+
+    speed: Annotated[
+        tuple[float, ...],
+        Several(
+            Measure("rotational speed", "0.1 rpm", "500000 rpm", "a gear at rest has no motion")
+        ),
+    ]
+    torque: Annotated[tuple[float, ...], Several(measure("torque", bounds.TORQUE))]
+
+
+class TemperaturesTable(Table):
+    """Body temperatures: given outright, so many kelvins below the addendum, or left out.
+
+    With both addenda left out the heat balance computes what is not given; what is given outright
+    then holds its node.
+    """
+
+    reference: Body
+    pinion_addendum: Body | None = Field(default=None, title="computed from the heat balance")
+    wheel_addendum: Body | None = Field(default=None, title="computed from the heat balance")
+    pinion_bore: Body | None = None
+    pinion_bore_below_addendum: Below | None = None
+    wheel_bore: Body | None = None
+    wheel_bore_below_addendum: Below | None = None
+    housing: Body | None = None
+    housing_below_addendum: Below | None = None
+    row: Annotated[
+        tuple[float, ...],
+        Several(BODY, least=0, most=1000, distinct=True),
+    ] = Field(default=(), description="no row of gear temperatures")
+    follow: Annotated[str, Choice(*FOLLOW)] = Field(
+        default="proportional",
+        description="where the gears' temperature is varied, every excess over the reference is "
+        "scaled with the gears', as in a linear heat network",
+    )
+
+    @property
+    def computed(self) -> bool:
+        """Whether the heat balance decides the temperatures."""
+        return self.pinion_addendum is None and self.wheel_addendum is None
+
+    @model_validator(mode="after")
+    def _complete(self) -> TemperaturesTable:
+        for name, other in (
+            ("pinion_addendum", "wheel_addendum"),
+            ("wheel_addendum", "pinion_addendum"),
+        ):
+            if getattr(self, name) is None and not self.computed:
+                raise InputError(
+                    name,
+                    "nothing",
+                    why=f"needed beside {other}",
+                    fix=f'write {name} = "100 degC", or leave both out to have the heat balance '
+                    "compute them",
+                )
+        for name in ("pinion_bore", "wheel_bore", "housing"):
+            below = f"{name}_below_addendum"
+            if not self.computed:
+                one_of(self, name, below)
+            elif getattr(self, below) is not None:
+                raise _no_addendum(below)
+        return self
+
+
+def _no_addendum(field: str) -> InputError:
+    return InputError(
+        field,
+        "a distance from an addendum temperature that is not given",
+        why="with both addenda left out the heat balance computes the temperatures",
+        fix="leave it out, or give both addenda",
+    )
+
+
+class TolerancesTable(Table):
+    """Backlash out of the drawing: tooth-thickness allowances and centre-distance tolerance."""
+
+    pinion_tooth_thickness: Allowance
+    wheel_tooth_thickness: Allowance
+    centre_distance: Allowance
+
+
+class BacklashTable(Table):
+    """The backlash, with its kind named: a value, or the tolerances it follows from."""
+
+    value: Annotated[
+        float | None,
+        Measure(
+            "length",
+            "1e-5 mm",
+            "50 mm",
+            "a pair without backlash jams as soon as it warms up",
+            example="0.25 mm",
+        ),
+    ] = None
+    direction: Annotated[str | None, Choice("normal", "circumferential")] = None
+    extent: Annotated[str | None, Choice("total", "half")] = None
+    temperature: Body | None = Field(default=None, description="holds at temperatures.reference")
+    tolerances: TolerancesTable | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> BacklashTable:
+        one_of(self, "value", "tolerances")
+        kinds = {"direction": '"normal" or "circumferential"', "extent": '"total" or "half"'}
+        for name, allowed in kinds.items():
+            given = getattr(self, name) is not None
+            if self.value is not None and not given:
+                raise InputError(
+                    name,
+                    "nothing",
+                    allowed=allowed,
+                    why="a backlash means nothing without its kind",
+                    fix=f"write {name} = {allowed.split(' or ')[0]}",
+                )
+            if self.value is None and given:
+                raise InputError(name, "a kind", why="tolerances need none", fix="leave it out")
+        return self
+
+
+class DynamicsTable(Table):
+    """What vibration needs beside the mesh."""
+
+    damping_ratio: Annotated[float, Number(low=0.0, high=2.0, example="0.07")]
+
+
+class HarmonicTable(Table):
+    """One harmonic of the kinematic error: amplitude cos(2 pi order phi + phase)."""
+
+    order: Annotated[int, Count(low=1, high=1000, example="1")]
+    amplitude: Annotated[float, Measure("length", "0 um", "1000 um", example="5 um")]
+    phase: Annotated[float, Measure("angle", "-360 deg", "360 deg")] = Field(
+        default=0.0, description="in phase with the entry of a new tooth pair"
+    )
+
+
+class TransmissionErrorTable(Table):
+    """The kinematic (unloaded) transmission error, a series over the mesh phase."""
+
+    harmonics: Annotated[tuple[HarmonicTable, ...], Field(max_length=200)]
+
+    @model_validator(mode="after")
+    def _once(self) -> TransmissionErrorTable:
+        orders = [h.order for h in self.harmonics]
+        for order in orders:
+            if orders.count(order) > 1:
+                raise InputError("harmonics", f"order {order} twice", allowed="each order once")
+        return self
+
+
+def _model_table() -> type[Table]:
+    fields: dict[str, Any] = {
+        "bundle": (Annotated[str, Choice("both", "consistent", "thesis")], ...),
+        "dry_coefficient": (
+            Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
+            Field(default=None, title="as the bundle has it"),
+        ),
+    }
+    for name, known in CHOICES.items():
+        fields[name] = (
+            Annotated[str | None, Choice(*known)],
+            Field(default=None, title="as the bundle has it"),
+        )
+    words = "The model: one bundle of choices or both, then single choices in place of theirs."
+    return create_model("ModelTable", __base__=Table, __doc__=words, **fields)
+
+
+if TYPE_CHECKING:
+    ModelTable = Table
+else:
+    ModelTable = _model_table()  # its fields are the choices that the mesh model knows
+
+
+class SimulationTable(Table):
+    """How long and how finely the motion is followed."""
+
+    periods: Annotated[int, Count(low=8, high=1_000_000, example="256")] = Field(
+        default=256, description="mesh periods kept for section and spectrum"
+    )
+    discard: Annotated[int, Count(low=0, high=10_000_000, example="400")] = Field(
+        default=400, description="mesh periods thrown away first, at least"
+    )
+    most_discarded: Annotated[int, Count(low=0, high=10_000_000, example="4000")] = Field(
+        default=4000, description="mesh periods thrown away at most while a transient dies out"
+    )
+    steps_per_period: Annotated[int, Count(low=16, high=65536, example="512")] = Field(
+        default=512, description="Runge-Kutta steps per mesh period"
+    )
+    samples: Annotated[int, Count(low=8, high=4096, example="128")] = Field(
+        default=128, description="stored samples per mesh period"
+    )
+    sample_periods: Annotated[int, Count(low=1, high=10_000, example="8")] = Field(
+        default=8, description="mesh periods of stored time history"
+    )
+    initial_state: Annotated[
+        tuple[float, ...], Several(Number(low=-1e6, high=1e6, example="0.0"), least=2, most=2)
+    ] = Field(default=(0.0, 0.0), description="start in the middle of the gap, at rest")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> SimulationTable:
+        if self.most_discarded < self.discard:
+            raise InputError(
+                "most_discarded",
+                self.most_discarded,
+                allowed=f">= discard = {self.discard}",
+                fix=f"use {self.discard} or more",
+            )
+        if self.sample_periods > self.periods:
+            raise InputError(
+                "sample_periods",
+                self.sample_periods,
+                allowed=f"1..periods = {self.periods}",
+                fix=f"use {self.periods} or less",
+            )
+        return self
+
+
+class GridTable(Table):
+    """How finely the path of contact and the mesh period are sampled."""
+
+    path_positions: Annotated[int, Count(low=11, high=100_001, example="201")] = Field(
+        default=201, description="positions along the path of contact, A to E"
+    )
+    mesh_positions: Annotated[int, Count(low=16, high=65536, example="240")] = Field(
+        default=240, description="phases of the mesh period"
+    )
+    harmonics: Annotated[int, Count(low=1, high=2000, example="24")] = Field(
+        default=24, description="harmonics of the stiffness kept for the motion"
+    )
+
+    @model_validator(mode="after")
+    def _resolved(self) -> GridTable:
+        most = (self.mesh_positions - 1) // 2
+        if self.harmonics > most:
+            raise InputError(
+                "harmonics",
+                self.harmonics,
+                allowed=f"1..{most}",
+                why=f"{self.mesh_positions} mesh positions resolve no more",
+                fix=f"use {most}, or more mesh_positions",
+            )
+        return self
+
+
+class DrawTable(Table):
+    """What the report shows."""
+
+    pictures: Annotated[
+        tuple[str, ...], Several(Choice(*PICTURES), least=0, most=20, single=False, distinct=True)
+    ] = Field(default=PICTURES, description="every picture")
+    base_sets: Annotated[
+        tuple[str, ...], Several(Choice(*BASE_SETS), least=0, most=2, single=False, distinct=True)
+    ] = Field(default=(), description="none; the thesis's, beside the numbers of its rig")
+
+
+class GearFile(Table):
+    """A gear pair from friction to vibration."""
+
+    title: Annotated[str, Words('"my gear pair"')]
+    kind: Annotated[str, Choice("gear", "dimensionless")] = "gear"
+    gears: GearsTable
+    materials: dict[str, MaterialTable] = Field(
+        default={}, description="no materials of the user's own"
+    )
+    housing: HousingTable
+    oil: OilTable
+    inertia: InertiaTable
+    operating: OperatingTable
+    temperatures: TemperaturesTable
+    gearbox: GearboxTable | None = Field(default=None, title="every value ours")
+    sensors: SensorsTable | None = Field(default=None, title="every thermometer ours")
+    backlash: BacklashTable
+    dynamics: DynamicsTable
+    transmission_error: TransmissionErrorTable
+    model: ModelTable
+    grid: GridTable = GridTable()
+    simulation: SimulationTable = SimulationTable()
+    draw: DrawTable = DrawTable()
+    ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _surrounded(cls, data: Any) -> Any:
+        """Computed temperatures rest on the gearbox: its defaults are assumptions then."""
+        if isinstance(data, dict) and "gearbox" not in data:
+            given = data.get("temperatures")
+            if isinstance(given, dict) and not {"pinion_addendum", "wheel_addendum"} & set(given):
+                return {**data, "gearbox": {}}
+        return data
+
+    @model_validator(mode="after")
+    def _oil_follows(self) -> GearFile:
+        if not self.temperatures.computed:
+            one_of(self.oil, "temperature", "temperature_below_addendum", "oil")
+        elif self.oil.temperature_below_addendum is not None:
+            raise _no_addendum("oil.temperature_below_addendum")
+        return self
+
+
+_Plain = Annotated[tuple[float, ...], Several(Number(low=-1e6, high=1e6))]
+_Positive = Annotated[tuple[float, ...], Several(Number(low=1e-9, high=1e6))]
+_NotNegative = Annotated[tuple[float, ...], Several(Number(low=0.0, high=1e3, example="0.15"))]
+_Amplitude = Annotated[
+    tuple[float, ...],
+    Several(
+        Number(
+            low=0.0,
+            high=0.999,
+            example="0.335",
+            why="the mesh stiffness 1 + eps cos would reach zero",
+        )
+    ),
+]
+_Stiffening = Annotated[tuple[float, ...], Several(Number(low=-0.999, high=1e3, example="0.02"))]
+
+
+class BaseTable(Table):
+    """The base set that every row starts from."""
+
+    damping_ratio: _NotNegative
+    frequency: _Positive
+    stiffness_amplitude: _Amplitude
+    mean_force: _Plain
+    force_amplitude: _Plain
+    half_backlash: _Positive = Field(
+        default=(1.0,), description="the cold half backlash is the unit"
+    )
+    thermal_stiffness: _Stiffening = Field(default=(0.0,), description="no thermal term")
+
+
+class RowTable(Table):
+    """A row: one parameter runs through its values; others may be set, one for all or a list."""
+
+    parameter: Annotated[str, Choice(*PARAMETERS, "temperature")]
+    values: Annotated[tuple[tuple[float, str], ...], Several(NumberOrTemperature())]
+    expected: Annotated[tuple[str, ...], Several(Words('"period-1"'), least=0)] = Field(
+        default=(), description="no label is expected"
+    )
+    damping_ratio: _NotNegative | None = None
+    frequency: _Positive | None = None
+    stiffness_amplitude: _Amplitude | None = None
+    mean_force: _Plain | None = None
+    force_amplitude: _Plain | None = None
+    half_backlash: _Positive | None = None
+    thermal_stiffness: _Stiffening | None = None
+
+
+class DimensionlessFile(Table):
+    """The dimensionless equation of motion alone, in rows of one parameter each."""
+
+    title: Annotated[str, Words('"table 4.2"')]
+    kind: Annotated[str, Choice("dimensionless", "gear")]
+    base: BaseTable
+    rows: Annotated[dict[str, RowTable], Field(min_length=1)]
+    simulation: SimulationTable = SimulationTable()
+    ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON schema of a case file, either kind."""
+    _, schema = models_json_schema(
+        [(GearFile, "validation"), (DimensionlessFile, "validation")], title="thermogear case file"
+    )
+    for table in schema["$defs"].values():
+        for entry in table["properties"].values():
+            # a default is an SI number or nothing; neither could be written in a file as it is
+            if entry.get("type") == "string" and not isinstance(entry.get("default"), str):
+                entry.pop("default", None)
+            if entry.get("default", "") is None:
+                del entry["default"]
+    kinds = {"GearFile": "gear", "DimensionlessFile": "dimensionless"}
+    for name, kind in kinds.items():
+        schema["$defs"][name]["properties"]["kind"]["enum"] = [kind]
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "anyOf": [{"$ref": f"#/$defs/{name}"} for name in kinds],
+    }

@@ -1,0 +1,79 @@
+"""Which cases are the thesis's own: what is said of the thesis is said beside them alone."""
+
+from __future__ import annotations
+
+import warnings
+from functools import lru_cache
+from typing import Any
+
+from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.case.alike import same
+from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
+from thermogear.case.schema import BASE_SETS
+
+RIG = "rig"
+
+
+def of_the_thesis(case: Case) -> bool:
+    """Whether ``case`` is the ready-made rig, or one of the ready-made dimensionless cases.
+
+    Told by its values: gears, oil, housing, heat, masses, backlash and error are the rig's, and
+    every speed, torque and gear temperature is one of the rig's. Title, bundle, choices, grids
+    and pictures are free. A dimensionless case has the points of a ready-made one.
+    """
+    if isinstance(case, GearCase):
+        return _is_rig(case)
+    return isinstance(case, DimensionlessCase) and any(
+        same(case.points, _example(name).points) for name in BASE_SETS
+    )
+
+
+def require_of_the_thesis(case: Case, what: str) -> None:
+    """Refuse a case of other values, in which ``what`` would speak of the thesis's rig."""
+    if not of_the_thesis(case):
+        raise InputError(
+            "case",
+            f"{case.title!r}, a case with values of its own",
+            allowed="the ready-made rig, at any of its speeds and temperatures",
+            why=f"{what} are those of the thesis's rig",
+            fix="`thermogear example rig` prints it",
+        )
+
+
+@lru_cache(maxsize=8)
+def _example(name: str) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        return load_example(name)
+
+
+def _is_rig(case: GearCase) -> bool:
+    rig: GearCase = _example(RIG)
+    axes = ("speeds", "torques", "gear_temperatures")
+    return same(_stated(case), _stated(rig)) and all(
+        any(same(value, known) for known in getattr(rig, name))
+        for name in axes
+        for value in getattr(case, name)
+    )
+
+
+def _stated(case: GearCase) -> tuple[object, ...]:
+    """What a gear case says beside its operating points and its choices."""
+    at = case.stated
+    return (
+        case.pair,
+        at.lubricant,
+        at.oil_temperature,
+        at.temperatures,
+        at.housing,
+        at.half_backlash,
+        case.temperature_rule,
+        case.gearbox,
+        case.readings,
+        case.inertias,
+        case.damping_ratio,
+        case.transmission_error,
+        case.deviations,
+        case.scuffing_load_stage,
+        case.computed,
+    )

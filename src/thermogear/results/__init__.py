@@ -1,0 +1,1 @@
+"""What is stored of computed results, and how it comes back."""

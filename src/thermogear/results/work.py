@@ -1,0 +1,186 @@
+"""Carry a plan out: estimate, threads or a cluster, a store or memory, progress, Ctrl+C."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import time
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+
+from thermogear.base.errors import InputError
+from thermogear.base.memory import SHARE, free_bytes
+from thermogear.base.plan import (
+    Plan,
+    bytes_of,
+    computed,
+    gather,
+    keys_of,
+)
+from thermogear.base.progress import duration
+from thermogear.results.store import Store
+from thermogear.results.workers import cluster, computed_on
+
+WORKSPACE = 48 * 2**20
+"""Bytes that one thread's kernels and maps take, about."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """How far the work is: chunks ``done`` of ``total`` (``found`` of them were there before),
+    ``elapsed`` and ``remaining`` seconds (NaN while unknown)."""
+
+    done: int
+    total: int
+    found: int
+    elapsed: float
+    remaining: float
+
+
+Report = Callable[[Step], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """What a plan will take: ``points``, ``chunks``, bytes of memory and disk, seconds."""
+
+    points: int
+    chunks: int
+    memory: int
+    disk: int
+    seconds: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.points} points in {self.chunks} chunks, about {duration(self.seconds)}, "
+            f"{self.memory / 2**20:.3g} MiB of memory, {self.disk / 2**20:.3g} MiB of disk"
+        )
+
+
+def points_of(plan: Plan) -> int:
+    """How many points a plan has, as a whole Python integer."""
+    total = 1
+    for name in plan.variables()["status"].dims:
+        total *= int(plan.sizes[name])
+    return total
+
+
+def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Estimate:
+    """What ``plan`` will take, from its sizes and from ``pilot`` points computed now.
+
+    Points near borders cost more than others and refinement saves some: the time is a guess
+    within a factor of about 3. ``pilot`` 0 leaves it out (infinite).
+    """
+    count = threads or os.cpu_count() or 1
+    size = bytes_of(plan)
+    chunks = math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items())
+    seconds = float("inf")
+    if pilot > 0:
+        plan.pilot(2)  # loads the compiled kernels
+        begun = time.perf_counter()
+        run = plan.pilot(pilot)
+        each = (time.perf_counter() - begun) / max(run, 1)
+        seconds = each * points_of(plan) / count
+    return Estimate(
+        points=points_of(plan),
+        chunks=chunks,
+        memory=2 * size + count * WORKSPACE,
+        disk=size,
+        seconds=seconds,
+    )
+
+
+def require_space(
+    plan: Plan, directory: Path | None, *, threads: int | None = None, forced: bool = False
+) -> Estimate:
+    """Refuse what does not fit into 70 % of the free memory or of the free disk."""
+    needed = estimate(plan, threads=threads, pilot=0)
+    free = free_bytes()
+    if needed.memory > SHARE * free and not forced:
+        raise InputError(
+            "grid",
+            f"{needed.points} points, about {needed.memory / 2**30:.3g} GiB of memory",
+            allowed=f"0..{SHARE * free / 2**30:.3g} GiB (70 % of the free memory)",
+            fix="take fewer points, or pass --force",
+        )
+    if directory is not None:
+        place = next(p for p in (directory.absolute(), *directory.absolute().parents) if p.exists())
+        room = shutil.disk_usage(place).free
+        if needed.disk > SHARE * room and not forced:
+            raise InputError(
+                "grid",
+                f"{needed.points} points, about {needed.disk / 2**30:.3g} GiB of disk",
+                allowed=f"0..{SHARE * room / 2**30:.3g} GiB (70 % of the free disk)",
+                fix="take fewer points, another disk, or pass --force",
+            )
+    return needed
+
+
+def carry_out(
+    plan: Plan,
+    store: str | Path | None = None,
+    *,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    report: Report | None = None,
+    forced: bool = False,
+) -> xr.Dataset:
+    """Compute ``plan`` and return it as one labelled Dataset.
+
+    With a ``store`` directory every chunk is written as it is ready, and the same call goes on
+    where an earlier one ended; without one it stays in memory. ``threads`` on this machine
+    (default: all cores), or a dask ``scheduler`` address, whose workers compute while this
+    process writes. The result is the same to the last bit whoever computes. Ctrl+C keeps what
+    is stored.
+    """
+    directory = None if store is None else Path(store)
+    require_space(plan, directory, threads=threads, forced=forced)
+    clock = _Clock(len(keys_of(plan)), report)
+    if directory is None and scheduler is None:
+        return gather(plan, threads=threads, progress=lambda done, _: clock.step(done))
+    if directory is None:
+        raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
+    link = nullcontext() if scheduler is None else cluster(scheduler)
+    with link as client, Store(directory, plan) as kept:
+        there = kept.finished()
+        clock.found = len(there)
+        wanted = [key for key in keys_of(plan) if key not in there]
+        clock.step(len(there))
+        if client is None:
+            source = computed(plan, wanted, kept.load, threads=threads)
+        else:
+            source = computed_on(client, plan, wanted, kept.load)
+        done = len(there)
+        try:
+            for key, arrays in source:
+                kept.write(key, arrays)
+                done += 1
+                clock.step(done)
+        finally:
+            source.close()
+        return kept.complete()
+
+
+class _Clock:
+    """Elapsed and remaining time."""
+
+    def __init__(self, total: int, report: Report | None) -> None:
+        self.total = total
+        self.report = report
+        self.found = 0
+        self.begun = time.monotonic()
+
+    def step(self, done: int) -> None:
+        if self.report is None:
+            return
+        elapsed = time.monotonic() - self.begun
+        own = done - self.found
+        left = elapsed / own * (self.total - done) if own > 0 else float("nan")
+        self.report(
+            Step(done=done, total=self.total, found=self.found, elapsed=elapsed, remaining=left)
+        )

@@ -1,0 +1,438 @@
+"""Branches of orbits along a parameter, doubled branches, and whole cascades, cold and hot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from thermogear.analysis.continuation import (
+    FLIP,
+    PITCHFORK,
+    Bifurcation,
+    Branch,
+    continuation,
+    switch_branch,
+)
+from thermogear.analysis.orbits import Orbit, periodic_orbit
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.case import DimensionlessCase, load_example
+from thermogear.case.dimensionless import Point
+from thermogear.case.schema import PARAMETERS
+from thermogear.case.subject import Family, Subject, family, of_numbers, shown_value
+from thermogear.dynamics.models import TorsionalModel
+from thermogear.study.orbit import Found, complex_rows, found, orbit_of
+
+STEPS = 1000
+"""Progress of a branch counts in thousandths of the parameter's way."""
+MOST_DEPTH = 6
+INTERRUPTED = "interrupted"
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A branch that was walked: how deep below the first one, and the heat it belongs to."""
+
+    branch: Branch
+    level: int = 0
+    heat: str = "cold"
+    row: str = ""
+
+
+def branch_results(
+    subject: Subject,
+    parameter: str,
+    to: float,
+    *,
+    start: float | None = None,
+    period: int | None = None,
+    transient: bool = True,
+    switch: int = 0,
+    progress: Progress = silent,
+) -> Found:
+    """Follow the subject's orbit in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
+
+    ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
+    pitchforks and grazing are located; Ctrl+C keeps the branches walked so far.
+    """
+    models, present = family(subject, parameter)
+    begin = present if start is None else start
+    if not 0 <= switch <= MOST_DEPTH:
+        raise InputError("--switch", switch, allowed=f"0..{MOST_DEPTH}")
+    orbit, _ = orbit_of(subject, period, transient=transient, model=models(begin))
+    legs = [Leg(_walk(orbit, parameter, to, models, begin, "branch", progress))]
+    cut = legs[0].branch.ended == INTERRUPTED
+    waiting = [(flip, 1) for flip in _forks(legs[0].branch)]
+    try:
+        while waiting and not cut:
+            flip, level = waiting.pop(0)
+            if level > switch:
+                continue
+            doubled = switch_branch(flip, models)
+            # a doubled orbit lives on one side of its flip: to the end there, or to the start
+            forth = (doubled.value - flip.value) * (to - flip.value) >= 0.0
+            end, behind = (to, begin) if forth else (begin, to)
+            if end == doubled.value:
+                continue
+            stage = f"period {doubled.orbit.period}"
+            branch = _walk(
+                doubled.orbit,
+                parameter,
+                end,
+                models,
+                doubled.value,
+                stage,
+                progress,
+                doubled.direction,
+                back_to=behind,
+            )
+            legs.append(Leg(branch, level))
+            cut = branch.ended == INTERRUPTED
+            waiting += [(one, level + 1) for one in _forks(branch)]
+    except KeyboardInterrupt:
+        cut = True
+    summary = {
+        "title": subject.title,
+        "parameters": subject.parameters,
+        "parameter": parameter,
+        "from": begin,
+        "to": to,
+        "unit": shown_value(parameter, 0.0)[1],
+        "branches": [_leg_summary(leg, parameter) for leg in legs],
+        "bifurcations": [_event(b, parameter) for leg in legs for b in leg.branch.bifurcations],
+        "interrupted": cut,
+        "notices": [],
+    }
+    groups = {f"branch_{i}": dataset(leg, parameter) for i, leg in enumerate(legs)}
+    return found("branch", groups, summary, cut)
+
+
+def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
+    """Where other branches begin: period doublings, and pitchforks of symmetric orbits."""
+    return tuple(b for b in branch.bifurcations if b.kind in (FLIP, PITCHFORK))
+
+
+def _walk(
+    orbit: Orbit,
+    parameter: str,
+    to: float,
+    models: Family,
+    begin: float,
+    stage: str,
+    progress: Progress,
+    direction: Any = None,
+    stop_at: str | None = None,
+    back_to: float | None = None,
+) -> Branch:
+    span = abs(to - begin) or 1.0
+
+    def told(_points: int, value: float) -> None:
+        progress(stage, min(STEPS, round(STEPS * abs(value - begin) / span)), STEPS)
+
+    progress(stage, 0, STEPS)
+    branch = continuation(
+        orbit,
+        parameter,
+        to,
+        family=models,
+        start=begin,
+        back_to=back_to,
+        direction=direction,
+        stop_at=stop_at,
+        progress=told,
+        keep_on_interrupt=True,
+    )
+    if branch.ended != INTERRUPTED:
+        progress(stage, STEPS, STEPS)
+    return branch
+
+
+def _event(b: Bifurcation, parameter: str) -> dict[str, Any]:
+    value, unit = shown_value(parameter, b.value)
+    return {
+        "kind": b.kind,
+        "parameter": parameter,
+        "value": b.value,
+        "shown": f"{value:.10g} {unit}".strip(),
+        "period": b.period,
+        "state": [float(c) for c in b.state],
+        "multipliers": complex_rows(b.multipliers),
+        "note": b.note,
+    }
+
+
+def _leg_summary(leg: Leg, parameter: str) -> dict[str, Any]:
+    branch = leg.branch
+    return {
+        "period": branch.period,
+        "level": leg.level,
+        "points": int(branch.values.size),
+        "from": float(branch.values[0]),
+        "to": float(branch.values[-1]),
+        "stable_points": int(branch.stable.sum()),
+        "ended": branch.ended,
+        "parameter": parameter,
+    }
+
+
+def dataset(leg: Leg, parameter: str) -> xr.Dataset:
+    """A branch as it is stored: points along it, bifurcations beside them."""
+    data = leg.branch.dataset()
+    data["stable"] = data["stable"].astype(np.int8)
+    unit = {"speed": "rad/s", "torque": "N m", "temperature": "K"}.get(parameter, "1")
+    for name in ("value", "event_value"):
+        data[name].attrs["units"] = unit
+    for name in ("section_x", "section_v"):
+        data[name].attrs["units"] = "1"
+    for name in ("event_kind", "event_note"):
+        data[name] = data[name].astype(str)
+    places = np.array([b.state[0] for b in leg.branch.bifurcations], dtype=float)
+    data["event_x"] = ("event", places, {"units": "1", "long_name": "displacement at phase 0"})
+    data.attrs.update({"level": leg.level, "heat": leg.heat, "row": leg.row})
+    return data
+
+
+# --- cascades -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Heat:
+    """A state of heat of the dimensionless equation: its name and the numbers it sets."""
+
+    name: str
+    numbers: dict[str, float]
+
+
+COLD = Heat("cold", {})
+
+
+def heats() -> tuple[Heat, ...]:
+    """Cold, and the hottest point of every row of the ready-made case of section 4.1."""
+    case = load_example("section-4.1")
+    if not isinstance(case, DimensionlessCase):
+        raise InputError("example", case.kind, allowed="dimensionless")
+    hottest: dict[str, Point] = {}
+    for point in case.points:
+        kept = hottest.get(point.row)
+        if kept is None or point.value > kept.value:
+            hottest[point.row] = point
+    found_heats = [
+        Heat(
+            f"{p.value - ZERO_CELSIUS:.4g} °C, {row} (b' {p.half_backlash:.4g}, eps_T "
+            f"{p.thermal_stiffness:+.4g})",
+            {"half_backlash": p.half_backlash, "thermal_stiffness": p.thermal_stiffness},
+        )
+        for row, p in hottest.items()
+    ]
+    return (COLD, *found_heats)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """A row of a cascade table: the parameter from ``first`` to ``last`` on a base set."""
+
+    row: str
+    parameter: str
+    first: float
+    last: float
+    base: dict[str, float]
+
+
+def sweeps_of(case: DimensionlessCase, row: str | None = None) -> tuple[Sweep, ...]:
+    """One sweep for every row of ``case`` that runs through a number of the equation."""
+    rows: dict[str, list[Point]] = {}
+    for point in case.points:
+        if point.parameter in PARAMETERS and row in (None, point.row):
+            rows.setdefault(point.row, []).append(point)
+    if not rows:
+        raise InputError(
+            "--row",
+            repr(row),
+            allowed=" | ".join({p.row: None for p in case.points if p.parameter in PARAMETERS}),
+            why="a cascade runs through a number of the equation",
+        )
+    return tuple(
+        Sweep(
+            row=name,
+            parameter=own[0].parameter,
+            first=own[0].value,
+            last=own[-1].value,
+            base=own[0].model_arguments(),
+        )
+        for name, own in rows.items()
+    )
+
+
+def on_numbers(sweeps: Sequence[Sweep], numbers: dict[str, float]) -> tuple[Sweep, ...]:
+    """The same sweeps on another base set."""
+    return tuple(
+        replace(one, base={**one.base, **numbers, one.parameter: one.first}) for one in sweeps
+    )
+
+
+def cascade_results(
+    sweeps: Sequence[Sweep],
+    flips: int,
+    *,
+    title: str,
+    hot: bool = False,
+    start: tuple[float, float] | None = None,
+    progress: Progress = silent,
+) -> Found:
+    """The first ``flips`` period doublings of every sweep, cold and (``hot``) with heat.
+
+    Each cascade starts from the orbit of period 1 at the sweep's first value. Where that one has
+    doubled already, the walk begins where it is stable, beyond the sweep's end.
+    """
+    if not 1 <= flips <= MOST_DEPTH:
+        raise InputError("--cascade", flips, allowed=f"1..{MOST_DEPTH}")
+    legs: list[Leg] = []
+    entries: list[dict[str, Any]] = []
+    notices: list[str] = []
+    cut = False
+    for heat in heats() if hot else (COLD,):
+        for sweep in sweeps:
+            if cut:
+                break
+            subject = of_numbers(
+                {**sweep.base, **heat.numbers, sweep.parameter: sweep.first}, start
+            )
+            stage = f"{sweep.row}, {heat.name}".split(" (")[0]
+            own: list[Leg] = []
+            values: list[Bifurcation] = []
+            try:
+                cut = _cascade(subject, sweep, flips, stage, progress, own, values)
+            except ConvergenceError as error:
+                notices.append(f"{sweep.row}, {heat.name}: {error}")
+            except KeyboardInterrupt:
+                cut = True
+            if not own:
+                continue
+            legs += [replace(leg, heat=heat.name, row=sweep.row) for leg in own]
+            entries.append(_entry(sweep, heat, values, own))
+    if not legs and cut:
+        raise KeyboardInterrupt
+    if not legs:
+        raise ConvergenceError("; ".join(notices) or "no cascade was found")
+    summary = {
+        "title": title,
+        "flips": flips,
+        "cascades": entries,
+        "interrupted": cut,
+        "notices": notices + _backlash_notice(legs),
+    }
+    groups = {f"branch_{i}": dataset(leg, leg.branch.parameter) for i, leg in enumerate(legs)}
+    return found("cascade", groups, summary, cut)
+
+
+def _entry(
+    sweep: Sweep, heat: Heat, values: Sequence[Bifurcation], legs: Sequence[Leg]
+) -> dict[str, Any]:
+    numbers = np.array([b.value for b in values])
+    gaps = np.diff(numbers)
+    return {
+        "row": sweep.row,
+        "parameter": sweep.parameter,
+        "from": sweep.first,
+        "to": sweep.last,
+        "base": sweep.base,
+        "heat": heat.name,
+        "heat_numbers": heat.numbers,
+        "flips": [
+            {
+                "from_period": b.period,
+                "to_period": 2 * b.period,
+                "value": b.value,
+                "state": [float(c) for c in b.state],
+                "multipliers": complex_rows(b.multipliers),
+                "note": b.note,
+            }
+            for b in values
+        ],
+        "ratios": [float(r) for r in gaps[:-1] / gaps[1:]] if len(gaps) > 1 else [],
+        "ended": legs[-1].branch.ended,
+        "back_impacts": int(max(leg.branch.back_impacts.max() for leg in legs)),
+    }
+
+
+def _backlash_notice(legs: Sequence[Leg]) -> list[str]:
+    if any(leg.branch.back_impacts.max() > 0 for leg in legs):
+        return []
+    return ["no back flank is hit on any of these branches: b' has no effect, heat acts by ε_T"]
+
+
+def _cascade(
+    subject: Subject,
+    sweep: Sweep,
+    flips: int,
+    stage: str,
+    progress: Progress,
+    legs: list[Leg],
+    values: list[Bifurcation],
+) -> bool:
+    """Walk one sweep, filling ``legs`` and flips as they come; whether Ctrl+C cut it short."""
+    models, _ = family(subject, sweep.parameter)
+    orbit, begin = _mother(subject, sweep, models)
+    direction, first = None, begin
+    while True:
+        name = f"{stage}: period {orbit.period}"
+        branch = _walk(
+            orbit, sweep.parameter, sweep.last, models, begin, name, progress, direction, FLIP,
+            back_to=first,
+        )  # fmt: skip
+        legs.append(Leg(branch, len(legs)))
+        if branch.ended == INTERRUPTED:
+            return True
+        if not branch.of_kind(FLIP):
+            return False
+        values.append(branch.of_kind(FLIP)[0])
+        if len(values) == flips:
+            return False
+        doubled = switch_branch(values[-1], models)
+        orbit, begin, direction = doubled.orbit, doubled.value, doubled.direction
+
+
+def _mother(
+    subject: Subject, sweep: Sweep, models: Callable[[float], object]
+) -> tuple[Orbit, float]:
+    """A stable orbit of period 1 to start from: at the sweep's first value or beyond it."""
+    orbit, _ = orbit_of(subject)
+    if orbit.period == 1:
+        return orbit, sweep.first
+    centre = orbit.points.mean(axis=0)
+    mother = periodic_orbit(models(sweep.first), 1, centre)
+    away = sweep.first + 0.5 * (sweep.first - sweep.last)
+    if away <= 0.0:
+        away = 0.5 * sweep.first
+    branch = continuation(
+        mother, sweep.parameter, away, family=models, start=sweep.first, stop_at=FLIP
+    )
+    if not bool(branch.stable[-1]):
+        raise ConvergenceError(
+            f"no stable orbit of period 1 between {sweep.parameter} = {sweep.first:.6g} and "
+            f"{away:.6g}; start the sweep elsewhere"
+        )
+    return branch.orbit(-1), float(branch.values[-1])
+
+
+def sweep_of_subject(subject: Subject, parameter: str, *, first: float, last: float) -> Sweep:
+    """One sweep on the numbers of a dimensionless subject."""
+    if not isinstance(subject.model, TorsionalModel):
+        raise InputError(
+            "--cascade",
+            "a gear case",
+            why="cascades are tabled for the dimensionless equation",
+            fix="use --switch to follow doubled branches of a gear pair",
+        )
+    return Sweep(
+        row=parameter,
+        parameter=parameter,
+        first=first,
+        last=last,
+        base={**subject.parameters, parameter: first},
+    )

@@ -1,0 +1,159 @@
+"""Every friction law side by side along the path of contact, with its range and the regime."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base.vocabulary import attributes
+from thermogear.case.case import GearCase
+from thermogear.gears.contact import path_of_contact
+from thermogear.heat.contact_state import ContactState
+from thermogear.heat.film import FILM_UNCERTAINTY, REGIMES, regime, regime_shares
+from thermogear.heat.friction import LAWS, ConstantDry, FrictionLaw, laws_together
+from thermogear.mesh.elastic import elastic_pair
+from thermogear.mesh.friction_path import FrictionPath
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.thermal import HotPair
+from thermogear.study.balances import dressed, regime_attributes
+
+Floats = NDArray[np.float64]
+
+KIND = "friction"
+
+
+def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionPath:
+    """The lubricated contact of every operating point of ``case``, hot."""
+    hot = HotPair(case.pair, case.operating_of(model), model)
+    s = path_of_contact(case.pair, positions)
+    return FrictionPath(elastic_pair(hot, case.deviations), s).checked()
+
+
+def law_of(name: str, model: MeshModel) -> FrictionLaw:
+    """The named law, the dry one with the model's coefficient."""
+    return ConstantDry(model.dry_coefficient) if name == ConstantDry.name else LAWS[name]
+
+
+def friction_survey(case: GearCase) -> xr.DataTree:
+    """|mu| by every law over the path of contact at every operating point, hot.
+
+    Variables over (law, operating, path_position): ``friction_coefficient`` (nan where a law has
+    no value for this oil or roughness), ``outside_range`` 1 where the contact leaves the range
+    that the law's source gives; over (operating, path_position) ``film_parameter``,
+    ``film_thickness``, ``regime``; over (operating, regime_name) ``regime_share`` of the path;
+    ``mean_friction`` weighted by sliding power, over (law, operating). The first model of the
+    case decides load shares and temperatures.
+    """
+    model = case.models[0]
+    path = friction_path(case, model, case.path_positions)
+    state = path.state
+    shape = (case.stated.speed.size, path.s.size)
+    laws = tuple(law_of(name, model) for name in LAWS)
+    together = laws_together(state, laws)
+    mu = np.broadcast_to(together.coefficient, (len(laws), *shape))
+    outside = np.broadcast_to(together.outside, mu.shape).astype(np.int8)
+    words = [
+        {
+            "law": law.name,
+            "regime": law.regime,
+            "source": law.source,
+            "range": range_in_words(law),
+            "missing": reason,
+        }
+        for law, reason in zip(laws, together.missing, strict=True)
+    ]
+    along = ("operating", "path_position")
+    weight = path.line_load * np.abs(np.subtract(*path.velocities))
+    total = np.trapezoid(np.broadcast_to(weight, shape), path.s, axis=-1)
+    mean = np.trapezoid(mu * weight, path.s, axis=-1)
+    mean = np.divide(mean, total, out=np.full_like(mean, np.nan), where=total > 0.0)
+    film = np.broadcast_to(path.film_parameter, shape)
+    data = xr.Dataset(
+        {
+            "friction_coefficient": dressed(
+                ("law", *along), mu, "1", "friction coefficient by the law"
+            ),
+            "outside_range": dressed(
+                ("law", *along), outside, "1", "1 where the contact leaves the law's range"
+            ),
+            "mean_friction": dressed(
+                ("law", "operating"), mean, "1", "friction coefficient, mean by sliding power"
+            ),
+            "film_parameter": (along, film, attributes("film_parameter")),
+            "film_thickness": (
+                along,
+                np.broadcast_to(path.film, shape),
+                attributes("film_thickness"),
+            ),
+            "regime": (along, regime(film).astype(np.int8), regime_attributes()),
+            "regime_share": dressed(
+                ("operating", "regime_name"), regime_shares(film), "1", "share of the path"
+            ),
+        },
+        {
+            "law": list(LAWS),
+            "regime_name": list(REGIMES),
+            "path_position": ("path_position", path.s, attributes("path_position")),
+            "pinion_speed": ("operating", case.stated.speed, attributes("pinion_speed")),
+            "pinion_torque": ("operating", case.stated.torque, attributes("pinion_torque")),
+        },
+        {
+            "path_points": json.dumps({k.upper(): v for k, v in case.pair.path._asdict().items()}),
+            "chosen": model.friction,
+            "bundle": model.name,
+        },
+    )
+    tree = xr.DataTree.from_dict({"laws": data})
+    tree.attrs = {
+        "thermogear": thermogear.__version__,
+        "kind": KIND,
+        "title": f"Friction laws: {case.title}",
+        "case": case.text,
+        "overrides": json.dumps([list(pair) for pair in case.overrides]),
+        "laws": json.dumps(words),
+        "notices": json.dumps(_notices(state, words)),
+    }
+    return tree
+
+
+def range_in_words(law: FrictionLaw) -> str:
+    """A law's range in the units a gear engineer reads; empty where its source gives none."""
+    shown = {
+        "roughness": (1e6, "um", "roughness Ra"),
+        "viscosity": (1e3, "mPa s", "viscosity"),
+        "film_parameter": (1.0, "", "film parameter"),
+    }
+    parts = []
+    for name, (low, high) in law.ranges.items():
+        scale, unit, text = shown.get(name, (1.0, "", name))
+        ends = (
+            f"{scale * low:g} .. {scale * high:g}" if np.isfinite(high) else f">= {scale * low:g}"
+        )
+        parts.append(f"{text} {ends} {unit}".strip())
+    return "; ".join(parts)
+
+
+def _notices(state: ContactState, words: list[dict[str, str]]) -> list[dict[str, str]]:
+    found = [
+        {
+            "level": "info",
+            "text": f"The film is known to about {100 * FILM_UNCERTAINTY:.0f} % "
+            "(pressure-viscosity) and the thickness formulas spread by 14 %: so does the border "
+            "between the regimes.",
+        },
+        {
+            "level": "info",
+            "text": "Near the pitch point nothing slides: Benedict and Kelley's logarithm is held "
+            "at 1 % of the entrainment speed, Xu and Kahraman's law falls to 0.",
+        },
+    ]
+    for one in words:
+        if one["missing"]:
+            found.append({"level": "warning", "text": f"{one['law']}: {one['missing']}"})
+    if float(np.max(np.asarray(state.sum_speed))) == 0.0:
+        found.append({"level": "important", "text": "The pair is at rest: no film forms."})
+    return found

@@ -1,0 +1,344 @@
+"""Orbits, Lyapunov exponents and branches of one subject, as trees of labelled results.
+
+Each function returns a :class:`Found`: the tree that is stored and drawn, and its summary. Numbers
+are dimensionless (X = x/b_c, omega_n t) unless a name says SI; where a gear stands behind them the
+tree carries metres, seconds and hertz.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+import thermogear
+from thermogear.analysis.labels import Label, label
+from thermogear.analysis.lyapunov import lyapunov_exponents
+from thermogear.analysis.orbits import Orbit, periodic_orbit
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.progress import Progress, silent
+from thermogear.base.vocabulary import label as labelled
+from thermogear.base.vocabulary import label_words
+from thermogear.case.subject import Subject
+from thermogear.dynamics.integrate import simulate
+from thermogear.results.files import write_results, write_summary
+from thermogear.signals.spectra import amplitude_spectrum
+
+SAMPLES = 256
+"""Samples a mesh period of a stored orbit."""
+HIGHEST_ORDER = 20.0
+LEAST_LINE = 1e-12
+"""Lines below this part of the greatest are rounding."""
+ROUNDS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a command found: the tree to store, its summary, and whether Ctrl+C cut it short."""
+
+    kind: str
+    tree: xr.DataTree
+    summary: dict[str, Any]
+    interrupted: bool = False
+
+    def write(self, directory: Path) -> Path:
+        """``KIND.nc`` and ``KIND.json`` in ``directory``; the path of the former."""
+        path = write_results(self.tree, directory, f"{self.kind}.nc")
+        write_summary(self.summary, directory, f"{self.kind}.json")
+        return path
+
+
+def found(
+    kind: str,
+    groups: dict[str, xr.Dataset],
+    summary: dict[str, Any],
+    interrupted: bool = False,
+) -> Found:
+    """The tree of ``groups`` with title, version and summary as attributes."""
+    tree = xr.DataTree.from_dict(groups)
+    tree.attrs = {
+        "thermogear": thermogear.__version__,
+        "kind": kind,
+        "title": str(summary["title"]),
+        "summary": json.dumps(summary, allow_nan=False),
+    }
+    return Found(kind, tree, summary, interrupted)
+
+
+# --- orbits -------------------------------------------------------------------------------
+
+
+def settled(subject: Subject, model: object | None = None) -> Label:
+    """What the motion of ``subject`` settles on from its start, with proof."""
+    simulation = subject.simulation
+    return label(
+        subject.model if model is None else model,
+        initial_state=simulation.initial_state,
+        discard=max(simulation.discard, 1),
+        cap=max(simulation.most_discarded, 32_000),
+    )
+
+
+def orbit_of(
+    subject: Subject,
+    period: int | None = None,
+    *,
+    transient: bool = True,
+    model: object | None = None,
+) -> tuple[Orbit, Label | None]:
+    """The closed orbit a motion settles on, or the one of ``period`` near where it ends.
+
+    An orbit that closes earlier already comes back with its least period. Without ``transient``
+    Newton starts from the given state itself, which reaches unstable
+    orbits. Raises ConvergenceError where no orbit is reached.
+    """
+    model = subject.model if model is None else model
+    start = subject.simulation.initial_state
+    if not transient:
+        return _least(periodic_orbit(model, 1 if period is None else period, start)), None
+    proof = settled(subject, model)
+    if proof.orbit is not None and period in (None, proof.orbit.period):
+        return proof.orbit, proof
+    if period is None:
+        raise ConvergenceError(
+            f"no closed orbit: the motion from {list(start)} is {proof} ({proof.reason}); "
+            "give a period to look for an orbit inside it"
+        )
+    end = simulate(
+        model,
+        periods=1,
+        discard=subject.simulation.discard,
+        samples_per_period=0,
+        initial_state=start,
+        method="exact",
+    )
+    guess = [float(end["section_x"][0, -1]), float(end["section_v"][0, -1])]
+    return _least(periodic_orbit(model, period, guess)), proof
+
+
+def _least(orbit: Orbit) -> Orbit:
+    """The same motion, closed after its least period."""
+    if orbit.minimal_period == orbit.period:
+        return orbit
+    return periodic_orbit(orbit.model, orbit.minimal_period, orbit.state)
+
+
+def complex_rows(values: Any) -> list[dict[str, float]]:
+    """Multipliers as plain numbers."""
+    return [
+        {"real": float(mu.real), "imag": float(mu.imag), "modulus": float(abs(mu))} for mu in values
+    ]
+
+
+def orbit_results(
+    subject: Subject,
+    period: int | None = None,
+    *,
+    transient: bool = True,
+    progress: Progress = silent,
+) -> Found:
+    """State, multipliers, contact changes, load factor and spectrum of one closed orbit."""
+    progress("orbit", 0, 2)
+    orbit, proof = orbit_of(subject, period, transient=transient)
+    progress("orbit", 1, 2)
+    scale, b = subject.scale, float(orbit.lanes.half_backlash[0])
+    phase, x, v = orbit.samples(SAMPLES)
+    spectrum = amplitude_spectrum(x, float(SAMPLES))
+    kept = spectrum.frequencies <= HIGHEST_ORDER
+    order = spectrum.frequencies[kept]
+    amplitude = spectrum.amplitudes[kept]
+    low, high = orbit.extremes()
+    shares = orbit.time_share
+    factor = orbit.dynamic_load_factor()
+    mu = orbit.multipliers
+    period_time = float(orbit.lanes.period[0]) / scale.rate
+    speed = scale.length * scale.rate
+    variables: dict[str, Any] = {
+        "time": (("sample",), phase * period_time),
+        "displacement": (("sample",), x * scale.length),
+        "velocity": (("sample",), v * speed),
+        "section_displacement": (("section",), orbit.points[:, 0] * scale.length),
+        "section_velocity": (("section",), orbit.points[:, 1] * speed),
+        "order": (("order",), order),
+        "line_amplitude": (("order",), amplitude * scale.length),
+        "multiplier_real": (("multiplier",), mu.real),
+        "multiplier_imag": (("multiplier",), mu.imag),
+        "orbit_period": ((), orbit.period),
+        "contact_losses": ((), orbit.contact_losses),
+        "back_impacts_per_orbit": ((), orbit.back_impacts),
+        "drive_share": ((), shares["drive"]),
+        "free_share": ((), shares["free"]),
+        "back_share": ((), shares["back"]),
+        "dynamic_load_factor": ((), factor),
+        "half_backlash": ((), b * scale.length),
+        "least_displacement": ((), low * scale.length),
+        "greatest_displacement": ((), high * scale.length),
+    }
+    if scale.gear:
+        variables["line_frequency"] = (("order",), order * scale.mesh)
+    data = labelled(variables)
+    data["phase"] = (("sample",), phase, {"units": "1", "long_name": "time in mesh periods"})
+    if not scale.gear:
+        _without_units(data)
+    shown = (order > 0.0) & (amplitude > LEAST_LINE * max(float(amplitude[1:].max()), 1e-300))
+    lines = [
+        {
+            "order": float(q),
+            "amplitude": float(a * scale.length),
+            "frequency_hz": float(q * scale.mesh) if scale.gear else None,
+            "half_order": bool(abs(2.0 * q - round(2.0 * q)) < 1e-9 and round(2.0 * q) % 2 == 1),
+        }
+        for q, a in zip(order[shown], amplitude[shown], strict=True)
+    ]
+    summary: dict[str, Any] = {
+        "title": subject.title,
+        "parameters": subject.parameters,
+        "units": "SI" if scale.gear else "dimensionless",
+        "label": f"period-{orbit.minimal_period}",
+        "settles_there": None if proof is None else str(proof),
+        "reason": None if proof is None else proof.reason,
+        "period": orbit.period,
+        "state": [float(c) for c in orbit.state],
+        "points": [[float(c) for c in p] for p in orbit.points],
+        "state_si": [float(orbit.state[0] * scale.length), float(orbit.state[1] * speed)]
+        if scale.gear
+        else None,
+        "multipliers": complex_rows(mu),
+        "determinant": orbit.determinant,
+        "stable": orbit.stable,
+        "contact_losses": orbit.contact_losses,
+        "back_impacts": orbit.back_impacts,
+        "time_share": shares,
+        "dynamic_load_factor": factor if np.isfinite(factor) else None,
+        "least": low * scale.length,
+        "greatest": high * scale.length,
+        "half_backlash": b * scale.length,
+        "mesh_frequency_hz": scale.mesh if scale.gear else None,
+        "residual": orbit.residual,
+        "lines": lines,
+        "notices": _orbit_notices(orbit, low, b, period),
+    }
+    progress("orbit", 2, 2)
+    return found("orbit", {"orbit": data}, summary)
+
+
+def _without_units(data: xr.Dataset) -> None:
+    """Dimensionless numbers carry no metres."""
+    for name in data.variables:
+        unit = data[name].attrs.get("units")
+        if unit is not None:
+            data[name].attrs["units"] = "1"
+
+
+def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> list[str]:
+    notices = []
+    if asked is not None and asked != orbit.period:
+        notices.append(f"period {asked} was asked for; this motion closes after {orbit.period}")
+    if orbit.minimal_period != orbit.period:
+        notices.append(
+            f"asked for {orbit.period} periods; this orbit closes after {orbit.minimal_period}"
+        )
+    if low > b:
+        notices.append("b' has no effect here: contact is never lost, the motion is linear")
+    elif low > -b:
+        # y = x - b' stays; the back flank stands at y = -2 b'
+        notices.append(
+            f"b' has no effect here down to {max(0.5 * (b - low), 0.0):.6g}: the back flank is "
+            "never reached, so backlash shifts the orbit and changes neither multipliers nor "
+            "spectrum"
+        )
+    if not orbit.stable:
+        notices.append("unstable: no motion settles on this orbit")
+    return notices
+
+
+# --- Lyapunov exponents -------------------------------------------------------------------
+
+
+def lyapunov_results(
+    subject: Subject,
+    *,
+    discard: int = 2000,
+    batches: int = 40,
+    batch_periods: int = 500,
+    progress: Progress = silent,
+) -> Found:
+    """lambda_1 with the error of its batch means, in rounds, so that Ctrl+C keeps what is done."""
+    if batches < 4:
+        raise InputError("--batches", batches, allowed=">= 4")
+    rounds = min(ROUNDS, batches // 2)
+    sizes = [batches // rounds + (1 if i < batches % rounds else 0) for i in range(rounds)]
+    state = np.asarray(subject.simulation.initial_state, dtype=float)
+    means: list[float] = []
+    total, damping = 0.0, 0.0
+    cut = False
+    try:
+        for number, size in enumerate(sizes):
+            progress("batches", number, rounds)
+            (one,) = lyapunov_exponents(
+                subject.model,
+                initial_state=state,
+                discard=discard if number == 0 else 0,
+                batches=size,
+                batch_periods=batch_periods,
+            )
+            state, total, damping = one.state, one.sum, -one.sum
+            means += one.batches.tolist()
+        progress("batches", rounds, rounds)
+    except KeyboardInterrupt:
+        if len(means) < 2:
+            raise
+        cut = True
+    values = np.array(means)
+    if not np.all(np.isfinite(values)):
+        raise ConvergenceError("lyapunov: the motion diverges (|x| > 1e6 half backlashes)")
+    value = float(values.mean())
+    error = float(values.std(ddof=1) / np.sqrt(values.size))
+    rate, period = subject.scale.rate, float(subject.model.lanes().period[0])
+    dimension = 1.0 + value / abs(total - value) if value > 0.0 else 0.0
+    half = values.size // 2
+    ran = discard + values.size * batch_periods
+    chaos = label_words("chaotic", followed=ran, starts=1)
+    sure = value > 4.0 * error and values[:half].mean() > 0.0 and values[half:].mean() > 0.0
+    verdict = chaos if sure else "not chaotic" if value < -4.0 * error else "undecided"
+    notices = []
+    # a positive mean says nothing of how long chaos lasts
+    end = label(subject.model, initial_state=state, discard=128, cap=512, starts=2, follow=1)
+    if end.orbit is not None and not verdict.startswith("not"):
+        verdict = f"not chaotic at its end: period {end.period} after {ran} periods"
+        notices.append(
+            "the motion closes by the end of the record: its mean exponent is one of the transient "
+            "and of the orbit, and says nothing of either"
+        )
+    data = labelled(
+        {
+            "lyapunov_batch": (("batch",), values),
+            "lyapunov_exponent": ((), value),
+            "lyapunov_error": ((), error),
+        }
+    )
+    summary: dict[str, Any] = {
+        "title": subject.title,
+        "parameters": subject.parameters,
+        "exponent": value,
+        "error": error,
+        "sum": total,
+        "sum_is": "-2 zeta, exactly",
+        "damping": damping,
+        "second": total - value,
+        "kaplan_yorke": dimension,
+        "per_mesh_period": value * period,
+        "per_second": value * rate if subject.scale.gear else None,
+        "batches": int(values.size),
+        "batch_periods": batch_periods,
+        "discarded": discard,
+        "verdict": verdict,
+        "state": [float(c) for c in state],
+        "interrupted": cut,
+        "notices": notices,
+    }
+    return found("lyapunov", {"lyapunov": data}, summary, cut)

@@ -1,0 +1,588 @@
+"""What a run found, in words and single figures: notices, facts, summary."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import DIMENSIONLESS, STATUS, told_operating
+from thermogear.case.case import GearCase
+from thermogear.case.derived import Fact
+from thermogear.case.derived import facts as case_facts
+from thermogear.case.thesis_cases import of_the_thesis
+from thermogear.gears.deviations import PitchError
+from thermogear.gears.iso6336 import iso6336_stiffness
+from thermogear.mesh.model import CHOICES
+from thermogear.study.balances import celsius, reasons, several_words
+from thermogear.study.friction_notices import friction_notices
+
+Floats = NDArray[np.float64]
+Notice = dict[str, str]
+
+STUDIED_FREQUENCIES = (1.1, 1.3)
+"""Frequency ratios of the thesis's bifurcation study."""
+
+MOST_POINTS = 12
+"""The heat balance is told point by point up to so many; the stored group has them all."""
+
+LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
+
+
+def _notice(level: str, text: str) -> Notice:
+    return {"level": level, "text": text}
+
+
+def _rpm(speed: float) -> float:
+    return speed / RPM
+
+
+# --- notices ------------------------------------------------------------------------------
+
+
+def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+    """What a reader should know before the pictures, most important first."""
+    mesh = groups["mesh"]
+    found = _computed(case, groups) + _jammed(case, mesh) + _deviations(case)
+    if of_the_thesis(case):
+        found += _regime(case, mesh)
+    if "motion" in groups:
+        found += _motion(groups["motion"])
+    if "temperature" in groups:
+        found += _row_jams(groups["temperature"])
+    found += _stiffness(case, mesh) + _edges(mesh)
+    if any(model.thermal_stiffness == "thesis" for model in case.models):
+        found.append(
+            _notice(
+                "info",
+                "The thesis's thermal stiffness k_T has no cold limit (it tends to infinity as "
+                "the growth vanishes); it is set to 0 where nothing has grown.",
+            )
+        )
+    found.append(
+        _notice(
+            "info",
+            "Undeformed and hot differ in the temperatures of gears and housing alone; oil and "
+            "film are equally warm in both: friction and flash can be compared.",
+        )
+    )
+    found += friction_notices(case, groups)
+    if case.base_sets and not of_the_thesis(case):
+        found.append(
+            _notice(
+                "info",
+                "draw.base_sets: left out. These sets belong to the ready-made case, and this "
+                "case has other values.",
+            )
+        )
+    if mesh.sizes["bundle"] > 1:
+        found.append(_difference(mesh))
+    return found
+
+
+def _stiffness(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+    """How the models of the mesh stiffness stand to each other, in this case."""
+    found = []
+    for place, model in enumerate(case.models):
+        if not model.stiffness.startswith("textbook"):
+            continue
+        cold = mesh.isel(bundle=place, state=0, operating=0)
+        over = [
+            float(cold["mean_stiffness"]) / float(cold[f"{body}_stiffness"]) - 1.0
+            for body in ("rim", "bore_clamped")
+        ]
+        found.append(
+            _notice(
+                "warning",
+                f"{model.name}: the mesh stiffness is the textbook sum of tooth pairs that do not "
+                f"feel each other. For this pair its mean without heat lies {_above(over[0])} "
+                f"that of the loaded contact, {_above(over[1])} it with the bodies clamped at "
+                "their bores.",
+            )
+        )
+    if any(model.stiffness == "loaded" for model in case.models):
+        found.append(
+            _notice(
+                "info",
+                "The loaded contact takes plane-stress bodies. Contact on tip corners and relief "
+                "stand without a finite-element check; `thermogear verify stiffness` holds the "
+                "rest of this pair's contact against finite elements. For the vibration the "
+                "body's wind-up against its bore is left to the inertia (the reading named "
+                "rim); both readings are among the figures.",
+            )
+        )
+    return found
+
+
+def _edges(mesh: xr.Dataset) -> list[Notice]:
+    """Where a tip corner carries, and what that leaves unknown."""
+    shares = 100.0 * mesh["edge_contact_share"].values
+    if not np.any(shares > 0.0):
+        return []
+    least, most = f"{np.nanmin(shares):.1f}", f"{np.nanmax(shares):.1f}"
+    span = most if least == most else f"{least} to {most}"
+    return [
+        _notice(
+            "info",
+            f"Edge contact: under load the corner of a tip carries for {span} % "
+            "of the mesh period in the loaded contact. Hertz's pressure is not valid there and is "
+            "left out; stiffness, shares, friction and flash take the corner for a flank.",
+        )
+    ]
+
+
+def _above(part: float) -> str:
+    """A relative difference as so many per cent above or below."""
+    return f"{100.0 * abs(part):.0f} % {'above' if part > 0.0 else 'below'}"
+
+
+def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+    """What the heat balance found, where it decides the temperatures."""
+    if "balance" not in groups:
+        return []
+    balance, found = groups["balance"], []
+    ours = sum(one.field.startswith("gearbox.") for one in case.assumptions)
+    limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
+    for place, bundle in enumerate(balance["bundle"].values):
+        here = balance.isel(bundle=place)
+        settled = here["status"].values == STATUS.index("ok")
+        lost = int(np.sum(~settled))
+        if lost:
+            found.append(
+                _notice(
+                    "important",
+                    f"{bundle}: {lost} of {settled.size} operating points have no steady "
+                    "temperature; their status is not_converged and they have no motion."
+                    + reasons(balance, str(bundle)),
+                )
+            )
+        if not settled.any():
+            continue
+        several = settled & (here["several"].values == 1)
+        if several.any():
+            oil = here["hot_node_temperature"] - here["node_temperature"]
+            far = float(oil.sel(node="oil").values[several].max())
+            text = several_words(several=int(several.sum()), count=settled.size, hotter=far)
+            found.append(_notice("important", f"{bundle}: {text}"))
+        steady = here.isel(operating=np.flatnonzero(settled))
+        teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])
+        oil = steady["node_temperature"].sel(node="oil")
+        text = (
+            f"{bundle}: temperatures computed from the heat balance; teeth "
+            f"{celsius(float(teeth.min()))} to {celsius(float(teeth.max()))}, oil "
+            f"{celsius(float(oil.min()))} to {celsius(float(oil.max()))}, settled within "
+            f"{int(steady['iterations'].max())} iterations to {float(steady['residual'].max()):.1g}"
+            f" K. They rest on the gearbox's values; {ours or 'none'} of them "
+            f"{'is' if ours == 1 else 'are'} ours."
+        )
+        hot = float(teeth.max()) > limit
+        if hot:
+            text += f" The teeth pass {celsius(limit)}, where their material is tempered."
+        found.append(_notice("important" if hot else "info", text))
+    return found
+
+
+def _deviations(case: GearCase) -> list[Notice]:
+    """What a reader must know where flanks deviate from the involute."""
+    if not case.deviations:
+        return []
+    deaf = [m.name for m in case.models if m.stiffness != "loaded"]
+    count = len(case.deviations)
+    text = (
+        f"{count} deviation{'s' if count > 1 else ''} of the flanks: in clearance, jam and error, "
+        "and in stiffness and load shares of the loaded contact. The kinematic error of "
+        "[transmission_error] comes on top: what the deviations cause should not stand there again."
+    )
+    if deaf:
+        text += f" The textbook sum of {', '.join(deaf)} does not feel them."
+    found = [_notice("warning" if deaf else "info", text)]
+    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in case.deviations):
+        found.append(
+            _notice(
+                "warning",
+                "Pitch errors: a run holds the teeth of one mesh period. Other teeth may leave "
+                "less clearance and jam earlier; `loaded_contact` takes phases of whole "
+                "revolutions.",
+            )
+        )
+    return found
+
+
+def _jammed(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+    hot = mesh.isel(state=-1)
+    found = []
+    for place, bundle in enumerate(mesh["bundle"].values):
+        here = hot.isel(bundle=place)
+        bare = mesh.isel(state=0, bundle=place)["status"] == STATUS.index("jammed")
+        if bool(bare.any()):
+            found.append(
+                _notice(
+                    "important",
+                    f"{bundle}: {int(bare.sum())} of {here.sizes['operating']} operating points "
+                    "are jammed without heat: the deviations of the flanks take more than the "
+                    "cold backlash. Jammed points have no motion.",
+                )
+            )
+            continue
+        jammed = int((here["status"] == STATUS.index("jammed")).sum())
+        alone, words = _jams(here, case.stated.temperatures.reference)
+        if jammed:
+            found.append(
+                _notice(
+                    "important",
+                    f"{bundle}: {jammed} of {here.sizes['operating']} operating points are jammed "
+                    f"when hot. The backlash is used up {words}. Jammed points have no motion.",
+                )
+            )
+        elif math.isfinite(alone) and alone < ZERO_CELSIUS + 400.0:
+            found.append(_notice("info", f"{bundle}: the pair would jam {words}."))
+    return found
+
+
+def _jams(here: xr.Dataset, reference: float) -> tuple[float, str]:
+    """Least jam temperature [K] of gears that rise alone, and both jams in words.
+
+    In proportion it is the one nearest to the ``reference`` [K], from where all bodies go.
+    """
+    alone, together = (
+        np.ravel(here[name].values) for name in ("jam_temperature", "proportional_jam_temperature")
+    )
+    first = f"at {_degrees(alone, np.argsort(alone), here)} of the pinion's addendum"
+    words = f"{first} where both gears rise alike with the housing as it is"
+    nearest = np.argsort(np.abs(together - reference))
+    known = float(together[nearest[0]])
+    if not math.isfinite(known):
+        return float(np.nanmin(alone, initial=np.inf)), (
+            f"{words}, and never where shafts and housing go along in proportion"
+        )
+    way = "rise" if known > reference else "cool"
+    return float(np.nanmin(alone, initial=np.inf)), (
+        f"{words}, at {_degrees(together, nearest, here)} where shafts and housing {way} in "
+        "proportion to the gears"
+    )
+
+
+def _degrees(kelvin: Floats, order: NDArray[np.int64], here: xr.Dataset) -> str:
+    """The first of some temperatures in ``order``, with its operating point where they differ."""
+    first = int(order[0])
+    if not math.isfinite(kelvin[first]):
+        return "no temperature"
+    text = f"{kelvin[first] - ZERO_CELSIUS:.0f} °C"
+    if np.all(np.abs(kelvin - kelvin[first]) < 0.5):
+        return text
+    one = here.isel(operating=first)
+    speed, torque = _rpm(float(one["pinion_speed"])), float(one["pinion_torque"])
+    return f"{text} ({speed:.5g} rpm, {torque:.5g} N m)"
+
+
+def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+    ratios = mesh["frequency_ratio"].isel(bundle=0, state=0).values
+    low, high = STUDIED_FREQUENCIES
+    f_n = float(mesh["natural_frequency"].isel(bundle=0, state=0, operating=0))
+    per_rpm = case.pair.pinion.teeth / 60.0
+    studied = [f_n * ratio / per_rpm for ratio in (low, high)]
+    inside = (ratios >= low) & (ratios <= high)
+    if np.any(inside):
+        return []
+    return [
+        _notice(
+            "important",
+            f"Two regimes: the speeds of this case lie at frequency ratios "
+            f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
+            f"of the undeformed mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation "
+            f"study at {low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
+            "Nothing found in one speaks for the other.",
+        )
+    ]
+
+
+def _motion(motion: xr.Dataset) -> list[Notice]:
+    found = []
+    names = Counter(str(name) for name in motion["label"].values.ravel())
+    if names["undecided"]:
+        found.append(
+            _notice(
+                "warning",
+                f"{names['undecided']} motions are undecided: they neither close nor are they "
+                "chaotic to the end; the reason stands with each.",
+            )
+        )
+    if "back_impacts" in motion:
+        impacts = motion["back_impacts"].values
+        moving = np.isfinite(impacts)
+        if moving.any() and not np.any(impacts[moving] > 0.0):
+            found.append(
+                _notice(
+                    "info",
+                    "b' has no effect here: no tooth ever hits the back side, so the backlash "
+                    "can be moved out of the equation; heat acts through stiffness and error "
+                    "alone.",
+                )
+            )
+        elif moving.any():
+            free = int(np.sum(impacts[moving] == 0.0))
+            found.append(
+                _notice(
+                    "info",
+                    f"b' has no effect on {free} of {int(moving.sum())} motions, whose teeth "
+                    "never hit the back side.",
+                )
+            )
+    return found
+
+
+def _row_jams(row: xr.Dataset) -> list[Notice]:
+    jammed = row["status"] == STATUS.index("jammed")
+    found = []
+    for place, bundle in enumerate(row["bundle"].values):
+        here = jammed.isel(bundle=place).any("operating")
+        temperatures = row["gear_temperature"].values[here.values]
+        if temperatures.size:
+            text = ", ".join(f"{t - ZERO_CELSIUS:.0f}" for t in temperatures)
+            found.append(
+                _notice("important", f"{bundle}: jammed at gear temperatures of {text} °C.")
+            )
+    return found
+
+
+def _difference(mesh: xr.Dataset) -> Notice:
+    parts = []
+    for place, bundle in enumerate(mesh["bundle"].values):
+        here = mesh.isel(bundle=place, operating=told_operating(mesh))
+        cold, hot = (float(here["mean_stiffness"].isel(state=i)) for i in (0, -1))
+        b = float(here["half_backlash"].isel(state=-1)) * 1e6
+        if math.isnan(b):
+            continue
+        parts.append(f"{bundle}: stiffness {100 * (hot / cold - 1):+.1f} %, b' = {b:.1f} um")
+    told = "; ".join(parts) or "no point has a hot state"
+    return _notice("important", f"What heat does depends on the bundle. {told}.")
+
+
+def dimensionless_notices(points: xr.Dataset) -> list[Notice]:
+    """The notices of a dimensionless case."""
+    found = [
+        _notice(
+            "info",
+            "These are parameter sets of the dimensionless equation; they are not derived from "
+            "any gear pair.",
+        )
+    ]
+    return found + _motion(points)
+
+
+# --- facts --------------------------------------------------------------------------------
+
+
+def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, object]]:
+    """The case's own figures, then those of the run: frequencies, plausibility."""
+    mesh = groups["mesh"]
+    table = list(case_facts(case))
+    for place, bundle in enumerate(mesh["bundle"].values):
+        natural = float(mesh["natural_frequency"].isel(bundle=place, state=0, operating=0))
+        resonance = 60.0 * natural / case.pair.pinion.teeth
+        table.append(
+            Fact("natural frequency of the undeformed mean stiffness", str(bundle), natural, "Hz")
+        )
+        table.append(Fact("pinion speed of the mesh resonance", str(bundle), resonance, "rpm"))
+    cold = mesh.isel(bundle=0, state=0, operating=0)
+    for body, words in (("rim", "rim"), ("bore_clamped", "bore clamped")):
+        k = float(cold[f"{body}_stiffness"])
+        natural = math.sqrt(k / case.equivalent_mass) / (2.0 * math.pi)
+        table.append(Fact("loaded contact, undeformed, two readings of the bore", words, k, "N/m"))
+        table.append(Fact("natural frequency of the loaded contact", words, natural, "Hz"))
+    for place in range(mesh.sizes["operating"]):
+        load = float(mesh["normal_force"].isel(bundle=0, state=0, operating=place))
+        tangential = load * math.cos(case.pair.pinion.pressure_angle)
+        iso = float(iso6336_stiffness(case.pair, tangential / case.pair.face_width).mesh)
+        at = f"at {float(mesh['pinion_torque'][place]):.0f} N m"
+        value = iso * case.pair.face_width
+        fact = Fact("mesh stiffness by ISO 6336-1 method B (knows no bore)", at, value, "N/m")
+        if fact not in table:
+            table.append(fact)
+    hot = mesh.isel(bundle=0, state=-1, operating=told_operating(mesh))
+    for name in ("pinion", "wheel"):
+        heat = float(hot[f"{name}_shaft_heat"])
+        table.append(Fact("heat the assumed field sends into the shaft", name, heat, "W"))
+    path = groups["path"].isel(bundle=0, state=-1)
+    for place in range(path.sizes["operating"]):
+        here = path.isel(operating=place)
+        rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
+        at = f"at {rpm:.0f} rpm, {torque:.0f} N m"
+        loss = float(mesh["frictional_power"].isel(bundle=0, state=-1, operating=place))
+        table.append(Fact("frictional power of the mesh", at, loss, "W"))
+    table += _balance_facts(groups)
+    return [asdict(fact) for fact in table]
+
+
+def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
+    """Node temperatures and losses of every operating point, and the corrected readings."""
+    if "balance" not in groups:
+        return []
+    balance, found = groups["balance"], []
+    for one in json.loads(str(balance.attrs["readings"])):
+        words = f"{one['node']}, {one['kind']} reading {celsius(one['indicated_K'])} corrected"
+        value = f"{celsius(one['temperature_K'])} +- {one['uncertainty_K']:.2g} K"
+        found.append(Fact("measured temperatures", words, value))
+    if "half_backlash_uncertainty" in balance:
+        for o in range(min(balance.sizes["operating"], MOST_POINTS)):
+            here = balance.isel(operating=o)
+            at = f"at {_rpm(float(here['pinion_speed'])):.0f} rpm, "
+            at += f"{float(here['pinion_torque']):.0f} N m"
+            sigma = 1e6 * float(here["half_backlash_uncertainty"])
+            found.append(Fact("uncertainty of b' from the measured temperatures", at, sigma, "um"))
+    for place, bundle in enumerate(balance["bundle"].values):
+        for o in range(min(balance.sizes["operating"], MOST_POINTS)):
+            here = balance.isel(bundle=place, operating=o)
+            rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
+            group = f"heat balance, {bundle}, {rpm:.0f} rpm, {torque:.0f} N m"
+            if np.isnan(here["residual"]):
+                found.append(Fact(group, "temperatures", "no value"))
+                continue
+            for node, kelvin in zip(
+                here["node"].values, here["node_temperature"].values, strict=True
+            ):
+                found.append(Fact(group, f"{node} temperature", celsius(float(kelvin))))
+            for kind, watts in zip(here["loss_kind"].values, here["loss"].values, strict=True):
+                found.append(Fact(group, f"{kind} loss", float(watts), "W"))
+            found.append(Fact(group, "iterations", int(here["iterations"])))
+            found.append(Fact(group, "residual", float(here["residual"]), "K"))
+    return found
+
+
+def choice_meanings() -> dict[str, dict[str, str]]:
+    """What every choice of the mesh model means, for the page's table."""
+    return {field: dict(names) for field, names in CHOICES.items()}
+
+
+def environment(python: str) -> dict[str, str]:
+    """Versions that a result depends on."""
+    found = {"thermogear": thermogear.__version__, "python": python}
+    for name in LIBRARIES:
+        found[name] = importlib.metadata.version(name)
+    return found
+
+
+# --- summary ------------------------------------------------------------------------------
+
+
+def summary(tree: xr.DataTree) -> dict[str, Any]:
+    """The figures a script wants, JSON-ready (non-finite numbers are None)."""
+    found: dict[str, Any] = {
+        "thermogear": tree.attrs["thermogear"],
+        "title": tree.attrs["title"],
+        "kind": tree.attrs["kind"],
+        "notices": json.loads(tree.attrs["notices"]),
+    }
+    groups = {node.path.strip("/"): node.to_dataset() for node in tree.subtree if node.has_data}
+    if "mesh" in groups:
+        found["operating"] = _operating_summary(groups)
+    if "temperature" in groups:
+        found["temperature_row"] = _temperature_summary(groups["temperature"])
+    sets = {
+        name: data for name, data in groups.items() if name.split("/")[0] in ("points", "base_sets")
+    }
+    if sets:
+        found["points"] = {name.split("/")[-1]: _point_summary(data) for name, data in sets.items()}
+    return found
+
+
+def _number(value: object) -> float | None:
+    number = float(np.asarray(value))
+    return number if math.isfinite(number) else None
+
+
+FIGURES = (
+    "mean_stiffness",
+    "peak_to_peak_stiffness",
+    "half_backlash",
+    "least_half_backlash",
+    "cold_half_backlash",
+    "jam_temperature",
+    "proportional_jam_temperature",
+    "edge_contact_share",
+    "natural_frequency",
+    *DIMENSIONLESS[1:],
+)
+MOTION_FIGURES = (
+    "peak_to_peak_displacement",
+    "half_order_amplitude",
+    "contact_loss_share",
+    "followed_periods",
+    "followed_starts",
+)
+
+
+def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]:
+    mesh, path, motion = groups["mesh"], groups["path"], groups.get("motion")
+    rows = []
+    for b, bundle in enumerate(mesh["bundle"].values):
+        for s, state in enumerate(mesh["state"].values):
+            for o in range(mesh.sizes["operating"]):
+                at = {"bundle": b, "state": s, "operating": o}
+                here, along = mesh.isel(at), path.isel(at)
+                row: dict[str, Any] = {
+                    "bundle": str(bundle),
+                    "state": str(state),
+                    "pinion_speed_rpm": _rpm(float(here["pinion_speed"])),
+                    "pinion_torque_Nm": float(here["pinion_torque"]),
+                    "status": STATUS[int(here["status"])],
+                    "greatest_flash_temperature_K": _number(along["flash_temperature"].max()),
+                    "greatest_friction": _number(along["friction_coefficient"].max()),
+                }
+                row |= {name: _number(here[name]) for name in FIGURES if name in here}
+                if motion is not None and "label" in motion:
+                    moving = motion.isel(at)
+                    row["label"] = str(moving["label"].values)
+                    row |= {n: _number(moving[n]) for n in MOTION_FIGURES if n in moving}
+                rows.append(row)
+    return rows
+
+
+def _temperature_summary(row: xr.Dataset) -> list[dict[str, Any]]:
+    rows = []
+    for b, bundle in enumerate(row["bundle"].values):
+        for t, temperature in enumerate(row["gear_temperature"].values):
+            for o in range(row.sizes["operating"]):
+                here = row.isel(bundle=b, gear_temperature=t, operating=o)
+                found: dict[str, Any] = {
+                    "bundle": str(bundle),
+                    "gear_temperature_K": float(temperature),
+                    "pinion_speed_rpm": _rpm(float(here["pinion_speed"])),
+                    "status": STATUS[int(here["status"])],
+                    "label": str(here["label"].values),
+                }
+                names = FIGURES + MOTION_FIGURES
+                found |= {name: _number(here[name]) for name in names if name in here}
+                rows.append(found)
+    return rows
+
+
+def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
+    rows = []
+    for place in range(points.sizes["point"]):
+        here = points.isel(point=place)
+        rows.append(
+            {
+                "row": str(here["row"].values),
+                "parameter": str(here["parameter"].values),
+                "value": float(here["value"]),
+                "unit": str(here["value_unit"].values),
+                "label": str(here["label"].values),
+                "reason": str(here["label_reason"].values),
+                "followed_periods": int(here["followed_periods"]),
+                "followed_starts": int(here["followed_starts"]),
+                "expected": str(here["expected"].values),
+                "half_order_amplitude": _number(here["half_order_amplitude"]),
+            }
+        )
+    return rows

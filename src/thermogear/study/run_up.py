@@ -1,0 +1,552 @@
+"""A run-up: speed up and down, undeformed and hot, what is felt and heard, and where it jumps."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.bifurcations import FLIP, FOLD
+from thermogear.analysis.branches import with_branches
+from thermogear.analysis.family import axis_values
+from thermogear.analysis.follow import Leap, follow
+from thermogear.analysis.outcome import (
+    outcome_arrays,
+    outcome_variables,
+    rule_inputs,
+    settle_with_status,
+)
+from thermogear.analysis.section import ReturnMap
+from thermogear.analysis.settle import PERIODIC, Rule, Settled
+from thermogear.base.errors import InputError
+from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import UNDEFORMED
+from thermogear.case.case import GearCase, gear_case
+from thermogear.case.family import GearFamily, GearPoints, Tabulated
+from thermogear.results.work import Report, carry_out
+from thermogear.study.notices import difference_notices, range_notices
+from thermogear.study.response import RECORD, Recording, respond, response_variables
+
+Floats = NDArray[np.float64]
+
+RUN_UP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
+DIRECTIONS = (1, -1)
+BLOCK = 24
+KEEP = 16
+PILOT = 24
+"""Speeds computed at most for an estimate of the time."""
+LEAPS = 16
+"""Jumps kept of one step of speed."""
+STRIDE = 0.005
+"""Where no orbit can be followed the run goes on in steps of this share of the speed, which stand
+on a grid of their own."""
+LISTED_PERIOD = 4
+"""Jumps of longer orbits, which live in windows of chaos, are not listed."""
+LISTED = 1e-3
+"""A jump that changes the transmission error by less than this share is not listed."""
+APART = 1e-3
+"""Half backlashes between two motions that are not one."""
+LEAP_KINDS = (FOLD, FLIP)
+LEAP = {
+    "leap_fold": "speed at which the followed motion leaves its branch",
+    "leap_to": "speed just behind, where the new motion stands",
+    "leap_before": "transmission error before, peak to peak",
+    "leap_after": "transmission error after, peak to peak",
+    "leap_kind": "0: at a fold, 1: at a subcritical period doubling",
+    "leap_x": "displacement of the new motion, in half backlashes",
+    "leap_v": "its velocity",
+    "leap_period": "periods of the new motion, 0: no orbit",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunUpPlan:
+    """A run-up over ``speeds`` [rad/s]; see :func:`run_up`."""
+
+    case: GearCase
+    speeds: tuple[float, ...]
+    temperatures: tuple[float | None, ...]
+    bundle: str
+    torque: float
+    rule: Rule = RUN_UP_RULE
+    record: Recording = RECORD
+    block: int = BLOCK
+    branch_period: int = 2
+    kind: str = "run-up"
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        return {
+            "state": len(self.temperatures),
+            "direction": len(DIRECTIONS),
+            "pinion_speed": len(self.speeds),
+            "section": KEEP,
+            "leap": LEAPS,
+            "order": self.record.orders.size,
+        }
+
+    @property
+    def cuts(self) -> dict[str, int]:
+        return {"state": 1, "direction": 1, "pinion_speed": min(self.block, len(self.speeds))}
+
+    def inputs(self) -> dict[str, Any]:
+        return {
+            "model": self.family(0).inputs(),
+            "speeds": list(self.speeds),
+            "temperatures": [UNDEFORMED if t is None else t for t in self.temperatures],
+            "torque": self.torque,
+            "rule": rule_inputs(self.rule),
+            "record": {f.name: getattr(self.record, f.name) for f in fields(self.record)},
+            "block": self.block,
+            "branch_period": self.branch_period,
+        }
+
+    def family(self, state: int) -> GearFamily:
+        """Speed -> lanes in one thermal state."""
+        temperature = self.temperatures[state]
+        case = replace(self.case, torques=(self.torque,))
+        return GearFamily(
+            case, ("pinion_speed",), self.bundle, UNDEFORMED if temperature is None else temperature
+        )
+
+    def variables(self) -> dict[str, Variable]:
+        dims = ("state", "direction", "pinion_speed")
+        nan = float("nan")
+        found = outcome_variables(dims) | response_variables(dims, lines=True)
+        for name in "xv":
+            found[f"section_{name}"] = Variable(
+                (*dims, "section"),
+                "float64",
+                nan,
+                {"long_name": "Poincare section in half backlashes", "units": "1"},
+            )
+            found[f"end_{name}"] = Variable(
+                dims, "float64", nan, {"long_name": "state carried on", "units": "1"}
+            )
+        found["end_speed"] = Variable(
+            dims, "float64", nan, {"long_name": "speed of the state carried on", "units": "rad/s"}
+        )
+        found["end_period"] = Variable(
+            dims, "int32", 0, {"long_name": "periods of the orbit that is followed, 0: none"}
+        )
+        units = {"leap_fold": "rad/s", "leap_to": "rad/s", "leap_before": "m", "leap_after": "m"}
+        for name, words in LEAP.items():
+            attributes = {"long_name": words, "units": units.get(name, "1")}
+            found[name] = Variable((*dims, "leap"), "float64", nan, attributes)
+        found["left_early"] = Variable(
+            dims, "int8", 0,
+            {"long_name": "1: a run in these steps alone leaves its branch before this speed"},
+        )  # fmt: skip
+        return found
+
+    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+        reference = self.case.stated.temperatures.reference
+        shown = np.array([reference if t is None else t for t in self.temperatures])
+        return {
+            "gear_temperature": (
+                ("state",),
+                shown,
+                {"units": "K", "long_name": "addendum temperature of both gears"},
+            ),
+            "direction": (
+                ("direction",),
+                np.array(DIRECTIONS, np.int8),
+                {"long_name": "direction of the run: 1 up, -1 down"},
+            ),
+            "pinion_speed": (
+                ("pinion_speed",),
+                np.array(self.speeds),
+                {"units": "rad/s", "long_name": "pinion speed"},
+            ),
+            "order": (
+                ("order",),
+                self.record.orders,
+                {"units": "1", "long_name": "order of the mesh frequency"},
+            ),
+        }
+
+    def needs(self, key: Key) -> Key | None:
+        state, direction, block = key
+        blocks = -(-len(self.speeds) // self.cuts["pinion_speed"])
+        before = block - 1 if direction == 0 else block + 1
+        return (state, direction, before) if 0 <= before < blocks else None
+
+    def pilot(self, points: int) -> int:
+        """Follow about ``points`` speeds, as neighbours of a few places of the range; how many."""
+        count = min(points, len(self.speeds), PILOT)
+        places = max(1, count // 4)
+        length = count // places
+        done = 0
+        for first in np.linspace(0, len(self.speeds) - length, places).round().astype(int):
+            some = self.speeds[first : first + length]
+            replace(self, speeds=some, block=length).compute((0, 0, 0), None, keep_going)
+            done += length
+        return done
+
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
+        up = key[1] == 0
+        every = np.array(self.speeds)
+        mine = np.arange(every.size)[ranges_of(self, key)["pinion_speed"]]
+        speeds = every[mine]
+        order = np.arange(speeds.size) if up else np.arange(speeds.size)[::-1]
+        # the speed before the block as well: the step from it belongs to the block
+        edge = mine[0] - 1 if up else mine[-1] + 1
+        wide = np.union1d(mine, [edge])[np.isin(np.union1d(mine, [edge]), np.arange(every.size))]
+        whole = self.family(key[0])(every[wide][:, None])
+        points = whole.take(np.searchsorted(wide, mine))
+        table = Tabulated(self.family(key[0]), every[wide], whole) if wide.size > 1 else None
+        run = _Run(self, table, alive)
+        if before is not None:
+            last = 0, 0, -1 if up else 0
+            run.at = float(before["end_speed"][last])
+            run.state = np.array([before["end_x"][last], before["end_v"][last]])
+            run.period = int(before["end_period"][last])
+        found: Arrays = {}
+        for name, variable in self.variables().items():
+            inner = [self.sizes[d] for d in variable.dims[3:]]
+            shape = (1, 1, speeds.size, *inner)
+            found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
+        ends = np.full((speeds.size, 2), np.nan)
+        for place in order:
+            one = np.array([place])
+            settled = run.step(points.take(one), float(speeds[place]))
+            for name, row in outcome_arrays(settled, points.status[one]).items():
+                found[name][0, 0, place] = row[0]
+            found["section_x"][0, 0, place] = settled.sections[0, :, 0]
+            found["section_v"][0, 0, place] = settled.sections[0, :, 1]
+            if bool(np.isfinite(settled.state).all()):
+                ends[place] = settled.state[0]
+            found["end_x"][0, 0, place], found["end_v"][0, 0, place] = run.state
+            found["end_speed"][0, 0, place] = run.at
+            found["end_period"][0, 0, place] = run.period
+            found["left_early"][0, 0, place] = run.early
+            for number, leap in enumerate(run.leaps[:LEAPS]):
+                for name, value in leap.items():
+                    found[name][0, 0, place, number] = value
+        for name, values in respond(points, ends, self.record, lines=True, alive=alive).items():
+            found[name][0, 0] = values
+        return found
+
+    def finish(self, data: xr.Dataset) -> xr.Dataset:
+        data = _with_folds(self, data) if self.branch_period > 0 else data
+        data.attrs |= {
+            "bundle": self.bundle,
+            "pinion_torque": self.torque,
+            "pinion_teeth": self.case.pair.pinion.teeth,
+            "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
+        }
+        data = _with_jumps(self, data)
+        data.attrs |= range_notices(self.case, data)
+        told = json.loads(data.attrs["notices"]) + difference_notices(data)
+        data.attrs["notices"] = json.dumps(told)
+        early = np.argwhere(data["left_early"].values > 0)
+        if early.size:
+            speeds = np.unique(np.array(self.speeds)[early[:, 2]]) / RPM
+            told.append(
+                f"these steps alone would leave a motion before its fold: at "
+                f"{', '.join(f'{s:.4g}' for s in speeds)} rpm the state of the speed before leads "
+                "elsewhere; the run shown follows the motion in finer steps"
+            )
+            data.attrs["notices"] = json.dumps(told)
+        return data
+
+
+def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
+    """Branches and bifurcations of every thermal state, side by side."""
+    parts: list[xr.Dataset] = []
+    notes: list[str] = []
+    speeds = np.array(plan.speeds)
+    if speeds.size < 2:
+        return data
+    for state in range(len(plan.temperatures)):
+        here = data.isel(state=state).expand_dims(start=1)
+        if not np.any(here["status"].values == 0):
+            continue
+        family = Tabulated.of(plan.family(state), speeds)
+        found = with_branches(here, family, "pinion_speed", plan.branch_period)
+        names = [n for n in found.data_vars if str(n).startswith(("branch_", "bifurcation_"))]
+        part = found[names].drop_vars(list(found.coords), errors="ignore")
+        part["branch_state"] = (("branch",), np.full(part.sizes.get("branch", 0), state, np.int32))
+        part["bifurcation_state"] = (
+            ("bifurcation",),
+            np.full(part.sizes.get("bifurcation", 0), state, np.int32),
+        )
+        parts.append(part)
+        notes.append(str(found.attrs.get("branch_notes", "")))
+    if not parts:
+        return data
+    longest = max(part.sizes.get("branch_point", 1) for part in parts)
+    for name in parts[0].data_vars:
+        rows = []
+        for part in parts:
+            values = part[name].values
+            if "branch_point" in part[name].dims:
+                gap = longest - values.shape[1]
+                values = np.pad(values, ((0, 0), (0, gap)), constant_values=np.nan)
+            rows.append(values)
+        first = parts[0][name]
+        data[str(name)] = (first.dims, np.concatenate(rows), first.attrs)
+    for name in ("branch_value", "bifurcation_value"):
+        data[name].attrs["units"] = "rad/s"
+    data.attrs["branch_notes"] = "; ".join(n for n in notes if n)
+    return data
+
+
+class _Run:
+    """A run through the speeds: the motion it carries on, and how the last step went.
+
+    It stands at ``at`` with ``state``. An orbit of ``period`` periods is followed slowly
+    (:func:`follow`), so that the run leaves its branch at the fold and not where a step happens
+    to be long enough; everything else (``period`` 0) settles anew from one speed of a fixed grid
+    to the next. The speeds asked for are looked at and change nothing on the way.
+    """
+
+    def __init__(self, plan: RunUpPlan, table: Tabulated | None, alive: Alive) -> None:
+        self.plan = plan
+        self.table = table
+        self.alive = alive
+        self.at = float("nan")
+        self.state = np.array(plan.case.simulation.initial_state, dtype=float)
+        self.period = 0
+        self.leaps: list[dict[str, float]] = []
+        self.early = 0
+
+    def step(self, point: GearPoints, speed: float) -> Settled:
+        """What is felt at ``speed``, coming from where the last step ended."""
+        self.leaps, self.early = [], 0
+        first = not np.isfinite(self.at)
+        before = self.state if self.period > 0 else None
+        if self.table is None or first or point.status[0] != 0:
+            self.period = 0
+        else:
+            self._walk(self.table, speed)
+        found = self._settled(point, self.state)
+        calm = int(found.label[0]) == PERIODIC
+        if self.period > 0 and before is not None and calm:
+            alone = self._settled(point, before)
+            section = ReturnMap(point.flat)
+            near = section.distance(alone.sections[0], found.sections[0][-1]).min()
+            self.early = int(not near < APART)
+        if first:
+            self._stand(speed, found)
+        return found
+
+    def _walk(self, table: Tabulated, speed: float) -> None:
+        """Carry the motion on to ``speed``; where it is none that can be followed, towards it."""
+        way = 1.0 if speed > self.at else -1.0
+        while True:
+            if self.period > 0:
+                followed = follow(
+                    self._single,
+                    "pinion_speed",
+                    start=self.at,
+                    to=speed,
+                    state=self.state,
+                    period=self.period,
+                    settle=self._settle,
+                )
+                self._keep(followed.leaps)
+                self.at, self.state, self.period = followed.value, followed.state, followed.period
+                if self.period > 0:
+                    return
+            # the next of the speeds exp(k STRIDE)
+            place = way * np.log(self.at) / STRIDE
+            there = float(np.exp(way * STRIDE * (np.floor(place + 1e-6) + 1.0)))
+            if way * (speed - there) < 0.0:
+                return
+            self._stand(there, self._settled(table(np.array([[there]])), self.state))
+
+    def _stand(self, speed: float, settled: Settled) -> None:
+        if bool(np.isfinite(settled.state).all()):
+            self.state = settled.state[0]
+        self.at = speed
+        self.period = int(settled.period[0]) if int(settled.label[0]) == PERIODIC else 0
+
+    def _single(self, speed: float) -> GearPoints:
+        assert self.table is not None
+        return self.table(np.array([[speed]]))
+
+    def _settled(self, point: GearPoints, state: Floats) -> Settled:
+        return settle_with_status(
+            point.flat, point.status, state[None], self.plan.rule, KEEP, self.alive
+        )
+
+    def _settle(self, speed: float, state: Floats) -> tuple[Floats, int]:
+        settled = self._settled(self._single(speed), state)
+        calm = int(settled.label[0]) == PERIODIC
+        return settled.state[0], int(settled.period[0]) if calm else 0
+
+    def returned(self, leap: Mapping[str, float], end: float) -> float:
+        """Where a run from behind a jump back towards ``end`` first jumps; NaN: nowhere."""
+        period = int(leap["leap_period"])
+        if period == 0 or leap["leap_to"] == end:
+            return float("nan")
+        followed = follow(
+            self._single,
+            "pinion_speed",
+            start=leap["leap_to"],
+            to=end,
+            state=np.array([leap["leap_x"], leap["leap_v"]]),
+            period=period,
+            settle=self._settle,
+            most_leaps=1,
+        )
+        return followed.leaps[0].value if followed.leaps else float("nan")
+
+    def _keep(self, leaps: Sequence[Leap]) -> None:
+        for leap in leaps:
+            if leap.period > LISTED_PERIOD:
+                continue
+            sizes = [
+                self._size(leap.value, leap.state),
+                self._size(leap.landed, leap.found),
+            ]
+            if abs(sizes[1] - sizes[0]) < LISTED * min(sizes):
+                continue
+            new = (*leap.found, leap.found_period)
+            row = (leap.value, leap.landed, *sizes, LEAP_KINDS.index(leap.kind), *new)
+            self.leaps.append(dict(zip(LEAP, map(float, row), strict=True)))
+
+    def _size(self, speed: float, state: Floats) -> float:
+        """Peak to peak transmission error of the motion at ``state``."""
+        record = replace(self.plan.record, periods=max(LISTED_PERIOD, 1) * 4)
+        found = respond(self._single(speed), state[None], record, lines=False)
+        return float(found["dte_peak_to_peak"][0])
+
+
+def _with_jumps(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
+    """Where the followed motion left its branch, on the way up or down, and where it returns."""
+    rows: list[dict[str, float | int]] = []
+    speeds = np.array(plan.speeds)
+    for state in range(data.sizes["state"]):
+        back: _Run | None = None
+        for direction, sign in enumerate(DIRECTIONS):
+            here = data.isel(state=state, direction=direction)
+            for place, number in np.argwhere(np.isfinite(here["leap_fold"].values))[::sign]:
+                row = {name: float(here[name].values[place, number]) for name in LEAP}
+                if back is None:
+                    back = _Run(plan, Tabulated.of(plan.family(state), speeds), keep_going)
+                rows.append(
+                    {
+                        "state": state,
+                        "direction": sign,
+                        "kind": int(row["leap_kind"]),
+                        "from": row["leap_fold"],
+                        "to": row["leap_to"],
+                        "fold": row["leap_fold"],
+                        "before": row["leap_before"],
+                        "after": row["leap_after"],
+                        "into": int(row["leap_period"]),
+                        "return": back.returned(row, float(speeds[0 if sign > 0 else -1])),
+                    }
+                )
+    units = {
+        "from": "rad/s", "to": "rad/s", "fold": "rad/s", "return": "rad/s",
+        "before": "m", "after": "m",
+    }  # fmt: skip
+    words = {
+        "state": "thermal state of the jump",
+        "direction": "1 up, -1 down",
+        "kind": "0: at a fold, 1: at a subcritical period doubling",
+        "from": "last speed before the jump",
+        "to": "first speed after it",
+        "fold": "speed at which the followed motion leaves its branch",
+        "return": "speed at which a run back from there jumps again; NaN: not in this range, or "
+        "it runs into chaos before",
+        "into": "periods of the new motion, 0: no orbit",
+        "before": "transmission error before, peak to peak",
+        "after": "transmission error after, peak to peak",
+    }
+    for name, long_name in words.items():
+        kind = np.int32 if name in ("state", "direction", "kind", "into") else float
+        attributes = {"long_name": long_name} | ({"units": units[name]} if name in units else {})
+        data[f"jump_{name}"] = (("jump",), np.array([r[name] for r in rows], kind), attributes)
+    return data
+
+
+def run_up_plan(
+    case: GearCase,
+    speeds: ArrayLike,
+    *,
+    temperatures: Sequence[float | None] | None = None,
+    bundle: str = "",
+    torque: float | None = None,
+    rule: Rule = RUN_UP_RULE,
+    branch_period: int = 2,
+) -> RunUpPlan:
+    """The plan of :func:`run_up`."""
+    case = gear_case(case)
+    axis = np.sort(axis_values("speeds", speeds))
+    if temperatures is None:
+        hot = np.asarray(case.operating.temperatures.pinion_addendum, dtype=float)
+        temperatures = (None, float(hot.ravel()[0]))
+    states = tuple(None if t is None else float(t) for t in temperatures)
+    if not states:
+        raise InputError("temperatures", "none", allowed="at least one state")
+    load = float(case.torques[0] if torque is None else torque)
+    family = GearFamily(case, ("pinion_speed",), bundle)
+    hot_states = [t for t in states if t is not None]
+    family.require({"pinion_speed": axis, "pinion_torque": load, "gear_temperature": hot_states})
+    return RunUpPlan(
+        case=case,
+        speeds=tuple(axis.tolist()),
+        temperatures=states,
+        bundle=family.bundle,
+        torque=load,
+        rule=rule,
+        branch_period=branch_period,
+    )
+
+
+def run_up(
+    case: GearCase,
+    speeds: ArrayLike,
+    *,
+    temperatures: Sequence[float | None] | None = None,
+    bundle: str = "",
+    torque: float | None = None,
+    rule: Rule = RUN_UP_RULE,
+    branch_period: int = 2,
+    store: str | Path | None = None,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    report: Report | None = None,
+) -> xr.Dataset:
+    """Run the gears up and down over ``speeds`` [rad/s], undeformed and hot.
+
+    ``temperatures`` [K] of both addenda, None for undeformed gears (default: these, and as hot
+    as the case is); bores, housing and oil go along by the case's rule. Each speed starts from the
+    motion at the speed before. Over (state, direction, pinion_speed): dynamic transmission
+    error (mean, rms, peak to peak), dynamic mesh force, dynamic factor, contact loss, label and
+    multipliers; ``dte_line`` over order as well, the waterfall. Between two speeds the orbit is
+    followed slowly, and what is no orbit of up to 16 periods is carried on in steps of 0.5 % of
+    the speed that stand still, so that jumps do not depend on the step of ``speeds``.
+    ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up to 4 periods), and
+    where a run back jumps (``return``);
+    ``left_early``: the step alone would have left it before; ``bifurcation_...`` and
+    ``branch_...``: the folds behind it, from continuation of the orbits of up to
+    ``branch_period`` mesh periods (0: none).
+    """
+    plan = run_up_plan(
+        case,
+        speeds,
+        temperatures=temperatures,
+        bundle=bundle,
+        torque=torque,
+        rule=rule,
+        branch_period=branch_period,
+    )
+    return carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
+
+
+def notices_of(data: xr.Dataset) -> list[str]:
+    """The notices stored with a result."""
+    found = json.loads(str(data.attrs.get("notices", "[]")))
+    return [str(text) for text in found]

@@ -1,0 +1,361 @@
+"""The closed loop of friction and heat over speeds and torques: one map of everything hot."""
+
+from __future__ import annotations
+
+import json
+import time
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base.errors import ValidityWarning
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS, attributes, status_attributes
+from thermogear.case.case import GearCase
+from thermogear.case.thesis_cases import of_the_thesis
+from thermogear.heat.film import REGIMES, regime_shares
+from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
+from thermogear.mesh.balance import HeatBalance, heat_balance
+from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating
+from thermogear.study.balances import balance_dataset, blanked, dressed, several_words
+from thermogear.study.trends import QUANTITIES, conclusion, verdicts
+
+Floats = NDArray[np.float64]
+KIND = "temperature"
+SPEEDS = tuple(RPM * np.arange(500.0, 6001.0, 500.0))
+TORQUES = tuple(np.arange(50.0, 501.0, 50.0))
+LUBRICATIONS = ("mixed", "dry")
+
+PATH_POSITIONS = 81
+MESH_POSITIONS = 64
+BLOCK = 60
+"""Operating points that are solved together: progress and memory, not the result."""
+GRID = ("pinion_speed", "pinion_torque")
+
+
+def thermal_map(
+    case: GearCase,
+    speeds: Sequence[float] = SPEEDS,
+    torques: Sequence[float] = TORQUES,
+    *,
+    progress: Progress = silent,
+) -> xr.DataTree:
+    """Temperatures, films, flashes, backlash and scuffing margins over ``speeds`` x ``torques``.
+
+    ``speeds`` [rad/s] > 0 and ``torques`` [N m] of the pinion. The first model of the case, its
+    gearbox with the nodes it holds; other temperatures of the case are not used. Steady states
+    alone: :func:`~thermogear.study.warm_up.warm_up_survey` has the way there.
+
+    Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
+    not_converged; nan where a law has no value) with ``iterations`` and ``residual``, and
+    ``several`` where from hot another state is steady than the one told, from cold;
+    ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations).
+    For the thesis's rig ``verdicts`` (attribute) say what holds of the
+    thesis's first conclusion.
+    """
+    began = time.perf_counter()
+    model = case.models[0]
+    friction = "benedict-kelley" if model.friction == "dry" else model.friction
+    models = {
+        "mixed": model.override(friction=friction),
+        "dry": model.override(friction="dry"),
+    }
+    omega = np.repeat(np.asarray(speeds, dtype=float), len(torques))
+    moment = np.tile(np.asarray(torques, dtype=float), len(speeds))
+    shape = (len(speeds), len(torques))
+    blocks = range(0, omega.size, BLOCK)
+    total, done = len(blocks) * len(models), 0
+    points: dict[str, list[xr.Dataset]] = {name: [] for name in models}
+    for name, one in models.items():
+        for start in blocks:
+            progress("closed loop", done, total)
+            part = slice(start, start + BLOCK)
+            points[name].append(_points(case, one, omega[part], moment[part]))
+            done += 1
+    progress("closed loop", total, total)
+    seconds = time.perf_counter() - began
+    chosen_law = "dry" if model.friction == "dry" else "mixed"
+    why = [r for part in points[chosen_law] for r in json.loads(part.attrs["lost"]).values()]
+    wholes = {name: xr.concat(parts, "operating") for name, parts in points.items()}
+    grids = {name: _on_grid(whole, speeds, torques, shape) for name, whole in wholes.items()}
+    checked = conclusion({name: grids[name] for name in LUBRICATIONS})
+    chosen = grids[chosen_law]
+    tree = xr.DataTree.from_dict({"map": chosen, "conclusion": checked})
+    tree.attrs = {
+        "thermogear": thermogear.__version__,
+        "kind": KIND,
+        "title": f"{_heading(chosen)}: {case.title}",
+        "case": case.text,
+        "overrides": json.dumps([list(pair) for pair in case.overrides]),
+        "bundle": model.name,
+        "choices": json.dumps(model.choices()),
+        "laws": json.dumps({name: one.friction for name, one in models.items()}),
+        "held": json.dumps(
+            {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
+        ),
+        "scuffing_load_stage": json.dumps(case.scuffing_load_stage),
+        "cold_half_backlash": case.cold_backlash.half,
+        "seconds": seconds,
+        "verdicts": json.dumps(verdicts(checked) if of_the_thesis(case) else []),
+        "notices": json.dumps(_notices(case, chosen, seconds, why)),
+    }
+    return tree
+
+
+def _heading(grid: xr.Dataset) -> str:
+    """What the page of a map, of a line or of one point of it is called."""
+    axes = {"pinion_speed": "speed", "pinion_torque": "torque"}
+    over = [words for name, words in axes.items() if grid.sizes[name] > 1]
+    return f"Temperatures over {' and '.join(over)}" if over else "Temperatures"
+
+
+def _points(case: GearCase, model: MeshModel, speed: Floats, torque: Floats) -> xr.Dataset:
+    """Everything that the map shows, over ``operating``."""
+    with warnings.catch_warnings():
+        # told once, with the number of points, in the notices
+        warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
+        return _gathered(case, *_solved(case, model, speed, torque))
+
+
+def _solved(
+    case: GearCase, model: MeshModel, speed: Floats, torque: Floats
+) -> tuple[HeatBalance, xr.Dataset]:
+    """The heat balance of the points, and the mesh cycle at its temperatures."""
+    at = case.stated
+    settled = heat_balance(
+        case.pair,
+        speed,
+        torque,
+        at.lubricant,
+        at.half_backlash,
+        model,
+        gearbox=case.gearbox,
+        reference=at.temperatures.reference,
+        housing=at.housing,
+        deviations=case.deviations,
+    )
+    cycle = mesh_cycle(
+        case.pair,
+        settled.operating,
+        model,
+        deviations=case.deviations,
+        path_positions=PATH_POSITIONS,
+        mesh_positions=MESH_POSITIONS,
+    )
+    return settled, cycle
+
+
+def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dataset:
+    data = balance_dataset(settled).drop_vars("heat_to_ambient")
+    operating: Operating = settled.operating
+    flash, share = cycle["flash_temperature"], cycle["film_parameter"]
+    mean_flash = flash.mean("path_position").values
+    weight = cycle["line_load"] * np.abs(cycle["sliding_velocity"])
+    friction = (cycle["friction_coefficient"] * weight).sum("path_position")
+    contact = cycle["contact_temperature"].max("path_position").values
+    stage = case.scuffing_load_stage
+    margin = (
+        np.full(contact.shape, np.nan)
+        if stage is None
+        else scuffing_margin(limit=scuffing_temperature(stage), temperature=contact)
+    )
+    least = cycle["half_backlash_curve"].min("mesh_phase").values
+    figures: Mapping[str, tuple[Any, str, str]] = {
+        "mean_friction": (
+            np.divide(
+                friction.values,
+                weight.sum("path_position").values,
+                out=np.full(contact.shape, np.nan),
+                where=weight.sum("path_position").values > 0.0,
+            ),
+            "1",
+            "friction coefficient, mean by sliding power",
+        ),
+        "greatest_friction": (
+            cycle["friction_coefficient"].max("path_position").values,
+            "1",
+            "greatest friction coefficient along the path",
+        ),
+        "greatest_flash": (flash.max("path_position").values, "K", "greatest flash temperature"),
+        "greatest_contact_temperature": (contact, "K", "greatest contact temperature"),
+        "scuffing_margin": (margin, "K", "scuffing temperature less contact temperature"),
+        "least_film_parameter": (
+            share.min("path_position").values,
+            "1",
+            "least film parameter along the path",
+        ),
+        "least_half_backlash": (least, "m", "least half backlash over the mesh phase"),
+        "thermal_growth": (
+            cycle["deformation_sum"].max("path_position").values,
+            "m",
+            "greatest normal growth of both flanks together",
+        ),
+        "mean_flash": (mean_flash, "K", "flash temperature, mean along the path"),
+    }
+    along = ("operating",)
+    variables = {name: dressed(along, *entry) for name, entry in figures.items()}
+    for name in (
+        "jam_temperature",
+        "proportional_jam_temperature",
+        "mesh_efficiency",
+        "mean_stiffness",
+    ):
+        variables[name] = cycle[name].variable
+    variables["regime_share"] = dressed(
+        ("operating", "regime_name"), regime_shares(share.values), "1", "share of the path"
+    )
+    variables["body_estimate"] = dressed(
+        ("operating", "estimate"),
+        body_estimates(case.pair, operating, mean_flash, dipped=case.gearbox.immersion > 0.0).T,
+        "K",
+        "body temperature by an ISO report",
+    )
+    friction_path = cycle["friction_coefficient"].variable
+    flash_path = flash.variable
+    variables["friction_along"] = xr.Variable(
+        ("operating", "path_position"), friction_path.values, attributes("friction_coefficient")
+    )
+    variables["flash_along"] = xr.Variable(
+        ("operating", "path_position"), flash_path.values, attributes("flash_temperature")
+    )
+    merged = data.assign(variables)
+    status = np.where(settled.settled, cycle["status"].values, STATUS.index("not_converged"))
+    merged["status"] = (along, status.astype(np.int8), status_attributes())
+    low, high = operating.lubricant.temperature_range
+    oil = np.asarray(operating.oil_temperature)
+    hottest = case.pair.pinion.material.tempering_temperature
+    teeth = np.asarray(operating.temperatures.pinion_addendum)
+    valid = settled.settled & (oil >= low) & (oil <= high)
+    merged["within_oil_range"] = dressed(
+        along, valid.astype(np.int8), "1", "1 where the oil stays on its viscosity line"
+    )
+    merged["tempered"] = dressed(
+        along, (teeth > hottest).astype(np.int8), "1", "1 where the steel is tempered"
+    )
+    lost = np.zeros(status.size, dtype=np.bool_)
+    lost[list(settled.lost)] = True
+    return blanked(merged, lost).assign_coords(
+        regime_name=list(REGIMES),
+        estimate=list(ESTIMATES),
+        path_position=("path_position", cycle["path_position"].values, attributes("path_position")),
+    )
+
+
+def _on_grid(
+    whole: xr.Dataset, speeds: Sequence[float], torques: Sequence[float], shape: tuple[int, int]
+) -> xr.Dataset:
+    """The points with the axis ``operating`` unfolded into speed and torque."""
+    flat = whole.drop_vars(list(GRID))
+    variables = {}
+    for name, variable in flat.variables.items():
+        if "operating" not in variable.dims:
+            continue
+        front = variable.transpose("operating", ...)
+        variables[str(name)] = xr.Variable(
+            (*GRID, *front.dims[1:]), front.values.reshape(*shape, *front.shape[1:]), front.attrs
+        )
+    kept = {str(n): flat[n] for n in flat.coords}
+    return xr.Dataset(
+        variables,
+        {
+            **kept,
+            "pinion_speed": ("pinion_speed", np.asarray(speeds), attributes("pinion_speed")),
+            "pinion_torque": ("pinion_torque", np.asarray(torques), attributes("pinion_torque")),
+        },
+    )
+
+
+def _notices(
+    case: GearCase, grid: xr.Dataset, seconds: float, why: Sequence[str]
+) -> list[dict[str, str]]:
+    status = grid["status"].values
+    settled = status != STATUS.index("not_converged")
+    count = status.size
+    told = f"{count} points have" if count > 1 else "1 point has"
+    found = []
+
+    def say(level: str, text: str) -> None:
+        found.append({"level": level, "text": text})
+
+    if not settled.all():
+        say(
+            "important",
+            f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
+            "picture." + (f" No value: {'; '.join(dict.fromkeys(why))}." if why else ""),
+        )
+    several = settled & (grid["several"].values == 1)
+    if several.any():
+        hotter = grid["hot_node_temperature"].sel(node="oil") - grid["node_temperature"].sel(
+            node="oil"
+        )
+        far = float(np.max(hotter.values[several]))
+        say("important", several_words(several=int(several.sum()), count=count, hotter=far))
+    outside = settled & (grid["within_oil_range"].values == 0)
+    low, high = case.stated.lubricant.temperature_range
+    if outside.any():
+        say(
+            "important",
+            f"At {int(outside.sum())} of {count} points the oil leaves the "
+            f"{low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C of its viscosity line: such "
+            "a pair needs an oil cooler (gearbox.oil_flow). They are hatched, and left out of the "
+            "rank correlations.",
+        )
+    teeth = grid["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).mean("node").values
+    beyond = settled & (teeth > high)
+    if beyond.any():
+        say(
+            "warning",
+            f"At {int(beyond.sum())} of {count} points the flanks are hotter than the "
+            f"{high - ZERO_CELSIUS:.0f} °C up to which the oil's viscosity line is trusted: the "
+            "film there is an estimate.",
+        )
+    jam, together = (grid[n].values for n in ("jam_temperature", "proportional_jam_temperature"))
+    least = grid["least_half_backlash"].values
+    if (status == STATUS.index("jammed")).any():
+        say("important", f"{int((status == STATUS.index('jammed')).sum())} points are jammed.")
+    elif settled.any():
+        say(
+            "info",
+            f"No point jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
+            "backlash are left. Held against its housing as it is, the pair would jam from "
+            f"{_least(jam[settled])} of the pinion's teeth"
+            + _in_proportion(together[settled], case.stated.temperatures.reference),
+        )
+    say("info", "The way there, and the least backlash on it: thermogear warmup CASE -o DIR.")
+    if case.scuffing_load_stage is None:
+        say("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
+    say(
+        "info",
+        f"{count} point{'s' * (count > 1)}, lubricated and dry, in {seconds:.2f} s; at most "
+        f"{int(grid['iterations'].max())} iterations, greatest residual of a settled point "
+        f"{float(np.max(grid['residual'].values[settled], initial=0.0)):.1e} K.",
+    )
+    return found
+
+
+__all__ = ["GRID", "KIND", "LUBRICATIONS", "QUANTITIES", "SPEEDS", "TORQUES", "thermal_map"]
+
+
+def _in_proportion(kelvin: NDArray[np.float64], reference: float) -> str:
+    """The jam nearest to the ``reference`` [K] from which all bodies go in proportion."""
+    known = kelvin[np.isfinite(kelvin)]
+    if not known.size:
+        return ", and never with all bodies going along in proportion."
+    nearest = float(known[np.argmin(np.abs(known - reference))])
+    way = "rising" if nearest > reference else "cooling"
+    return f", with all bodies {way} in proportion from {nearest - ZERO_CELSIUS:.0f} °C."
+
+
+def _least(kelvin: NDArray[np.float64]) -> str:
+    """The least of some temperatures in words; "no temperature" where there is none."""
+    known = kelvin[np.isfinite(kelvin)]
+    return f"{known.min() - ZERO_CELSIUS:.0f} °C" if known.size else "no temperature"

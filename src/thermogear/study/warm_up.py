@@ -1,0 +1,585 @@
+"""A case through its duty: when the backlash is least, and what thermometers would say of it."""
+
+from __future__ import annotations
+
+import json
+import time
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import thermogear
+from thermogear.base import bounds
+from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.case.case import GearCase
+from thermogear.case.columns import read_columns, require_times
+from thermogear.case.duty import point_duty
+from thermogear.case.gearbox_schema import NODES
+from thermogear.case.sensors import SENSORS, Shown, shown_by
+from thermogear.mesh.balance import heat_balance
+from thermogear.mesh.clearance import clearance
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair
+from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
+from thermogear.study.balances import LOSSES, dressed
+from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, until
+
+Floats = NDArray[np.float64]
+KIND = "warmup"
+PATH_POSITIONS = 41
+LEAST_LOSS = 5e-9
+"""A steady loss of backlash [m] below which another one is no share of it."""
+MESH_POSITIONS = 96
+BLOCK = 100
+"""Moments whose mesh is solved together: memory and progress, not the result."""
+MOMENTS = 400
+"""About so many moments are stored, and at least 12 of each piece of the duty."""
+MOST_OF_ONE = 120
+"""Moments that one piece has at most."""
+MOST_PIECES = 2000
+FIT_TOLERANCE = 3e-3
+"""Of a step's error [K] while factors are looked for: far below any thermometer's."""
+
+ALONG = ("moment",)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Measured:
+    """A measured record: ``time`` [s], ``names`` of nodes or sensors, ``values`` [K] or nan."""
+
+    time: Floats
+    names: tuple[str, ...]
+    values: Floats
+
+
+def read_measured(path: str | Path, field: str = "measured") -> Measured:
+    """The record in a CSV file with units in its head: ``time [min],pinion_tooth [degC],...``.
+
+    Columns are named by nodes of the heat balance or by sensors; empty cells are left out. Units as
+    in a case file, times [s] from the start of the duty. Raises InputError in one line.
+    """
+    kinds = {"time": "time"} | dict.fromkeys((*NODES, *SENSORS), "temperature")
+    table = read_columns(path, field, kinds, ("time",), gaps=True)
+    when = table.pop("time")
+    require_times(when, field)
+    values = np.stack([c.values for c in table.values()], axis=1) if table else np.empty((0, 0))
+    if not np.any(np.isfinite(values)):
+        raise InputError(
+            field,
+            "no temperature",
+            allowed="time and one or more of " + ", ".join((*NODES, *SENSORS)),
+        )
+    for name, column in table.items():
+        bounds.BODY.require(f"{field}.{name}", column.values[np.isfinite(column.values)])
+    return Measured(time=when.values, names=tuple(table), values=values)
+
+
+def chosen_point(case: GearCase) -> tuple[float, float]:
+    """(speed [rad/s], torque [N m]) of the case's operating point of the greatest power."""
+    place = int(np.argmax(case.stated.speed * case.stated.torque))
+    return float(case.stated.speed[place]), float(case.stated.torque[place])
+
+
+def warm_up_survey(
+    case: GearCase,
+    duty: Duty | None = None,
+    *,
+    start: float | None = None,
+    measured: Measured | None = None,
+    fit: Sequence[str] = (),
+    moments: int = MOMENTS,
+    progress: Progress = silent,
+) -> xr.DataTree:
+    """Temperatures, backlash, flash, film and stiffness of a case over its duty.
+
+    ``duty`` of :func:`~thermogear.case.duty.read_duty` or made by hand (default: the case's
+    operating point of the greatest power until it is steady); ``start`` [K] of all nodes (default:
+    the first ambient); ``measured``: a record to be set beside the curves; ``fit``: one or two
+    factors of :data:`~thermogear.mesh.warm_up.FACTORS` that are fitted to it, the curves then are
+    those with the factors; about so many ``moments`` are stored. The first model of the case, its
+    gearbox with the nodes it holds; other temperatures of the case are not used.
+
+    Groups: ``course`` over (moment, node, loss_kind, sensor); ``steady`` over the pieces of the
+    duty, each held for good; ``record`` over the rows measured; ``fit``. Attribute ``worst`` (JSON)
+    has the moment of the least half backlash [m], its margin [K] and the steady one beside it.
+    """
+    began = time.perf_counter()
+    names = require_factors(fit, "fit") if fit else ()
+    if names and measured is None:
+        raise InputError("fit", ", ".join(names), why="there is no record to fit to")
+    work = point_duty(case, *chosen_point(case)) if duty is None else duty
+    if work.pieces > MOST_PIECES:
+        raise InputError("duty", f"{work.pieces} rows", allowed=f"at most {MOST_PIECES}")
+    of_each = max(12, min(MOST_OF_ONE, moments // work.pieces))
+    found: Fit | None = None
+    with warnings.catch_warnings():
+        # told in the notices, with how long
+        warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
+        if measured is not None and names:
+            found = _fitted(case, work, start, measured, names, progress)
+        factors = {} if found is None else {one.name: one.value for one in found.factors}
+        course = _course(
+            case,
+            work,
+            start,
+            factors,
+            times=() if measured is None else measured.time,
+            moments=of_each,
+            progress=progress,
+        )
+        shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
+        data = _course_dataset(case, course, shown, progress)
+        steady = _steady(case, work, factors)
+    groups = {"course": data, "steady": steady}
+    if measured is not None:
+        groups["record"] = _record(measured, course, shown)
+    if found is not None:
+        groups["fit"] = _fit_dataset(found)
+    seconds = time.perf_counter() - began
+    tree = xr.DataTree.from_dict(groups)
+    worst = _worst(case, course, steady)
+    tree.attrs = {
+        "thermogear": thermogear.__version__,
+        "kind": KIND,
+        "title": f"Warm-up: {case.title}",
+        "case": case.text,
+        "overrides": json.dumps([list(pair) for pair in case.overrides]),
+        "bundle": case.models[0].name,
+        "choices": json.dumps(case.models[0].choices()),
+        "held": json.dumps(dict(course.held)),
+        "duty": "one point until steady" if duty is None else "table",
+        "cold_half_backlash": case.cold_backlash.half,
+        "worst": json.dumps(worst),
+        "jams": json.dumps([float(t) for t in course.jams]),
+        "sensors": json.dumps({one.name: one.words for one in shown}),
+        "fit": json.dumps(_fit_words(found)),
+        "evaluations": course.course.evaluations,
+        "greatest_imbalance": float(course.course.imbalance.max()),
+        "seconds": seconds,
+        "notices": json.dumps(_notices(case, course, steady, measured, found, worst, seconds)),
+    }
+    return tree
+
+
+def _course(
+    case: GearCase,
+    duty: Duty,
+    start: float | None,
+    factors: Mapping[str, float],
+    *,
+    times: Floats | Sequence[float],
+    moments: int,
+    tolerance: float = 1e-3,
+    progress: Progress = silent,
+) -> WarmUp:
+    at = case.stated
+    return warm_up(
+        case.pair,
+        duty,
+        at.lubricant,
+        at.half_backlash,
+        case.models[0],
+        gearbox=case.gearbox,
+        start=start,
+        reference=at.temperatures.reference,
+        housing=at.housing,
+        deviations=case.deviations,
+        factors=factors,
+        times=times,
+        moments=moments,
+        tolerance=tolerance,
+        progress=progress,
+    )
+
+
+# --- over time ------------------------------------------------------------------------------
+
+
+def _mesh(case: GearCase, operating: Operating, progress: Progress) -> dict[str, Floats]:
+    """Flash, film and stiffness at every moment, solved in blocks."""
+    found: dict[str, list[Floats]] = {}
+    count = operating.speed.size
+    bodies: dict[str, Any] = operating.temperatures.bodies
+    for first in range(0, count, BLOCK):
+        progress("mesh", first, count)
+        here = slice(first, first + BLOCK)
+        part = replace(
+            operating,
+            speed=operating.speed[here],
+            torque=operating.torque[here],
+            oil_temperature=np.asarray(operating.oil_temperature)[here],
+            temperatures=replace(operating.temperatures, **{n: t[here] for n, t in bodies.items()}),
+        )
+        cycle = mesh_cycle(
+            case.pair,
+            part,
+            case.models[0],
+            deviations=case.deviations,
+            path_positions=PATH_POSITIONS,
+            mesh_positions=MESH_POSITIONS,
+        )
+        loaded = part.torque > 0.0
+        turning = loaded & (part.speed > 0.0)
+        film = cycle["film_parameter"].min("path_position").values
+        friction = cycle["friction_coefficient"] * cycle["line_load"]
+        carried = cycle["line_load"].sum("path_position").values
+        for name, values in {
+            "greatest_flash": cycle["flash_temperature"].max("path_position").values,
+            "greatest_contact_temperature": cycle["contact_temperature"]
+            .max("path_position")
+            .values,
+            "least_film_parameter": np.where(turning, film, np.nan),
+            "mean_friction": np.where(
+                turning,
+                friction.sum("path_position").values / np.where(carried > 0.0, carried, 1.0),
+                np.nan,
+            ),
+            "mean_stiffness": np.where(loaded, cycle["mean_stiffness"].values, np.nan),
+        }.items():
+            found.setdefault(name, []).append(values)
+    progress("mesh", count, count)
+    return {name: np.concatenate(parts) for name, parts in found.items()}
+
+
+_WORDS = {
+    "greatest_flash": ("K", "greatest flash temperature along the path"),
+    "greatest_contact_temperature": ("K", "greatest contact temperature along the path"),
+    "least_film_parameter": ("1", "least film parameter along the path"),
+    "mean_friction": ("1", "friction coefficient, mean by load"),
+    "mean_stiffness": ("N/m", "mean mesh stiffness"),
+}
+
+
+def _course_dataset(
+    case: GearCase, course: WarmUp, shown: Sequence[Shown], progress: Progress
+) -> xr.Dataset:
+    count = course.time.size
+    nodes = [n for n in (*NODES, "ambient") if n in course.temperatures]
+    nodes += [n for n in course.temperatures if n not in nodes]
+    losses = [np.broadcast_to(getattr(course.losses, name), (count,)) for name in LOSSES]
+    each: Mapping[str, tuple[tuple[str, ...], Any, str, str]] = {
+        "node_temperature": (
+            (*ALONG, "node"),
+            np.stack([course.temperatures[n] for n in nodes], axis=-1),
+            "K",
+            "temperature of a node of the heat balance",
+        ),
+        "loss": (
+            (*ALONG, "loss_kind"),
+            np.stack(losses, axis=-1),
+            "W",
+            "heat that a loss sets free",
+        ),
+        "sensor_temperature": (
+            (*ALONG, "sensor"),
+            np.stack([one.shown for one in shown], axis=-1),
+            "K",
+            "temperature that a sensor shows",
+        ),
+        "true_temperature": (
+            (*ALONG, "sensor"),
+            np.stack([one.true for one in shown], axis=-1),
+            "K",
+            "true temperature that a sensor is meant to say",
+        ),
+        "half_backlash": (
+            ALONG, course.half_backlash, "m", "least half backlash over the mesh phase"
+        ),
+        "jam_margin": (
+            ALONG, course.margin, "K", "by how much both gears could be hotter until the jam"
+        ),
+        "pinion_speed": (ALONG, course.operating.speed, "rad/s", "pinion speed"),
+        "pinion_torque": (ALONG, course.operating.torque, "N m", "pinion torque"),
+        "heat_in": (ALONG, course.course.heat_in, "J", "heat set free since the start"),
+        "heat_out": (
+            ALONG, course.course.heat_out, "J", "heat left through the given nodes since the start"
+        ),
+        "heat_kept": (ALONG, course.course.kept, "J", "heat kept in gears, oil and housing"),
+        "imbalance": (
+            ALONG, course.course.imbalance, "1", "|kept - in + out| over the heat turned over"
+        ),
+    }  # fmt: skip
+    variables = {name: dressed(*entry) for name, entry in each.items()}
+    for name, values in _mesh(case, course.operating, progress).items():
+        variables[name] = dressed(ALONG, values, *_WORDS[name])
+    return xr.Dataset(
+        variables,
+        {
+            "node": nodes,
+            "loss_kind": list(LOSSES),
+            "sensor": [one.name for one in shown],
+            "time": dressed(ALONG, course.time, "s", "time from the start"),
+        },
+    )
+
+
+# --- what it is measured against --------------------------------------------------------------
+
+
+def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Dataset:
+    """Every piece of the duty held for good: temperatures and least half backlash.
+
+    Nowhere a steady state where a fitted factor would wet more than the whole of a gear.
+    """
+    surroundings, known = case.gearbox.surroundings, True
+    try:
+        surroundings = with_factors(surroundings, factors)
+    except InputError:
+        known = False
+    at, model = case.stated, case.models[0]
+    left = np.full(duty.pieces, np.nan)
+    settled = np.zeros(duty.pieces, np.int8)
+    nodes: dict[str, Floats] = {}
+    points = np.stack([duty.ambient, duty.speed, duty.torque], axis=1)
+    unique, back = np.unique(points, axis=0, return_inverse=True)
+    values = np.full(len(unique), np.nan)
+    fine = np.zeros(len(unique), np.int8)
+    twice = np.zeros(len(unique), np.int8)
+    temperatures: dict[str, Floats] = {}
+    for ambient in np.unique(unique[:, 0]):
+        here = np.flatnonzero(unique[:, 0] == ambient)
+        around = replace(surroundings, ambient=float(ambient))
+        balance = heat_balance(
+            case.pair,
+            unique[here, 1],
+            unique[here, 2],
+            at.lubricant,
+            at.half_backlash,
+            model,
+            gearbox=replace(case.gearbox, surroundings=around),
+            reference=at.temperatures.reference,
+            housing=at.housing,
+            deviations=case.deviations,
+        )
+        hot = HotPair(case.pair, balance.operating, model)
+        gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
+        # at rest the balance knows no free convection: it matters where anything but the ambient
+        # has a temperature of its own
+        runs = (unique[here, 1] > 0.0) | (around.oil_flow == 0.0 and not case.gearbox.measured)
+        settled_here = balance.settled & known & runs
+        twice[here] = balance.several & settled_here
+        values[here] = np.where(settled_here, gap.min(axis=1), np.nan)
+        fine[here] = settled_here
+        for name, t in balance.steady.temperatures.items():
+            whole = temperatures.setdefault(name, np.full(len(unique), np.nan))
+            whole[here] = np.where(settled_here, np.broadcast_to(t, here.shape), np.nan)
+    left, settled = values[back], fine[back]
+    nodes = {name: t[back] for name, t in temperatures.items()}
+    along = ("piece",)
+    return xr.Dataset(
+        {
+            "half_backlash": dressed(along, left, "m", "least half backlash if held for good"),
+            "settled": dressed(along, settled, "1", "1 where there is a steady state"),
+            "several": dressed(along, twice[back], "1", "1 where from hot another one is reached"),
+            "node_temperature": dressed(
+                ("piece", "node"),
+                np.stack(list(nodes.values()), axis=-1),
+                "K",
+                "steady temperature",
+            ),
+            "begin": dressed(along, duty.time[:-1], "s", "time at which the piece begins"),
+            "pinion_speed": dressed(along, duty.speed, "rad/s", "pinion speed"),
+            "pinion_torque": dressed(along, duty.torque, "N m", "pinion torque"),
+            "ambient": dressed(along, duty.ambient, "K", "ambient temperature"),
+        },
+        {"node": list(nodes)},
+    )
+
+
+def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]:
+    """The least half backlash, the steady one of the same piece, and the end."""
+    one, cold = course.worst, case.stated.half_backlash
+    rest = float(steady["half_backlash"][one.piece])
+    lost, lost_for_good = cold - one.half_backlash, cold - rest
+    ratio = lost / lost_for_good - 1.0 if lost_for_good > LEAST_LOSS else np.nan
+    numbers = {
+        "time_s": one.time,
+        "half_backlash_m": one.half_backlash,
+        "margin_K": one.margin,
+        "steady_half_backlash_m": rest,
+        "below_steady_m": rest - one.half_backlash,
+        "loss_above_steady": ratio,
+        "end_half_backlash_m": float(course.half_backlash[-1]),
+        "end_s": float(course.time[-1]),
+        "pinion_speed_rpm": float(course.duty.speed[one.piece]) / RPM,
+        "pinion_torque_Nm": float(course.duty.torque[one.piece]),
+    }
+    found: dict[str, Any] = {n: v if np.isfinite(v) else None for n, v in numbers.items()}
+    found["piece"] = one.piece
+    found["temperatures_K"] = one.temperatures
+    found["at_the_end"] = bool(one.time >= course.time[-1])
+    first = {name: float(t[0]) for name, t in course.temperatures.items()}
+    found["warmed"] = one.temperatures["pinion_tooth"] > first["pinion_tooth"]
+    found["at_the_start"] = bool(one.time <= course.time[0])
+    return found
+
+
+# --- against a record -------------------------------------------------------------------------
+
+
+def _computed(names: Sequence[str], when: Floats, course: WarmUp, shown: Sequence[Shown]) -> Floats:
+    """What the named nodes and sensors have at stored times, (rows, columns) [K]."""
+    by = {one.name: one.shown for one in shown} | course.temperatures
+    place = np.minimum(np.searchsorted(course.time, when), course.time.size - 1)
+    return np.stack([by[name][place] for name in names], axis=1)
+
+
+def _fitted(
+    case: GearCase,
+    duty: Duty,
+    start: float | None,
+    measured: Measured,
+    names: tuple[str, ...],
+    progress: Progress,
+) -> Fit:
+    inside = measured.time <= duty.time[-1]
+    when, values = measured.time[inside], measured.values[inside]
+    if not np.any(when > 0.0):
+        raise InputError("measured", "no row after the start", allowed="rows within the duty")
+    part = until(duty, float(when[-1]))
+
+    def residuals(factors: Mapping[str, float]) -> Floats:
+        course = _course(case, part, start, factors, times=when, moments=2, tolerance=FIT_TOLERANCE)
+        shown = shown_by(case.pair, case.gearbox.surroundings, case.sensors, course)
+        return np.asarray(_computed(measured.names, when, course, shown) - values)
+
+    return fit_factors(residuals, names, progress)
+
+
+def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> xr.Dataset:
+    inside = measured.time <= course.time[-1]
+    if not np.any(inside):
+        raise InputError("measured", "no row within the course", allowed="rows within the duty")
+    when, values = measured.time[inside], measured.values[inside]
+    computed = _computed(measured.names, when, course, shown)
+    by = ("row", "channel")
+    return xr.Dataset(
+        {
+            "measured": dressed(by, values, "K", "measured temperature"),
+            "computed": dressed(by, computed, "K", "computed temperature of the same name"),
+            "difference": dressed(by, computed - values, "K", "computed less measured"),
+        },
+        {
+            "channel": list(measured.names),
+            "time": dressed(("row",), when, "s", "time from the start"),
+        },
+    )
+
+
+def _fit_dataset(found: Fit) -> xr.Dataset:
+    along = ("factor",)
+    return xr.Dataset(
+        {
+            "value": dressed(along, [f.value for f in found.factors], "1", "factor"),
+            "low": dressed(along, [f.low for f in found.factors], "1", "lower end, 95 %"),
+            "high": dressed(along, [f.high for f in found.factors], "1", "upper end, 95 %"),
+        },
+        {"factor": [f.name for f in found.factors]},
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _fit_words(found: Fit | None) -> dict[str, Any]:
+    if found is None:
+        return {}
+    return {
+        "factors": [
+            {"name": f.name, "value": f.value, "low": _finite(f.low), "high": _finite(f.high)}
+            for f in found.factors
+        ],
+        "rms_before_K": found.before,
+        "rms_after_K": found.after,
+        "count": found.count,
+        "effective": found.effective,
+        "autocorrelation": found.autocorrelation,
+        "correlation": _finite(found.correlation),
+        "runs": found.runs,
+    }
+
+
+# --- in words -----------------------------------------------------------------------------------
+
+
+def _notices(
+    case: GearCase,
+    course: WarmUp,
+    steady: xr.Dataset,
+    measured: Measured | None,
+    found: Fit | None,
+    worst: Mapping[str, Any],
+    seconds: float,
+) -> list[dict[str, str]]:
+    told: list[dict[str, str]] = []
+
+    def say(level: str, text: str) -> None:
+        told.append({"level": level, "text": text})
+
+    if worst["half_backlash_m"] is not None and worst["half_backlash_m"] <= 0.0:
+        first = f"{course.jams[0] / 60.0:.2f} min" if course.jams.size else "the start"
+        say("important", f"The pair jams: the backlash is used up at {first}.")
+    if course.course.too_hot:
+        say(
+            "important",
+            f"A node reaches 427 C after {course.time[-1] / 60.0:.1f} min: the course ends there.",
+        )
+    low, high = case.stated.lubricant.temperature_range
+    oil = np.asarray(course.operating.oil_temperature)
+    outside = (oil < low) | (oil > high)
+    if outside.any():
+        spent = float(np.diff(course.time)[outside[1:]].sum()) / 60.0
+        say(
+            "important",
+            f"For {spent:.1f} min the oil is outside the {low - ZERO_CELSIUS:.0f} to "
+            f"{high - ZERO_CELSIUS:.0f} C of its viscosity line.",
+        )
+    unknown = (steady["settled"].values == 0) & (course.duty.speed > 0.0)
+    if unknown.any():
+        say(
+            "important",
+            f"Of {int(unknown.sum())} of {unknown.size} pieces no steady state is known.",
+        )
+    if steady["several"].values.any():
+        say(
+            "important",
+            "More than one thermal state is steady at "
+            f"{int(steady['several'].values.sum())} of {unknown.size} pieces: the one reached from "
+            "cold is told; a hot start may end in the other.",
+        )
+    endless = not np.isfinite(course.duty.time[-1])
+    if endless and not (course.course.settled or course.course.too_hot):
+        say("important", "The pair does not come to rest in 40 time constants.")
+    if measured is not None and np.any(measured.time > course.time[-1]):
+        left = int((measured.time > course.time[-1]).sum())
+        say("warning", f"{left} rows of the record lie after the end and are left out.")
+    if found is not None:
+        say(
+            "info",
+            f"Fitted to {found.count} readings, worth {found.effective:.1f} independent ones "
+            f"(neighbours correlate with {found.autocorrelation:.2f}). The intervals hold scatter "
+            "alone, not what the model leaves out.",
+        )
+    if np.any(course.duty.speed == 0.0):
+        say(
+            "info",
+            "At rest gears give heat to the oil by free convection over their wetted share "
+            "(Churchill and Chu); the walls keep gearbox.oil_housing_coefficient as it is given.",
+        )
+    say(
+        "info",
+        f"Losses by the whole chain at every step, {course.course.evaluations} times, in "
+        f"{seconds:.1f} s; the heat balance closes to "
+        f"{float(course.course.imbalance.max()):.1e} of the heat turned over.",
+    )
+    return told

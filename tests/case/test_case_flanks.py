@@ -1,0 +1,141 @@
+"""Deviations of the flanks in a case file: read, refused under their field, felt by the mesh."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import GeometryError, InputError
+from thermogear.case.case import GearCase, load_example
+from thermogear.case.flanks import relief_text
+from thermogear.gears.deviations import FlankTable, PitchError, PressureAngleError, Relief
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.study.run import run
+
+ONE = ['operating.speed="1000 rpm"', "grid.path_positions=21", "grid.mesh_positions=64"]
+TIP = ['gears.pinion.tip_relief={amount="20 um", length="4 mm"}']
+
+
+def rig(*changes: str) -> GearCase:
+    case = load_example("rig", [*ONE, *changes])
+    assert isinstance(case, GearCase)
+    return case
+
+
+def test_every_kind_of_deviation_is_read_in_si() -> None:
+    errors = ", ".join(['"1 um"'] * 75)
+    case = rig(
+        *TIP,
+        'gears.wheel.root_relief={amount="5 um", length="2 mm", shape="parabolic", flank="drive"}',
+        f"gears.wheel.pitch_errors=[{errors}]",
+        'gears.pinion.pressure_angle_error="0.05 deg"',
+        'gears.wheel.profile={radius=["182 mm", "192 mm"], added=["0 um", "-8 um"]}',
+    )
+    tip, angle, root, pitch, wear = case.deviations
+    assert isinstance(tip, Relief)
+    assert (tip.gear, tip.end, tip.shape, tip.flank) == ("pinion", "tip", "linear", "both")
+    assert (tip.amount, tip.length) == pytest.approx((20e-6, 4e-3), rel=1e-14)
+    assert isinstance(angle, PressureAngleError)
+    assert angle.error == pytest.approx(math.radians(0.05), rel=1e-14)
+    assert isinstance(root, Relief)
+    assert (root.gear, root.end, root.shape, root.flank) == ("wheel", "root", "parabolic", "drive")
+    assert (root.amount, root.length) == pytest.approx((5e-6, 2e-3), rel=1e-14)
+    assert isinstance(pitch, PitchError)
+    assert pitch.errors == pytest.approx((1e-6,) * 75, rel=1e-14)
+    assert isinstance(wear, FlankTable)
+    np.testing.assert_allclose(np.asarray(wear.added), [0.0, -8e-6])
+    assert rig().deviations == ()
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "words"),
+    [
+        (
+            'gears.pinion.tip_relief={amount="20 um", length="30 mm"}',
+            "gears.pinion.tip_relief.length",
+            "got 30 mm; allowed <= 25.3061 mm; the tip relief is longer than the active profile",
+        ),
+        (
+            'gears.wheel.root_relief={amount="20 um", length="30 mm"}',
+            "gears.wheel.root_relief.length",
+            "the root relief is longer than the active profile",
+        ),
+        (
+            'gears.pinion.pitch_errors=["1 um", "2 um"]',
+            "gears.pinion.pitch_errors",
+            "got 2 values; allowed one for each of the 25 teeth",
+        ),
+        (
+            'gears.pinion.profile={radius=["65 mm", "60 mm"], added=["0 um", "1 um"]}',
+            "gears.pinion.profile.radius",
+            "allowed two or more, strictly rising",
+        ),
+        (
+            'gears.pinion.profile={radius=["60 mm", "65 mm"], added=["0 um","1 um","2 um"]}',
+            "gears.pinion.profile.added",
+            "shape (3,)",
+        ),
+        (
+            'gears.wheel.tip_relief={amount="20 um"}',
+            "gears.wheel.tip_relief.length",
+            "got nothing; needed",
+        ),
+        (
+            'gears.wheel.tip_relief={amount="20 um", lenght="1 mm"}',
+            "gears.wheel.tip_relief.lenght",
+            "did you mean 'length'?",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_refused_under_its_field(change: str, field: str, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        rig(change)
+    assert caught.value.field == field
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert isinstance(caught.value, GeometryError) == ("longer" in words)
+
+
+def test_a_relief_reaches_every_result_of_a_run() -> None:
+    changes = ['model.bundle="consistent"', 'draw.pictures=["path"]']
+    plain, relieved = (run(rig(*changes, *more))["mesh"].to_dataset() for more in ([], TIP))
+    case = rig(*changes, *TIP)
+    cycle = mesh_cycle(
+        case.pair,
+        case.operating,
+        case.models[0],
+        deviations=[Relief("pinion", amount=20e-6, length=4e-3)],
+        path_positions=21,
+        mesh_positions=64,
+    )
+    hot = relieved.isel(bundle=0, state=1, operating=0)
+    np.testing.assert_allclose(hot["mesh_stiffness"].values, cycle["mesh_stiffness"].values[0])
+    # less double contact: the mean stiffness falls
+    unrelieved = plain.isel(bundle=0, state=1, operating=0)
+    assert float(hot["mean_stiffness"]) < float(unrelieved["mean_stiffness"])
+
+
+def test_a_relief_of_nothing_changes_nothing() -> None:
+    changes = ['model.bundle="consistent"', 'draw.pictures=["path"]']
+    none = 'gears.pinion.tip_relief={amount="0 um", length="4 mm"}'
+    plain, zero = (run(rig(*changes, *more))["mesh"] for more in ([], [none]))
+    np.testing.assert_array_equal(plain["mesh_stiffness"].values, zero["mesh_stiffness"].values)
+
+
+def test_a_bundle_that_does_not_feel_deviations_is_named() -> None:
+    tree = run(rig(*TIP, 'draw.pictures=["path"]'))
+    assert "The textbook sum of thesis does not feel them." in tree.attrs["notices"]
+
+
+def test_a_relief_pasted_into_a_case_is_the_same_relief() -> None:
+    relief = Relief("wheel", amount=12.345e-6, length=3.456789e-3, shape="parabolic")
+    table = relief_text("wheel", relief)
+    assert table.startswith("[gears.wheel.tip_relief]\n")
+    entries = ", ".join(table.splitlines()[1:])
+    (read,) = rig(f"gears.wheel.tip_relief={{{entries}}}").deviations
+    assert isinstance(read, Relief)
+    assert read.amount == pytest.approx(relief.amount, rel=1e-12)
+    assert read.length == pytest.approx(relief.length, rel=1e-12)
+    assert read.shape == "parabolic"

@@ -1,0 +1,132 @@
+"""Gear words: the same lanes as the case's own motion, and words that are told apart."""
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import InputError
+from thermogear.case.case import load_example
+from thermogear.case.family import GearFamily, Tabulated, read_word, word
+from thermogear.dynamics.models import from_excitation
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.excite import excitation
+from thermogear.study.diagrams import parse_axis
+
+RPM = np.pi / 30.0
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return load_example("rig")
+
+
+def test_lanes_are_those_of_the_case(rig):
+    family = GearFamily(rig, ("pinion_speed",))
+    points = family(np.array(rig.speeds)[:, None])
+    cycle = mesh_cycle(
+        rig.pair,
+        rig.operating,
+        rig.models[0],
+        deviations=rig.deviations,
+        path_positions=rig.path_positions,
+        mesh_positions=rig.mesh_positions,
+    )
+    own = from_excitation(
+        excitation(
+            cycle,
+            rig.pair,
+            damping_ratio=rig.damping_ratio,
+            inertias=rig.inertias,
+            transmission_error=rig.transmission_error,
+            harmonics=rig.harmonics,
+        )
+    ).lanes()
+    for name in ("period", "damping", "half_backlash", "stiffness", "force"):
+        assert np.array_equal(getattr(points.flat, name), getattr(own, name)), name
+
+
+def test_rows_one_by_one_and_together_agree(rig):
+    family = GearFamily(rig, ("gear_temperature", "damping_ratio", "pinion_torque"))
+    rows = np.array([[380.0, 0.05, 80.0], [420.0, 0.1, 120.0], [380.0, 0.07, 150.0]])
+    whole = family(rows)
+    for i, row in enumerate(rows):
+        alone = family(row[None])
+        for name in ("period", "damping", "half_backlash", "stiffness", "force"):
+            one, many = getattr(alone.flat, name)[0], getattr(whole.flat, name)[i]
+            assert np.allclose(one, many, rtol=1e-13, atol=0.0), name
+        assert alone.force[0] == pytest.approx(whole.force[i], rel=1e-14)
+
+
+def test_cold_backlash_scales_the_lane(rig):
+    """Everything uniform: b' = b, so the dimensionless half backlash is 1 whatever b is."""
+    family = GearFamily(rig, ("cold_half_backlash",), state="undeformed")
+    points = family(np.array([[60e-6], [125e-6]]))
+    assert points.flat.half_backlash == pytest.approx([1.0, 1.0], rel=1e-12)
+    means = points.flat.force[:, 0].real
+    assert means[0] / means[1] == pytest.approx(125.0 / 60.0, rel=1e-12)
+
+
+def test_fields_of_the_case_file_can_be_swept(rig):
+    family = GearFamily(rig, ("dynamics.damping_ratio", "pinion_speed"))
+    points = family(np.array([[0.03, 100.0], [0.09, 200.0]]))
+    assert points.flat.damping == pytest.approx([0.06, 0.18], rel=1e-14)
+    assert points.mesh_frequency == pytest.approx([2500.0, 5000.0], rel=1e-14)
+
+
+def test_jammed_points_are_a_status(rig):
+    points = GearFamily(rig, ("cold_half_backlash",))(np.array([[2e-6], [125e-6]]))
+    assert points.status.tolist() == [1, 0]
+    both = GearFamily(rig, ("cold_half_backlash",))(np.array([[2e-6], [3e-6]]))
+    assert both.status.tolist() == [1, 1]
+
+
+def test_table_between_speeds_is_exact_where_nothing_depends_on_speed(rig):
+    family = GearFamily(rig, ("pinion_speed",))
+    table = Tabulated.of(family, np.linspace(100.0, 1200.0, 5))
+    at = np.array([[150.0], [555.5], [1200.0]])
+    for name in ("period", "stiffness", "force", "half_backlash"):
+        one, other = getattr(table(at).flat, name), getattr(family(at).flat, name)
+        assert np.allclose(one, other, rtol=1e-12, atol=1e-18), name
+
+
+def test_words_and_units():
+    assert word("rpm") == "pinion_speed"
+    assert read_word("pinion_speed", "3000") == pytest.approx(100.0 * np.pi, rel=1e-15)
+    assert read_word("gear_temperature", "20") == 293.15
+    assert read_word("cold_half_backlash", "125") == pytest.approx(125e-6, rel=1e-15)
+    with pytest.raises(InputError, match=r"parameter: got 'torqe'; did you mean 'torque'\?"):
+        word("torqe")
+
+
+def test_an_axis_of_lengths_is_the_case_with_that_length(rig):
+    """A field of the file over its values gives, point by point, the case so written."""
+    name, widths = parse_axis(rig, "gears.pinion.face_width=20 mm:30 mm:3")
+    assert name == "gears.pinion.face_width"
+    assert widths == pytest.approx([0.020, 0.025, 0.030], rel=1e-15)
+    family = GearFamily(rig, (name,))
+    assert family.units == ("m",)
+    swept = family(widths[:, None])
+    for place, text in enumerate(("20 mm", "25 mm", "30 mm")):
+        written = load_example("rig", {name: text})
+        one = GearFamily(written, ("pinion_speed",))(np.array([[written.speeds[0]]]))
+        assert swept.rate[place] == pytest.approx(one.rate[0], rel=1e-12)
+        assert swept.stiffness[place] == pytest.approx(one.stiffness[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("bare", "written"),
+    [
+        ("rpm=600:1200:3", "speed=10 turn/s:20 turn/s:3"),
+        ("torque=50,100", "torque=50 N m,1e5 N mm"),
+        ("temperature=20:140:4", "temperature=293.15 K:413.15 K:4"),
+        ("backlash=100:200:2", "backlash=0.1 mm:0.2 mm:2"),
+    ],
+)
+def test_a_unit_may_stand_at_every_value(rig, bare, written):
+    one, other = parse_axis(rig, bare), parse_axis(rig, written)
+    assert one[0] == other[0]
+    assert one[1] == pytest.approx(other[1], rel=1e-14)
+
+
+def test_standstill_is_refused(rig):
+    with pytest.raises(InputError, match=r"operating\.speed: got 0 rpm; allowed > 0 rpm"):
+        GearFamily(rig, ("pinion_speed",))(np.array([[0.0]]))

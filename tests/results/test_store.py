@@ -1,0 +1,452 @@
+"""The store: resumed, refused, repaired, never silently wrong."""
+
+import hashlib
+import json
+import random
+import shutil
+import subprocess
+import sys
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thermogear.analysis.basins import basin_plan
+from thermogear.analysis.diagram import diagram_plan
+from thermogear.analysis.maps import map_plan
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
+from thermogear.base.plan import gather, keys_of
+from thermogear.base.progress import duration
+from thermogear.base.stores import COPY, JOURNAL, MANIFEST, RESULT, read_store
+from thermogear.dynamics.models import TorsionalModel
+from thermogear.results import workers as crew
+from thermogear.results.store import QUARANTINE, Store
+from thermogear.results.work import carry_out, estimate, require_space
+from thermogear.views.sweep_report import read_result
+
+MODEL = TorsionalModel(
+    damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3
+)
+
+
+def plan_of(count=12, tile=6, damping=0.05):
+    axes = {
+        "frequency": np.linspace(0.4, 2.2, count),
+        "stiffness_amplitude": np.linspace(0.05, 0.9, count),
+    }
+    return map_plan(MODEL.replace(damping_ratio=damping), axes, tile=tile, rule=Rule(cap=512))
+
+
+def same_numbers(one, other):
+    assert set(one.variables) == set(other.variables)
+    for name in one.variables:
+        assert np.array_equal(
+            one[name].values, other[name].values, equal_nan=one[name].dtype.kind == "f"
+        )
+
+
+@pytest.fixture(scope="module")
+def memory():
+    return gather(plan_of())
+
+
+def test_store_threads_and_memory_agree_to_the_last_bit(tmp_path, memory):
+    for threads in (1, 3):
+        place = tmp_path / str(threads)
+        assert carry_out(plan_of(), place, threads=threads).identical(memory)
+        same_numbers(read_store(place), memory)
+
+
+def test_xarray_opens_the_result_without_us(tmp_path, memory):
+    carry_out(plan_of(), tmp_path / "s")
+    with (
+        warnings.catch_warnings(),
+        xr.open_zarr(tmp_path / "s" / RESULT, consolidated=False) as data,
+    ):
+        same_numbers(data.load(), memory)
+        assert data.frequency.attrs["units"] == "1"
+        assert data.attrs["kind"] == "map"
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        lambda: diagram_plan(
+            MODEL, "frequency", np.linspace(0.9, 1.0, 6), block=2, branch_period=1
+        ),
+        lambda: basin_plan(MODEL, x=np.linspace(-2, 2, 9), v=np.linspace(-2, 2, 9), survey=4),
+    ],
+    ids=["diagram", "basins"],
+)
+def test_other_plans_come_back_as_they_were(tmp_path, plan):
+    same_numbers(carry_out(plan(), tmp_path / "s"), gather(plan()))
+    same_numbers(read_store(tmp_path / "s"), gather(plan()))
+
+
+def test_unfinished_work_goes_on_and_keeps_what_is_done(tmp_path, memory):
+    class Enough(Exception):
+        pass
+
+    def stop(step):
+        if step.done == 2:
+            raise Enough
+
+    with pytest.raises(Enough):
+        carry_out(plan_of(), tmp_path / "s", threads=1, report=stop)
+    steps = []
+    with pytest.raises(InputError, match="it is not finished"):
+        read_store(tmp_path / "s")
+    data = carry_out(plan_of(), tmp_path / "s", threads=1, report=steps.append)
+    assert steps[0].found == 2
+    assert (steps[0].done, steps[-1].done, steps[-1].total) == (2, 4, 4)
+    assert steps[-1].remaining == 0.0
+    assert data.identical(memory)
+
+
+def test_chains_resume_in_the_middle(tmp_path):
+    plan = diagram_plan(MODEL, "frequency", np.linspace(0.9, 1.0, 8), block=2, branch_period=0)
+
+    def stop(step):
+        if step.done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        carry_out(plan, tmp_path / "s", threads=2, report=stop)
+    same_numbers(carry_out(plan, tmp_path / "s"), gather(plan))
+
+
+def test_other_inputs_are_refused_by_the_first_field(tmp_path):
+    carry_out(plan_of(), tmp_path / "s")
+    with pytest.raises(InputError) as caught:
+        carry_out(plan_of(damping=0.06), tmp_path / "s")
+    assert str(caught.value) == (
+        f"model.damping_ratio: got 0.06; allowed 0.05; the store {tmp_path / 's'} was begun with "
+        "the latter; name another directory, or repeat the command the store was begun with"
+    )
+    with pytest.raises(InputError, match=r"axes\.frequency: got 13 values; allowed 12 values"):
+        carry_out(plan_of(13), tmp_path / "s")
+    with pytest.raises(InputError, match=r"rule\.cap: got 1024; allowed 512"):
+        carry_out(replace(plan_of(), rule=Rule(cap=1024)), tmp_path / "s")
+    with pytest.raises(InputError, match="kind: got basins; allowed map"):
+        carry_out(basin_plan(MODEL, x=[0.0, 1.0], v=[0.0, 1.0], survey=2), tmp_path / "s")
+
+
+def test_foreign_directories_and_files_are_refused(tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.doc").write_text("do not touch")
+    with pytest.raises(InputError, match="the directory holds files that are not a store"):
+        carry_out(plan_of(), tmp_path / "mine")
+    with pytest.raises(InputError, match="it is a file"):
+        carry_out(plan_of(), tmp_path / "mine" / "thesis.doc")
+    assert [p.name for p in (tmp_path / "mine").iterdir()] == ["thesis.doc"]
+
+
+def test_second_writer_is_refused(tmp_path):
+    with (
+        Store(tmp_path / "s", plan_of()),
+        pytest.raises(InputError, match="another process is writing into it"),
+    ):
+        carry_out(plan_of(), tmp_path / "s")
+
+
+def damage(path: Path, draw: random.Random) -> str:
+    """Flip a bit, cut, empty, delete or overwrite a file."""
+    raw = bytearray(path.read_bytes())
+    way = draw.choice(["flip", "cut", "empty", "delete", "noise"])
+    if way == "flip" and raw:
+        raw[draw.randrange(len(raw))] ^= 1 << draw.randrange(8)
+        path.write_bytes(raw)
+    elif way == "cut":
+        path.write_bytes(raw[: len(raw) // 2])
+    elif way == "empty":
+        path.write_bytes(b"")
+    elif way == "delete":
+        path.unlink()
+    else:
+        path.write_bytes(draw.randbytes(max(len(raw), 1)))
+    return way
+
+
+def files_of(store: Path) -> list[Path]:
+    return sorted(p for p in store.rglob("*") if p.is_file() and p.name != "lock")
+
+
+def corrupt(tmp_path: Path, trials: int, seed: int) -> dict[str, int]:
+    """Damage a finished store in one place at a time; repeat the command; compare."""
+    plan, truth = plan_of(), gather(plan_of())
+    store, draw = tmp_path / "s", random.Random(seed)
+    tally = {"repaired": 0, "loud": 0, "silent": 0, "reader_silent": 0}
+    carry_out(plan, store)
+    for _ in range(trials):
+        damage(draw.choice(files_of(store)), draw)
+        try:
+            seen = read_store(store)
+        except InputError:
+            pass
+        else:
+            try:
+                same_numbers(seen, truth)
+            except AssertionError:
+                tally["reader_silent"] += 1
+        try:
+            data = carry_out(plan, store)
+            same_numbers(data, truth)
+            same_numbers(read_store(store), truth)
+            tally["repaired"] += 1
+        except InputError:
+            tally["loud"] += 1
+        except AssertionError:
+            tally["silent"] += 1
+        for old in (store / QUARANTINE).glob("*"):
+            old.unlink()
+    return tally
+
+
+def test_corruptions_are_repaired(tmp_path):
+    assert corrupt(tmp_path, 8, seed=1) == {
+        "repaired": 8, "loud": 0, "silent": 0, "reader_silent": 0
+    }  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_hundred_corruptions(tmp_path):
+    tally = corrupt(tmp_path, 100, seed=2)
+    assert tally == {"repaired": 100, "loud": 0, "silent": 0, "reader_silent": 0}
+
+
+def test_damaged_chunk_goes_to_quarantine(tmp_path, memory):
+    carry_out(plan_of(), tmp_path / "s")
+    chunk = tmp_path / "s" / RESULT / "lyapunov" / "c" / "0" / "1"
+    raw = bytearray(chunk.read_bytes())
+    raw[len(raw) // 2] ^= 8
+    chunk.write_bytes(raw)
+    with pytest.raises(InputError, match="it is damaged"):
+        read_store(tmp_path / "s")
+    assert carry_out(plan_of(), tmp_path / "s").identical(memory)
+    names = [p.name for p in (tmp_path / "s" / QUARANTINE).iterdir()]
+    assert any(name.endswith("lyapunov-c-0-1") for name in names)
+
+
+def test_a_chunk_put_in_anothers_place_is_noticed(tmp_path, memory):
+    """Its own checksum is right; the journal's is not."""
+    carry_out(plan_of(), tmp_path / "s")
+    place = tmp_path / "s" / RESULT / "multiplier_real" / "c"
+    (place / "0" / "0").write_bytes((place / "1" / "1").read_bytes())
+    assert carry_out(plan_of(), tmp_path / "s").identical(memory)
+
+
+def test_both_manifests_damaged_is_loud(tmp_path):
+    carry_out(plan_of(), tmp_path / "s")
+    for name in (MANIFEST, COPY):
+        (tmp_path / "s" / name).write_text("{}")
+    with pytest.raises(InputError, match="both copies of its manifest are damaged"):
+        carry_out(plan_of(), tmp_path / "s")
+
+
+def test_torn_journal_line_costs_its_chunk_alone(tmp_path, memory):
+    carry_out(plan_of(), tmp_path / "s")
+    journal = tmp_path / "s" / JOURNAL
+    lines = journal.read_bytes().split(b"\n")
+    journal.write_bytes(b"\n".join([lines[0], lines[1], lines[2][:40]]))
+    steps = []
+    assert carry_out(plan_of(), tmp_path / "s", report=steps.append).identical(memory)
+    assert steps[0].found == 2
+    assert len(keys_of(plan_of())) == 4
+
+
+def test_too_large_work_is_refused_before_it_starts(tmp_path):
+    huge = map_plan(
+        MODEL, {"frequency": np.arange(1, 400_001), "mean_force": np.arange(1, 400_001)}
+    )
+    with pytest.raises(InputError, match=r"grid: got 160000000000 points, about .* GiB of memory"):
+        require_space(huge, tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
+def test_estimate_counts_points_chunks_and_bytes():
+    found = estimate(plan_of(), threads=1, pilot=4)
+    assert (found.points, found.chunks) == (144, 4)
+    assert found.disk == 144 * (8 * 7 + 4 * 4 + 3)
+    assert 0.0 < found.seconds < 60.0
+    assert duration(30.0) == "30 s"
+    assert duration(600.0) == "10 min"
+    assert duration(7200.0) == "2 h"
+
+
+def test_cluster_that_does_not_answer_is_one_line(tmp_path):
+    with pytest.raises(InputError, match="scheduler: got memory; a cluster needs a store"):
+        carry_out(plan_of(), scheduler="memory")
+
+
+def trial(name: str, directory: Path, count: int = 1) -> dict:
+    done = subprocess.run(
+        [sys.executable, Path(__file__).with_name("store_trials.py"), name, directory, str(count)],
+        capture_output=True, text=True, timeout=560, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+@pytest.mark.slow
+def test_two_hundred_kills(tmp_path):
+    found = trial("kills", tmp_path, 200)
+    assert found["kills"] == 200
+    assert found["with_chunks"] > 50
+    assert (found["lost"], found["wrong"]) == (0, 0)
+
+
+@pytest.mark.slow
+def test_full_disk_is_an_error_and_costs_nothing_else(tmp_path):
+    found = trial("full", tmp_path)
+    assert found["refused"]
+    assert found["same"]
+
+
+@pytest.mark.slow
+def test_cluster_that_is_not_there_is_refused_before_a_store_is_begun(tmp_path):
+    with pytest.raises(InputError, match=r"scheduler: .*no dask scheduler answers there"):
+        carry_out(plan_of(), tmp_path / "s", scheduler="tcp://127.0.0.1:1")
+    assert not (tmp_path / "s").exists()
+
+
+@pytest.mark.slow
+def test_cluster_without_workers_is_one_line_and_keeps_what_is_done(tmp_path, monkeypatch):
+    from distributed import LocalCluster
+
+    plan = plan_of()
+    whole = carry_out(plan, tmp_path / "s", threads=1)
+    monkeypatch.setattr(crew, "PAUSE", 0.05)
+    monkeypatch.setattr(crew, "PATIENCE", 0.2)
+    with LocalCluster(n_workers=0, dashboard_address=":0") as empty:
+        address = empty.scheduler_address
+        with pytest.raises(InputError, match=r"scheduler: .*no worker for .*; start workers"):
+            carry_out(plan, tmp_path / "t", scheduler=address)
+        again = carry_out(plan, tmp_path / "s", scheduler=address)
+    same_numbers(again, whole)
+
+
+@pytest.mark.slow
+def test_cluster_that_loses_a_worker(tmp_path):
+    found = trial("cluster", tmp_path)
+    assert found["killed"] == 2
+    assert found["same_calm"]
+    assert found["same_rough"]
+
+
+# --- what the numbers mean --------------------------------------------------------------------
+
+
+def other_units(content):
+    content["attributes"]["units"] = "mm"
+
+
+def other_meanings(content):
+    words = content["attributes"]["flag_meanings"].split()
+    content["attributes"]["flag_meanings"] = " ".join(reversed(words))
+
+
+def other_dimensions(content):
+    content["dimension_names"].reverse()
+
+
+def changed(name, change):
+    def damage(result):
+        path = result / name / "zarr.json"
+        content = json.loads(path.read_text())
+        change(content)
+        path.write_text(json.dumps(content))
+
+    return damage
+
+
+def exchanged(result):
+    """Both of one shape and type: no number says which is which."""
+    one, two = (result / name / "zarr.json" for name in ("multiplier_real", "lyapunov"))
+    first, second = one.read_bytes(), two.read_bytes()
+    one.write_bytes(second)
+    two.write_bytes(first)
+
+
+def foreign(result):
+    shutil.copytree(result / "label", result / "foreign")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    place = tmp_path_factory.mktemp("finished") / "s"
+    carry_out(plan_of(), place)
+    return place
+
+
+def test_what_is_whole_leaves_no_quarantine(finished):
+    assert not (finished / QUARANTINE).exists()
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        changed("frequency", other_units),
+        changed("label", other_meanings),
+        changed("lyapunov", other_dimensions),
+        exchanged,
+        foreign,
+    ],
+    ids=["units", "meanings", "dimensions", "exchanged", "foreign"],
+)
+def test_what_the_numbers_mean_is_sealed(damage, finished, tmp_path, memory):
+    """All five were accepted, and drawn."""
+    store = tmp_path / "s"
+    shutil.copytree(finished, store)
+    damage(store / RESULT)
+    with pytest.raises(InputError, match=r"it is damaged or changed \(.*; repeat the command that"):
+        read_store(store)
+    with pytest.raises(InputError, match="it is damaged or changed"):
+        read_result(store)
+    assert carry_out(plan_of(), store).identical(memory)
+    assert read_store(store).attrs == read_store(finished).attrs
+
+
+def test_a_manifest_of_other_work_is_refused(finished, tmp_path):
+    store, other = tmp_path / "s", tmp_path / "o"
+    shutil.copytree(finished, store)
+    with Store(other, plan_of(damping=0.06)):
+        pass
+    (store / MANIFEST).write_bytes((other / MANIFEST).read_bytes())
+    same_numbers(read_store(store), read_store(finished))  # by its copy
+    (store / COPY).write_bytes((other / MANIFEST).read_bytes())
+    with pytest.raises(InputError, match="its manifest is of other work"):
+        read_store(store)
+
+
+def test_stores_of_another_format_say_so(finished, tmp_path):
+    store = tmp_path / "s"
+    shutil.copytree(finished, store)
+    for name in (MANIFEST, COPY):
+        text = (store / name).read_text().partition("\n")[2].rstrip("\n")
+        text = text.replace('"format": 2', '"format": 1')
+        seal = hashlib.sha256(text.encode()).hexdigest()
+        (store / name).write_text(f"{seal}\n{text}\n")
+    with pytest.raises(InputError, match="another version of thermogear wrote it"):
+        read_store(store)
+
+
+@pytest.mark.slow
+def test_cluster_of_good_old_bare_and_dying_workers_and_a_dying_scheduler(tmp_path):
+    found = trial("crowd", tmp_path)
+    assert found["same"], found
+    assert found["refused"] == {
+        "old": "its code is",
+        "bare": "it cannot import thermogear",
+    }
+    assert found["dead"] == ["dying"]
+    assert "it is lost; what is done is stored; start it" in found["lost"]
+    assert found["lost_after_s"] < 10.0
+    assert found["kept"] > 10
+    assert found["same_resumed"]
+    assert "none of its workers can be believed" in found["alone"]
+    assert "it cannot import thermogear" in found["alone"]
+    assert found["alone_after_s"] < 30.0

@@ -1,0 +1,194 @@
+"""Comparisons: the thesis's own table recomputed, verdicts by u_val, like compared with like."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from conftest import Compared
+from thermogear.base.errors import InputError
+from thermogear.measured.chain import Chain
+from thermogear.measured.published import (
+    RPM,
+    LineTable,
+    SpeedLine,
+    read_lines,
+    unstated_processing,
+)
+from thermogear.measured.reduction import measure
+from thermogear.study.compare import as_json, compare, verdict
+from thermogear.study.simulated import scaled, simulated_record
+
+
+def test_the_thesis_table_recomputed(compared: Compared) -> None:
+    found = compare("thesis-5.2")
+    errors = {
+        (round(row.speed / RPM), row.quantity): [round(-100 * e, 2) for e in row.errors]
+        for row in found.rows
+    }
+    known = {
+        (1000, "frequency"): [1.60, 2.07],
+        (1000, "displacement"): [16.35, 21.44],
+        (2000, "frequency"): [0.79, 1.15],
+        (2000, "displacement"): [17.62, 21.50],
+        (3000, "frequency"): [0.29, 0.53],
+        (3000, "displacement"): [15.46, 18.35],
+    }
+    assert errors.keys() == known.keys()
+    gaps = [np.subtract(errors[key], known[key]) for key in known]
+    compared(
+        "errors of the thesis's experiment table, recomputed to 0.01 %",
+        "its own entries",
+        gaps,
+        0.0,
+        "%",
+    )
+
+
+def test_its_two_wrong_entries_and_nothing_else_are_named() -> None:
+    notices = [text for _, text in compare("thesis-5.2").notices if "printed" in text]
+    assert notices == [
+        "2000 rpm, displacement, without heat: printed 18.5 %, recomputed 21.50 %",
+        "3000 rpm, displacement, with heat: printed 15.4 %, recomputed 15.46 %",
+    ]
+
+
+def test_what_its_lines_imply() -> None:
+    implied = compare("thesis-5.2").implied
+    assert [round(item.acceleration_g, 1) for item in implied] == [7.4, 53.9, 305.9]
+    speeds = [round((item.shaft_speed or 0.0) / RPM, 1) for item in implied]
+    assert speeds == [1007.3, 1998.2, 3003.8]
+    assert [round(item.offset_hertz or 0.0, 2) for item in implied] == [3.03, -0.75, 1.60]
+
+
+def test_its_frequency_column_is_impossible() -> None:
+    found = compare("thesis-5.2")
+    assert found.row(1000 * RPM, "frequency").verdict == (
+        "impossible: with heat (413 Hz), without heat (411 Hz) is no line j/n of the 416.667 Hz "
+        "that forces the model"
+    )
+    texts = "\n".join(text for _, text in found.notices)
+    assert "the frequency column carries no thermal information" in texts
+    assert "53.9 g at 2000 rpm, 305.9 g at 3000 rpm" in texts
+
+
+def test_its_conclusion_is_not_resolvable_by_u_val() -> None:
+    found = compare("thesis-5.2")
+    rows = [row for row in found.rows if row.quantity == "displacement"]
+    assert {row.verdict for row in rows} == {"not resolvable"}
+    for row in rows:
+        assert abs(row.errors[1]) - abs(row.errors[0]) < row.u_val
+    assert found.conclusion == "of 3 displacements: not resolvable 3 times"
+
+
+def test_with_a_good_measurement_the_same_figures_would_be_resolvable() -> None:
+    found = compare("thesis-5.2", u_data=0.01)
+    rows = [row for row in found.rows if row.quantity == "displacement"]
+    assert {row.verdict for row in rows} == {"with heat better"}
+    assert rows[0].u_val == pytest.approx(0.01)
+
+
+def test_the_verdict_turns_exactly_at_u_val() -> None:
+    names = ("A", "B")
+    assert verdict([-0.10, 0.13], names, 0.0299) == "A better"
+    assert verdict([-0.10, 0.13], names, 0.0301) == "not resolvable"
+    assert verdict([0.2, -0.1], names, 0.05) == "B better"
+    assert verdict([0.04], ("A",), 0.05) == "within u_val"
+
+
+def test_unstated_processing_is_the_spread_of_a_uniform_loss() -> None:
+    parts = unstated_processing(419.7, highest=1251.6)
+    assert parts["window"] == pytest.approx(0.1512 / np.sqrt(12), abs=1e-4)
+    assert parts["integration"] == pytest.approx(0.1106 / np.sqrt(12), abs=1e-3)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_a_table_file_against_tables(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "rig.csv"
+    path.write_text(
+        "speed [1/min];frequency [Hz];displacement [µm];uncertainty [%]\n"
+        "1000;416.667;10.0;2\n2000;833.333;20.0;2\n",
+        encoding=encoding,
+    )
+    table = read_lines(path, 25)
+    assert [line.speed / RPM for line in table.lines] == pytest.approx([1000.0, 2000.0])
+    a = LineTable("A", (SpeedLine(speed=1000 * RPM, frequency=416.667, displacement=9.9e-6),))
+    b = LineTable("B", (SpeedLine(speed=1000 * RPM, frequency=416.667, displacement=9.0e-6),))
+    found = compare({"A": a, "B": b}, path, teeth=25)
+    row = found.row(1000 * RPM, "displacement")
+    assert row.verdict == "A better"
+    assert row.u_val == pytest.approx(0.02)
+    assert "2000 rpm: no simulated line at this speed" in [text for _, text in found.notices]
+    assert (
+        found.row(1000 * RPM, "frequency").verdict == "the same by construction: the speed sets it"
+    )
+    assert json.loads(as_json(found))["rows"][1]["verdict"] == "A better"
+
+
+def test_refusals_of_tables(tmp_path: Path) -> None:
+    path = tmp_path / "rig.csv"
+    path.write_text("speed,frequency [Hz],displacement [um]\n1000,416,10\n")
+    with pytest.raises(InputError, match=r"^table\.speed: got no unit; state it: speed \[\.\.\.\]"):
+        read_lines(path)
+    with pytest.raises(InputError, match=r"^measured: got nothing; a record, a table or thesis-5"):
+        compare({"A": LineTable("A", (SpeedLine(speed=1.0, frequency=1.0, displacement=1.0),))})
+    with pytest.raises(InputError, match=r"^measured: got thesis-5\.3; did you mean 'thesis-5\.2'"):
+        compare("thesis-5.2", "thesis-5.3")
+    with pytest.raises(InputError, match=r"^line\.displacement: got -1; allowed > 0$"):
+        SpeedLine(speed=1.0, frequency=1.0, displacement=-1)
+
+
+def test_a_simulated_motion_goes_through_the_records_own_chain() -> None:
+    mesh, rate, periods, per = 416.667, 12_800.0, 8, 128
+    phase = np.arange(periods * per) / per
+    x = 3e-6 + 10e-6 * np.cos(2 * np.pi * phase + 0.4) + 2e-6 * np.cos(4 * np.pi * phase)
+    record = simulated_record(x, periods, mesh_frequency=mesh, rate=rate, samples=1 << 15)
+    for method in ("frequency", "line"):
+        found = measure(record, teeth=25, chain=Chain(method), sidebands=0)
+        line = found.lines[0]
+        assert line.frequency == pytest.approx(mesh, rel=1e-7)
+        assert line.displacement == pytest.approx(10e-6, rel=2e-4)
+        assert found.lines[1].displacement == pytest.approx(2e-6, rel=1e-3)
+
+
+def test_a_simulated_record_holds_no_line_above_half_its_rate() -> None:
+    phase = np.arange(64) / 64
+    x = np.cos(2 * np.pi * phase) + np.cos(2 * np.pi * 8 * phase)
+    record = simulated_record(x, 1, mesh_frequency=100.0, rate=1000.0, samples=1000)
+    t = np.arange(1000) / 1000.0
+    expected = -((200 * np.pi) ** 2) * np.cos(200 * np.pi * t)
+    np.testing.assert_allclose(record.channels[0].values(), expected, atol=1e-6)
+
+
+def test_a_toleranced_value_keeps_its_unit() -> None:
+    assert scaled("100 N m", 1.1) == "110.00000000000001 N m"
+    assert scaled("0.07", 2.0) == "0.14"
+    with pytest.raises(InputError, match=r"it is no number with a unit$"):
+        scaled("steel", 2.0)
+
+
+@pytest.mark.slow
+def test_a_case_is_compared_with_numerical_and_input_uncertainty() -> None:
+    from thermogear.case.case import load_example
+
+    case = load_example(
+        "rig",
+        {
+            "model.bundle": '"consistent"',
+            "operating.speed": '"1000 rpm"',
+            "simulation.steps_per_period": "128",
+            "simulation.discard": "100",
+            "simulation.most_discarded": "400",
+            "simulation.periods": "32",
+            "grid.mesh_positions": "96",
+        },
+    )
+    found = compare(case, "thesis-5.2")
+    row = found.row(1000 * RPM, "displacement")
+    assert found.models == ("consistent undeformed", "consistent hot")
+    assert 0.0 <= row.u_num < 0.01
+    sampled = compare(case, "thesis-5.2", tolerances={"dynamics.damping_ratio": 0.2}, samples=3)
+    assert sampled.row(1000 * RPM, "displacement").u_input > 0.0

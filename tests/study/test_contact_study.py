@@ -1,0 +1,146 @@
+"""Relief and loaded contact of a case: never worse than before, the loop back into the file."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thermogear.base.errors import InputError
+from thermogear.case.case import GearCase, load_example
+from thermogear.gears.loaded import LoadedModel, loaded_contact
+from thermogear.study.contact import PHASES, loaded_survey
+from thermogear.study.relief import relief_survey
+
+
+def rig(*changes: str) -> GearCase:
+    case = load_example("rig", changes)
+    assert isinstance(case, GearCase)
+    return case
+
+
+@pytest.fixture(scope="module")
+def relief() -> xr.DataTree:
+    return relief_survey(rig())
+
+
+@pytest.fixture(scope="module")
+def contact() -> xr.DataTree:
+    return loaded_survey(rig("temperatures.row=[]"), (20.0, 100.0))
+
+
+def test_relief_evens_the_loaded_mesh(relief: xr.DataTree) -> None:
+    assert relief.attrs["relieved"] < 0.2 * relief.attrs["unrelieved"]
+    error = relief["error"]["transmission_error"].values
+    # drawn on finer positions than the search used
+    np.testing.assert_allclose(np.ptp(error[0]), relief.attrs["unrelieved"], rtol=0.02)
+    assert np.ptp(error[1]) < 0.25 * np.ptp(error[0])
+
+
+def test_the_relief_put_into_the_case_gives_the_transmission_error_found(
+    relief: xr.DataTree,
+) -> None:
+    changes = []
+    for gear, one in json.loads(relief.attrs["reliefs"]).items():
+        amount, length = f"{1e6 * one['amount_m']:.6f} um", f"{1e3 * one['length_m']:.9f} mm"
+        changes.append(f'gears.{gear}.tip_relief={{amount="{amount}", length="{length}"}}')
+    pasted = loaded_survey(rig("temperatures.row=[]", *changes), (100.0,))
+    error = pasted["contact"]["transmission_error"].sel(temperature="hot").isel(load=0).values
+    own = relief["error"]["transmission_error"].sel(pair_kind="relieved").values
+    np.testing.assert_allclose(np.ptp(error), np.ptp(own), rtol=1e-4)
+    assert relief.attrs["paste"].count("tip_relief]") == 2
+
+
+def test_a_symmetric_relief_is_alike_on_both_gears_and_no_better(relief: xr.DataTree) -> None:
+    both = relief_survey(rig(), symmetric=True)
+    one, two = json.loads(both.attrs["reliefs"]).values()
+    assert one == two
+    assert relief.attrs["relieved"] <= 1.05 * both.attrs["relieved"]
+    assert both.attrs["relieved"] < both.attrs["unrelieved"]
+
+
+def test_a_relief_needs_a_load() -> None:
+    with pytest.raises(InputError, match=r"torque: got 0\.0 N m; allowed > 0 N m"):
+        relief_survey(rig("operating.torque=0 N m"))
+
+
+def test_cold_contact_is_the_plain_loaded_contact(contact: xr.DataTree) -> None:
+    case = rig()
+    plain = loaded_contact(
+        case.pair, 100.0 / case.pair.pinion.base_radius, PHASES, model=LoadedModel()
+    )
+    here = contact["contact"].sel(temperature="undeformed").isel(load=1)
+    for name in ("tangent_stiffness", "secant_stiffness", "load_share"):
+        np.testing.assert_allclose(here[name].values, plain[name].values, rtol=1e-9, atol=1e-12)
+
+
+def test_shares_add_up_and_tangent_is_the_stiffer(contact: xr.DataTree) -> None:
+    data = contact["contact"]
+    np.testing.assert_allclose(data["load_share"].sum("pair").values, 1.0, rtol=1e-9)
+    assert np.all(data["tangent_stiffness"].values >= data["secant_stiffness"].values * (1 - 1e-9))
+    assert list(data["temperature"].values) == ["undeformed", "hot"]
+
+
+def test_double_contact_is_lost_at_light_load_between_unequally_hot_gears(
+    contact: xr.DataTree,
+) -> None:
+    length = contact["base_pitch"]["double_contact_length"]
+    equal = length.sel(temperature_difference=0.0)
+    for kelvin in (-40.0, 40.0):
+        uneven = length.sel(temperature_difference=kelvin)
+        assert float(uneven[0]) < 0.05 * float(equal[0])
+        assert float(uneven[-1]) > 0.9 * float(equal[-1])
+    # 40 K hold the pairs apart up to a greater load than 20 K
+    half = 0.5 * float(equal[0])
+    reached = [
+        int((length.sel(temperature_difference=kelvin).values > half).argmax())
+        for kelvin in (20.0, 40.0)
+    ]
+    assert reached[0] < reached[1]
+    # a hotter pinion and a hotter wheel are not mirror images
+    error = contact["base_pitch"]["peak_to_peak_error"]
+    one, two = (error.sel(temperature_difference=kelvin).values for kelvin in (-40.0, 40.0))
+    assert np.max(np.abs(one - two) / two) > 0.02
+
+
+def test_iso_stands_beside_the_model_within_its_usual_distance(contact: xr.DataTree) -> None:
+    compared = contact["iso_6336"].isel(load=1)
+    ratio = float(compared["iso_stiffness"]) / float(compared["loaded_stiffness"])
+    assert 0.8 < ratio < 1.25
+
+
+def test_a_pressure_on_a_tip_corner_is_left_out_with_its_reason(contact: xr.DataTree) -> None:
+    data = contact["contact"]
+    flags = data["edge_contact"].values
+    assert np.array_equal(np.isnan(data["contact_pressure"].values), flags > 0)
+    shares = (flags > 0).any(axis=-1).mean(axis=-1)
+    np.testing.assert_array_equal(data["edge_contact_share"].values, shares)
+    # heavier load, longer contact on the corners; the same over the light loads
+    assert np.all(np.diff(shares, axis=1) > 0.0)
+    light = contact["base_pitch"]["edge_contact_share"].sel(temperature_difference=0.0).values
+    assert np.all(np.diff(light) >= 0.0)
+    state, load = np.unravel_index(shares.argmax(), shares.shape)
+    (told,) = (
+        one for one in json.loads(contact.attrs["notices"]) if one["text"].startswith("Tip corners")
+    )
+    assert told["level"] == "important"
+    assert told["text"] == (
+        f"Tip corners carry load during up to {100 * shares.max():.3g} % of the mesh period "
+        f"({data['temperature'].values[state]}, {data['load'].values[load]:.4g} N m). The Hertzian "
+        "pressure is not valid on a corner (edge contact): it is left out there."
+    )
+
+
+def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:
+    data = relief["error"]
+    flags = data["edge_contact"].values
+    assert np.array_equal(np.isnan(data["greatest_pressure"].values), flags > 0)
+    plain, relieved = data["edge_contact_share"].values
+    assert plain == np.mean(flags[0] > 0)
+    assert 0.0 <= relieved < 0.5 * plain
+    over = relief["loads"]["edge_contact_share"].values
+    assert np.all(over[1] <= over[0])
+    texts = [one["text"] for one in json.loads(relief.attrs["notices"])]
+    assert any(f"{100 * plain:.3g} % of the mesh period without the relief" in t for t in texts)

@@ -1,0 +1,180 @@
+"""The closed loop over a grid, its cross-checks, and the thesis's first conclusion."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import STATUS
+from thermogear.case.case import GearCase, load_example
+from thermogear.case.size import require_points
+from thermogear.heat.scuffing import scuffing_temperature
+from thermogear.mesh.balance import heat_balance
+from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
+from thermogear.mesh.cycle import mesh_cycle
+from thermogear.study.temperature import MESH_POSITIONS, PATH_POSITIONS, thermal_map
+from thermogear.study.trends import _rank, _rank_along, _rises, _verdict
+
+RPM = np.pi / 30.0
+SPEEDS = tuple(RPM * np.array([500.0, 1500.0, 2500.0]))
+TORQUES = (50.0, 100.0)
+
+
+def rig(*changes: str) -> GearCase:
+    case = load_example("rig", ['model.bundle="consistent"', *changes])
+    assert isinstance(case, GearCase)
+    return case
+
+
+@pytest.fixture(scope="module")
+def tree() -> xr.DataTree:
+    return thermal_map(rig(), SPEEDS, TORQUES)
+
+
+def test_a_point_of_the_map_is_the_point_alone(tree: xr.DataTree) -> None:
+    case = rig()
+    alone = heat_balance(
+        case.pair, SPEEDS[1], TORQUES[1], case.stated.lubricant, case.cold_backlash.half
+    )
+    cycle = mesh_cycle(
+        case.pair,
+        alone.operating,
+        path_positions=PATH_POSITIONS,
+        mesh_positions=MESH_POSITIONS,
+    )
+    here = tree["map"].isel(pinion_speed=1, pinion_torque=1)
+    node = here["node_temperature"]
+    for name in ("oil", "pinion_tooth", "housing"):
+        assert float(node.sel(node=name)) == pytest.approx(
+            float(np.ravel(alone.steady[name])[0]), abs=1e-5
+        )
+    assert float(here["greatest_flash"]) == pytest.approx(
+        float(cycle["flash_temperature"].max()), rel=1e-6
+    )
+    assert float(here["least_half_backlash"]) == pytest.approx(
+        float(cycle["half_backlash_curve"].min()), rel=1e-6
+    )
+    assert int(here["status"]) == STATUS.index("ok")
+    assert float(here["residual"]) <= 1e-6
+
+
+def test_the_scuffing_margin_is_what_the_contact_leaves_of_the_limit(tree: xr.DataTree) -> None:
+    grid = tree["map"]
+    left = scuffing_temperature(12.0) - grid["greatest_contact_temperature"].values
+    np.testing.assert_allclose(grid["scuffing_margin"].values, left, rtol=1e-12)
+
+
+@pytest.mark.slow
+def test_without_a_load_stage_there_is_no_margin() -> None:
+    case = rig()
+    bare = thermal_map(replace(case, scuffing_load_stage=None), SPEEDS[:1], TORQUES[:1])
+    assert np.isnan(bare["map"]["scuffing_margin"].values).all()
+    assert "no scuffing margin" in bare.attrs["notices"]
+
+
+def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
+    checked = tree["conclusion"]
+    rising = checked["rising_share"]
+    # flash and growth rise with speed and torque
+    np.testing.assert_array_equal(rising.sel(quantity="growth").values, 1.0)
+    flash = rising.sel(quantity="flash")
+    np.testing.assert_array_equal(flash.sel(lubrication="dry").values, 1.0)
+    np.testing.assert_array_equal(flash.sel(lubrication="mixed").values, 1.0)
+    # mixed friction falls with speed here; dry is constant
+    friction = rising.sel(quantity="friction")
+    assert float(friction.sel(lubrication="mixed", axis="speed")) == 0.0
+    rank = checked["rank_correlation"].sel(quantity="friction", with_what="speed")
+    assert float(rank.sel(lubrication="mixed")) < 0.0
+    assert np.isnan(float(rank.sel(lubrication="dry")))
+    np.testing.assert_array_equal(checked["mixed_below_dry"].values, 1.0)
+    claims = {row["claim"]: row["verdict"] for row in json.loads(tree.attrs["verdicts"])}
+    assert claims["flash temperature rises with speed, mixed"] == "holds"
+    assert claims["flash temperature rises with speed, dry"] == "holds"
+    assert claims["friction coefficient rises with speed, dry"] == "does not hold"
+
+
+def test_ranks_and_steps_of_known_rows() -> None:
+    x = np.array([1.0, 2.0, 3.0, 4.0])
+    assert _rank(x, x**3) == pytest.approx(1.0)
+    assert _rank(x, -np.exp(x)) == pytest.approx(-1.0)
+    assert np.isnan(_rank(x, np.ones(4)))
+    assert _rises(np.array([1.0, 2.0, 2.0, 1.0]), 0) == pytest.approx(1.0 / 3.0)
+    assert _rises(np.array([1.0, np.nan, 2.0, 3.0]), 0) == 1.0
+    assert np.isnan(_rises(np.array([np.nan, np.nan]), 0))
+    table = np.array([[1.0, 9.0], [2.0, 5.0], [3.0, 1.0]])
+    assert _rank_along(table, np.array([[1.0], [2.0], [3.0]]) + 0.0 * table, 0) == 0.0
+    assert [_verdict(v) for v in (1.0, 0.5, 0.0, np.nan)] == [
+        "holds",
+        "holds in part",
+        "does not hold",
+        "nothing to compare",
+    ]
+
+
+def test_estimates_lie_above_the_oil_and_grow_with_the_loss() -> None:
+    case = rig('operating.torque=["0 N m", "100 N m", "300 N m"]', 'operating.speed="2000 rpm"')
+    oil = np.asarray(case.operating.oil_temperature)
+    found = body_estimates(case.pair, case.operating, np.array([0.0, 10.0, 20.0]))
+    assert found.shape == (len(ESTIMATES), 3)
+    np.testing.assert_allclose(found[:, 0], oil, rtol=1e-12)
+    assert np.all(np.diff(found, axis=1) > 0.0)
+    # sprayed gears are reckoned hotter
+    sprayed = body_estimates(case.pair, case.operating, np.array([0.0, 10.0, 20.0]), dipped=False)
+    np.testing.assert_allclose(sprayed - oil, 1.2 * (found - oil), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_a_tight_pair_jams_where_the_teeth_pass_the_jam_temperature() -> None:
+    # the housing held cold: hot gears close the gap
+    case = rig('gearbox.measured.housing="20 degC"', 'backlash.value="0.014 mm"')
+    grid = thermal_map(case, SPEEDS, (50.0, 200.0))["map"]
+    jammed = grid["status"].values == STATUS.index("jammed")
+    assert jammed.any()
+    assert not jammed.all()
+    np.testing.assert_array_equal(jammed, grid["least_half_backlash"].values <= 0.0)
+    teeth = grid["node_temperature"].sel(node="pinion_tooth").values
+    np.testing.assert_array_equal(jammed, teeth >= grid["jam_temperature"].values - 1e-6)
+
+
+@pytest.mark.slow
+def test_a_cooler_keeps_the_oil_on_its_line_and_flash_then_falls_with_speed() -> None:
+    # by this law; the film-weighted one rises with speed here
+    case = rig('gearbox.oil_flow="5 l/min"', 'model.friction="benedict-kelley"')
+    cooled = thermal_map(case, tuple(RPM * np.array([1000.0, 3500.0, 6000.0])), (100.0, 300.0))
+    assert np.all(cooled["map"]["within_oil_range"].values == 1)
+    rising = cooled["conclusion"]["rising_share"].sel(lubrication="mixed", quantity="flash")
+    assert float(rising.sel(axis="speed")) < 1.0
+    assert float(rising.sel(axis="torque")) == 1.0
+
+
+def test_a_huge_map_is_refused_before_it_runs() -> None:
+    with pytest.raises(InputError, match=r"map: got about 37.3 GiB for 1000000 operating points"):
+        require_points(10**6, free=8 * 2**30)
+    assert require_points(10**6, forced=True, free=8 * 2**30) == 40_000_000_000
+
+
+def test_one_point_that_cannot_be_computed_does_not_cost_the_map() -> None:
+    case = rig('gearbox.ambient="-40 degC"')
+    tree = thermal_map(case, tuple(RPM * np.array([10.0, 2000.0])), (10.0, 200.0))
+    grid = tree["map"]
+    lost = STATUS.index("not_converged")
+    np.testing.assert_array_equal(grid["status"].values == lost, [[True, True], [False, False]])
+    for name in ("greatest_flash", "least_half_backlash", "mean_friction"):
+        np.testing.assert_array_equal(np.isnan(grid[name].values), grid["status"].values == lost)
+    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
+    assert any("2 of 4 points have no steady temperature" in one for one in texts)
+    assert any("No value: prandtl: got" in one for one in texts)
+
+
+def test_the_map_says_where_two_states_are_steady() -> None:
+    case = rig('model.friction="benedict-kelley"', 'model.inlet="oil"')
+    tree = thermal_map(case, tuple(RPM * np.array([1000.0, 4085.0])), (20.0,))
+    assert tree["map"]["several"].values.tolist() == [[0], [1]]
+    texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
+    (told,) = (one for one in texts if "another steady state" in one)
+    assert told.startswith("Of 2 points, 1 point has another steady state when it comes from hot")
