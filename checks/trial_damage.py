@@ -33,15 +33,15 @@ from thermogear.analysis.diagram import diagram_plan
 from thermogear.analysis.maps import map_plan
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError
-from thermogear.base.netcdf import read_tree
+from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.plan import Plan, Variable, ranges_of
 from thermogear.base.stores import RESULT, read_store
 from thermogear.case.case import load_example
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.results.files import write_results
 from thermogear.results.work import carry_out
 from thermogear.study.friction import friction_survey
-from thermogear.study.run import run_to_directory
+from thermogear.study.run import run
+from thermogear.views.write import save_results
 
 SEED = 14_2026
 COUNT = 300
@@ -101,7 +101,7 @@ def specimens(place: Path, short: bool = False) -> list[Specimen]:
     for case, end in ((rig, "one"), (slow, "other")):
         folder = place / "survey" / end
         folder.mkdir(parents=True)
-        write_results(friction_survey(case), folder, "friction.nc")
+        friction_survey(case).put(folder)
     made.append(tree_specimen("survey", place))
     if not short:
         warmer = load_example("section-4.1", ("base.damping_ratio=0.16",))
@@ -110,8 +110,8 @@ def specimens(place: Path, short: bool = False) -> list[Specimen]:
             "run of numbers": (load_example("section-4.1"), warmer),
         }
         for name, (one, other) in pairs.items():
-            run_to_directory(one, place / name / "one")
-            run_to_directory(other, place / name / "other")
+            save_results(run(one), place / name / "one")
+            save_results(run(other), place / name / "other")
             made.append(tree_specimen(name, place))
     return made
 
@@ -470,7 +470,7 @@ def costs(made: Sequence[Specimen], scratch: Path) -> list[tuple[str, float, flo
     large = scratch / "large"
     large.mkdir()
     values = np.random.default_rng(1).normal(size=(64, 131_072))
-    write_results(xr.DataTree(xr.Dataset({"force": (("row", "place"), values)})), large)
+    write_tree(xr.DataTree(xr.Dataset({"force": (("row", "place"), values)})), large / "results.nc")
     carry_out(Numbers(), scratch / "large-store", threads=2)
     rows = []
     trees = [(s.name, next(s.place.glob("*.nc"))) for s in made if not s.again]

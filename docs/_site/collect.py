@@ -9,7 +9,8 @@ from pathlib import Path
 
 from thermogear import load_case, run
 from thermogear.thesis.errata import errata
-from thermogear.thesis.report import build_to_directory
+from thermogear.thesis.report import build
+from thermogear.views.write import save_results
 
 TEXTS = ("number", "place", "kind", "words", "as_in_the_thesis", "consistent", "verdict")
 
@@ -20,7 +21,7 @@ def main(target: Path) -> None:
     tree = run(case)
     groups = {name: tree[name].to_dataset() for name in ("mesh", "path")}
     with tempfile.TemporaryDirectory() as folder:
-        judged = build_to_directory(Path(folder) / "thesis")
+        judged = save_results(build(), Path(folder) / "thesis")
     stored = {
         "thermogear": judged["thermogear"],
         "errata": errata(case, groups),

@@ -127,11 +127,11 @@ def test_hdf5_that_cannot_write_does_not_fall(tmp_path: Path) -> None:
     code = (
         "import resource, sys, numpy as np, xarray as xr\n"
         "from pathlib import Path\n"
-        "from thermogear.results.files import write_results\n"
+        "from thermogear.base.netcdf import write_tree\n"
         "tree = xr.DataTree(xr.Dataset({'x': ('n', np.arange(1e5))}))\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))\n"
         "try:\n"
-        "    write_results(tree, Path(sys.argv[1]))\n"
+        "    write_tree(tree, Path(sys.argv[1]) / 'results.nc')\n"
         "except OSError as error:\n"
         "    print(error.strerror)\n"
     )

@@ -21,6 +21,7 @@ from thermogear.front import cli as command_line
 from thermogear.front.cli import main
 from thermogear.front.lines import one_line, system_error
 from thermogear.front.progress import progress
+from thermogear.results.result import Result
 
 HEAVY = (
     "numpy",
@@ -48,45 +49,42 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """A run and a report that only note how they were called."""
     seen: dict[str, Any] = {}
 
-    def run_to_directory(
-        case: Case,
-        directory: Path,
-        *,
-        case_text: str,
-        progress: Callable[[str, int, int], None],
-        also: Callable[[Path], None],
-    ) -> dict[str, Any]:
-        seen.update(case=case, directory=directory, case_text=case_text)
+    def study(case: Case, *, progress: Callable[[str, int, int], None]) -> Result:
+        seen["case"] = case
         progress("mesh cycle", 1, 2)
         progress("mesh cycle", 2, 2)
         if "effect" in seen:
             raise seen["effect"]
-        also(directory / "folder")
-        return {"thermogear": "0", "notices": [{"level": "info", "text": "two\nlines"}]}
+        seen["result"] = Result.of("gear", case.title, {}, **case.provenance)
+        return seen["result"]
 
-    def write_report(directory: Path) -> Path:
+    def page_of(result: Result) -> Any:
+        return types.SimpleNamespace(lines=lambda: ["- two lines"], numbers=lambda: {"kind": "0"})
+
+    def write(page: Any, folder: Path) -> list[Path]:
+        assert (folder / "results.nc").is_file()
+        seen["reported"] = folder
+        return [folder / "report.html"]
+
+    def clear_tables(directory: Path, kept: list[Path]) -> None:
+        seen["directory"] = directory
+
+    def write_report(directory: Path, of: str) -> Path:
         seen["reported"] = directory
         return directory / "report.html"
 
-    def write_csv(directory: Path) -> list[Path]:
-        assert seen["reported"] == directory
-        seen["curves"] = directory
-        return []
-
-    def clear_csv(directory: Path, kept: list[str]) -> None:
-        assert directory == seen["directory"]
-        assert kept == []
-
-    running = types.ModuleType("thermogear.study.run")
-    running.run_to_directory = run_to_directory  # type: ignore[attr-defined]
-    reporting = types.ModuleType("thermogear.views.report")
-    reporting.write_report = write_report  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "thermogear.study.run", running)
-    curves = types.ModuleType("thermogear.views.csv")
-    curves.write_csv = write_csv  # type: ignore[attr-defined]
-    curves.clear_csv = clear_csv  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "thermogear.views.csv", curves)
-    monkeypatch.setitem(sys.modules, "thermogear.views.report", reporting)
+    made = {
+        "thermogear.study.run": {"run": study},
+        "thermogear.thesis.errata": {"with_errata": lambda result, case: result},
+        "thermogear.views.write": {
+            "page_of": page_of, "write": write, "clear_tables": clear_tables,
+            "write_report": write_report, "write_pictures": None,
+        },
+    }  # fmt: skip
+    for name, functions in made.items():
+        module = types.ModuleType(name)
+        vars(module).update(functions)
+        monkeypatch.setitem(sys.modules, name, module)
     return seen
 
 
@@ -255,17 +253,17 @@ def test_run_hands_case_and_directory_on(
     assert shown.err == ""
     assert pretended["case"].torques == (150.0,)
     assert pretended["directory"] == results
-    assert pretended["reported"] == pretended["curves"] == results / "folder"
-    text = pretended["case_text"]
-    assert text.startswith(example_text("rig").rstrip())
-    assert text.endswith("\n# on the command line: operating.torque = 150 N m\n")
+    assert pretended["reported"] != results
+    assert pretended["result"].text("case") == example_text("rig")
+    assert pretended["result"].rows("overrides") == [["operating.torque", "150 N m"]]
 
 
 def test_run_without_overrides_hands_the_text_on_as_it_is(
     rig: Path, tmp_path: Path, pretended: dict[str, Any]
 ) -> None:
     assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == 0
-    assert pretended["case_text"] == example_text("rig")
+    assert pretended["result"].text("case") == example_text("rig")
+    assert pretended["result"].rows("overrides") == []
 
 
 def test_the_reference_flash_is_asked_for_by_a_flag(
@@ -279,7 +277,7 @@ def test_run_for_scripts_prints_json_alone(
     rig: Path, tmp_path: Path, pretended: dict[str, Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run", str(rig), "-o", str(tmp_path / "results"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["thermogear"] == "0"
+    assert json.loads(capsys.readouterr().out)["kind"] == "0"
     assert pretended["directory"] == tmp_path / "results"
 
 
@@ -311,7 +309,6 @@ def test_a_case_too_large_needs_force(
 @pytest.mark.parametrize(
     ("effect", "code", "line"),
     [
-        (KeyboardInterrupt(), 130, "interrupted: stopped on request\n"),
         (
             KeyboardInterrupt("nothing was written to results"),
             130,

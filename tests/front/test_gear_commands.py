@@ -16,7 +16,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.cli import cli, main
 from thermogear.results.files import MARK, claimed, is_ours
-from thermogear.views.survey_report import write_survey
+from thermogear.views.write import write_report as write_survey
 
 SMALL = ["--set", "grid.path_positions=41", "--set", 'operating.speed="2000 rpm"']
 EXTRA = {
@@ -74,7 +74,7 @@ def test_a_survey_leaves_data_page_pictures_and_curves(
     assert len(ids) == len(set(ids))
     # the page is drawn from the stored file alone, and the same again
     (out / f"{command}.html").unlink()
-    assert write_survey(out, command)[0].read_text(encoding="utf-8") == text
+    assert write_survey(out, command).read_text(encoding="utf-8") == text
     with xr.open_datatree(out / f"{command}.nc", engine="h5netcdf") as tree:
         for node in tree.subtree:
             for name, values in node.data_vars.items():

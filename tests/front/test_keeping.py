@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from thermogear.base import files
 from thermogear.base.files import held
 from thermogear.base.netcdf import write_tree
 from thermogear.front.cli import main
 from thermogear.results.files import MARK
+from thermogear.results.result import Result, result_of
 from thermogear.results.work import Step
 from thermogear.study import run as running
+from thermogear.views.page import Page
 
 TREE = xr.DataTree.from_dict({"points": xr.Dataset({"x": ("point", np.arange(3.0))})})
 TREE.attrs = {"thermogear": "0.0.0", "kind": "dimensionless", "title": "Rows", "notices": "[]"}
@@ -27,14 +28,17 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """A run without its computing and its page; ``effect`` is raised while the page is drawn."""
     seen: dict[str, Any] = {}
 
-    def write_report(directory: Path) -> Path:
+    def render(page: Any) -> str:
         if "effect" in seen:
             raise seen["effect"]
-        return files.put(directory / "report.html", "page")
+        return "page"
 
-    monkeypatch.setattr(running, "run", lambda case, progress: TREE)
-    monkeypatch.setattr(running.findings, "summary", lambda tree: {"thermogear": "0"})
-    monkeypatch.setattr("thermogear.views.report.write_report", write_report)
+    def page_of(result: Result) -> Page:
+        return Page(result, "", [], numbers=lambda: {"thermogear": "0"})
+
+    monkeypatch.setattr(running, "run", lambda case, progress: result_of(TREE))
+    monkeypatch.setattr("thermogear.views.write.page_of", page_of)
+    monkeypatch.setattr("thermogear.views.write.render", render)
     return seen
 
 

@@ -12,6 +12,7 @@ from click.testing import CliRunner, Result
 
 from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import compare, measure
+from thermogear.results.result import open_results
 
 RATE, TEETH = 5120.0, 25
 
@@ -58,14 +59,13 @@ def test_measure_as_json_and_as_a_page(record: Path, tmp_path: Path) -> None:
 
 
 def test_the_page_is_the_same_when_drawn_again(record: Path, tmp_path: Path) -> None:
-    from thermogear.views.measured_report import write_measured_report
+    from thermogear.views.write import write_report
 
     call(measure, record, "-o", tmp_path / "out")
-    stored, page = tmp_path / "out" / "measured.nc", tmp_path / "out" / "measured.html"
-    first = page.read_bytes()
-    assert write_measured_report(stored, page).read_bytes() == first
+    first = (tmp_path / "out" / "measured.html").read_bytes()
+    assert write_report(tmp_path / "out").read_bytes() == first
     with pytest.raises(InputError, match="it cannot be read as netCDF"):
-        write_measured_report(record, page)
+        open_results(record)
 
 
 def test_compare_prints_the_thesis_recomputed_and_draws_it(tmp_path: Path) -> None:

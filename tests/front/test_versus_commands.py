@@ -10,7 +10,8 @@ import pytest
 from thermogear.case.case import load_example
 from thermogear.case.examples import example_text
 from thermogear.front.cli import main
-from thermogear.study.run import run_to_directory
+from thermogear.study.run import run
+from thermogear.views.write import save_results
 
 FEW = ["simulation.periods=16", "simulation.discard=16"]
 
@@ -18,7 +19,7 @@ FEW = ["simulation.periods=16", "simulation.discard=16"]
 @pytest.fixture(scope="module")
 def rows(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("runs") / "rows"
-    run_to_directory(load_example("section-4.1", FEW), place)
+    save_results(run(load_example("section-4.1", FEW)), place)
     return place
 
 

@@ -206,7 +206,7 @@ class Crowd:
         shutil.copytree(
             source, directory / "old" / "thermogear", ignore=shutil.ignore_patterns("__pycache__")
         )
-        plan = directory / "old" / "thermogear" / "analysis" / "plan.py"
+        plan = directory / "old" / "thermogear" / "base" / "plan.py"
         words = "dtype=np.dtype(variable.dtype))"
         text = plan.read_text("utf-8")
         assert text.count(words) == 1

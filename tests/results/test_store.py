@@ -24,9 +24,9 @@ from thermogear.base.progress import duration
 from thermogear.base.stores import COPY, JOURNAL, MANIFEST, RESULT, read_store
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.results import workers as crew
+from thermogear.results.result import open_results as read_result
 from thermogear.results.store import QUARANTINE, Store
 from thermogear.results.work import carry_out, estimate, require_space
-from thermogear.views.sweep_report import read_result
 
 MODEL = TorsionalModel(
     damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3

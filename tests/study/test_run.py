@@ -14,8 +14,11 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import FLAGS, STATUS
 from thermogear.case.case import load_example
 from thermogear.results.files import RESULTS, SUMMARY
-from thermogear.study.run import run_to_directory
-from thermogear.study.run_notices import _jams, summary
+from thermogear.results.result import Result
+from thermogear.study.run_notices import _jams
+from thermogear.thesis.errata import with_errata
+from thermogear.views.pages.run_numbers import numbers as summary
+from thermogear.views.write import save_results
 
 SMALL = [
     "grid.path_positions=41",
@@ -27,19 +30,19 @@ SMALL = [
 
 
 @pytest.fixture(scope="module")
-def small() -> xr.DataTree:
+def small() -> Result:
     return run(load_example("rig", SMALL))
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("results") / "out"
-    run_to_directory(load_example("rig", SMALL), directory)
+    save_results(run(load_example("rig", SMALL)), directory)
     return directory
 
 
-def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: xr.DataTree) -> None:
-    assert set(small.children) == {
+def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: Result) -> None:
+    assert set(small.tree.children) == {
         "path",
         "mesh",
         "profile",
@@ -54,9 +57,9 @@ def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: xr.DataTre
     assert set(small["motion"]["label"].values.ravel()) <= {"period-1", "undecided"}
 
 
-def test_every_stored_variable_has_units_and_words(small: xr.DataTree) -> None:
+def test_every_stored_variable_has_units_and_words(small: Result) -> None:
     texts = {"label", "label_reason", "row", "parameter", "expected", "value", "value_unit"}
-    for node in small.subtree:
+    for node in small.tree.subtree:
         for name, values in node.data_vars.items():
             if name in texts or name in FLAGS:
                 continue
@@ -64,7 +67,7 @@ def test_every_stored_variable_has_units_and_words(small: xr.DataTree) -> None:
             assert values.attrs.get("long_name"), f"{node.path}/{name}"
 
 
-def test_dimensionless_numbers_close_with_the_stored_si_values(small: xr.DataTree) -> None:
+def test_dimensionless_numbers_close_with_the_stored_si_values(small: Result) -> None:
     mesh = small["mesh"]
     np.testing.assert_allclose(
         mesh["frequency_ratio"].values,
@@ -82,7 +85,7 @@ def test_dimensionless_numbers_close_with_the_stored_si_values(small: xr.DataTre
     assert np.all(mesh["thermal_stiffness_ratio"].sel(state="undeformed").values == 0.0)
 
 
-def test_steady_motion_carries_the_load(small: xr.DataTree) -> None:
+def test_steady_motion_carries_the_load(small: Result) -> None:
     # without contact loss <k f> = F_n, so the mean deflection is close to F_n/k_m
     motion, mesh = small["motion"], small["mesh"]
     x = motion["displacement"].mean("sample") - mesh["half_backlash"]
@@ -90,9 +93,9 @@ def test_steady_motion_carries_the_load(small: xr.DataTree) -> None:
     assert np.all((ratio > 0.95) & (ratio < 1.1))
 
 
-def test_results_are_read_back_as_they_were(written: Path, small: xr.DataTree) -> None:
+def test_results_are_read_back_as_they_were(written: Path, small: Result) -> None:
     stored = xr.open_datatree(written / RESULTS, engine="h5netcdf")
-    for node in small.subtree:
+    for node in small.tree.subtree:
         for name, values in node.data_vars.items():
             other = stored[node.path][str(name)]
             np.testing.assert_array_equal(values.values, other.values)
@@ -107,11 +110,11 @@ def test_a_second_run_replaces_our_own_results_and_refuses_foreign_files(
     written: Path, tmp_path: Path
 ) -> None:
     case = load_example("section-4.1")
-    run_to_directory(case, written)
+    save_results(run(case), written)
     assert json.loads((written / SUMMARY).read_text(encoding="utf-8"))["kind"] == "dimensionless"
     (tmp_path / "thesis.doc").write_text("mine", encoding="utf-8")
     with pytest.raises(InputError, match="not results of thermogear; name a new or an empty"):
-        run_to_directory(case, tmp_path)
+        save_results(run(case), tmp_path)
     assert [p.name for p in tmp_path.iterdir()] == ["thesis.doc"]
 
 
@@ -165,7 +168,7 @@ def test_table_4_2_and_section_4_1_as_their_files_expect() -> None:
             assert half[140.0] == pytest.approx(0.0088, abs=5e-5)
 
 
-def test_notices_name_the_regime(small: xr.DataTree) -> None:
+def test_notices_name_the_regime(small: Result) -> None:
     texts = [notice["text"] for notice in json.loads(small.attrs["notices"])]
     assert any(text.startswith("Two regimes") for text in texts)
     assert any("textbook sum" in text for text in texts)
@@ -186,8 +189,9 @@ def test_a_law_outside_its_range_says_so() -> None:
     assert [level for text, level in said.items() if band in text] == ["info"]
 
 
-def test_errata_carry_both_values_of_the_flash_temperature(small: xr.DataTree) -> None:
-    rows = {row["number"]: row for row in json.loads(small.attrs["errata"])}
+def test_errata_carry_both_values_of_the_flash_temperature(small: Result) -> None:
+    told = with_errata(small, load_example("rig", SMALL))
+    rows = {row["number"]: row for row in told.rows("errata")}
     assert sorted(rows) == list(range(1, 21))
     assert rows[1]["value_repaired"] > 1e3 * rows[1]["value_as_printed"] > 0.0
     assert rows[12]["value_repaired"] == pytest.approx(21.5, abs=0.005)

@@ -15,11 +15,11 @@ from thermogear.study.versus import (
     OWN,
     Stored,
     flat,
-    of_tree,
-    summary,
+    stored,
     unique_titles,
     versus,
 )
+from thermogear.views.pages.versus import _numbers as summary
 
 SMALL = [
     "grid.path_positions=41",
@@ -38,7 +38,7 @@ OTHER = [
 
 
 def made(overrides: list[str], name: str) -> Stored:
-    return of_tree(run(load_example("rig", overrides)), name)
+    return stored(run(load_example("rig", overrides)), name)
 
 
 @pytest.fixture(scope="module")
@@ -107,12 +107,13 @@ def test_fields_that_differ_are_named_with_both_values(first: Stored, second: St
 
 
 def test_a_case_against_itself_differs_in_nothing(first: Stored) -> None:
-    data = versus([first, replace(first, name="again")])
-    assert json.loads(data.attrs["differences"]) == []
-    assert json.loads(data.attrs["notices"]) == []
+    found = versus([first, replace(first, name="again")])
+    assert found.rows("differences") == []
+    assert found.notices == ()
+    data = found.data
     one, other = data.isel(case=0, drop=True), data.isel(case=1, drop=True)
     assert one.identical(other)
-    told = summary(data)
+    told = summary(found)
     assert len(told["figures"]) == 2 * 2 * 2 * 2
     json.dumps(told, allow_nan=False)
 
@@ -120,7 +121,7 @@ def test_a_case_against_itself_differs_in_nothing(first: Stored) -> None:
 def test_the_order_of_the_cases_changes_nothing_but_the_order(
     first: Stored, second: Stored
 ) -> None:
-    ahead, back = versus([first, second]), versus([second, first])
+    ahead, back = versus([first, second]).data, versus([second, first]).data
     for name in ahead.data_vars:
         there = ahead[name].isel(case=[1, 0]).values
         np.testing.assert_array_equal(there, back[name].values, err_msg=str(name))
@@ -152,9 +153,10 @@ def test_lone_bundles_of_different_names_stand_beside_each_other(first: Stored) 
 def test_dimensionless_cases_are_matched_by_row_and_value() -> None:
     small = ["simulation.periods=16", "simulation.discard=16"]
     case = load_example("section-4.1", small)
-    one = of_tree(run(case), "one")
-    data = versus([one, replace(one, name="two")])
-    assert data.attrs["of"] == "dimensionless"
+    one = stored(run(case), "one")
+    found = versus([one, replace(one, name="two")])
+    assert found.text("of") == "dimensionless"
+    data = found.data
     assert str(data["point"].values[0]) == "thesis: temperature = 293.15 K"
     assert data.sizes["operating"] == one.groups["points"].sizes["point"]
     np.testing.assert_array_equal(
@@ -191,5 +193,5 @@ def test_flat_names_and_unique_titles() -> None:
 
 def test_the_command_line_of_a_stored_case_counts_as_its_own() -> None:
     text = load_example("rig").text
-    stored = Stored("x", {"case": text, "overrides": '[["gears.pinion.teeth", "30"]]'}, {})
-    assert stored.table()["gears.pinion.teeth"] == 30
+    one = Stored("x", {"case": text, "overrides": '[["gears.pinion.teeth", "30"]]'}, {})
+    assert one.table()["gears.pinion.teeth"] == 30

@@ -15,10 +15,10 @@ from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.case.sensors import flank_area, shaft_share
 from thermogear.heat.measured_temperature import infrared_temperature, surface_temperature
 from thermogear.mesh.warm_up import Duty
-from thermogear.results.result import results_of
 from thermogear.study.warm_up import Measured, chosen_point, warm_up_survey
 from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, until
-from thermogear.views.warm_up_section import answer, fit_sentence, warm_up
+from thermogear.views.page import Table
+from thermogear.views.pages.warm_up import answer, fit_sentence, page
 
 QUICK = [
     'model.bundle="consistent"', 'model.friction="benedict-kelley"',
@@ -201,8 +201,7 @@ def test_factors_come_back_out_of_a_record_made_with_them() -> None:
     assert found["runs"] < 40
     difference = tree["record"]["difference"].values
     assert np.sqrt(np.mean(difference**2)) == pytest.approx(found["rms_after_K"], rel=0.02)
-    page = warm_up(tree.attrs, results_of(tree).groups)
-    assert "Fitted to the record: oil_housing times" in page.summary
+    assert "Fitted to the record: oil_housing times" in page(tree).summary
 
 
 def line(x: dict[str, float]) -> np.ndarray:
@@ -294,13 +293,14 @@ def test_the_page_of_another_pair_speaks_of_it() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         tree = warm_up_survey(case, work, moments=30)
-    page = warm_up(tree.attrs, results_of(tree).groups)
-    assert page.summary.startswith("The half backlash is least ")
-    assert "of 75.00 um cold" in page.summary
-    assert "25:75" not in page.summary
-    for one in page.pictures:
+    shown = page(tree)
+    assert shown.summary.startswith("The half backlash is least ")
+    assert "of 75.00 um cold" in shown.summary
+    assert "25:75" not in shown.summary
+    for one in shown.pictures:
         one.make()
-    assert len(page.tables) == 3
+    blocks = [block for section in shown.sections for block in section.blocks]
+    assert sum(isinstance(block, Table) for block in blocks) == 3
 
 
 def test_answers_in_words() -> None:

@@ -14,8 +14,8 @@ from thermogear.front.cli import main
 from thermogear.thesis import chain, motions, section5
 from thermogear.thesis.claim import Verdict, rising, verdict_of
 from thermogear.thesis.evidence import Evidence, Size
-from thermogear.thesis.report import CLAIMS, build_to_directory
-from thermogear.views.claims_report import write_claims_report
+from thermogear.thesis.report import CLAIMS, build
+from thermogear.views.write import save_results, write_report
 
 SMALL = Size(speeds=3, torques=2, diagram=41, flips=2, samples=8)
 
@@ -105,7 +105,7 @@ def test_ctrl_c_keeps_what_is_judged(
 
 @pytest.mark.slow
 def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path) -> None:
-    summary = build_to_directory(tmp_path, SMALL)
+    summary = save_results(build(SMALL), tmp_path)
     assert summary["claims"] == summary["claims_in_all"] == len(CLAIMS)
     assert summary["claims"] == sum(summary["verdicts"].values())
     assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8")) == summary
@@ -127,11 +127,11 @@ def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path)
         assert tree.attrs["kind"] == "thesis"
         parts = {"grid", "flips", "warming", "experiment", "sensitivity", "diagrams", "path"}
         assert parts <= set(tree.children)
-    page = write_claims_report(tmp_path).read_text(encoding="utf-8")
+    page = write_report(tmp_path).read_text(encoding="utf-8")
     ids = set(re.findall(r'\bid="([^"]+)"', page))
     assert set(re.findall(r'href="#([^"]+)"', page)) <= ids
     assert {f"claim-{claim.number}" for claim in CLAIMS} <= ids
     assert {f"fig-{claim.picture}" for claim in CLAIMS if claim.picture} <= ids
     prose = re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
     assert not re.search(r"\b(nan|inf)\b", prose)
-    assert write_claims_report(tmp_path).read_text(encoding="utf-8") == page
+    assert write_report(tmp_path).read_text(encoding="utf-8") == page

@@ -11,7 +11,14 @@ import synthetic_results as synthetic
 import xarray as xr
 
 from thermogear.base.errors import InputError
-from thermogear.views.csv import write_csv
+from thermogear.results.result import open_results
+from thermogear.views.write import clear_tables, page_of, write
+
+
+def write_csv(place: Path) -> list[Path]:
+    files = [p for p in write(page_of(open_results(place)), place) if p.suffix == ".csv"]
+    clear_tables(place, files)
+    return files
 
 
 def read(path: Path) -> dict[str, list[str]]:

@@ -10,10 +10,9 @@ import pytest
 import xarray as xr
 
 from thermogear.case.case import GearCase, load_example
-from thermogear.results.files import write_results
 from thermogear.study.contact import loaded_survey
 from thermogear.views.plots.loaded import along_path
-from thermogear.views.survey_report import write_survey
+from thermogear.views.write import save
 
 
 @pytest.fixture(scope="module")
@@ -21,8 +20,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     case = load_example("rig", ("temperatures.row=[]",))
     assert isinstance(case, GearCase)
     out = tmp_path_factory.mktemp("contact")
-    write_results(loaded_survey(case, (100.0,)), out, "contact.nc")
-    write_survey(out, "contact")
+    save(loaded_survey(case, (100.0,)), out)
     return out
 
 

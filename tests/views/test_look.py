@@ -10,7 +10,7 @@ import look
 import pytest
 import synthetic_results as synthetic
 
-from thermogear.views.report import write_report
+from thermogear.views.write import write_report
 
 HELD = {"table": "scroll", "svg": "canvas"}
 """What may be wider than a phone, and the box in which it scrolls."""

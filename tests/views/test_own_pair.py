@@ -14,15 +14,17 @@ import xarray as xr
 from own_pair import OWN_PAIR
 from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.front.cli import main
-from thermogear.results.result import Results, results_of
+from thermogear.results.result import Result
 from thermogear.study.contact import loaded_survey
 from thermogear.study.friction import friction_survey
 from thermogear.study.relief import relief_survey
 from thermogear.study.run import run
 from thermogear.study.temperature import thermal_map
-from thermogear.views import captions, report, survey_report
+from thermogear.thesis.errata import with_errata
+from thermogear.views.page import render
+from thermogear.views.pages import captions
 from thermogear.views.plots import thermal_map as map_plots
-from thermogear.views.survey_sections import SURVEYS
+from thermogear.views.write import page_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:foundation of the gear")
 SMALL = ["grid.path_positions=41", "grid.mesh_positions=48", "simulation.periods=16",
@@ -49,35 +51,34 @@ def prose(html: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def tree() -> xr.DataTree:
+def results() -> Result:
     return run(own('temperatures.row=["60 degC", "100 degC"]'))
 
 
-@pytest.fixture(scope="module")
-def results(tree: xr.DataTree) -> Results:
-    return results_of(tree)
+def page(result: Result) -> str:
+    return render(page_of(result))
 
 
-def test_the_page_of_a_run_is_this_pairs(results: Results) -> None:
-    text = prose(report.page(results))
+def test_the_page_of_a_run_is_this_pairs(results: Result) -> None:
+    text = prose(page(results))
     assert FOREIGN.findall(text) == []
     assert "Errata" not in text
     assert not any(name.startswith("base_sets") for name in results.groups)
-    assert json.loads(results.texts["errata"]) == []
-    assert "thesis" not in results.texts["citations"]
+    assert json.loads(results.text("errata") or "[]") == []
+    assert "thesis" not in results.text("citations")
     assert "printed_x" not in results.groups["profile"]
 
 
-def test_the_regime_is_the_films_and_not_the_laws(results: Results) -> None:
+def test_the_regime_is_the_films_and_not_the_laws(results: Result) -> None:
     film = results.groups["path"]["film_parameter"].values
     assert film.max() < 1.0  # boundary lubrication, whatever the law is made for
-    text = prose(report.page(results))
+    text = prose(page(results))
     assert "boundary throughout" in text
     assert "mixed lubrication" not in text.partition("choices")[0]
     assert "Flash temperature, lubricated" in text
 
 
-def test_captions_of_the_flash_name_the_peak_that_is_drawn(results: Results) -> None:
+def test_captions_of_the_flash_name_the_peak_that_is_drawn(results: Result) -> None:
     data = results.groups["path"]
     hot = data["flash_temperature_mixed"].isel(state=-1, bundle=0, operating=0)
     place = float(hot["path_position"][int(np.argmax(hot.values))])
@@ -97,12 +98,12 @@ def test_the_textbook_stiffness_is_held_against_this_pair(bundle: str) -> None:
     told = [f"{100.0 * abs(v):.0f} % {'above' if v > 0.0 else 'below'}" for v in over]
     (text,) = [n["text"] for n in json.loads(tree.attrs["notices"]) if "textbook" in n["text"]]
     assert f"lies {told[0]} that of the loaded contact, {told[1]} it with the bodies" in text
-    page = prose(report.page(results_of(tree)))
+    text = prose(page(tree))
     # the bundle is called by its name; nothing is said of the thesis's claims
-    for found in FOREIGN.findall(page):
+    for found in FOREIGN.findall(text):
         assert found in ("", "thesis"), found
     for claim in ("thesis's bifurcation", "Errata", "Two regimes"):
-        assert claim not in page
+        assert claim not in text
 
 
 def test_a_copy_of_the_rig_with_other_gears_is_no_rig() -> None:
@@ -111,17 +112,18 @@ def test_a_copy_of_the_rig_with_other_gears_is_no_rig() -> None:
     tree = run(load_example("rig", [*SMALL, *changed]))
     texts = " ".join(notice["text"] for notice in json.loads(tree.attrs["notices"]))
     assert "draw.base_sets: left out" in texts
-    assert "base_sets" not in tree.children
+    assert "base_sets" not in tree.tree.children
     assert "thesis's bifurcation" not in texts
-    assert "thesis's study" not in prose(report.page(results_of(tree)))
+    assert "thesis's study" not in prose(page(tree))
 
 
 def test_the_rig_keeps_what_belongs_to_the_thesis() -> None:
-    tree = run(load_example("rig", [*SMALL, 'draw.pictures=["path", "profile", "base-sets"]',
-                                    "operating.speed=1000 rpm"]))  # fmt: skip
+    case = load_example("rig", [*SMALL, 'draw.pictures=["path", "profile", "base-sets"]',
+                                "operating.speed=1000 rpm"])  # fmt: skip
+    tree = with_errata(run(case), case)
     assert len(json.loads(tree.attrs["errata"])) == 20
     assert set(tree["base_sets"].children) == {"table-4.2", "section-4.1"}
-    text = prose(report.page(results_of(tree)))
+    text = prose(page(tree))
     for said in ("Two regimes", "thesis's study 1.1 to 1.3", "Errata of the thesis", "as printed"):
         assert said in text
 
@@ -129,11 +131,8 @@ def test_the_rig_keeps_what_belongs_to_the_thesis() -> None:
 # --- surveys ------------------------------------------------------------------------------
 
 
-def survey_page(tree: xr.DataTree) -> str:
-    stored = results_of(tree)
-    return prose(
-        survey_report.page(stored.texts, SURVEYS[stored.texts["kind"]](stored.texts, stored.groups))
-    )
+def survey_page(tree: Result) -> str:
+    return prose(page(tree))
 
 
 @pytest.mark.parametrize("make", [friction_survey, loaded_survey, relief_survey])

@@ -9,14 +9,13 @@ import xarray as xr
 
 from thermogear import InputError, load_case, pictures, run, save_results, write_report
 from thermogear.case.case import load_example
-from thermogear.results.files import write_results
-from thermogear.views.pictures import write_pictures
+from thermogear.views.write import write_pictures
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("pictures")
-    write_results(run(load_example("section-4.1")), directory)
+    save_results(run(load_example("section-4.1")), directory)
     return directory
 
 
@@ -75,7 +74,7 @@ def test_saved_results_make_a_page(tmp_path: Path) -> None:
 
 def test_what_no_run_returned_is_refused(tmp_path: Path) -> None:
     stranger = xr.DataTree.from_dict({"a": xr.Dataset({"x": 1.0})})
-    with pytest.raises(InputError, match="give what run"):
+    with pytest.raises(InputError, match=r"give what run\(case\)"):
         pictures(stranger)
-    with pytest.raises(InputError, match="give what run"):
+    with pytest.raises(InputError, match=r"give what run\(case\)"):
         save_results(stranger, tmp_path)

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from thermogear.base.errors import InputError, UnsealedWarning
 from thermogear.views import page as pages
 from thermogear.views import style
-from thermogear.views.report import write_report
+from thermogear.views.write import write_report
 
 GROUPS = ("path", "mesh", "profile", "motion", "temperature",
           "base_sets/table-4.2", "base_sets/section-4.1")  # fmt: skip
@@ -236,7 +236,7 @@ def test_pictures_touch_no_global_state(tmp_path: Path) -> None:
         "matplotlib.rcParams['font.size'] = 21\n"
         "before = [matplotlib.rcParams[n] for n in names]\n"
         "from pathlib import Path\n"
-        "from thermogear.views.report import write_report\n"
+        "from thermogear.views.write import write_report\n"
         f"write_report(Path({str(tmp_path)!r}))\n"
         "after = [matplotlib.rcParams[n] for n in names]\n"
         "print('matplotlib.pyplot' in sys.modules, after == before)\n"
@@ -284,8 +284,8 @@ def test_foreign_results_are_an_error_in_one_line(tmp_path: Path) -> None:
 
 def test_broken_tables_are_an_error_in_one_line(tmp_path: Path) -> None:
     synthetic.build(tmp_path, without=GROUPS, notices="[1, 2")
-    with pytest.raises(InputError, match=r"results\.nc attribute notices: got text that is not"):
+    with pytest.raises(InputError, match=r"results attribute notices: got text that is not"):
         write_report(tmp_path)
     synthetic.build(tmp_path, without=GROUPS, facts="[1, 2]")
-    with pytest.raises(InputError, match=r"results\.nc attribute facts: got no list of rows"):
+    with pytest.raises(InputError, match=r"results attribute facts: got no list of rows"):
         write_report(tmp_path)

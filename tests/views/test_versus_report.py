@@ -11,14 +11,22 @@ import pytest
 import synthetic_results as synthetic
 
 from thermogear.base.errors import InputError, UnsealedWarning
-from thermogear.results.result import read_results
-from thermogear.study.versus import Stored, store, versus
-from thermogear.views.versus_report import read_versus, write_versus
+from thermogear.results.result import Result, open_results, read_results
+from thermogear.study.versus import Stored, versus
+from thermogear.study.versus import stored as stored_result
+from thermogear.views.write import page_of, write
 
 
 def stored(directory: Path, name: str) -> Stored:
-    found = read_results(directory)
-    return Stored(name, found.texts, found.groups)
+    return stored_result(read_results(directory), name)
+
+
+def write_versus(place: Path) -> list[Path]:
+    return write(page_of(open_results(place, "versus")), place)
+
+
+def read_versus(place: Path) -> Result:
+    return open_results(place, "versus")
 
 
 def built(place: Path, **first: object) -> Path:
@@ -28,7 +36,7 @@ def built(place: Path, **first: object) -> Path:
         place / "two", title="=Two", torques=(100.0,) * 3,
         case="title = 'B'\n[gears]\nmodule = \"<b>5</b> mm\"\n",
     )  # fmt: skip
-    store(versus([stored(one, "one"), stored(two, "two")]), place)
+    versus([stored(one, "one"), stored(two, "two")]).put(place)
     return place
 
 

@@ -88,6 +88,11 @@ class Case:
     overrides: tuple[tuple[str, str], ...] = ()
 
     @property
+    def provenance(self) -> dict[str, Any]:
+        """What a result keeps of this case: the file as read, and what replaced its values."""
+        return {"case": self.text, "overrides": [list(pair) for pair in self.overrides]}
+
+    @property
     def kind(self) -> str:
         """``"gear"`` or ``"dimensionless"``."""
         return "gear" if isinstance(self, GearCase) else "dimensionless"

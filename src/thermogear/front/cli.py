@@ -11,13 +11,14 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from thermogear import __version__
 from thermogear.base.errors import ThermogearError, nearest
 from thermogear.front import (
+    delivery,
     engine_commands,
     gear_commands,
     measure_commands,
@@ -26,10 +27,11 @@ from thermogear.front import (
     verify_commands,
     versus_commands,
 )
-from thermogear.front.lines import one_line, say, system_error, warnings_as_lines
+from thermogear.front.lines import say, system_error, warnings_as_lines
 
 if TYPE_CHECKING:
-    from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.base.progress import Progress
+    from thermogear.results.result import Result
 
 USER_ERROR = 2
 INTERRUPTED = 130
@@ -51,16 +53,6 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_overrides = click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="PATH=VALUE",
-    help="Put a value in place of the file's, as gears.pinion.teeth=30. May be repeated.",
-)
-_case = click.argument("case", metavar="CASE")
-
-
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="thermogear", message="%(prog)s %(version)s")
 def cli() -> None:
@@ -76,12 +68,10 @@ def cli() -> None:
 
 
 @cli.command()
-@_case
-@click.option(
-    "-o", "--output", required=True, metavar="DIR", help="Directory of the results; made if new."
-)
-@_overrides
-@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+@delivery.case
+@delivery.output()
+@delivery.overrides
+@delivery.as_json
 @click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
 @click.option("--reference", is_flag=True, help="Flash temperature by the exact moving source.")
 def run(
@@ -96,63 +86,45 @@ def run(
     from thermogear.case.size import require_room
     from thermogear.results.files import require_ours
 
-    read = _load(case, (*overrides, "model.flash=exact") if reference else overrides)
+    read = delivery.load(case, (*overrides, "model.flash=exact") if reference else overrides)
     require_room(read, forced=force)
-    directory = Path(output)
-    require_ours(directory)
+    require_ours(Path(output))
 
-    from thermogear.front.progress import progress
-    from thermogear.study.run import run_to_directory
-    from thermogear.thesis.errata import with_errata
-    from thermogear.views.csv import clear_csv, write_csv
+    def make(report: Progress) -> Result:
+        from thermogear.study.run import run as study
+        from thermogear.thesis.errata import with_errata
 
-    curves: list[str] = []
+        return with_errata(study(read, progress=report), read)
 
-    def pages(folder: Path) -> None:
-        _report(folder)
-        curves.extend(path.name for path in write_csv(folder))
-
-    with progress(wanted=not as_json) as report_progress:
-        summary = run_to_directory(
-            read,
-            directory,
-            case_text=_text_of(read),
-            progress=report_progress,
-            complete=with_errata,
-            also=pages,
-        )
-    clear_csv(directory, curves)
-    if as_json:
-        click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
-    else:
-        _print_summary(summary, directory)
+    delivery.deliver(make, output, as_json=as_json)
 
 
 @cli.command()
 @click.argument("directory", metavar="DIR")
+@click.option("--of", default="", metavar="KIND", help="Which results, where DIR holds several.")
 @click.option("--pictures", metavar="FOLDER", help="Save the page's pictures to FOLDER as well.")
 @click.option("--kind", default="png", metavar="KIND", help="Of the pictures: png, svg or pdf.")
-def report(directory: str, pictures: str | None, kind: str) -> None:
-    """Draw report.html anew from the results stored in DIR."""
-    written: list[Path] = []
-    if pictures is not None:
-        from thermogear.views.pictures import write_pictures
+def report(directory: str, of: str, pictures: str | None, kind: str) -> None:
+    """Draw the page anew from the results of any command stored in DIR."""
+    from thermogear.views.write import write_pictures, write_report
 
-        written = write_pictures(Path(directory), Path(pictures), kind)
-    for path in (_report(Path(directory)), *written):
+    place, written = Path(directory), list[Path]()
+    if pictures is not None:
+        written = write_pictures(place, Path(pictures), kind, of)
+    for path in (write_report(place, of), *written):
         click.echo(path)
 
 
 @cli.command()
-@_case
-@_overrides
-@click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
+@delivery.case
+@delivery.overrides
+@delivery.as_json
 def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Check CASE without running it, and print the numbers it amounts to."""
     from thermogear.case.derived import facts
     from thermogear.case.size import estimated_bytes
 
-    read = _load(case, overrides)
+    read = delivery.load(case, overrides)
     found = facts(read)
     if as_json:
         rows = [{"group": f.group, "name": f.name, "value": f.value, "unit": f.unit} for f in found]
@@ -224,31 +196,6 @@ for _list in (
 ):
     for _command in _list.COMMANDS:
         cli.add_command(_command)
-
-
-def _load(case: str, overrides: Sequence[str]) -> GearCase | DimensionlessCase:
-    from thermogear.case.case import load_case
-
-    return load_case(Path(case), overrides)
-
-
-def _text_of(case: GearCase | DimensionlessCase) -> str:
-    """The file as read; what the command line put in its place stands below as comments."""
-    notes = "".join(f"# on the command line: {path} = {value}\n" for path, value in case.overrides)
-    return f"{case.text.rstrip()}\n\n{notes}" if notes else case.text
-
-
-def _report(directory: Path) -> Path:
-    from thermogear.views.report import write_report
-
-    return write_report(directory)
-
-
-def _print_summary(summary: dict[str, Any], directory: Path) -> None:
-    for notice in summary.get("notices", ()):
-        text = notice.get("text", "") if isinstance(notice, dict) else notice
-        click.echo(f"- {one_line(text)}")
-    click.echo(directory / "report.html")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -6,20 +6,18 @@ numbers. Importing this module imports nothing heavy.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from contextlib import nullcontext
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
+from thermogear.front import delivery
 
 if TYPE_CHECKING:
     from thermogear.case.subject import Subject
-    from thermogear.study.orbit import Found
+    from thermogear.results.result import Result
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -55,12 +53,9 @@ def _subject_options(command: _Command) -> _Command:
         ),
         click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
         click.option("--state", default="hot", show_default=True, help="undeformed | hot."),
-        click.option(
-            "--set", "overrides", multiple=True, metavar="PATH=VALUE",
-            help="Put a value in place of the file's. May be repeated.",
-        ),
-        click.option("-o", "--output", metavar="DIR", help="Also store data, pictures and a page."),
-        click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON."),
+        delivery.overrides,
+        delivery.output("Also store data, pictures and a page.", required=False),
+        delivery.as_json,
     ]  # fmt: skip
     for option in reversed(options):
         command = option(command)
@@ -89,14 +84,12 @@ def _numbers(options: dict[str, Any]) -> dict[str, float]:
 
 def _case(options: dict[str, Any]) -> Any:
     """The case named on the command line: a file, or a ready-made one; None without."""
-    from thermogear.case.case import load_case
-
     name = options["case"]
     if name is None:
         if options["overrides"]:
             raise InputError("--set", options["overrides"][0], why="no case is named")
         return None
-    return load_case(Path(name), options["overrides"])
+    return delivery.load(name, options["overrides"])
 
 
 def _subject(options: dict[str, Any], case: Any) -> Subject:
@@ -117,37 +110,6 @@ def _subject(options: dict[str, Any], case: Any) -> Subject:
     )
 
 
-def _carry_out(
-    options: dict[str, Any],
-    make: Callable[[Progress], Found],
-    lines: Callable[[dict[str, Any]], list[str]],
-) -> None:
-    """Claim the directory, compute, store, draw, print; Ctrl+C is passed on after that."""
-    from thermogear.front.progress import Stopped, progress
-    from thermogear.results.files import claimed
-
-    output = options["output"]
-    with nullcontext() if output is None else claimed(Path(output)) as folder:
-        with progress(wanted=not options["as_json"]) as report:
-            result = make(report)
-        if folder is not None:
-            from thermogear.views.engine_page import write_pages
-
-            page = write_pages(result.write(folder))[0].name
-    if options["as_json"]:
-        click.echo(json.dumps(result.summary, indent=2, ensure_ascii=False, allow_nan=False))
-    else:
-        for line in lines(result.summary):
-            click.echo(line)
-        for notice in result.summary["notices"]:
-            click.echo(f"- {notice}")
-        if output is not None:
-            click.echo(Path(output) / page)
-    if result.interrupted:
-        what = "what was found so far"
-        raise Stopped(f"{what} is printed" if output is None else f"{what} stays in {output}")
-
-
 @click.command()
 @_subject_options
 @click.option("--period", type=int, help="Mesh periods of the orbit [what the motion settles on].")
@@ -165,43 +127,10 @@ def orbit(period: int | None, direct: bool, **options: Any) -> None:
 
     subject = _subject(options, _case(options))
 
-    def make(report: Progress) -> Found:
+    def make(report: Progress) -> Result:
         return orbit_results(subject, period, transient=not direct, progress=report)
 
-    _carry_out(options, make, _orbit_lines)
-
-
-def _orbit_lines(s: dict[str, Any]) -> list[str]:
-    si = s["units"] == "SI"
-    scale, unit = (1e6, " um") if si else (1.0, "")
-    share = s["time_share"]
-    factor = s["dynamic_load_factor"]
-    lines = [
-        s["title"],
-        f"  period                 {s['period']} ({'stable' if s['stable'] else 'unstable'})",
-        f"  state at phase 0       {s['state'][0]:.12g}, {s['state'][1]:.12g}  (X, X')",
-    ]
-    for number, mu in enumerate(s["multipliers"], start=1):
-        imag = f" {mu['imag']:+.9f}i" if mu["imag"] else ""
-        lines.append(
-            f"  Floquet multiplier {number}   {mu['real']:+.9f}{imag}  "
-            f"(modulus {mu['modulus']:.9f})"
-        )
-    lines += [
-        f"  losses of contact      {s['contact_losses']} per orbit",
-        f"  back-side impacts      {s['back_impacts']} per orbit",
-        f"  time                   {100 * share['drive']:.4g} % drive contact, "
-        f"{100 * share['free']:.4g} % free, {100 * share['back']:.4g} % back contact",
-        f"  dynamic load factor    {'infinite' if factor is None else f'{factor:.6g}'}",
-        f"  displacement           {s['least'] * scale:.6g} .. {s['greatest'] * scale:.6g}{unit}"
-        f" (edge of the backlash {s['half_backlash'] * scale:.6g}{unit})",
-        "  greatest lines         order     amplitude" + ("       f [Hz]" if si else ""),
-    ]
-    for line in sorted(s["lines"], key=lambda one: -float(one["amplitude"]))[:8]:
-        hertz = f"{line['frequency_hz']:13.6g}" if si else ""
-        mark = "  half order" if line["half_order"] else ""
-        lines.append(f"{line['order']:28.4g} {line['amplitude'] * scale:13.6g}{hertz}{mark}")
-    return lines
+    delivery.deliver(make, options["output"], as_json=options["as_json"])
 
 
 @click.command()
@@ -221,7 +150,7 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
         raise InputError("--batches", batches, allowed=f"4..{MOST_BATCHES}")
     subject = _subject(options, _case(options))
 
-    def make(report: Progress) -> Found:
+    def make(report: Progress) -> Result:
         return lyapunov_results(
             subject,
             discard=discard,
@@ -230,22 +159,7 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
             progress=report,
         )
 
-    _carry_out(options, make, _lyapunov_lines)
-
-
-def _lyapunov_lines(s: dict[str, Any]) -> list[str]:
-    lines = [
-        s["title"],
-        f"  lambda_1               {s['exponent']:.6f} +- {s['error']:.6f}  ({s['verdict']})",
-        f"  lambda_2               {s['second']:.6f}",
-        f"  sum                    {s['sum']:.9g}  (-2 zeta, exactly)",
-        f"  Kaplan-Yorke dimension {s['kaplan_yorke']:.5f}  (of the section)",
-        f"  per mesh period        {s['per_mesh_period']:.6f}",
-    ]
-    if s["per_second"] is not None:
-        lines.append(f"  per second             {s['per_second']:.6g} 1/s")
-    lines.append(f"  batches                {s['batches']} of {s['batch_periods']} periods")
-    return lines
+    delivery.deliver(make, options["output"], as_json=options["as_json"])
 
 
 @click.command("continue")
@@ -297,13 +211,13 @@ def continue_(
     if cascade is not None:
         sweeps, title = _sweeps(options, case, parameter, begin, to)
 
-        def make_cascade(report: Progress) -> Found:
+        def make_cascade(report: Progress) -> Result:
             return cascade_results(
                 sweeps, cascade, title=title, hot=hot, start=_start(options["start"]),
                 progress=report,
             )  # fmt: skip
 
-        _carry_out(options, make_cascade, _cascade_lines)
+        delivery.deliver(make_cascade, options["output"], as_json=options["as_json"])
         return
     if hot:
         raise InputError("--hot", "without --cascade", fix="add --cascade 4")
@@ -315,13 +229,13 @@ def continue_(
     end = parameter_value("--to", subject, name, to)
     first = None if begin is None else parameter_value("--from", subject, name, begin)
 
-    def make(report: Progress) -> Found:
+    def make(report: Progress) -> Result:
         return branch_results(
             subject, name, end, start=first, period=period, transient=not direct, switch=switch,
             progress=report,
         )  # fmt: skip
 
-    _carry_out(options, make, _branch_lines)
+    delivery.deliver(make, options["output"], as_json=options["as_json"])
 
 
 def _sweeps(
@@ -362,48 +276,6 @@ def _sweeps(
     return (on_numbers(sweeps, numbers) if numbers else sweeps), title
 
 
-def _branch_lines(s: dict[str, Any]) -> list[str]:
-    lines = [s["title"]]
-    for event in s["bifurcations"]:
-        mu = event["multipliers"][0]
-        imag = f"{mu['imag']:+.6f}i" if mu["imag"] else ""
-        note = f"  {event['note']}" if event["note"] else ""
-        lines.append(
-            f"  {event['kind']:<16} period {event['period']:<3} {s['parameter']} = "
-            f"{event['shown']:<18} multiplier {mu['real']:+.6f}{imag}{note}"
-        )
-    for branch in s["branches"]:
-        lines.append(
-            f"  branch of period {branch['period']}: {branch['points']} orbits, "
-            f"{branch['stable_points']} stable; {branch['ended']}"
-        )
-    return lines
-
-
-def _cascade_lines(s: dict[str, Any]) -> list[str]:
-    lines = [s["title"]]
-    for row in dict.fromkeys(c["row"] for c in s["cascades"]):
-        own = [c for c in s["cascades"] if c["row"] == row]
-        lines.append(f"\n{row}: {own[0]['parameter']} {own[0]['from']:g} to {own[0]['to']:g}")
-        names = [c["heat"].split(" (")[0] for c in own]
-        lines.append("  flip     " + " ".join(f"{name:>20}" for name in names))
-        for k in range(s["flips"]):
-            cells = [
-                f"{c['flips'][k]['value']:20.9f}" if k < len(c["flips"]) else f"{'-':>20}"
-                for c in own
-            ]
-            lines.append(f"  {2**k:>2} -> {2 ** (k + 1):<3} " + " ".join(cells))
-        for c in own:
-            lines += [
-                f"  {c['heat']}: {f['from_period']} -> {f['to_period']} {f['note']}"
-                for f in c["flips"]
-            ]
-            if len(c["flips"]) < s["flips"]:
-                lines.append(f"  {c['heat']}: no further flip, {c['ended']}")
-    heats = dict.fromkeys(c["heat"] for c in s["cascades"] if c["heat"] != "cold")
-    return lines + ([""] + [f"heat: {name}" for name in heats] if heats else [])
-
-
 @click.command("shared-force")
 @_subject_options
 @click.option("--speeds", type=int, default=41, show_default=True, help="Speeds of the sweep.")
@@ -419,31 +291,10 @@ def shared_force(speeds: int, **options: Any) -> None:
         raise InputError("--speeds", speeds, allowed=f"2..{MOST_SPEEDS}")
     subject = _subject(options, _case(options))
 
-    def make(report: Progress) -> Found:
+    def make(report: Progress) -> Result:
         return shared_results(subject, count=speeds, progress=report)
 
-    _carry_out(options, make, _shared_lines)
-
-
-def _shared_lines(s: dict[str, Any]) -> list[str]:
-    lines = [s["title"], "  load-shared against one spring, difference"]
-    for where in ("mean", "light"):
-        for words, name in (
-            ("mean stiffness", f"stiffness_at_{where}_load"),
-            ("deflection at rest, peak to peak", f"swing_at_rest_{where}_load"),
-            ("motion over speed, median", f"median_swing_in_motion_{where}_load"),
-            ("motion over speed, greatest", f"swing_in_motion_{where}_load"),
-        ):
-            if name in s:
-                lines.append(f"  {where:>5} load: {words:<34} {100 * s[name]:7.2f} %")
-    if "mean_clearance_m" in s:
-        mean, least, apart = (s[f"{name}_m"] for name in (
-            "mean_clearance", "least_clearance", "clearance_apart"))  # fmt: skip
-        lines.append(
-            f"  free play 2b': mean {1e6 * mean:.2f} um, least {1e6 * least:.2f} um, "
-            f"forms {1e9 * apart:.2g} nm apart"
-        )
-    return lines
+    delivery.deliver(make, options["output"], as_json=options["as_json"])
 
 
 COMMANDS: list[click.Command] = [orbit, lyapunov, continue_, shared_force]

@@ -5,7 +5,6 @@ Each works into a store directory: killed or stopped, the same command goes on w
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -16,25 +15,20 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from thermogear.base.errors import InputError
-from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.units import RPM
+from thermogear.front import delivery
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from thermogear.base.plan import Plan
-    from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.results.result import Result
     from thermogear.results.work import Report, Step
-
-_case = click.argument("case", metavar="CASE")
 
 
 def _common(command: Callable[..., None]) -> Callable[..., None]:
     """Options of every one of these commands."""
     options = [
-        click.option("-o", "--output", required=True, metavar="DIR", help="Store of the results; "
-                     "the same command goes on with an unfinished one."),
-        click.option("--set", "overrides", multiple=True, metavar="PATH=VALUE",
-                     help="Put a value in place of the file's. May be repeated."),
+        delivery.output("Store of the results; the same command goes on with an unfinished one."),
+        delivery.overrides,
         click.option("--bundle", default="", help="Bundle of choices; default: the case's first."),
         click.option("--state", default="hot", show_default=True,
                      help="hot, undeformed, or the gears' temperature in degC."),
@@ -44,7 +38,7 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
         click.option("--force", is_flag=True, help="Run even if it may not fit."),
         click.option("--estimate", "only_estimate", is_flag=True,
                      help="Print time, memory and disk it will take, and stop."),
-        click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON."),
+        delivery.as_json,
     ]  # fmt: skip
     for option in reversed(options):
         command = option(command)
@@ -72,7 +66,7 @@ _but = click.option(
 
 
 @click.command()
-@_case
+@delivery.case
 @_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
 @click.option("--start", "starts", multiple=True, metavar="X,V",
@@ -95,9 +89,11 @@ def bifurcation(
     **options: Any,
 ) -> None:
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
+    from thermogear.results.files import json_text
     from thermogear.study.diagrams import case_diagram, moved_points, parse_axis
+    from thermogear.views.write import page_of
 
-    read = _load(case, options["overrides"])
+    read = delivery.load(case, options["overrides"])
     if len(over) != 1:
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
@@ -114,7 +110,7 @@ def bifurcation(
     directory = Path(output)
     whole = plan(state, changes)
     if not against:
-        _carry(whole, directory, read.title, as_json, options, _diagram_summary)
+        _carry(whole, directory, read.title, as_json, options)
         return
     other_state = state
     second: dict[str, str] = dict(_split(text) for text in against)
@@ -125,12 +121,10 @@ def bifurcation(
     two = _compute(other, directory / "other", read.title, options)
     if one is None or two is None:
         return
-    rows = moved_points(one, two)
+    rows = moved_points(one.data, two.data)
     if as_json:
-        content = {
-            "one": _diagram_summary(one), "other": _diagram_summary(two), "moved": rows
-        }  # fmt: skip
-        _echo_json(content)
+        both = {name: page_of(result).numbers() for name, result in (("one", one), ("other", two))}
+        click.echo(json_text({**both, "moved": rows}), nl=False)
         return
     shown = _show(name)
     click.echo(f"{'kind':<17}{'period':>6}{'one':>16}{'other':>16}{'moved by':>14}")
@@ -143,7 +137,7 @@ def bifurcation(
 
 
 @click.command("map")
-@_case
+@delivery.case
 @_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
 @click.option("--full", is_flag=True, help="Compute every point, give none up to its neighbours.")
@@ -160,7 +154,7 @@ def map_(
     """Map of the regimes of CASE over two parameters (--over twice)."""
     from thermogear.study.diagrams import case_map, parse_axes
 
-    read = _load(case, options["overrides"])
+    read = delivery.load(case, options["overrides"])
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
     axes = parse_axes(read, over)
@@ -168,11 +162,11 @@ def map_(
         read, axes, bundle=options["bundle"], state=_state(options["state"]),
         changes=_numbers(but), refine=not full,
     )  # fmt: skip
-    _carry(plan, Path(output), read.title, as_json, options, _label_summary)
+    _carry(plan, Path(output), read.title, as_json, options)
 
 
 @click.command()
-@_case
+@delivery.case
 @_but
 @click.option("--x", "x", default="-2:2:401", show_default=True, metavar="FROM:TO:COUNT")
 @click.option("--v", "v", default="-2:2:401", show_default=True, metavar="FROM:TO:COUNT")
@@ -183,16 +177,16 @@ def basins(
     """Basins of attraction of CASE at its base set (a gear case: first speed and torque)."""
     from thermogear.study.diagrams import case_basins
 
-    read = _load(case, options["overrides"])
+    read = delivery.load(case, options["overrides"])
     plan = case_basins(
         read, x=_grid("x", x), v=_grid("v", v), bundle=options["bundle"],
         state=_state(options["state"]), changes=_numbers(but),
     )  # fmt: skip
-    _carry(plan, Path(output), read.title, as_json, options, _basin_summary)
+    _carry(plan, Path(output), read.title, as_json, options)
 
 
 @click.command()
-@_case
+@delivery.case
 @click.option("--rpm", default="200:12000:119", show_default=True, metavar="FROM:TO:COUNT")
 @click.option("--hot", multiple=True, type=float, metavar="DEGC",
               help="Gear temperature beside undeformed; the case's own if left out.")  # fmt: skip
@@ -212,33 +206,31 @@ def runup(
 ) -> None:
     """Run CASE up and down in speed, without heat and hot: error, mesh force, K_v, jumps."""
     from thermogear.case.allowed import kelvin
-    from thermogear.case.case import gear_case
     from thermogear.study.run_up import run_up_plan
 
-    read = gear_case(_load(case, options["overrides"]))
+    read = delivery.load_gears(case, options["overrides"])
     speeds = _grid("rpm", rpm) * RPM
     states = (None, *(kelvin("hot", t) for t in hot)) if hot else None
     plan = run_up_plan(
         read, speeds, temperatures=states, bundle=options["bundle"], torque=torque,
         branch_period=branch_period,
     )  # fmt: skip
-    _carry(plan, Path(output), read.title, as_json, options, _run_up_summary)
+    _carry(plan, Path(output), read.title, as_json, options)
 
 
 @click.command()
-@_case
+@delivery.case
 @_over(f"{GEAR_AXES}.")
 @_common
 def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
     """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
-    from thermogear.case.case import gear_case
     from thermogear.study.diagrams import parse_axes
     from thermogear.study.sweep import sweep_plan
 
-    read = gear_case(_load(case, options["overrides"]))
+    read = delivery.load_gears(case, options["overrides"])
     axes = parse_axes(read, over)
     plan = sweep_plan(read, axes, bundle=options["bundle"], state=_state(options["state"]))
-    _carry(plan, Path(output), read.title, as_json, options, _label_summary)
+    _carry(plan, Path(output), read.title, as_json, options)
 
 
 COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, sweep)
@@ -246,12 +238,6 @@ COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, sweep)
 
 
 # --- from words to values -----------------------------------------------------------------
-
-
-def _load(case: str, overrides: tuple[str, ...]) -> GearCase | DimensionlessCase:
-    from thermogear.case.case import load_case
-
-    return load_case(Path(case), overrides)
 
 
 def _state(text: str) -> str | float:
@@ -348,7 +334,7 @@ def _watched() -> Iterator[Report]:
         yield report
 
 
-def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -> xr.Dataset | None:
+def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -> Result | None:
     """Carry ``plan`` out and draw its page; None where only an estimate was wanted."""
     from thermogear.front.lines import say
     from thermogear.results.work import carry_out, estimate, require_space
@@ -359,6 +345,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
     if options["only_estimate"]:
         return None
     last: list[Step] = []
+    begun = time.monotonic()
     try:
         with _watched() as watch:
 
@@ -370,9 +357,11 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
                 plan, directory, threads=options["threads"], scheduler=options["scheduler"],
                 report=report, forced=options["force"],
             )  # fmt: skip
-        from thermogear.views.sweep_report import write_sweep_report
+        from thermogear.study.notices import finished
+        from thermogear.views.write import page_of, write
 
-        write_sweep_report(directory, title)
+        result = finished(data, title).with_(seconds=round(time.monotonic() - begun, 3))
+        write(page_of(result), directory)
     except KeyboardInterrupt:
         from thermogear.front.progress import Stopped
 
@@ -382,153 +371,13 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
             f"{last[0].done} of {last[0].total} chunks stay in {directory}, the same command goes "
             "on from there"
         ) from None
-    return data
+    return result
 
 
-def _carry(
-    plan: Plan,
-    directory: Path,
-    title: str,
-    as_json: bool,
-    options: dict[str, Any],
-    summary: Callable[[xr.Dataset], dict[str, Any]],
-) -> None:
-    begun = time.monotonic()
-    data = _compute(plan, directory, title, options)
-    if data is None:
-        return
-    content = {"kind": plan.kind, **summary(data), "seconds": round(time.monotonic() - begun, 3)}
-    if as_json:
-        _echo_json(content)
-        return
-    for name, value in content.items():
-        if isinstance(value, list):
-            for row in value:
-                click.echo(f"- {row if isinstance(row, str) else _line(row)}")
-        elif isinstance(value, dict):
-            click.echo(f"{name}: " + _line(value))
-        else:
-            click.echo(f"{name}: {value}")
-    click.echo(directory / "report.html")
+def _carry(plan: Plan, directory: Path, title: str, as_json: bool, options: dict[str, Any]) -> None:
+    """Compute, draw, and print."""
+    from thermogear.views.write import page_of
 
-
-def _line(row: dict[str, Any]) -> str:
-    return ", ".join(f"{k} {v:.9g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())
-
-
-def _echo_json(content: dict[str, Any]) -> None:
-    click.echo(json.dumps(_finite(content), indent=2, ensure_ascii=False, allow_nan=False))
-
-
-def _finite(value: Any) -> Any:
-    """NaN and infinity as null: JSON has no word for them."""
-    if isinstance(value, dict):
-        return {k: _finite(v) for k, v in value.items()}
-    if isinstance(value, list):
-        return [_finite(v) for v in value]
-    if isinstance(value, float) and not abs(value) < float("inf"):
-        return None
-    return value
-
-
-# --- what a result comes to ---------------------------------------------------------------
-
-
-def _label_summary(data: xr.Dataset) -> dict[str, Any]:
-    import numpy as np
-
-    from thermogear.analysis.outcome import label_names
-    from thermogear.base.vocabulary import FASTER_RULE
-    from thermogear.study.notices import back_side_notice
-
-    names, counts = np.unique(label_names(data), return_counts=True)
-    order = np.argsort(-counts, kind="stable")
-    found: dict[str, Any] = {
-        "points": int(data["label"].size),
-        "labels": {str(names[i]): int(counts[i]) for i in order},
-        "rule": FASTER_RULE,
-    }
-    for name in ("total_periods", "full_periods", "computed_points"):
-        if name in data.attrs:
-            found[name] = int(data.attrs[name])
-    stored = data.attrs.get("notices")
-    found["notices"] = json.loads(stored) if stored else back_side_notice(data)
-    return found
-
-
-def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
-    from thermogear.analysis.branches import KINDS
-
-    if "bifurcation_kind" not in data:
-        return []
-    shown = _show(name)
-    rows = []
-    for i in range(data.sizes["bifurcation"]):
-        row: dict[str, Any] = {
-            "kind": KINDS[int(data["bifurcation_kind"].values[i])],
-            "period": int(data["bifurcation_period"].values[i]),
-            "value": shown(float(data["bifurcation_value"].values[i])),
-        }
-        if "bifurcation_state" in data:
-            state = int(data["bifurcation_state"].values[i])
-            row["gears_degC"] = round(
-                float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6
-            )
-        rows.append(row)
-    return rows
-
-
-def _diagram_summary(data: xr.Dataset) -> dict[str, Any]:
-    found = _label_summary(data)
-    found["parameter"] = str(data.attrs["parameter"])
-    found["bifurcations"] = _bifurcations(data, found["parameter"])
-    return found
-
-
-def _basin_summary(data: xr.Dataset) -> dict[str, Any]:
-    rows = [
-        {
-            "period": int(data["attractor_period"].values[i]),
-            "x": float(data["attractor_x"].values[i, 0]),
-            "v": float(data["attractor_v"].values[i, 0]),
-            "count": int(data["count"].values[i]),
-            "fraction": float(data["fraction"].values[i]),
-            "border_distance": float(data["border_distance"].values[i]),
-        }
-        for i in range(data.sizes["attractor_number"])
-    ]
-    figures = {
-        name: float(data.attrs[name])
-        for name in ("basin_entropy", "boundary_basin_entropy", "unassigned")
-    }
-    from thermogear.base.vocabulary import FASTER_RULE
-
-    points = int(data["attractor"].size)
-    return {"points": points, "attractors": rows, **figures, "rule": FASTER_RULE}
-
-
-def _run_up_summary(data: xr.Dataset) -> dict[str, Any]:
-    found = _label_summary(data)
-    rpm = _show("pinion_speed")
-    jumps = []
-    for i in range(data.sizes["jump"]):
-        state = int(data["jump_state"].values[i])
-        jumps.append(
-            {
-                "gears_degC": round(
-                    float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6
-                ),
-                "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
-                "from_rpm": rpm(float(data["jump_from"].values[i])),
-                "to_rpm": rpm(float(data["jump_to"].values[i])),
-                "at": ("fold", "subcritical period doubling")[int(data["jump_kind"].values[i])],
-                "fold_rpm": rpm(float(data["jump_fold"].values[i])),
-                "return_rpm": rpm(float(data["jump_return"].values[i])),
-                "into_period": int(data["jump_into"].values[i]),
-                "before_um": 1e6 * float(data["jump_before"].values[i]),
-                "after_um": 1e6 * float(data["jump_after"].values[i]),
-            }
-        )
-    found["jumps"] = jumps
-    found["bifurcations"] = _bifurcations(data, "pinion_speed")
-    return found
+    result = _compute(plan, directory, title, options)
+    if result is not None:
+        delivery.tell(page_of(result), directory / "report.html", as_json=as_json)

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import difflib
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from thermogear.front import delivery
+
 if TYPE_CHECKING:
+    from thermogear.base.progress import Progress
     from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.results.result import Result
 
 
 @click.command()
 @click.argument("results", nargs=-1, metavar="RESULTS RESULTS [...]")
-@click.option(
-    "-o", "--output", required=True, metavar="DIR", help="Directory of the page; made if new."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
+@delivery.output("Directory of the page; made if new.")
+@delivery.as_json
 def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     """Set two to six cases side by side: what differs, key figures, curves over each other.
 
@@ -34,53 +35,44 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
 
     from thermogear.case.case import load_case
     from thermogear.case.size import require_room
-    from thermogear.front.progress import Stopped, progress
-    from thermogear.results.files import claimed
-    from thermogear.results.result import Results, read_results
-    from thermogear.views.versus_report import write_versus
+    from thermogear.front.progress import Stopped
+    from thermogear.results.result import read_results
+    from thermogear.study.run import run
+    from thermogear.thesis.errata import with_errata
+    from thermogear.views.write import save_results
 
     # everything is read and checked before the first case runs
-    found: dict[int, Results] = {}
+    found: dict[int, Result] = {}
     cases: dict[int, GearCase | DimensionlessCase] = {}
-    kinds: dict[str, str] = {}
     for place, path in enumerate(paths):
         if path.is_dir():
             found[place] = read_results(path)
-            kinds[str(path)] = found[place].kind
         else:
             cases[place] = load_case(path)
             require_room(cases[place])
-            kinds[str(path)] = cases[place].kind
-    study.require_one_kind(kinds)
+    study.require_one_kind({
+        str(path): found[place].kind if place in found else cases[place].kind
+        for place, path in enumerate(paths)
+    })  # fmt: skip
     homes = _homes(directory, paths)
     done = 0
-    try:
-        with claimed(directory) as folder:
-            for place, case in cases.items():
-                from thermogear.study.run import run_to_directory
 
-                with progress(wanted=not as_json) as told:
-                    run_to_directory(case, homes[place], progress=told)
-                done += 1
-                found[place] = read_results(homes[place])
-            stored = [
-                study.Stored(homes[place].name, found[place].texts, found[place].groups)
-                for place in range(len(paths))
-            ]
-            data = study.versus(stored)
-            study.store(data, folder)
-            page = write_versus(folder)[0].name
+    def make(report: Progress) -> Result:
+        nonlocal done
+        for place, case in cases.items():
+            found[place] = with_errata(run(case, progress=report), case)
+            save_results(found[place], homes[place])
+            done += 1
+        stored = [study.stored(found[p], homes[p].name) for p in range(len(paths))]
+        return study.versus(stored)
+
+    try:
+        delivery.deliver(make, output, as_json=as_json)
     except KeyboardInterrupt:
         if not done:
             raise
         what = f"{done} of {len(cases)} runs are whole and stay below {directory}"
         raise Stopped(what) from None
-    if as_json:
-        click.echo(json.dumps(study.summary(data), indent=2, ensure_ascii=False))
-        return
-    for notice in json.loads(data.attrs["notices"]):
-        click.echo(f"- {notice['text']}")
-    click.echo(directory / page)
 
 
 def _existing(path: Path) -> Path:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import datetime
-import json
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import label
 from thermogear.measured.reduction import MeasuredLine, Measurement
+from thermogear.results.result import Notice, Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 
 if TYPE_CHECKING:
@@ -22,11 +22,9 @@ _DRAWN = 4096  # points of a curve kept for pictures
 _LONGEST = 1 << 20
 
 
-def tree_of(found: Measurement, version: str) -> xr.DataTree:
+def result_of(found: Measurement) -> Result:
     """Groups ``record`` (an excerpt), ``spectrum`` (its peaks), ``lines``; settings, gearing and
     notices as texts. Rates and units that are unknown stay empty."""
-    import xarray as xr
-
     stop = found.start + min(found.samples, _LONGEST)
     channels = [found.record.channel(name) for name in found.channels]
     table = np.stack([c.values(found.start, stop=stop) for c in channels])
@@ -46,22 +44,42 @@ def tree_of(found: Measurement, version: str) -> xr.DataTree:
     }
     if found.lines:
         groups["lines"] = _lines(found.lines)
-    tree = xr.DataTree.from_dict(groups)
     gearing = found.gearing
-    tree.attrs = {
-        "thermogear": version,
-        "kind": "measured",
-        "title": f"Record {found.record.source}",
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "settings": json.dumps(found.settings),
-        "evidence": json.dumps(list(gearing.evidence) if gearing else []),
-        "rate": "" if found.record.rate is None else repr(found.record.rate),
-        "unit": channels[0].unit or "",
-        "teeth": "" if found.teeth is None else str(found.teeth),
-        "mesh_position": "" if gearing is None else repr(gearing.mesh_frequency),
-        "notices": json.dumps([{"level": n.level, "text": n.text} for n in found.notices]),
+    return Result.of(
+        "measured",
+        f"Record {found.record.source}",
+        groups,
+        [Notice(n.level, n.text) for n in found.notices],
+        created=now(),
+        settings=found.settings,
+        evidence=list(gearing.evidence) if gearing else [],
+        rate="" if found.record.rate is None else repr(found.record.rate),
+        unit=channels[0].unit or "",
+        teeth="" if found.teeth is None else str(found.teeth),
+        mesh_position="" if gearing is None else repr(gearing.mesh_frequency),
+        figures=figures(found),
+    )
+
+
+def figures(found: Measurement) -> dict[str, Any]:
+    """The measurement as plain figures; what the record does not allow is None."""
+
+    def plain(value: object) -> object:
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    gearing = found.gearing
+    return {
+        "source": found.record.source,
+        "rate": found.record.rate,
+        "settings": found.settings,
+        "teeth": found.teeth,
+        "mesh_position": gearing.mesh_frequency if gearing else None,
+        "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
+        "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
+        "evidence": list(gearing.evidence) if gearing else [],
+        "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
+        "notices": [vars(notice) for notice in found.notices],
     }
-    return tree
 
 
 def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:

@@ -8,11 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 from thermogear.base.errors import InputError
 from thermogear.base.files import LOCK, held, put, require_directory, together
-from thermogear.base.netcdf import write_tree
 
 RESULTS = "results.nc"
 SUMMARY = "summary.json"
@@ -21,19 +18,20 @@ MARK = ".thermogear"
 _MARKED = "results of thermogear\n"
 
 
-def write_results(tree: xr.DataTree, directory: Path, name: str = RESULTS) -> Path:
-    """Write ``tree`` as ``directory/name`` with its seal; an older file stays until then."""
-    return write_tree(tree, directory / name)
-
-
-def write_summary(summary: Mapping[str, Any], directory: Path, name: str = SUMMARY) -> Path:
-    """Write ``directory/name`` as JSON."""
-    return put(directory / name, json_text(summary))
-
-
 def json_text(summary: Mapping[str, Any]) -> str:
-    """A summary as a JSON text of lines."""
-    return json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    """A summary as a JSON text of lines; what is not finite is null."""
+    return json.dumps(_finite(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _finite(value: Any) -> Any:
+    """NaN and infinity as None: JSON has no word for them."""
+    if isinstance(value, Mapping):
+        return {k: _finite(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(v) for v in value]
+    if isinstance(value, float) and not abs(value) < float("inf"):
+        return None
+    return value
 
 
 def require_ours(directory: Path) -> None:

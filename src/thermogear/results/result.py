@@ -1,93 +1,287 @@
-"""Stored results as the views see them: one file, read whole, refused in one line."""
+"""What a study found: labelled groups, what is said of them, and where they come from.
+
+Every study returns a :class:`Result`; it is the only thing that is stored, and the only thing a
+page is drawn from.
+"""
 
 from __future__ import annotations
 
+import datetime
 import json
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import xarray as xr
 
-from thermogear.base import netcdf
-from thermogear.base.errors import InputError
+import thermogear
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.netcdf import read_tree, write_tree
+from thermogear.base.stores import RESULT as STORE
+from thermogear.base.stores import read_store
+from thermogear.results.files import RESULTS, claimed
+from thermogear.results.tables import frames
 
-RESULTS = "results.nc"
-KINDS = ("gear", "dimensionless")
+if TYPE_CHECKING:
+    import pandas as pd
 
-_FIX = "name a directory that this command, or `thermogear run CASE -o DIR`, has written"
+FILES = {"gear": RESULTS, "dimensionless": RESULTS, "thesis": RESULTS, "sensitivity": RESULTS}
+"""The file of a kind; of every other kind it is ``KIND.nc``."""
+LEVELS = ("important", "warning", "info")
+FIX = "name a directory that this command, or `thermogear run CASE -o DIR`, has written"
+
+Plain = str | int | float
+
+
+class Notice(NamedTuple):
+    """What a reader should know beside the numbers; ``level`` one of :data:`LEVELS`."""
+
+    level: str
+    text: str
 
 
 @dataclass(frozen=True, eq=False)
-class Results:
-    """Everything one ``results.nc`` holds: root attributes as text, groups as Datasets."""
+class Result:
+    """One finished study of one case.
 
-    texts: Mapping[str, str]
+    ``kind`` names the study; ``groups`` are labelled Datasets by their path (SI, units as
+    attributes; "" is the root); ``provenance`` holds the version, the case as it was read, what
+    was chosen and what was summed up: texts, numbers, or JSON texts of lists and tables.
+    """
+
+    kind: str
+    title: str
     groups: Mapping[str, xr.Dataset]
+    notices: tuple[Notice, ...] = ()
+    provenance: Mapping[str, Plain] = field(default_factory=dict)
 
-    @property
-    def kind(self) -> str:
-        """``gear`` or ``dimensionless``."""
-        return self.texts["kind"]
+    @classmethod
+    def of(
+        cls,
+        kind: str,
+        title: str,
+        groups: Mapping[str, xr.Dataset],
+        notices: Iterable[Notice | str | Mapping[str, str]] = (),
+        **provenance: Any,
+    ) -> Result:
+        """A new result of this version; lists and tables of ``provenance`` become JSON texts.
 
-    def text(self, name: str) -> str:
-        """A root attribute, empty where it is absent."""
-        return self.texts.get(name, "")
+        A notice that is a bare text is an "info".
+        """
+        about = {"thermogear": thermogear.__version__, **provenance}
+        told = tuple(_notice(one) for one in notices)
+        return cls(kind, title, groups, told, {k: _plain(v) for k, v in about.items()})
+
+    def with_(self, **provenance: Any) -> Result:
+        """The same with more, or other, provenance."""
+        more = {name: _plain(value) for name, value in provenance.items()}
+        return replace(self, provenance={**self.provenance, **more})
+
+    # --- reading --------------------------------------------------------------------------
 
     def group(self, name: str) -> xr.Dataset | None:
         """A group by its path, None where it is absent."""
         return self.groups.get(name)
 
-    def rows(self, name: str) -> list[dict[str, Any]]:
-        """A root attribute that holds a JSON list of objects; empty where it is absent."""
+    @property
+    def data(self) -> xr.Dataset:
+        """The one Dataset of a result that has a single group."""
+        if len(self.groups) != 1:
+            raise InputError("group", "none named", allowed=" | ".join(self.groups))
+        return next(iter(self.groups.values()))
+
+    def text(self, name: str) -> str:
+        """An entry of the provenance as text, empty where it is absent."""
+        return str(self.provenance.get(name, ""))
+
+    def rows(self, name: str) -> list[Any]:
+        """An entry that holds a list; empty where it is absent."""
         found = self._json(name, "[]")
-        if not isinstance(found, list) or not all(isinstance(row, dict) for row in found):
-            raise InputError(f"{RESULTS} attribute {name}", "no list of rows", fix=_FIX)
+        if not isinstance(found, list):
+            raise InputError(f"results attribute {name}", "no list", fix=FIX)
         return found
 
     def table(self, name: str) -> dict[str, Any]:
-        """A root attribute that holds a JSON object; empty where it is absent."""
+        """An entry that holds a table; empty where it is absent."""
         found = self._json(name, "{}")
         if not isinstance(found, dict):
-            raise InputError(f"{RESULTS} attribute {name}", "no table", fix=_FIX)
+            raise InputError(f"results attribute {name}", "no table", fix=FIX)
         return found
 
     def _json(self, name: str, absent: str) -> Any:
         try:
-            return json.loads(self.texts.get(name, absent))
+            return json.loads(str(self.provenance.get(name, absent)))
         except ValueError as error:
             raise InputError(
-                f"{RESULTS} attribute {name}", "text that is not JSON", fix=_FIX
+                f"results attribute {name}", "text that is not JSON", fix=FIX
             ) from error
 
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What the study summed up, where it did: the figures a script wants."""
+        return self.table("summary")
 
-def read_results(directory: Path, kinds: Collection[str] = KINDS) -> Results:
-    """All of ``directory/results.nc`` in memory; its kind is one of ``kinds``.
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl+C cut the study short; what is here was finished before."""
+        return bool(self.provenance.get("interrupted", 0))
 
-    Raises InputError, in one line, where the file is missing, unreadable or not ours.
-    """
-    path = Path(directory) / RESULTS
-    found = read_tree(path, _FIX)
-    if "thermogear" not in found.texts or found.texts.get("kind") not in kinds:
-        raise InputError("results", str(path), why="it was not written by thermogear", fix=_FIX)
-    return found
+    # --- as others know it ----------------------------------------------------------------
+
+    @cached_property
+    def tree(self) -> xr.DataTree:
+        """The whole as an xarray DataTree; title, kind, notices and provenance as attributes."""
+        found = xr.DataTree.from_dict({name or "/": data for name, data in self.groups.items()})
+        found.attrs = self.attrs
+        return found
+
+    @property
+    def attrs(self) -> dict[str, Plain]:
+        """The root attributes of the stored file."""
+        told = json.dumps([one._asdict() for one in self.notices])
+        return {**self.provenance, "title": self.title, "kind": self.kind, "notices": told}
+
+    def __getitem__(self, path: str) -> Any:
+        return self.tree[path]
+
+    def __contains__(self, path: str) -> bool:
+        return path in self.tree
+
+    def to_frame(self, group: str | None = None, along: Collection[str] = ()) -> pd.DataFrame:
+        """A group as a pandas DataFrame: a row for each place, units in the columns' names.
+
+        ``group`` may be left out where there is one; ``along`` names the dimensions of the wanted
+        variables (default: those of the first). Flags stand as words. Raises InputError for names
+        that are not there.
+        """
+        if group is not None and group not in self.groups:
+            raise InputError("group", repr(group), fix=nearest(group, list(self.groups)))
+        data = self.data if group is None else self.groups[group]
+        found = frames(data)
+        wanted = tuple(sorted(along)) if along else next(iter(found), ())
+        if wanted not in found:
+            raise InputError(
+                "along", " x ".join(along) or "nothing", allowed=" | ".join(map(" x ".join, found))
+            )
+        return found[wanted]
+
+    # --- files ----------------------------------------------------------------------------
+
+    @property
+    def file(self) -> str:
+        """The name of the file it is stored in."""
+        return FILES.get(self.kind, f"{self.kind}.nc")
+
+    def write(self, directory: str | Path) -> Path:
+        """Store it as ``directory/file`` with its seal; the file.
+
+        The directory is made if new. It holds data alone; :func:`thermogear.save` writes the page
+        and the tables too. Raises InputError for a directory of foreign files.
+        """
+        with claimed(Path(directory)) as folder:
+            self.put(folder)
+        return Path(directory) / self.file
+
+    def put(self, folder: Path) -> Path:
+        """The file alone, into a folder that is ours already."""
+        return write_tree(self.tree, folder / self.file)
+
+    @classmethod
+    def read(cls, path: str | Path, fix: str = FIX) -> Result:
+        """A stored file, its seal checked, all of it in memory.
+
+        Raises InputError, in one line with ``fix``, where it is missing, damaged or not ours.
+        """
+        found = result_of(read_tree(Path(path), fix))
+        if not found.kind or "thermogear" not in found.provenance:
+            raise InputError("results", str(path), why="it was not written by thermogear", fix=fix)
+        return found
 
 
-def read_tree(path: Path, fix: str = "") -> Results:
-    """All of a stored netCDF file in memory, its seal checked; the root's own group is "".
-
-    Raises InputError, in one line with ``fix``, where the file is missing or damaged.
-    """
-    return results_of(netcdf.read_tree(path, fix))
-
-
-def results_of(tree: xr.DataTree) -> Results:
-    """What ``tree`` holds, every group in memory."""
-    texts = {str(name): str(value) for name, value in tree.attrs.items()}
+def result_of(tree: xr.DataTree) -> Result:
+    """What a stored ``tree`` holds, every group in memory."""
     groups = {
         node.path.strip("/"): node.to_dataset(inherit=True).load()
         for node in tree.subtree
         if node.has_data
     }
-    return Results(texts, groups)
+    return _from_attributes(tree.attrs, groups)
+
+
+def stored_dataset(data: xr.Dataset, title: str = "") -> Result:
+    """The result behind the one Dataset of a store of long work, its attributes as provenance."""
+    return _from_attributes({"title": title, **data.attrs}, {"": data})
+
+
+def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, xr.Dataset]) -> Result:
+    about = {str(name): _plain(value) for name, value in attrs.items()}
+    kind, title = str(about.pop("kind", "")), str(about.pop("title", ""))
+    try:
+        told = json.loads(str(about.pop("notices", "[]")))
+    except ValueError as error:
+        raise InputError("results attribute notices", "text that is not JSON", fix=FIX) from error
+    if not isinstance(told, list) or not all(isinstance(one, str | dict) for one in told):
+        raise InputError("results attribute notices", "no list of notices", fix=FIX)
+    notices = tuple(_notice(one) for one in told)
+    return Result(kind, title, groups, notices, about)
+
+
+def open_results(directory: str | Path, kind: str = "") -> Result:
+    """What any command has stored in ``directory`` (or in one file), checked and in memory.
+
+    ``kind`` chooses where results of several studies stand in one directory. Raises InputError
+    where there are none, several, damaged or foreign ones.
+    """
+    path = Path(directory)
+    if path.is_file():
+        return Result.read(path)
+    if (path / STORE).exists():
+        return stored_dataset(read_store(path))
+    there = sorted(file.name for file in path.glob("*.nc"))
+    wanted = [FILES.get(kind, f"{kind}.nc")] if kind else there
+    if len(wanted) > 1:
+        kinds = [name.removesuffix(".nc") for name in wanted]
+        raise InputError("results", f"{path} holds several", fix=f"name one: {' | '.join(kinds)}")
+    found = Result.read(path / (wanted[0] if wanted else RESULTS))
+    if kind and found.kind != kind:
+        raise InputError(
+            "results", f"kind {found.kind!r}", allowed=kind, why="it was not written by thermogear"
+        )
+    return found
+
+
+def read_results(directory: Path, kinds: Collection[str] = ("gear", "dimensionless")) -> Result:
+    """All of ``directory/results.nc``; its kind is one of ``kinds``."""
+    path = Path(directory) / RESULTS
+    found = Result.read(path)
+    if found.kind not in kinds:
+        raise InputError("results", str(path), why="it was not written by thermogear", fix=FIX)
+    return found
+
+
+def now() -> str:
+    """This moment as a result's ``created`` writes it."""
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+
+
+def _notice(one: Notice | str | Mapping[str, str]) -> Notice:
+    if isinstance(one, Notice):
+        return one
+    if isinstance(one, str):
+        return Notice("info", one)
+    level = str(one.get("level"))
+    return Notice(level if level in LEVELS else "info", str(one.get("text", "")))
+
+
+def _plain(value: Any) -> Plain:
+    """A value as an attribute holds it: lists and tables as JSON."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return int(value)
+    if isinstance(value, Mapping | list | tuple) or value is None:
+        return json.dumps(value, allow_nan=False)
+    found: Plain = value.item() if hasattr(value, "item") else value
+    return found

@@ -26,7 +26,8 @@ from thermogear.case.dimensionless import Point
 from thermogear.case.schema import PARAMETERS
 from thermogear.case.subject import Family, Subject, family, of_numbers, shown_value
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.study.orbit import Found, complex_rows, found, orbit_of
+from thermogear.results.result import Result
+from thermogear.study.orbit import complex_rows, found, orbit_of
 
 STEPS = 1000
 """Progress of a branch counts in thousandths of the parameter's way."""
@@ -54,7 +55,7 @@ def branch_results(
     transient: bool = True,
     switch: int = 0,
     progress: Progress = silent,
-) -> Found:
+) -> Result:
     """Follow the subject's orbit in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
 
     ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
@@ -109,7 +110,7 @@ def branch_results(
         "notices": [],
     }
     groups = {f"branch_{i}": dataset(leg, parameter) for i, leg in enumerate(legs)}
-    return found("branch", groups, summary, cut)
+    return found("branch", groups, summary, interrupted=cut)
 
 
 def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
@@ -283,7 +284,7 @@ def cascade_results(
     hot: bool = False,
     start: tuple[float, float] | None = None,
     progress: Progress = silent,
-) -> Found:
+) -> Result:
     """The first ``flips`` period doublings of every sweep, cold and (``hot``) with heat.
 
     Each cascade starts from the orbit of period 1 at the sweep's first value. Where that one has
@@ -327,7 +328,7 @@ def cascade_results(
         "notices": notices + _backlash_notice(legs),
     }
     groups = {f"branch_{i}": dataset(leg, leg.branch.parameter) for i, leg in enumerate(legs)}
-    return found("cascade", groups, summary, cut)
+    return found("cascade", groups, summary, interrupted=cut)
 
 
 def _entry(

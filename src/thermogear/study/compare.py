@@ -6,7 +6,6 @@ u_D^2, and one model is better than another only where their errors differ by mo
 
 from __future__ import annotations
 
-import datetime
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,6 +30,7 @@ from thermogear.measured.published import (
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
+from thermogear.results.result import Notice, Result, now
 from thermogear.study.simulated import CaseLines, case_lines, tree_lines
 
 if TYPE_CHECKING:
@@ -444,10 +444,8 @@ def _doubts(implied: Sequence[Implied]) -> list[tuple[str, str]]:
     return notices
 
 
-def tree_of(found: Comparison, version: str) -> xr.DataTree:
+def result_of(found: Comparison) -> Result:
     """The comparison as labelled datasets, ready to store and to draw."""
-    import xarray as xr
-
     rows = found.rows
     values: dict[str, tuple[tuple[str, ...], Any]] = {
         "measured_value": (("row",), [row.measured for row in rows]),
@@ -489,44 +487,45 @@ def tree_of(found: Comparison, version: str) -> xr.DataTree:
             ),
         }
     )
-    tree = xr.DataTree.from_dict({"comparison": table, "implied": implied})
-    tree.attrs = {
-        "thermogear": version,
-        "kind": "comparison",
-        "title": f"Models {' and '.join(found.models)} against {found.measured}",
-        "summary": found.conclusion[:1].upper() + found.conclusion[1:] + ".",
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "notices": json.dumps([{"level": level, "text": text} for level, text in found.notices]),
+    return Result.of(
+        "comparison",
+        f"Models {' and '.join(found.models)} against {found.measured}",
+        {"comparison": table, "implied": implied},
+        [Notice(level, text) for level, text in found.notices],
+        conclusion=found.conclusion[:1].upper() + found.conclusion[1:] + ".",
+        figures=figures(found),
+        created=now(),
+    )
+
+
+def figures(found: Comparison) -> dict[str, Any]:
+    """The comparison as plain figures, in SI units."""
+    rows = [
+        {
+            "speed": row.speed,
+            "quantity": row.quantity,
+            "measured": row.measured,
+            "simulated": list(row.simulated),
+            "errors": list(row.errors),
+            "u_num": row.u_num,
+            "u_input": row.u_input,
+            "u_data": row.u_data,
+            "u_val": row.u_val,
+            "verdict": row.verdict,
+            "printed": list(row.printed),
+        }
+        for row in found.rows
+    ]
+    return {
+        "measured": found.measured,
+        "models": list(found.models),
+        "conclusion": found.conclusion,
+        "rows": rows,
+        "implied": [vars(item) for item in found.implied],
+        "notices": [list(pair) for pair in found.notices],
     }
-    return tree
 
 
 def as_json(found: Comparison) -> str:
-    """The comparison as JSON, in SI units."""
-    return json.dumps(
-        {
-            "measured": found.measured,
-            "models": list(found.models),
-            "conclusion": found.conclusion,
-            "rows": [
-                {
-                    "speed": row.speed,
-                    "quantity": row.quantity,
-                    "measured": row.measured,
-                    "simulated": list(row.simulated),
-                    "errors": list(row.errors),
-                    "u_num": row.u_num,
-                    "u_input": row.u_input,
-                    "u_data": row.u_data,
-                    "u_val": row.u_val,
-                    "verdict": row.verdict,
-                    "printed": list(row.printed),
-                }
-                for row in found.rows
-            ],
-            "implied": [item.__dict__ for item in found.implied],
-            "notices": [list(pair) for pair in found.notices],
-        },
-        indent=2,
-        ensure_ascii=False,
-    )
+    """:func:`figures` as a JSON text."""
+    return json.dumps(figures(found), indent=2, ensure_ascii=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,7 +10,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
@@ -25,6 +23,7 @@ from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
+from thermogear.results.result import Result
 from thermogear.study.balances import dressed
 from thermogear.study.relief import EDGE_WORDS, one_point
 
@@ -56,7 +55,7 @@ def loaded_survey(
     *,
     body: str = "bore_clamped",
     progress: Progress = silent,
-) -> xr.DataTree:
+) -> Result:
     """Stiffness, transmission error, shares, pressure and double contact of the case's pair.
 
     ``torques`` [N m] of the pinion, by default parts of the case's greatest; ``body``
@@ -136,22 +135,17 @@ def loaded_survey(
         },
         {"load": dressed(("load",), moments, "N m", "pinion torque")},
     )
-    tree = xr.DataTree.from_dict(
-        {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared}
-    )
     lost = int((contact["status"].values != 0).sum() + (heated["status"].values != 0).sum())
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "kind": KIND,
-        "title": f"Loaded contact: {case.title}",
-        "case": case.text,
-        "overrides": json.dumps([list(pair) for pair in case.overrides]),
-        "body": body,
-        "base_pitch_length": case.pair.base_pitch,
-        "path_points": json.dumps({k.upper(): v for k, v in case.pair.path._asdict().items()}),
-        "notices": json.dumps(_notices(case, body, lost, contact["edge_contact_share"], compared)),
-    }
-    return tree
+    return Result.of(
+        KIND,
+        f"Loaded contact: {case.title}",
+        {"contact": contact, "base_pitch": base_pitch, "iso_6336": compared},
+        _notices(case, body, lost, contact["edge_contact_share"], compared),
+        **case.provenance,
+        body=body,
+        base_pitch_length=case.pair.base_pitch,
+        path_points={k.upper(): v for k, v in case.pair.path._asdict().items()},
+    )
 
 
 def _solve(

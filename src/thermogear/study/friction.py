@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base.vocabulary import attributes
 from thermogear.case.case import GearCase
 from thermogear.gears.contact import path_of_contact
@@ -19,6 +18,7 @@ from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
+from thermogear.results.result import Result
 from thermogear.study.balances import dressed, regime_attributes
 
 Floats = NDArray[np.float64]
@@ -38,7 +38,7 @@ def law_of(name: str, model: MeshModel) -> FrictionLaw:
     return ConstantDry(model.dry_coefficient) if name == ConstantDry.name else LAWS[name]
 
 
-def friction_survey(case: GearCase) -> xr.DataTree:
+def friction_survey(case: GearCase) -> Result:
     """|mu| by every law over the path of contact at every operating point, hot.
 
     Variables over (law, operating, path_position): ``friction_coefficient`` (nan where a law has
@@ -107,17 +107,14 @@ def friction_survey(case: GearCase) -> xr.DataTree:
             "bundle": model.name,
         },
     )
-    tree = xr.DataTree.from_dict({"laws": data})
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "kind": KIND,
-        "title": f"Friction laws: {case.title}",
-        "case": case.text,
-        "overrides": json.dumps([list(pair) for pair in case.overrides]),
-        "laws": json.dumps(words),
-        "notices": json.dumps(_notices(state, words)),
-    }
-    return tree
+    return Result.of(
+        KIND,
+        f"Friction laws: {case.title}",
+        {"laws": data},
+        _notices(state, words),
+        **case.provenance,
+        laws=words,
+    )
 
 
 def range_in_words(law: FrictionLaw) -> str:

@@ -13,6 +13,14 @@ from numpy.typing import NDArray
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
+from thermogear.results.result import Result, stored_dataset
+
+
+def finished(data: xr.Dataset, title: str = "") -> Result:
+    """What a store of long work holds, with what should be known beside it."""
+    told = {} if "notices" in data.attrs else {"notices": json.dumps(back_side_notice(data))}
+    return stored_dataset(data.assign_attrs(told), title)
+
 
 NO_BACK_IMPACT = (
     "the teeth never reach the back flanks anywhere in this range: a wider or narrower gap would "

@@ -1,21 +1,17 @@
 """Orbits, Lyapunov exponents and branches of one subject, as trees of labelled results.
 
-Each function returns a :class:`Found`: the tree that is stored and drawn, and its summary. Numbers
-are dimensionless (X = x/b_c, omega_n t) unless a name says SI; where a gear stands behind them the
+Each function returns a :class:`~thermogear.results.result.Result` with a summary. Numbers are
+dimensionless (X = x/b_c, omega_n t) unless a name says SI; where a gear stands behind them the
 tree carries metres, seconds and hertz.
 """
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-import thermogear
 from thermogear.analysis.labels import Label, label
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
@@ -25,7 +21,7 @@ from thermogear.base.vocabulary import label as labelled
 from thermogear.base.vocabulary import label_words
 from thermogear.case.subject import Subject
 from thermogear.dynamics.integrate import simulate
-from thermogear.results.files import write_results, write_summary
+from thermogear.results.result import Result
 from thermogear.signals.spectra import amplitude_spectrum
 
 SAMPLES = 256
@@ -36,37 +32,22 @@ LEAST_LINE = 1e-12
 ROUNDS = 10
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
-    """What a command found: the tree to store, its summary, and whether Ctrl+C cut it short."""
-
-    kind: str
-    tree: xr.DataTree
-    summary: dict[str, Any]
-    interrupted: bool = False
-
-    def write(self, directory: Path) -> Path:
-        """``KIND.nc`` and ``KIND.json`` in ``directory``; the path of the former."""
-        path = write_results(self.tree, directory, f"{self.kind}.nc")
-        write_summary(self.summary, directory, f"{self.kind}.json")
-        return path
-
-
 def found(
     kind: str,
     groups: dict[str, xr.Dataset],
     summary: dict[str, Any],
+    *,
     interrupted: bool = False,
-) -> Found:
-    """The tree of ``groups`` with title, version and summary as attributes."""
-    tree = xr.DataTree.from_dict(groups)
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "kind": kind,
-        "title": str(summary["title"]),
-        "summary": json.dumps(summary, allow_nan=False),
-    }
-    return Found(kind, tree, summary, interrupted)
+) -> Result:
+    """The result of one motion: its summary beside the groups."""
+    return Result.of(
+        kind,
+        str(summary["title"]),
+        groups,
+        summary["notices"],
+        summary=summary,
+        interrupted=interrupted,
+    )
 
 
 # --- orbits -------------------------------------------------------------------------------
@@ -140,7 +121,7 @@ def orbit_results(
     *,
     transient: bool = True,
     progress: Progress = silent,
-) -> Found:
+) -> Result:
     """State, multipliers, contact changes, load factor and spectrum of one closed orbit."""
     progress("orbit", 0, 2)
     orbit, proof = orbit_of(subject, period, transient=transient)
@@ -266,7 +247,7 @@ def lyapunov_results(
     batches: int = 40,
     batch_periods: int = 500,
     progress: Progress = silent,
-) -> Found:
+) -> Result:
     """lambda_1 with the error of its batch means, in rounds, so that Ctrl+C keeps what is done."""
     if batches < 4:
         raise InputError("--batches", batches, allowed=">= 4")
@@ -341,4 +322,4 @@ def lyapunov_results(
         "interrupted": cut,
         "notices": notices,
     }
-    return found("lyapunov", {"lyapunov": data}, summary, cut)
+    return found("lyapunov", {"lyapunov": data}, summary, interrupted=cut)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -10,7 +9,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import edge_attributes
@@ -23,6 +21,7 @@ from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
+from thermogear.results.result import Result
 from thermogear.study.balances import dressed
 
 Floats = NDArray[np.float64]
@@ -43,7 +42,7 @@ def relief_survey(
     symmetric: bool = False,
     largest: float | None = None,
     progress: Progress = silent,
-) -> xr.DataTree:
+) -> Result:
     """The tip relief of both gears with the least peak-to-peak static transmission error.
 
     ``torque`` [N m] of the pinion (default: the case's greatest) and ``gear_temperature`` [K] of
@@ -159,30 +158,26 @@ def relief_survey(
         },
     )
     lines = "\n\n".join(relief_text(r.gear, r) for r in (design.pinion, design.wheel))
-    tree = xr.DataTree.from_dict({"error": error, "loads": over})
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "kind": KIND,
-        "title": f"Tip relief: {case.title}",
-        "case": case.text,
-        "overrides": json.dumps([list(pair) for pair in case.overrides]),
-        "torque": moment,
-        "pinion_addendum": float(np.ravel(hot.temperatures.pinion_addendum)[0]),
-        "wheel_addendum": float(np.ravel(hot.temperatures.wheel_addendum)[0]),
-        "shape": shape,
-        "symmetric": int(symmetric),
-        **{name: float(np.ptp(c.deflection)) for name, c in zip(pairs, curves, strict=True)},
-        "evaluations": design.evaluations,
-        "reliefs": json.dumps(
-            {
-                r.gear: {"amount_m": r.amount, "length_m": r.length, "shape": r.shape}
-                for r in (design.pinion, design.wheel)
-            }
-        ),
-        "paste": lines,
-        "notices": json.dumps(_notices(case, [float(c.edge_share[0]) for c in curves])),
-    }
-    return tree
+    swings = {name: float(np.ptp(c.deflection)) for name, c in zip(pairs, curves, strict=True)}
+    return Result.of(
+        KIND,
+        f"Tip relief: {case.title}",
+        {"error": error, "loads": over},
+        _notices(case, [float(c.edge_share[0]) for c in curves]),
+        **case.provenance,
+        torque=moment,
+        pinion_addendum=float(np.ravel(hot.temperatures.pinion_addendum)[0]),
+        wheel_addendum=float(np.ravel(hot.temperatures.wheel_addendum)[0]),
+        shape=shape,
+        symmetric=symmetric,
+        **swings,
+        evaluations=design.evaluations,
+        reliefs={
+            r.gear: {"amount_m": r.amount, "length_m": r.length, "shape": r.shape}
+            for r in (design.pinion, design.wheel)
+        },
+        paste=lines,
+    )
 
 
 def one_point(operating: Operating, torque: float) -> Operating:

@@ -8,19 +8,14 @@ dimensionless case has ``points`` alone.
 
 from __future__ import annotations
 
-import datetime
-import json
 import platform
-from collections.abc import Callable, Mapping
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.progress import Progress, silent
@@ -32,15 +27,15 @@ from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
-from thermogear.results.files import claimed, write_results, write_summary
-from thermogear.study import run_notices as findings
+from thermogear.results.result import Result, now
+from thermogear.study import run_notices
 from thermogear.study.balances import OF_OIL, balances, blanked, regime_attributes
 from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
 
 
-def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
-    """Everything that ``case`` asks for, as one tree of datasets (SI, units as attributes).
+def run(case: Case, *, progress: Progress = silent) -> Result:
+    """Everything that ``case`` asks for (SI, units as attributes).
 
     A jammed operating point, one at whose temperatures a law has no value (nan), a motion that
     diverges or cannot be labelled is a status in the data, never an exception. Raises InputError
@@ -48,83 +43,33 @@ def run(case: Case, *, progress: Progress = silent) -> xr.DataTree:
     """
     if isinstance(case, DimensionlessCase):
         groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}
-        notices = findings.dimensionless_notices(groups["points"])
-        own: dict[str, object] = {}
+        notices = run_notices.dimensionless_notices(groups["points"])
+        own: dict[str, Any] = {}
     elif isinstance(case, GearCase):
         groups = _gear_groups(case, progress)
-        notices = findings.notices(case, groups)
+        notices = run_notices.notices(case, groups)
         own = {
-            "errata": "[]",
-            "facts": json.dumps(findings.facts(case, groups)),
-            "bundles": json.dumps({m.name: m.choices() for m in case.models}),
-            "choices": json.dumps(findings.choice_meanings()),
+            "facts": run_notices.facts(case, groups),
+            "bundles": {model.name: model.choices() for model in case.models},
+            "choices": run_notices.choice_meanings(),
         }
     else:
         raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
-    tree = xr.DataTree.from_dict(groups)
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "title": case.title,
-        "kind": case.kind,
-        "thesis_case": int(of_the_thesis(case)),
-        "case": case.text,
-        "overrides": json.dumps([list(pair) for pair in case.overrides]),
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "environment": json.dumps(findings.environment(platform.python_version())),
-        "assumptions": json.dumps(
-            [{"field": a.field, "value": a.value, "reason": a.reason} for a in case.assumptions]
-        ),
-        "notices": json.dumps(notices),
-        "citations": json.dumps(citations(case)),
+    return Result.of(
+        case.kind,
+        case.title,
+        groups,
+        notices,
+        **case.provenance,
+        thesis_case=of_the_thesis(case),
+        created=now(),
+        environment=run_notices.environment(platform.python_version()),
+        assumptions=[
+            {"field": a.field, "value": a.value, "reason": a.reason} for a in case.assumptions
+        ],
+        citations=citations(case),
         **own,
-    }
-    return tree
-
-
-def run_to_directory(
-    case: Case,
-    directory: Path,
-    *,
-    case_text: str | None = None,
-    progress: Progress = silent,
-    complete: Callable[[Case, xr.DataTree], xr.DataTree] = lambda case, tree: tree,
-    also: Callable[[Path], None] = lambda folder: None,
-) -> dict[str, Any]:
-    """:func:`run`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
-
-    A directory that holds anything else than earlier results, or that another process writes
-    into, is refused before the run. ``also`` is called with the folder where the new results
-    stand before they are put into ``directory``; what it writes there is put with them: all, or
-    after an error or Ctrl+C nothing.
-    """
-    with claimed(directory) as folder:
-        tree = run(case if case_text is None else replace(case, text=case_text), progress=progress)
-        summary = _write(complete(case, tree), folder)
-        also(folder)
-    return summary
-
-
-def save_results(results: xr.DataTree, directory: str | Path) -> dict[str, Any]:
-    """Write what :func:`run` returned as ``directory/results.nc``, with ``summary.json``.
-
-    Returns the summary. The directory is made if new; one that holds anything else than earlier
-    results is refused with an InputError.
-    """
-    directory = Path(directory)
-    if "thermogear" not in results.attrs or results.attrs.get("kind") not in (
-        "gear",
-        "dimensionless",
-    ):
-        raise InputError("results", "no tree of a run", fix="give what run(case) returns")
-    with claimed(directory) as folder:
-        return _write(results, folder)
-
-
-def _write(results: xr.DataTree, folder: Path) -> dict[str, Any]:
-    summary = findings.summary(results)
-    write_results(results, folder)
-    write_summary(summary, folder)
-    return summary
+    )
 
 
 # --- gear cases ---------------------------------------------------------------------------

@@ -7,20 +7,17 @@ Needs the extra ``sensitivity`` (SALib), imported when used.
 
 from __future__ import annotations
 
-import datetime
 import importlib
 import time
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear import __version__
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.materials import LUBRICANTS, Lubricant
@@ -36,7 +33,7 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import disc_inertia, excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
-from thermogear.results.files import write_results, write_summary
+from thermogear.results.result import Result, now
 
 Floats = NDArray[np.float64]
 PATH, PHASES, HARMONICS = 41, 64, 16
@@ -208,9 +205,7 @@ def grade(viscosity_40: float) -> Lubricant:
     return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))
 
 
-def sensitivity(
-    case: GearCase, plan: Plan | None = None, *, progress: Progress = silent
-) -> xr.Dataset:
+def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress = silent) -> Result:
     """Sobol' indices of every output for every input of the thesis's rig, with their intervals.
 
     First order: the share of the variance an input brings alone; total: with everything it does
@@ -251,7 +246,11 @@ def sensitivity(
         )
         for name, table in indices.items():
             table[row] = found[name]
-    return _dataset(case, chosen, values, indices, jammed, seconds)
+    data = _dataset(case, chosen, values, indices, jammed, seconds)
+    words = data.assign(sentence=(("output",), plain_words(data)))
+    return Result.of(
+        "sensitivity", f"Sensitivity: {case.title}", {"sensitivity": words}, created=now()
+    )
 
 
 def _dataset(
@@ -532,59 +531,3 @@ def plain_words(data: xr.Dataset) -> list[str]:
 
 def _short(value: object) -> str:
     return f"{float(np.asarray(value)):.3g}"
-
-
-def as_rows(data: xr.Dataset) -> dict[str, Any]:
-    """The study JSON-ready: settings, and for every output its spread, conclusion and ranking."""
-    names = ("evaluations", "samples", "confidence", "seconds", "jammed", "speed", "seed")
-    found: dict[str, Any] = {name: _number(data.attrs[name]) for name in names}
-    found["outputs"] = [
-        {
-            "output": str(output),
-            "mean": float(here["mean"]),
-            "low": float(here["low"]),
-            "high": float(here["high"]),
-            "unit": str(here["output_unit"].item()),
-            "conclusion": str(here["conclusion"].item()),
-            "holds": float(here["holds"]),
-            "inputs": [
-                {
-                    "input": str(name),
-                    "first_order": float(here["first_order"].sel(input=name)),
-                    "first_order_conf": float(here["first_order_conf"].sel(input=name)),
-                    "total": float(here["total"].sel(input=name)),
-                    "total_conf": float(here["total_conf"].sel(input=name)),
-                }
-                for name in data["input"].values
-            ],
-        }
-        for output in data["output"].values
-        for here in (data.sel(output=output),)
-    ]
-    return found
-
-
-def _number(value: object) -> float | int:
-    number = float(np.asarray(value))
-    return int(number) if number.is_integer() else number
-
-
-def store(data: xr.Dataset, directory: Path) -> Path:
-    """Write the study as ``results.nc`` with ``summary.json`` in ``directory``."""
-    words = data.assign(sentence=(("output",), plain_words(data)))
-    tree = xr.DataTree.from_dict({"sensitivity": words})
-    tree.attrs = {
-        "thermogear": __version__,
-        "kind": "sensitivity",
-        "title": f"Sensitivity: {data.attrs['title']}",
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-    }
-    path = write_results(tree, directory)
-    summary = {
-        "thermogear": __version__,
-        "title": tree.attrs["title"],
-        "kind": "sensitivity",
-        **as_rows(data),
-    }
-    write_summary(summary, directory)
-    return path

@@ -19,7 +19,8 @@ from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
-from thermogear.study.orbit import Found, found
+from thermogear.results.result import Result
+from thermogear.study.orbit import found
 
 POSITIONS = 240
 FACTORS = np.geomspace(0.01, 4.0, 25)
@@ -37,7 +38,7 @@ def shared_results(
     speeds: tuple[float, float] | None = None,
     count: int = 41,
     progress: Progress = silent,
-) -> Found:
+) -> Result:
     """Both mesh forces of a gear case at rest and in motion.
 
     At rest over load: mean tangent stiffness and peak to peak deflection of the exact loaded
@@ -95,7 +96,7 @@ def shared_results(
         },
     )
     summary = {"title": subject.title, **_summary(data, moving), "interrupted": cut, "notices": []}
-    return found("shared", {"rest": data, "motion": moving}, summary, cut)
+    return found("shared", {"rest": data, "motion": moving}, summary, interrupted=cut)
 
 
 def at_rest(gears: Gears, here: Excitation, drive: PairSprings) -> xr.Dataset:

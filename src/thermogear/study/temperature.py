@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -26,6 +25,7 @@ from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.results.result import Result
 from thermogear.study.balances import balance_dataset, blanked, dressed, several_words
 from thermogear.study.trends import QUANTITIES, conclusion, verdicts
 
@@ -48,7 +48,7 @@ def thermal_map(
     torques: Sequence[float] = TORQUES,
     *,
     progress: Progress = silent,
-) -> xr.DataTree:
+) -> Result:
     """Temperatures, films, flashes, backlash and scuffing margins over ``speeds`` x ``torques``.
 
     ``speeds`` [rad/s] > 0 and ``torques`` [N m] of the pinion. The first model of the case, its
@@ -89,26 +89,21 @@ def thermal_map(
     grids = {name: _on_grid(whole, speeds, torques, shape) for name, whole in wholes.items()}
     checked = conclusion({name: grids[name] for name in LUBRICATIONS})
     chosen = grids[chosen_law]
-    tree = xr.DataTree.from_dict({"map": chosen, "conclusion": checked})
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "kind": KIND,
-        "title": f"{_heading(chosen)}: {case.title}",
-        "case": case.text,
-        "overrides": json.dumps([list(pair) for pair in case.overrides]),
-        "bundle": model.name,
-        "choices": json.dumps(model.choices()),
-        "laws": json.dumps({name: one.friction for name, one in models.items()}),
-        "held": json.dumps(
-            {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
-        ),
-        "scuffing_load_stage": json.dumps(case.scuffing_load_stage),
-        "cold_half_backlash": case.cold_backlash.half,
-        "seconds": seconds,
-        "verdicts": json.dumps(verdicts(checked) if of_the_thesis(case) else []),
-        "notices": json.dumps(_notices(case, chosen, seconds, why)),
-    }
-    return tree
+    return Result.of(
+        KIND,
+        f"{_heading(chosen)}: {case.title}",
+        {"map": chosen, "conclusion": checked},
+        _notices(case, chosen, seconds, why),
+        **case.provenance,
+        bundle=model.name,
+        choices=model.choices(),
+        laws={name: one.friction for name, one in models.items()},
+        held={name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()},
+        scuffing_load_stage=case.scuffing_load_stage,
+        cold_half_backlash=case.cold_backlash.half,
+        seconds=seconds,
+        verdicts=verdicts(checked) if of_the_thesis(case) else [],
+    )
 
 
 def _heading(grid: xr.Dataset) -> str:

@@ -11,21 +11,18 @@ import math
 from collections import Counter
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import attributes, status_attributes, told_labels
 from thermogear.case.source import overridden, pairs, tables
-from thermogear.results.files import write_results
+from thermogear.results.result import Result
 
-VERSUS = "versus.nc"
 MOST_CASES = 6
 """As many as colours that a reader tells apart."""
 HIGHEST_ORDER = 8.5
@@ -117,14 +114,9 @@ class Stored:
         return found
 
 
-def of_tree(tree: xr.DataTree, name: str = "case") -> Stored:
-    """The results of a run that still is in memory."""
-    groups = {
-        node.path.strip("/"): node.to_dataset(inherit=True)
-        for node in tree.subtree
-        if node.has_data
-    }
-    return Stored(name, {str(k): str(v) for k, v in tree.attrs.items()}, groups)
+def stored(result: Result, name: str = "case") -> Stored:
+    """The results of a run, under a name that tells it from others of its title."""
+    return Stored(name, {k: str(v) for k, v in result.attrs.items()}, result.groups)
 
 
 def require_number(count: int) -> None:
@@ -151,7 +143,7 @@ def require_one_kind(kinds: Mapping[str, str]) -> None:
         )
 
 
-def versus(cases: Sequence[Stored]) -> xr.Dataset:
+def versus(cases: Sequence[Stored]) -> Result:
     """Two to six cases side by side: figures and curves with a leading axis ``case``.
 
     Figures have the axes (case, bundle, state, operating), curves one more: ``path_place``,
@@ -181,52 +173,17 @@ def versus(cases: Sequence[Stored]) -> xr.Dataset:
     if cases[0].kind == "gear":
         axes["operating"].sort()
     data = _joined(cases, bundles, axes)
-    return data.assign_attrs(
-        thermogear=thermogear.__version__,
-        kind="versus",
+    return Result.of(
+        "versus",
+        " against ".join(titles) if len(titles) == 2 else " · ".join(titles),
+        {"": data},
+        _notices(cases, data, names if own else None),
         of=cases[0].kind,
-        title=" against ".join(titles) if len(titles) == 2 else " · ".join(titles),
-        differences=json.dumps(differences(cases)),
-        choices=json.dumps(choices(cases, bundles)),
-        notices=json.dumps(_notices(cases, data, names if own else None)),
-        cases=json.dumps([_text(case) for case in cases]),
-        path_points=json.dumps([_path_points(case) for case in cases]),
+        differences=differences(cases),
+        choices=choices(cases, bundles),
+        cases=[_text(case) for case in cases],
+        path_points=[_path_points(case) for case in cases],
     )
-
-
-def store(data: xr.Dataset, directory: Path) -> Path:
-    """Write ``directory/versus.nc``."""
-    return write_results(xr.DataTree(data), directory, VERSUS)
-
-
-def summary(data: xr.Dataset) -> dict[str, Any]:
-    """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
-    rows = []
-    figures = [n for n in (*FIGURES, "greatest_flash_temperature") if n in data]
-    for c, title in enumerate(data["case"].values):
-        for b, bundle in enumerate(data["bundle"].values):
-            for o, point in enumerate(data["point"].values):
-                here = data.isel(case=c, bundle=b, operating=o)
-                if not int(here["present"]):
-                    continue
-                for s, state in enumerate(data["state"].values):
-                    one = here.isel(state=s)
-                    numbers = {name: _number(float(one[name])) for name in figures}
-                    rows.append({
-                        "case": str(title), "bundle": str(bundle), "point": str(point),
-                        "state": str(state), "label": str(one["label"].item()), **numbers,
-                    })  # fmt: skip
-    return {
-        "thermogear": thermogear.__version__,
-        "title": data.attrs["title"],
-        "kind": data.attrs["of"],
-        "cases": [str(title) for title in data["case"].values],
-        "notices": json.loads(data.attrs["notices"]),
-        "differences": json.loads(data.attrs["differences"]),
-        "choices": json.loads(data.attrs["choices"]),
-        "units": {name: str(data[name].attrs.get("units", "1")) for name in figures},
-        "figures": rows,
-    }
 
 
 # --- what the cases say -------------------------------------------------------------------
@@ -545,16 +502,13 @@ def _number(value: float) -> float | None:
 __all__ = [
     "MOST_CASES",
     "OWN",
-    "VERSUS",
     "Stored",
     "choices",
     "differences",
     "flat",
-    "of_tree",
     "require_number",
     "require_one_kind",
-    "store",
-    "summary",
+    "stored",
     "unique_titles",
     "versus",
 ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 import warnings
 from collections.abc import Mapping, Sequence
@@ -14,7 +13,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-import thermogear
 from thermogear.base import bounds
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
@@ -30,6 +28,7 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
+from thermogear.results.result import Result
 from thermogear.study.balances import LOSSES, dressed
 from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, until
 
@@ -98,7 +97,7 @@ def warm_up_survey(
     fit: Sequence[str] = (),
     moments: int = MOMENTS,
     progress: Progress = silent,
-) -> xr.DataTree:
+) -> Result:
     """Temperatures, backlash, flash, film and stiffness of a case over its duty.
 
     ``duty`` of :func:`~thermogear.case.duty.read_duty` or made by hand (default: the case's
@@ -145,29 +144,26 @@ def warm_up_survey(
     if found is not None:
         groups["fit"] = _fit_dataset(found)
     seconds = time.perf_counter() - began
-    tree = xr.DataTree.from_dict(groups)
     worst = _worst(case, course, steady)
-    tree.attrs = {
-        "thermogear": thermogear.__version__,
-        "kind": KIND,
-        "title": f"Warm-up: {case.title}",
-        "case": case.text,
-        "overrides": json.dumps([list(pair) for pair in case.overrides]),
-        "bundle": case.models[0].name,
-        "choices": json.dumps(case.models[0].choices()),
-        "held": json.dumps(dict(course.held)),
-        "duty": "one point until steady" if duty is None else "table",
-        "cold_half_backlash": case.cold_backlash.half,
-        "worst": json.dumps(worst),
-        "jams": json.dumps([float(t) for t in course.jams]),
-        "sensors": json.dumps({one.name: one.words for one in shown}),
-        "fit": json.dumps(_fit_words(found)),
-        "evaluations": course.course.evaluations,
-        "greatest_imbalance": float(course.course.imbalance.max()),
-        "seconds": seconds,
-        "notices": json.dumps(_notices(case, course, steady, measured, found, worst, seconds)),
-    }
-    return tree
+    return Result.of(
+        KIND,
+        f"Warm-up: {case.title}",
+        groups,
+        _notices(case, course, steady, measured, found, worst, seconds),
+        **case.provenance,
+        bundle=case.models[0].name,
+        choices=case.models[0].choices(),
+        held=dict(course.held),
+        duty="one point until steady" if duty is None else "table",
+        cold_half_backlash=case.cold_backlash.half,
+        worst=worst,
+        jams=[float(t) for t in course.jams],
+        sensors={one.name: one.words for one in shown},
+        fit=_fit_words(found),
+        evaluations=course.course.evaluations,
+        greatest_imbalance=float(course.course.imbalance.max()),
+        seconds=seconds,
+    )
 
 
 def _course(

@@ -6,7 +6,6 @@ contact A (friction, flash) or at the tips (deformation). Printed formulas feed 
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -23,6 +22,7 @@ from thermogear.heat.temperature import blok_as_printed
 from thermogear.heat.thesis_profile import flank_growth_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
+from thermogear.results.result import Result
 
 Row = dict[str, Any]
 
@@ -48,12 +48,11 @@ def _row(
     }
 
 
-def with_errata(case: Case, tree: xr.DataTree) -> xr.DataTree:
+def with_errata(result: Result, case: Case) -> Result:
     """What ``run(case)`` returned, with the errata beside it where the case is the thesis's own."""
     if isinstance(case, GearCase) and of_the_thesis(case):
-        groups = {name: tree[name].to_dataset() for name in ("mesh", "path")}
-        tree.attrs["errata"] = json.dumps(errata(case, groups))
-    return tree
+        return result.with_(errata=errata(case, result.groups))
+    return result
 
 
 def errata(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Row]:

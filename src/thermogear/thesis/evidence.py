@@ -8,6 +8,7 @@ table of the tests.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,10 +20,12 @@ from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case, load_example
 from thermogear.mesh.model import MeshModel
+from thermogear.results.result import Result
 from thermogear.study.compare import Comparison, compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import chain, motions
+from thermogear.thesis.errata import with_errata
 
 Floats = NDArray[np.float64]
 
@@ -76,17 +79,15 @@ class Evidence:
         return case
 
     @cached_property
-    def tree(self) -> xr.DataTree:
-        """The run of the rig, base sets included."""
+    def result(self) -> Result:
+        """The run of the rig, base sets and errata included."""
         self._tell(STAGES[0])
-        return run(self.case)
+        return with_errata(run(self.case), self.case)
 
-    @cached_property
-    def groups(self) -> dict[str, xr.Dataset]:
+    @property
+    def groups(self) -> Mapping[str, xr.Dataset]:
         """The run's groups by their path."""
-        return {
-            node.path.strip("/"): node.to_dataset() for node in self.tree.subtree if node.has_data
-        }
+        return self.result.groups
 
     def bundle(self, group: str, name: str, state: str = "hot") -> xr.Dataset:
         """One bundle of a group of the run in one state."""
@@ -133,7 +134,7 @@ class Evidence:
         return compare("thesis-5.2")
 
     @cached_property
-    def sensitivity(self) -> xr.Dataset:
+    def sensitivity(self) -> Result:
         """Which unstated input decides which conclusion."""
         self._tell(STAGES[6])
         plan = Plan(samples=self.size.samples)

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import datetime
-import json
 import time
 from collections import Counter
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-import thermogear
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
-from thermogear.results.files import claimed, write_results, write_summary
+from thermogear.results.result import Result, now
 from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section2, section3, section4, section5, section6
 from thermogear.thesis.claim import Claim, Finding, Verdict
@@ -45,7 +40,7 @@ def judge(evidence: Evidence) -> list[Finding]:
         for claim in CLAIMS:
             found.append(claim.judge(evidence))
     except KeyboardInterrupt:
-        if not (found and evidence.finished("tree")):
+        if not (found and evidence.finished("result")):
             raise
         return found
     evidence.progress(STAGES[-1], len(STAGES), len(STAGES))
@@ -58,10 +53,10 @@ def counts(findings: list[Finding]) -> dict[str, int]:
     return {verdict.value: number[verdict] for verdict in Verdict}
 
 
-def build(size: Size | None = None, progress: Progress = silent) -> xr.DataTree:
-    """All evidence and every verdict as one tree of datasets; see :mod:`thermogear.thesis`.
+def build(size: Size | None = None, progress: Progress = silent) -> Result:
+    """All evidence and every verdict as one result; see :mod:`thermogear.thesis`.
 
-    After Ctrl+C what was finished: fewer claims than ``claims_in_all`` in the attributes.
+    After Ctrl+C what was finished: fewer claims than ``claims_in_all``.
     """
     began = time.perf_counter()
     evidence = Evidence(Size() if size is None else size, progress)
@@ -73,72 +68,29 @@ def build(size: Size | None = None, progress: Progress = silent) -> xr.DataTree:
     if evidence.finished("comparison"):
         groups["experiment"] = _experiment(evidence)
     if evidence.finished("sensitivity"):
-        groups["sensitivity"] = evidence.sensitivity.assign(
-            sentence=(("output",), plain_words(evidence.sensitivity))
+        groups["sensitivity"] = evidence.sensitivity.data.assign(
+            sentence=(("output",), plain_words(evidence.sensitivity.data))
         )
     if evidence.finished("diagrams"):
         for name, data in evidence.diagrams.items():
             groups[f"diagrams/{name}"] = _plain(data)
-    tree = xr.DataTree.from_dict(groups)
-    tree.attrs = {
-        **evidence.tree.attrs,
-        "thermogear": thermogear.__version__,
-        "title": TITLE,
-        "kind": "thesis",
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "counts": json.dumps(counts(findings)),
-        "claims_in_all": len(CLAIMS),
-        "sentences": json.dumps(_sentences()),
-        "seconds": time.perf_counter() - began,
-    }
-    return tree
-
-
-def build_to_directory(
-    directory: Path,
-    size: Size | None = None,
-    progress: Progress = silent,
-    also: Callable[[Path], object] = lambda folder: None,
-) -> dict[str, Any]:
-    """:func:`build`, then ``results.nc`` and ``summary.json`` in ``directory``; the summary.
-
-    ``also`` is called with the folder where both stand before they are put into ``directory``;
-    what it writes there is put with them.
-    """
-    with claimed(directory) as folder:
-        tree = build(size, progress)
-        found = summary(tree)
-        write_results(tree, folder)
-        write_summary(found, folder)
-        also(folder)
-    return found
-
-
-def summary(tree: xr.DataTree) -> dict[str, Any]:
-    """Counts, verdicts and the ranking of the inputs, JSON-ready."""
-    claims = tree["claims"].to_dataset()
-    rows = [
-        {name: str(claims[name].values[k]) for name in TEXTS} for k in range(claims.sizes["claim"])
-    ]
-    found = {
-        "thermogear": tree.attrs["thermogear"],
-        "title": tree.attrs["title"],
-        "kind": "thesis",
-        "claims": len(rows),
-        "claims_in_all": int(tree.attrs["claims_in_all"]),
-        "verdicts": json.loads(tree.attrs["counts"]),
-        "sentences": json.loads(tree.attrs["sentences"]),
-        "seconds": round(float(tree.attrs["seconds"]), 1),
-        "rows": rows,
-    }
-    if "sensitivity" in tree:
-        ranked = tree["sensitivity"].to_dataset()
-        found["sensitivity"] = {
-            "evaluations": int(ranked.attrs["evaluations"]),
-            "seconds": round(float(ranked.attrs["seconds"]), 1),
-            "results": [str(text) for text in ranked["sentence"].values],
-        }
-    return found
+    rig = evidence.result
+    return Result(
+        "thesis",
+        TITLE,
+        groups,
+        rig.notices,
+        {
+            **rig.with_(
+                created=now(),
+                counts=counts(findings),
+                claims_in_all=len(CLAIMS),
+                sentences=_sentences(),
+                seconds=time.perf_counter() - began,
+                interrupted=len(findings) < len(CLAIMS),
+            ).provenance
+        },
+    )
 
 
 TEXTS = (

@@ -126,7 +126,7 @@ def _simulated_amplitude(e: Evidence, number: int, model: int) -> Finding:
     row = _row(e, number, "displacement")
     state = "hot" if model == 0 else UNDEFORMED
     motion = e.groups["motion"].isel(operating=number).sel(state=state)
-    swing = e.sensitivity.sel(output="swing")
+    swing = e.sensitivity.data.sel(output="swing")
     low, high = float(swing["low"]), float(swing["high"])
     ours = []
     for bundle in ("thesis", "consistent"):
@@ -185,7 +185,7 @@ def _much_smaller(e: Evidence) -> Finding:
 
 
 def _more_accurate(e: Evidence) -> Finding:
-    change = e.sensitivity.sel(output="swing_change")
+    change = e.sensitivity.data.sel(output="swing_change")
     low, high = float(change["low"]), float(change["high"])
     row = _row(e, 0, "displacement")
     printed = 100.0 * (row.simulated[0] / row.simulated[1] - 1.0)

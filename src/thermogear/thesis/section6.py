@@ -22,7 +22,7 @@ def judged(e: Evidence, number: str) -> Finding:
 
 
 def _holds(e: Evidence, output: str) -> str:
-    here = e.sensitivity.sel(output=output)
+    here = e.sensitivity.data.sel(output=output)
     return f"{here['conclusion'].item()} in {100 * float(here['holds']):.0f} % of the samples"
 
 

@@ -1,9 +1,10 @@
-"""What a page is made of: sections of texts, tables and pictures."""
+"""What a page is made of: sections of texts, tables and pictures, and the figures behind them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import jinja2
@@ -11,6 +12,7 @@ import xarray as xr
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from thermogear.results.result import Notice, Result
 from thermogear.views.svg import draw
 from thermogear.views.words import prose
 
@@ -19,7 +21,7 @@ Cell = str | Markup
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph; ``tone`` is "plain", "note" or "jam"."""
+    """A paragraph; ``tone`` is "plain", "note", "jam" or "title"."""
 
     words: Cell
     tone: str = "plain"
@@ -43,21 +45,29 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Picture:
-    """A drawn picture with its heading and a caption that says what one should see."""
+class Shown:
+    """A picture with its heading and a caption that says what one should see.
+
+    ``name`` is that of its file; it is made when it is first drawn.
+    """
 
     name: str
     heading: str
     caption: Cell
-    svg: Markup
+    make: Callable[[], Figure] = field(repr=False)
     wide: bool = False
+
+    @cached_property
+    def svg(self) -> Markup:
+        """The picture as a piece of a page."""
+        return draw(self.make, f"fig-{self.name}", self.heading)
 
 
 @dataclass(frozen=True)
 class Gallery:
     """Pictures side by side where there is room."""
 
-    pictures: Sequence[Picture]
+    pictures: Sequence[Shown]
     kind: str = "gallery"
 
 
@@ -81,11 +91,20 @@ class Section:
     blocks: Sequence[Block]
 
 
+@dataclass(frozen=True)
+class Tile:
+    """One figure at the top of the page."""
+
+    title: str
+    value: str
+    beside: Cell
+
+
 @dataclass
 class Pictures:
-    """Draws pictures while their data are there, each under a name of its own."""
+    """Collects pictures while their data are there, each under a name of its own."""
 
-    drawn: list[Picture] = field(default_factory=list)
+    found: list[Shown] = field(default_factory=list)
     _names: set[str] = field(default_factory=set)
 
     def add(
@@ -98,66 +117,82 @@ class Pictures:
         make: Callable[[], Figure],
         wide: bool = False,
     ) -> None:
-        """Draw ``make()`` unless ``data`` lacks one of the variables it ``needs``."""
+        """Keep the picture unless ``data`` lacks one of the variables it ``needs``."""
         if not all(need in data.variables for need in needs):
             return
-        own = f"fig-{name}"
-        if own in self._names:
+        if name in self._names:
             raise ValueError(f"two pictures named {name}")
-        self._names.add(own)
-        self.keep(name, Picture(own, heading, caption, Markup(), wide), make)
-
-    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
-        """Draw the picture into the page."""
-        svg = draw(make, picture.name, picture.heading)
-        self.drawn.append(replace(picture, svg=svg))
+        self._names.add(name)
+        self.found.append(Shown(name, heading, caption, make, wide))
 
     def take(self) -> list[Block]:
-        """The pictures drawn since the last call, as galleries: wide ones by themselves."""
-        blocks: list[Block] = []
-        row: list[Picture] = []
-        for one in self.drawn:
-            if one.wide:
-                if row:
-                    blocks.append(Gallery(row))
-                    row = []
-                blocks.append(Gallery([one]))
-            else:
-                row.append(one)
-        if row:
-            blocks.append(Gallery(row))
-        self.drawn = []
+        """The pictures added since the last call, as galleries: wide ones by themselves."""
+        blocks = galleries(self.found)
+        self.found = []
         return blocks
 
 
-@dataclass(frozen=True)
-class Tile:
-    """One figure at the top of the page."""
+def galleries(pictures: Iterable[Shown]) -> list[Block]:
+    """Pictures as galleries in their order: wide ones by themselves."""
+    blocks: list[Block] = []
+    row: list[Shown] = []
+    for one in pictures:
+        if not one.wide:
+            row.append(one)
+            continue
+        blocks += [Gallery(row)] * bool(row) + [Gallery([one])]
+        row = []
+    return blocks + [Gallery(row)] * bool(row)
 
-    title: str
-    value: str
-    beside: Cell
+
+def nothing() -> Any:
+    """No tables, no lines."""
+    return {}
+
+
+@dataclass(frozen=True)
+class Page:
+    """Everything a reader gets of one result, in a page, in a terminal, as files.
+
+    ``numbers`` makes the figures a script wants (JSON-ready), ``lines`` the text of the terminal,
+    ``tables`` CSV texts by the names of their files. ``files`` are the kinds of picture that
+    stand beside the page.
+    """
+
+    result: Result
+    summary: Cell
+    sections: Sequence[Section]
+    tiles: Sequence[Tile] = ()
+    numbers: Callable[[], Mapping[str, Any]] = nothing
+    lines: Callable[[], Sequence[str]] = nothing
+    tables: Callable[[], Mapping[str, str]] = nothing
+    files: tuple[str, ...] = ()
+
+    @property
+    def pictures(self) -> Iterator[Shown]:
+        """Every picture, in the order of the page."""
+        for section in self.sections:
+            for block in section.blocks:
+                if isinstance(block, Gallery):
+                    yield from block.pictures
 
 
 LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
 
 
-def told(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, Markup]]:
-    """(level, its word, text) of every stored notice, most important first."""
+def told(notices: Iterable[Notice]) -> list[tuple[str, str, Markup]]:
+    """(level, its word, text) of every notice, most important first."""
     order = list(LEVELS)
-    known = [(level if (level := str(row.get("level"))) in LEVELS else "info", row) for row in rows]
-    known.sort(key=lambda pair: order.index(pair[0]))
-    return [(level, LEVELS[level], prose(row.get("text", ""))) for level, row in known]
+    found = sorted(notices, key=lambda one: order.index(one.level))
+    return [(one.level, LEVELS[one.level], prose(one.text)) for one in found]
 
 
-def render(
-    title: str,
-    summary: Cell,
-    sections: Sequence[Section],
-    version: str,
-    tiles: Sequence[Tile] = (),
-    notices: Iterable[Mapping[str, Any]] = (),
-) -> str:
+def notice_lines(result: Result) -> list[str]:
+    """Every notice as a line of a terminal."""
+    return [f"- {' '.join(one.text.split())}" for one in result.notices]
+
+
+def render(page: Page) -> str:
     """The whole page as text: it needs no other file, no script and no network."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("thermogear.views"),
@@ -167,12 +202,13 @@ def render(
         lstrip_blocks=True,
     )
     sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    title = " ".join(page.result.title.split()) or "thermogear"
     return environment.get_template("report.html").render(
-        title=" ".join(title.split()),
+        title=title,
         style=Markup(sheet),
-        summary=summary if isinstance(summary, Markup) else prose(summary),
-        tiles=tiles,
-        notices=told(notices),
-        sections=sections,
-        version=version,
+        summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),
+        tiles=page.tiles,
+        notices=told(page.result.notices),
+        sections=[section for section in page.sections if section.blocks],
+        version=page.result.text("thermogear"),
     )

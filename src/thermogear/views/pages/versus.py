@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from thermogear.base.errors import InputError
-from thermogear.base.files import put
 from thermogear.base.vocabulary import STATUS
-from thermogear.results.result import read_tree
-from thermogear.views.csv import table_text
-from thermogear.views.page import Block, Cell, Code, Pictures, Section, Table, Text, render
+from thermogear.results.result import Result
+from thermogear.views.csv_files import table_text
+from thermogear.views.page import (
+    Block,
+    Cell,
+    Code,
+    Page,
+    Pictures,
+    Section,
+    Table,
+    Text,
+    notice_lines,
+)
 from thermogear.views.plots import versus as plots
 from thermogear.views.style import chosen
 from thermogear.views.tables import is_jammed
@@ -29,8 +37,6 @@ from thermogear.views.words import (
     prose,
 )
 
-VERSUS = "versus.nc"
-REPORT = "versus.html"
 MOST_POINTS = 3
 """At most so many operating points are drawn."""
 JAMMED = STATUS.index("jammed")
@@ -66,38 +72,19 @@ CURVES = (
 )
 
 
-def write_versus(directory: Path) -> list[Path]:
-    """Draw ``directory/versus.html`` and the CSV tables from ``versus.nc``; the page first.
-
-    The page needs no other file; the same results give the same page. Raises InputError where
-    ``versus.nc`` is missing, damaged or not ours.
-    """
-    directory = Path(directory)
-    data = read_versus(directory)
-    written = [put(directory / REPORT, page(data))]
-    for name, (head, rows) in _csv_tables(data).items():
-        written.append(put(directory / f"versus_{name}.csv", table_text(head, rows)))
-    return written
-
-
-def read_versus(directory: Path) -> xr.Dataset:
-    """The stored comparison, in memory."""
-    path = Path(directory) / VERSUS
-    fix = "`thermogear versus RESULTS RESULTS -o DIR` writes it"
-    data = read_tree(path, fix).group("")
-    if data is None or "thermogear" not in data.attrs or data.attrs.get("kind") != "versus":
-        raise InputError("results", str(path), why="it was not written by thermogear", fix=fix)
-    return data
-
-
-def page(data: xr.Dataset) -> str:
-    """The whole page as text."""
-    return render(
-        title=str(data.attrs["title"]),
-        summary=_summary(data),
-        notices=json.loads(data.attrs["notices"]),
-        sections=[_differences(data), _figures(data), *_pictures(data), _cases(data)],
-        version=data.attrs["thermogear"],
+def page(result: Result) -> Page:
+    """What differs, key figures, curves over each other, the cases themselves."""
+    data = result.data.assign_attrs(result.attrs)
+    return Page(
+        result,
+        _summary(data),
+        [_differences(data), _figures(data), *_pictures(data), _cases(data)],
+        numbers=lambda: _numbers(result),
+        lines=lambda: notice_lines(result),
+        tables=lambda: {
+            f"versus_{name}.csv": table_text(head, rows)
+            for name, (head, rows) in _csv_tables(data).items()
+        },
     )
 
 
@@ -308,3 +295,45 @@ def _csv_tables(data: xr.Dataset) -> dict[str, tuple[list[str], list[list[str]]]
         "choices": (["bundle", "choice", *titles], made),
         "figures": (["case", "bundle", "point", "state", "label", *units], rows),
     }
+
+
+# --- figures as JSON wants them ---------------------------------------------------------------
+
+TOLD = (
+    "half_backlash", "jam_temperature", "proportional_jam_temperature", "mean_stiffness",
+    "thermal_stiffness_ratio", "natural_frequency", "frequency_ratio", "peak_to_peak_displacement",
+)  # fmt: skip
+
+
+def _numbers(result: Result) -> dict[str, Any]:
+    """What a machine wants to read of :func:`versus`: texts, and a row for each point."""
+    data, rows = result.data, []
+    figures = [n for n in (*TOLD, "greatest_flash_temperature") if n in data]
+    for c, title in enumerate(data["case"].values):
+        for b, bundle in enumerate(data["bundle"].values):
+            for o, point in enumerate(data["point"].values):
+                here = data.isel(case=c, bundle=b, operating=o)
+                if not int(here["present"]):
+                    continue
+                for s, state in enumerate(data["state"].values):
+                    one = here.isel(state=s)
+                    numbers = {name: _known(float(one[name])) for name in figures}
+                    rows.append({
+                        "case": str(title), "bundle": str(bundle), "point": str(point),
+                        "state": str(state), "label": str(one["label"].item()), **numbers,
+                    })  # fmt: skip
+    return {
+        "thermogear": result.text("thermogear"),
+        "title": result.title,
+        "kind": result.text("of"),
+        "cases": [str(title) for title in data["case"].values],
+        "notices": [one._asdict() for one in result.notices],
+        "differences": result.rows("differences"),
+        "choices": result.rows("choices"),
+        "units": {name: str(data[name].attrs.get("units", "1")) for name in figures},
+        "figures": rows,
+    }
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None

@@ -1,14 +1,14 @@
-"""The last sections: choices, assumptions, errata, figures, case file, sources."""
+"""What the results rest on: choices, assumptions, errata, figures, case file, sources."""
 
 from __future__ import annotations
 
-from thermogear.results.result import Results
+from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Code, Section, Text
 from thermogear.views.words import field_name, prose
 
 
-def closing(results: Results) -> list[Section]:
+def background(results: Result) -> list[Section]:
     """What a reader needs to judge and to repeat the results."""
     found: list[Section] = []
     bundles = results.table("bundles")
@@ -35,7 +35,7 @@ def closing(results: Results) -> list[Section]:
     if figures:
         found.append(Section("facts", "Figures of the pair", [tables.facts(figures)]))
     if results.text("case").strip():
-        found.append(Section("case", "Case file", [Code(results.text("case"))]))
+        found.append(case_file(results))
     sources = results.rows("citations")
     if sources:
         used = [(r.get("text", ""), r.get("used_for", "")) for r in sources]
@@ -46,7 +46,16 @@ def closing(results: Results) -> list[Section]:
     return found
 
 
-def _version(results: Results) -> Section:
+def case_file(results: Result) -> Section:
+    """The case as it was read, and below it what the command line put in its place."""
+    text = results.text("case").rstrip()
+    if "# on the command line:" not in text:
+        changes = results.rows("overrides")
+        text += "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)
+    return Section("case", "Case file", [Code(text)])
+
+
+def _version(results: Result) -> Section:
     environment = results.table("environment")
     rows = [(name, version) for name, version in environment.items()]
     blocks = [

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from thermogear.base.vocabulary import told_labels, told_operating
-from thermogear.results.result import Results
+from thermogear.results.result import Result
 from thermogear.views.page import Tile
 from thermogear.views.style import names_of
 from thermogear.views.tables import JAMMED
@@ -19,7 +19,7 @@ STUDIED = "1.1 to 1.3"
 """Frequency ratios of the thesis's bifurcation study."""
 
 
-def summary(results: Results) -> str:
+def summary(results: Result) -> str:
     """One paragraph with the key numbers."""
     mesh = results.group("mesh")
     if mesh is None:
@@ -82,7 +82,7 @@ def _percents(ratios: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _studied(results: Results) -> bool:
+def _studied(results: Result) -> bool:
     """Whether the thesis's bifurcation study is about this case."""
     return results.text("thesis_case") == "1"
 
@@ -124,7 +124,7 @@ def _rising(hot: xr.Dataset) -> str:
     return f"; all bodies in proportion: {jam_at(jam)}" if math.isfinite(jam) else ""
 
 
-def tiles(results: Results) -> list[Tile]:
+def tiles(results: Result) -> list[Tile]:
     """The figures that matter, of the first bundle, the others beside them."""
     mesh = results.group("mesh")
     if mesh is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import xarray as xr
 
-from thermogear.results.result import Results
+from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import rows
@@ -13,7 +13,7 @@ from thermogear.views.words import number
 PREFIX = "base_sets/"
 
 
-def base_sets(results: Results, pictures: Pictures) -> Section | None:
+def base_sets(results: Result, pictures: Pictures) -> Section | None:
     """Every base set beside the rig's own numbers."""
     names = [name for name in results.groups if name.startswith(PREFIX)]
     if not names:
@@ -37,7 +37,7 @@ def base_sets(results: Results, pictures: Pictures) -> Section | None:
     return Section("base-sets", "Base sets of the equation of motion", blocks)
 
 
-def points(results: Results, pictures: Pictures) -> Section | None:
+def points(results: Result, pictures: Pictures) -> Section | None:
     """The rows of a dimensionless case."""
     data = results.group("points")
     if data is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from functools import partial
 from typing import Any
@@ -11,38 +10,39 @@ import numpy as np
 import xarray as xr
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.views.page import Table
+from thermogear.results.result import Result
+from thermogear.views.page import Page, Shown, Table
+from thermogear.views.pages.survey import survey
 from thermogear.views.plots import warm_up as plots
-from thermogear.views.survey_parts import Drawn, Groups, Survey
 from thermogear.views.words import exactly, number
 
 
-def warm_up(texts: Mapping[str, Any], groups: Groups) -> Survey:
+def page(result: Result) -> Page:
     """A pair through its duty."""
-    data, steady = groups["course"], groups["steady"]
-    record, fit = groups.get("record"), groups.get("fit")
-    worst = json.loads(texts["worst"])
-    cold = float(texts["cold_half_backlash"])
-    logarithmic = str(texts["duty"]) != "table"
+    data, steady = result.groups["course"], result.groups["steady"]
+    record, fit = result.group("record"), result.group("fit")
+    worst = result.table("worst")
+    cold = float(result.text("cold_half_backlash"))
+    logarithmic = result.text("duty") != "table"
     pictures = [
-        Drawn(
+        Shown(
             "course",
             "Temperatures and half backlash over time",
             _course_words(worst, logarithmic, record is not None),
             partial(plots.course, data, steady, record, worst, cold=cold, logarithmic=logarithmic),
             wide=True,
         ),
-        Drawn(
+        Shown(
             "mesh",
             "Flash, film, margin and stiffness over time",
             "Gaps: a pair without load has no flash, film or stiffness, one at rest no film.",
             partial(plots.mesh, data, worst, logarithmic=logarithmic),
             wide=True,
         ),
-        Drawn(
+        Shown(
             "sensors",
             "What thermometers show, and what is true",
-            _sensor_words(json.loads(texts["sensors"])),
+            _sensor_words(result.table("sensors")),
             partial(plots.sensors, data, record, logarithmic=logarithmic),
             wide=True,
         ),
@@ -51,8 +51,15 @@ def warm_up(texts: Mapping[str, Any], groups: Groups) -> Survey:
     if record is not None:
         tables.append(_differences(record))
     if fit is not None:
-        tables.insert(0, _fitted(json.loads(texts["fit"])))
-    return Survey(answer(worst, cold) + fit_sentence(json.loads(texts["fit"])), pictures, tables)
+        tables.insert(0, _fitted(result.table("fit")))
+    return survey(
+        result,
+        answer(worst, cold) + fit_sentence(result.table("fit")),
+        pictures,
+        tables,
+        numbers=_numbers,
+        lines=_lines,
+    )
 
 
 def answer(worst: Mapping[str, Any], cold: float) -> str:
@@ -275,3 +282,36 @@ def _fitted(fit: Mapping[str, Any]) -> Table:
     if fit["correlation"] is not None:
         text += f" Errors of both factors correlate with {number(fit['correlation'], 2)}."
     return Table(text, ["factor", "value", "from", "to"], rows)
+
+
+# --- figures as the terminal and JSON want them -----------------------------------------------
+
+
+def _numbers(result: Result) -> dict[str, Any]:
+    data = result.groups["course"]
+    error = data["sensor_temperature"].values[-1] - data["true_temperature"].values[-1]
+    last = data["node_temperature"].values[-1]
+    return {
+        "worst": result.table("worst"),
+        "jams_s": result.rows("jams"),
+        "end_K": {str(node): float(t) for node, t in zip(data["node"].values, last, strict=True)},
+        "sensor_error_at_the_end_K": {
+            str(name): float(e) for name, e in zip(data["sensor"].values, error, strict=True)
+        },
+        "greatest_imbalance": float(result.text("greatest_imbalance")),
+        "evaluations": int(result.text("evaluations")),
+        "seconds": float(result.text("seconds")),
+        "fit": result.table("fit"),
+    }
+
+
+def _lines(result: Result) -> list[str]:
+    found = _numbers(result)
+    cold = float(result.text("cold_half_backlash"))
+    lines = [answer(found["worst"], cold).replace("−", "-")]
+    if found["fit"]:
+        lines.append(fit_sentence(found["fit"]).strip())
+    degrees = [(name, f"{t - ZERO_CELSIUS:.1f}") for name, t in found["end_K"].items()]
+    lines.append("at the end [degC]: " + ", ".join(f"{name} {t}" for name, t in degrees))
+    shown = [f"{n} {e:+.2f}" for n, e in found["sensor_error_at_the_end_K"].items()]
+    return [*lines, "sensors, shown less true at the end [K]: " + ", ".join(shown)]

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.base.files import put
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.results.result import read_results
+from thermogear.results.result import Result
 
 CURVES = {
     "path_position": "path",
@@ -27,40 +25,21 @@ CURVES = {
 ROWS = ("operating", "point")
 """Dimensions whose places stand below each other in one file."""
 
-_OURS = re.compile(
-    r"(path|mesh|profile|motion|temperature|points)(_|$)|.+_(figures|time|section|spectrum)$"
-)
-"""Names that earlier runs may have left behind."""
-
 Column = tuple[str, list[str]]
 
 
-def write_csv(directory: Path) -> list[Path]:
-    """Write every curve of ``directory/results.nc`` below ``directory/csv``; the files.
+def curve_tables(result: Result) -> dict[str, str]:
+    """Every curve of a run as CSV texts by their file names, below ``csv/``.
 
     A file holds one bundle and one state (or gear, or gear temperature), such as
     ``path_consistent_hot.csv``; operating points stand below each other, named by columns of
-    their own. Figures without a curve stand in ``..._figures.csv``. Files of the folder that
-    an earlier run wrote and this one does not are removed. Raises InputError where the results
-    are missing, damaged or not ours.
+    their own. Figures without a curve stand in ``..._figures.csv``.
     """
-    directory = Path(directory)
-    folder = directory / "csv"
-    written: dict[str, list[Column]] = {}
-    for name, data in read_results(directory).groups.items():
-        for stem, columns in _files(name, data):
-            written[f"{_slug(stem)}.csv"] = columns
-    folder.mkdir(exist_ok=True)
-    files = [put(folder / name, _text(columns)) for name, columns in written.items()]
-    clear_csv(directory, written)
-    return files
-
-
-def clear_csv(directory: Path, kept: Collection[str]) -> None:
-    """Remove what earlier runs left in ``directory/csv``: files of ours not named in ``kept``."""
-    for old in (Path(directory) / "csv").glob("*.csv"):
-        if old.name not in kept and _OURS.match(old.stem):
-            old.unlink()
+    return {
+        f"csv/{_slug(stem)}.csv": _text(columns)
+        for name, data in result.groups.items()
+        for stem, columns in _files(name, data)
+    }
 
 
 def _files(group: str, data: xr.Dataset) -> Iterator[tuple[str, list[Column]]]:

@@ -1,60 +1,44 @@
-"""Pages, pictures and CSV of one orbit, one Lyapunov exponent, branches or cascades.
-
-Everything is drawn from the one stored file; nothing is computed again.
-"""
+"""Pages of one motion: its orbit, its Lyapunov exponent, its branches, cascades, mesh force."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
 
-from thermogear.base.errors import InputError
-from thermogear.base.files import put
-from thermogear.results.result import read_tree
-from thermogear.views.csv import quoted
-from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text, render
+from thermogear.results.result import Result
+from thermogear.views.csv_files import quoted
+from thermogear.views.page import Block, Gallery, Page, Section, Shown, Table, Text, notice_lines
+from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.plots import engine as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
-from thermogear.views.style import styled
-from thermogear.views.svg import draw, put_figure
 from thermogear.views.words import number, prose
-
-KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
 
 Groups = Mapping[str, xr.Dataset]
 Summary = dict[str, Any]
 
 
-def read_engine(path: Path) -> tuple[str, Summary, Groups]:
-    """Kind, summary and groups of a stored file; InputError where it is not ours."""
-    found = read_tree(path)
-    if found.text("kind") not in KINDS:
-        raise InputError("results", str(path), why="it was not written by thermogear")
-    return (
-        found.kind,
-        {**found.table("summary"), "thermogear": found.text("thermogear")},
-        found.groups,
+def page(result: Result) -> Page:
+    """One picture, and the numbers of the summary as tables."""
+    kind, groups, summary = result.kind, result.groups, result.summary
+    caption = _caption(kind, summary, groups)
+    shown = Shown(kind, HEADINGS[kind], caption, _picture(kind, groups), wide=True)
+    return Page(
+        result,
+        _headline(kind, summary),
+        [
+            Section("numbers", "Numbers", [*_TABLES[kind](summary)]),
+            Section("picture", "Picture", [Gallery([shown])]),
+        ],
+        numbers=lambda: summary,
+        lines=lambda: [*LINES[kind](summary), *notice_lines(result)],
+        tables=lambda: csv_tables(kind, groups),
+        files=("svg", "png"),
     )
-
-
-def write_pages(path: Path) -> list[Path]:
-    """HTML, SVG, PNG and CSV beside the stored file ``path``; the files, the page first."""
-    kind, summary, groups = read_engine(path)
-    directory = path.parent
-    make = _picture(kind, groups)
-    written = [put(directory / f"{kind}.html", page(kind, summary, groups))]
-    with styled():
-        figure = make()
-        for ending in ("svg", "png"):
-            target = directory / f"{kind}.{ending}"
-            written.append(put_figure(figure, target, resolution=160))
-    return written + write_tables(directory, kind, groups)
 
 
 def _picture(kind: str, groups: Groups) -> Callable[[], Figure]:
@@ -74,7 +58,7 @@ def _branches(groups: Groups) -> list[xr.Dataset]:
     return [groups[name] for name in names]
 
 
-def write_tables(directory: Path, kind: str, groups: Groups) -> list[Path]:
+def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
     """Every array along an axis as CSV: one file for each axis, branches below each other."""
     files: dict[str, list[str]] = {}
     several = [f"branch_{i}" for i in range(len(groups))] if kind in ("branch", "cascade") else []
@@ -91,27 +75,11 @@ def write_tables(directory: Path, kind: str, groups: Groups) -> list[Path]:
             arrays = [data[c].values.tolist() for c in columns]
             for row in zip(*arrays, strict=True):
                 lines.append(",".join(_cell(v) for v in (*own.values(), *row)))
-    return [put(directory / name, "\n".join(lines) + "\n") for name, lines in files.items()]
+    return {name: "\n".join(lines) + "\n" for name, lines in files.items()}
 
 
 def _cell(value: object) -> str:
     return f"{value:.12g}" if isinstance(value, float) else quoted(str(value))
-
-
-def page(kind: str, summary: Summary, groups: Groups) -> str:
-    """The self-contained page of one stored result."""
-    drawn = draw(_picture(kind, groups), kind, f"{kind} of {summary['title']}")
-    caption = _caption(kind, summary, groups)
-    gallery = Gallery([Picture(kind, HEADINGS[kind], caption, drawn, wide=True)])
-    blocks: list[Block] = [*_TABLES[kind](summary)]
-    sections = [Section("numbers", "Numbers", blocks), Section("picture", "Picture", [gallery])]
-    return render(
-        title=str(summary["title"]),
-        summary=_headline(kind, summary),
-        notices=[{"level": "info", "text": text} for text in summary.get("notices", [])],
-        sections=sections,
-        version=summary["thermogear"],
-    )
 
 
 HEADINGS = {

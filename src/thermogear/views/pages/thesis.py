@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
-from pathlib import Path
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from markupsafe import Markup
 
-from thermogear.base.files import put
 from thermogear.base.units import RPM
-from thermogear.results.result import Results, read_results
-from thermogear.views import gear_sections, row_sections
-from thermogear.views.closing import closing
-from thermogear.views.page import Block, Cell, Gallery, Pictures, Section, Table, Text, Tile, render
+from thermogear.results.result import Result
+from thermogear.views.page import Block, Cell, Gallery, Page, Pictures, Section, Table, Text, Tile
+from thermogear.views.pages import gear_sections, row_sections
+from thermogear.views.pages.background import background
+from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
-from thermogear.views.words import celsius, html_symbol, number, prose
+from thermogear.views.words import celsius, html_symbol, prose
 
-REPORT = "report.html"
-KINDS = ("thesis", "sensitivity")
 PREFIX = "diagrams/"
 SECTIONS = {
     2: "Thermal deformation of the tooth",
@@ -33,30 +32,23 @@ MARKED = ("contradicted",)
 BASE_SETS = ("base_sets/table-4.2", "base_sets/section-4.1")
 
 
-def write_claims_report(directory: Path) -> Path:
-    """Draw ``directory/report.html`` from ``directory/results.nc`` alone; the page's path."""
-    directory = Path(directory)
-    return put(directory / REPORT, page(read_results(directory, KINDS)))
-
-
-def page(results: Results) -> str:
-    """The whole page as text."""
-    whole = results.kind == "thesis"
+def page(result: Result) -> Page:
+    """Verdicts, then every section of the document with its claims and pictures."""
     pictures = Pictures()
-    sections = _thesis_sections(results, pictures) if whole else []
-    if "sensitivity" in results.groups:
-        sections.append(_sensitivity(results, pictures))
-    sections += closing(results)
-    return render(
-        title=results.text("title"),
-        summary=_summary(results) if whole else _study_words(results),
-        tiles=_tiles(results) if whole else [],
-        sections=sections,
-        version=results.text("thermogear"),
+    sections = _thesis_sections(result, pictures)
+    if "sensitivity" in result.groups:
+        sections.append(sensitivity_section(result, pictures))
+    return Page(
+        replace(result, notices=()),
+        _summary(result),
+        sections + background(result),
+        tiles=_tiles(result),
+        numbers=lambda: _numbers(result),
+        lines=lambda: _lines(result),
     )
 
 
-def _summary(results: Results) -> str:
+def _summary(results: Result) -> str:
     sentences = results.table("sentences")
     count = sum(results.table("counts").values())
     total = int(results.text("claims_in_all") or count)
@@ -73,7 +65,7 @@ def _summary(results: Results) -> str:
     )
 
 
-def _tiles(results: Results) -> list[Tile]:
+def _tiles(results: Result) -> list[Tile]:
     found = results.table("counts")
     total = sum(found.values())
     return [
@@ -82,11 +74,11 @@ def _tiles(results: Results) -> list[Tile]:
     ]
 
 
-def _thesis_sections(results: Results, pictures: Pictures) -> list[Section]:
+def _thesis_sections(results: Result, pictures: Pictures) -> list[Section]:
     claims = results.groups["claims"]
     ordered = {name: results.groups[name] for name in BASE_SETS if name in results.groups}
     rest = {name: data for name, data in results.groups.items() if name not in ordered}
-    results = Results(results.texts, {**ordered, **rest})
+    results = replace(results, groups={**ordered, **rest})
     found = [_counted(results, claims)]
     drawn = {
         2: _deformation(results, pictures),
@@ -96,7 +88,7 @@ def _thesis_sections(results: Results, pictures: Pictures) -> list[Section]:
         6: [],
     }
     galleries = [b for blocks in drawn.values() for b in blocks if isinstance(b, Gallery)]
-    shown = {picture.name for gallery in galleries for picture in gallery.pictures}
+    shown = {f"fig-{picture.name}" for gallery in galleries for picture in gallery.pictures}
     for place, title in SECTIONS.items():
         here = claims.isel(claim=np.flatnonzero([_section(n) == place for n in _names(claims)]))
         if not here.sizes["claim"]:
@@ -114,7 +106,7 @@ def _section(name: str) -> int:
     return int(name.split(".")[0])
 
 
-def _counted(results: Results, claims: xr.Dataset) -> Section:
+def _counted(results: Result, claims: xr.Dataset) -> Section:
     verdicts = list(results.table("counts"))
     found = Counter(
         (_section(n), str(v)) for n, v in zip(_names(claims), claims["verdict"].values, strict=True)
@@ -171,7 +163,7 @@ def _blocks(section: Section | None) -> list[Block]:
     return [] if section is None else [block for block in section.blocks if block.kind != "text"]
 
 
-def _deformation(results: Results, pictures: Pictures) -> list[Block]:
+def _deformation(results: Result, pictures: Pictures) -> list[Block]:
     found = _blocks(gear_sections.friction(results, pictures))
     grid = results.group("grid")
     if grid is not None:
@@ -192,12 +184,12 @@ def _deformation(results: Results, pictures: Pictures) -> list[Block]:
     return found + _blocks(gear_sections.heat(results, pictures))
 
 
-def _model(results: Results, pictures: Pictures) -> list[Block]:
+def _model(results: Result, pictures: Pictures) -> list[Block]:
     found = _blocks(gear_sections.gap(results, pictures))
     return found + _blocks(gear_sections.springs(results, pictures))
 
 
-def _simulation(results: Results, pictures: Pictures) -> list[Block]:
+def _simulation(results: Result, pictures: Pictures) -> list[Block]:
     found = _blocks(row_sections.base_sets(results, pictures))
     warming, flips = results.group("warming"), results.group("flips")
     if warming is not None:
@@ -255,7 +247,7 @@ def _flip_table(flips: xr.Dataset) -> Table:
     return Table(caption, order, lines, names=3)
 
 
-def _tests(results: Results, pictures: Pictures) -> list[Block]:
+def _tests(results: Result, pictures: Pictures) -> list[Block]:
     data = results.group("experiment")
     if data is None:
         return []
@@ -303,66 +295,46 @@ def _experiment_table(data: xr.Dataset) -> Table:
     return Table(caption, head, rows, names=3, marked=frozenset(marked))
 
 
-def _study_words(results: Results) -> str:
-    data = results.groups["sensitivity"]
-    return (
-        f"{int(data.attrs['evaluations'])} evaluations of the chain from friction to vibration at "
-        f"{float(data.attrs['speed']) / RPM:.0f} rpm in {float(data.attrs['seconds']):.0f} s; "
-        f"intervals at {100 * float(data.attrs['confidence']):.0f} %. Every input runs through "
-        "its whole range, independently of the others."
-    )
+# --- figures as the terminal and JSON want them -----------------------------------------------
+
+TEXTS = (
+    "number", "place", "kind", "words", "as_in_the_thesis", "consistent", "verdict", "argument",
+    "code", "picture",
+)  # fmt: skip
 
 
-def _sensitivity(results: Results, pictures: Pictures) -> Section:
-    data = results.groups["sensitivity"]
-    blocks: list[Block] = [Text(_study_words(results))]
-    blocks += [Text(prose(_capital(str(text)))) for text in data["sentence"].values]
-    pictures.add(
-        "sensitivity", "What decides what",
-        "Total index [%] with its confidence interval: the share of a result's variance that goes "
-        "with an input, alone and together with others. Cells without a number are below 1 %.",
-        data, ("total",), lambda: plots.sensitivity(data), wide=True,
-    )  # fmt: skip
-    blocks += pictures.take()
-    blocks.append(_ranges(data))
-    blocks.append(_indices(data))
-    return Section("sensitivity", "Which unstated inputs decide", blocks)
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
-def _ranges(data: xr.Dataset) -> Table:
+def _numbers(result: Result) -> dict[str, Any]:
+    """Counts, verdicts and the ranking of the inputs, JSON-ready."""
+    claims = result.groups["claims"]
     rows = [
-        [str(w), number(float(low), 4), number(float(high), 4), str(u)]
-        for w, low, high, u in zip(
-            data["input_words"].values, data["input_low"].values, data["input_high"].values,
-            data["input_unit"].values, strict=True,
-        )
-    ]  # fmt: skip
-    return Table("The ranges, all ours.", ["input", "from", "to", "unit"], rows)
+        {name: str(claims[name].values[k]) for name in TEXTS} for k in range(claims.sizes["claim"])
+    ]
+    found = {
+        "thermogear": result.text("thermogear"),
+        "title": result.title,
+        "kind": "thesis",
+        "claims": len(rows),
+        "claims_in_all": int(result.text("claims_in_all")),
+        "verdicts": result.table("counts"),
+        "sentences": result.table("sentences"),
+        "seconds": round(float(result.text("seconds")), 1),
+        "rows": rows,
+    }
+    if "sensitivity" in result.groups:
+        ranked = result.groups["sensitivity"]
+        found["sensitivity"] = {
+            "evaluations": int(ranked.attrs["evaluations"]),
+            "seconds": round(float(ranked.attrs["seconds"]), 1),
+            "results": [str(text) for text in ranked["sentence"].values],
+        }
+    return found
 
 
-def _indices(data: xr.Dataset) -> Table:
-    rows: list[Sequence[Cell]] = []
-    for o in range(data.sizes["output"]):
-        one = data.isel(output=o)
-        words = str(one["output_words"].item())
-        strongest = np.argsort(-one["total"].values, kind="stable")[:4]
-        told = [k for k in strongest if one["total"].values[k] >= 5e-4]
-        for k in told:
-            pair = [
-                f"{float(one[n][k]) + 0.0:.3f} ± {float(one[f'{n}_conf'][k]):.3f}".replace("-", "−")
-                for n in ("first_order", "total")
-            ]
-            rows.append([words, str(data["input_words"].values[k]), *pair])
-        if not told:
-            rows.append([words, "none changes it", "–", "–"])
-    head = ["result", "input", "first order", "total"]
-    return Table(
-        "The strongest inputs of every result, at most four, as indices between 0 and 1.",
-        head,
-        rows,
-        names=2,
-    )
+def _lines(result: Result) -> list[str]:
+    found = _numbers(result)
+    cut = found["claims"] < found["claims_in_all"]
+    of = f" of {found['claims_in_all']}" if cut else ""
+    return [
+        f"{found['claims']}{of} claims in {found['seconds']:.0f} s",
+        *(f"{count:6d}  {verdict}" for verdict, count in found["verdicts"].items()),
+    ]

@@ -2,51 +2,38 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from thermogear.base.errors import InputError
-from thermogear.base.files import put
 from thermogear.base.units import RPM, STANDARD_GRAVITY
-from thermogear.results.result import Results, read_tree
+from thermogear.results.result import Result
 from thermogear.views import tables
-from thermogear.views.page import Block, Cell, Pictures, Section, Table, Text, render
+from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
+from thermogear.views.pages import record_lines
 from thermogear.views.style import COLD, HOT, INK, WIDE, log_axis, picture
 from thermogear.views.words import html_symbol, number, prose
 
 _SHOWN = 60  # lines of the table: the most prominent
 
 
-def write_measured_report(file: Path, page: Path) -> Path:
-    """Draw ``page`` from the stored ``file`` (netCDF) of a measurement or a comparison."""
-    found = read_tree(file)
-    if found.text("kind") not in ("measured", "comparison"):
-        raise InputError("results", str(file), why="it holds no measurement and no comparison")
-    return put(page, page_of(found))
-
-
-def page_of(results: Results) -> str:
-    """The whole page as text."""
-    sections: list[Section] = []
-    for make in (_comparison, _record, _spectrum, _lines, _evidence, _settings):
-        section = make(results)
-        if section is not None:
-            sections.append(section)
-    return render(
-        title=results.text("title"),
-        summary=results.text("summary") or _summary(results),
-        notices=results.rows("notices"),
-        sections=sections,
-        version=results.text("thermogear"),
+def page(result: Result) -> Page:
+    """A measured record, or models against one."""
+    made = (_comparison, _record, _spectrum, _lines, _evidence, _settings)
+    return Page(
+        result,
+        result.text("conclusion") or _summary(result),
+        [section for make in made if (section := make(result)) is not None],
+        numbers=lambda: result.table("figures"),
+        lines=lambda: LINES[result.kind](result),
     )
 
 
-def _summary(results: Results) -> str:
+LINES = {"measured": record_lines.measured, "comparison": record_lines.comparison}
+
+
+def _summary(results: Result) -> str:
     rate, unit, teeth = (results.text(name) for name in ("rate", "unit", "teeth"))
     said = [
         f"{number(float(rate), 6)} samples/s" if rate else "no rate is known: orders only",
@@ -56,7 +43,7 @@ def _summary(results: Results) -> str:
     return "; ".join(said) + "."
 
 
-def _record(results: Results) -> Section | None:
+def _record(results: Result) -> Section | None:
     data = results.group("record")
     if data is None:
         return None
@@ -83,7 +70,7 @@ def _record(results: Results) -> Section | None:
     return Section("record", "Time record", pictures.take())
 
 
-def _spectrum(results: Results) -> Section | None:
+def _spectrum(results: Result) -> Section | None:
     data, lines = results.group("spectrum"), results.group("lines")
     if data is None:
         return None
@@ -125,7 +112,7 @@ def _spectrum(results: Results) -> Section | None:
 _COLOURS = (COLD, HOT, "#009E73", "#CC79A7")
 
 
-def _lines(results: Results) -> Section | None:
+def _lines(results: Result) -> Section | None:
     data = results.group("lines")
     if data is None:
         return None
@@ -162,22 +149,22 @@ def _lines(results: Results) -> Section | None:
     return Section("lines", "Lines", [Table(caption, head, rows, names=2)])
 
 
-def _evidence(results: Results) -> Section | None:
-    found = json.loads(results.text("evidence") or "[]")
+def _evidence(results: Result) -> Section | None:
+    found = results.rows("evidence")
     if not found:
         return None
     return Section("evidence", "How the gearing was found", [Text(str(text)) for text in found])
 
 
-def _settings(results: Results) -> Section | None:
-    found = json.loads(results.text("settings") or "{}")
+def _settings(results: Result) -> Section | None:
+    found = results.table("settings")
     if not found:
         return None
     table = tables.words("", ["setting", "value"], [[k, v] for k, v in found.items()])
     return Section("settings", "Settings", [table])
 
 
-def _comparison(results: Results) -> Section | None:
+def _comparison(results: Result) -> Section | None:
     data = results.group("comparison")
     if data is None:
         return None

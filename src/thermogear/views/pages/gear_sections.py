@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from thermogear.results.result import Results
-from thermogear.views import captions, tables
+from thermogear.results.result import Result
+from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
+from thermogear.views.pages import captions
 from thermogear.views.plots import backlash, deformation, motion, path, stiffness, temperature
 from thermogear.views.style import chosen, names_of
 from thermogear.views.words import celsius, jam_words, operating_names
@@ -25,7 +26,7 @@ def with_gap(data: xr.Dataset, mesh: xr.Dataset | None) -> xr.Dataset:
     return data.assign({name: mesh[name] for name in names})
 
 
-def friction(results: Results, pictures: Pictures) -> Section | None:
+def friction(results: Result, pictures: Pictures) -> Section | None:
     """Contact, friction and flash temperature."""
     data = results.group("path")
     if data is None:
@@ -69,7 +70,7 @@ def friction(results: Results, pictures: Pictures) -> Section | None:
     return _section("friction", "Friction and flash temperature", [intro], pictures)
 
 
-def heat(results: Results, pictures: Pictures) -> Section | None:
+def heat(results: Result, pictures: Pictures) -> Section | None:
     """Temperature of the bodies and what it does to the flanks."""
     data, profile = results.group("path"), results.group("profile")
     bodies = ("pinion_body_temperature", "wheel_body_temperature")
@@ -112,7 +113,7 @@ def heat(results: Results, pictures: Pictures) -> Section | None:
     return _section("heat", "Temperature and deformation", [intro], pictures)
 
 
-def gap(results: Results, pictures: Pictures) -> Section | None:
+def gap(results: Result, pictures: Pictures) -> Section | None:
     """Hot backlash and jam."""
     mesh, row = results.group("mesh"), results.group("temperature")
     blocks: list[Block] = []
@@ -150,7 +151,7 @@ def _jam_texts(data: xr.Dataset, end: str = "") -> list[Block]:
     return found
 
 
-def springs(results: Results, pictures: Pictures) -> Section | None:
+def springs(results: Result, pictures: Pictures) -> Section | None:
     """Mesh stiffness, its parts, its figures."""
     mesh = results.group("mesh")
     if mesh is None:
@@ -182,7 +183,7 @@ def springs(results: Results, pictures: Pictures) -> Section | None:
     return _section("stiffness", "Mesh stiffness", [], pictures)
 
 
-def vibration(results: Results, pictures: Pictures) -> Section | None:
+def vibration(results: Result, pictures: Pictures) -> Section | None:
     """Motion of every bundle and operating point, undeformed against hot."""
     found = results.group("motion")
     if found is None:
@@ -227,7 +228,7 @@ def _motion_caption(here: xr.Dataset) -> str:
     return "; ".join(parts) + "." if parts else "Undeformed against hot."
 
 
-def row(results: Results, pictures: Pictures) -> Section | None:
+def row(results: Result, pictures: Pictures) -> Section | None:
     """The gears at several temperatures."""
     data = results.group("temperature")
     if data is None:

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from thermogear import __version__
-from thermogear.base.errors import InputError
-from thermogear.base.files import put
-from thermogear.base.stores import read_store
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
-from thermogear.views.page import Block, Pictures, Section, Table, Text, render
+from thermogear.results.result import Result
+from thermogear.views.page import Block, Page, Pictures, Section, Table, Text
+from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.parameters import page_words, shown
 from thermogear.views.words import number
@@ -31,7 +28,6 @@ TITLES = {
 }
 
 
-JUMPS_AT = ("fold", "subcritical period doubling")
 JUMPS_EXPLAINED = (
     "Between two speeds the motion is followed slowly, so a jump stands where the motion ends, not "
     "at a step of the run; chaos is run through in steps of 0.5 % of the speed, and what lives on "
@@ -47,31 +43,17 @@ EXPLAINED = {
 }
 
 
-def read_result(directory: Path) -> xr.Dataset:
-    """The stored dataset in memory, checked; InputError where there is none that is whole."""
-    data = read_store(directory)
-    if data.attrs.get("kind") not in TITLES:
-        raise InputError("store", str(directory), why="it holds no finished result")
-    return data
-
-
-def write_sweep_report(directory: Path, title: str = "") -> Path:
-    """Draw ``directory/report.html`` from the store there."""
-    return put(Path(directory) / "report.html", page_of(read_result(directory), title))
-
-
-def page_of(data: xr.Dataset, title: str = "") -> str:
-    """The whole page as text."""
-    kind = str(data.attrs["kind"])
-    notices = [
-        {"level": "info", "text": text} for text in json.loads(data.attrs.get("notices", "[]"))
-    ]
-    return render(
-        title=title or TITLES[kind],
-        summary=_summary(data),
-        notices=notices,
-        sections=[s for s in (_pictures(data), _points(data), _settings(data)) if s.blocks],
-        version=__version__,
+def page(result: Result) -> Page:
+    """Pictures, located points, and how it was computed."""
+    data = result.data
+    if not result.title:
+        result = replace(result, title=TITLES[result.kind])
+    return Page(
+        result,
+        _summary(data),
+        [_pictures(data), _points(data, result), _settings(data)],
+        numbers=lambda: numbers(result),
+        lines=lambda: lines(result),
     )
 
 
@@ -157,7 +139,7 @@ def _run_up_caption(data: xr.Dataset) -> str:
     return words + ("; thin vertical lines are located folds." if folds else ".")
 
 
-def _points(data: xr.Dataset) -> Section:
+def _points(data: xr.Dataset, result: Result) -> Section:
     blocks: list[Block] = []
     parameter = str(data.attrs.get("parameter", "pinion_speed"))
     if data.sizes.get("bifurcation"):
@@ -200,8 +182,7 @@ def _points(data: xr.Dataset) -> Section:
         blocks.append(Table("Jumps", head, jumps))
         blocks.append(Text(JUMPS_EXPLAINED))
     elif str(data.attrs["kind"]) == "run-up":
-        told = json.loads(data.attrs.get("notices", "[]"))
-        apart = [text for text in told if text.startswith("up and down differ")]
+        apart = [n.text for n in result.notices if n.text.startswith("up and down differ")]
         blocks.append(
             Text(
                 f"No motion was lost at a fold. Yet {apart[0]}: a motion ended in another way "

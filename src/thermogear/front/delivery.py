@@ -1,0 +1,96 @@
+"""From a study to what its reader gets: stored, drawn, printed. Every command's way out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from thermogear.base.progress import Progress
+
+if TYPE_CHECKING:
+    from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.results.result import Result
+    from thermogear.views.page import Page
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+overrides = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Put a value in place of the file's, as gears.pinion.teeth=30. May be repeated.",
+)
+as_json = click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+case = click.argument("case", metavar="CASE")
+
+
+def output(
+    words: str = "Directory of the results; made if new.", *, required: bool = True
+) -> Callable[[_Command], _Command]:
+    """``-o DIR``."""
+    return click.option("-o", "--output", required=required, metavar="DIR", help=words)
+
+
+def load(path: str, changes: tuple[str, ...]) -> GearCase | DimensionlessCase:
+    """The case of a command, its file or a ready-made one."""
+    from thermogear.case.case import load_case
+
+    return load_case(Path(path), changes)
+
+
+def load_gears(path: str, changes: tuple[str, ...]) -> GearCase:
+    """The same where it must have gears."""
+    from thermogear.case.case import gear_case
+
+    return gear_case(load(path, changes))
+
+
+def deliver(
+    make: Callable[[Progress], Result],
+    directory: str | None,
+    *,
+    as_json: bool,
+    kept: str = "what was found so far stays",
+) -> None:
+    """Compute, store and draw into ``directory`` if one is named, and print.
+
+    The directory is claimed before anything is computed; everything is written, or after an
+    error or Ctrl+C nothing. A result that Ctrl+C cut short is kept, and Ctrl+C passed on.
+    """
+    from thermogear.front.progress import Stopped, progress
+    from thermogear.results.files import claimed
+    from thermogear.views.write import clear_tables, page_of, write
+
+    place = None if directory is None else Path(directory)
+    written: list[Path] = []
+    with nullcontext() if place is None else claimed(place) as folder:
+        with progress(wanted=not as_json) as report:
+            result = make(report)
+        page = page_of(result)
+        if folder is not None:
+            result.put(folder)
+            written = write(page, folder)
+    if place is not None:
+        clear_tables(place, written)
+    tell(page, None if place is None else place / written[0].name, as_json=as_json)
+    if result.interrupted:
+        where = "what was found so far is printed" if place is None else f"{kept} in {place}"
+        raise Stopped(where)
+
+
+def tell(page: Page, path: Path | None, *, as_json: bool) -> None:
+    """Print a page as a terminal or a script wants it, and where it stands."""
+    from thermogear.results.files import json_text
+
+    if as_json:
+        click.echo(json_text(page.numbers()), nl=False)
+        return
+    for line in page.lines():
+        click.echo(line)
+    if path is not None:
+        click.echo(path)

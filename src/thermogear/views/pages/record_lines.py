@@ -1,0 +1,61 @@
+"""What a terminal shows of a measured record, and of models beside one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.results.result import Result
+
+
+def measured(result: Result) -> list[str]:
+    """Notices, evidence, settings, and a row for each line."""
+    found = result.table("figures")
+    told = [f"{one.level}: {one.text}" for one in result.notices]
+    told += [f"evidence: {text}" for text in found["evidence"]]
+    told += [f"{name}: {value}" for name, value in found["settings"].items()]
+    head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'reading':>10}"
+    told.append(f"{head} {'g':>9} {'um':>9} {'u_D %':>7}")
+    return told + [_line(one) for one in found["lines"]]
+
+
+def _line(one: Mapping[str, Any]) -> str:
+    return (
+        f"{one['channel'][:12]:12} {one['name'][:22]:22} {_cell(one['order'], 9, 3)} "
+        f"{_cell(one['position'], 11, 6)} {_cell(one['frequency'], 10, 3)} "
+        f"{_cell(one['reading'], 10, 4)} {_cell(one['acceleration'], 9, 3, 1 / STANDARD_GRAVITY)} "
+        f"{_cell(one['displacement'], 9, 3, 1e6)} {_cell(one['uncertainty'], 7, 2, 100.0)}"
+    )
+
+
+def _cell(value: float | None, width: int, digits: int, factor: float = 1.0) -> str:
+    return "-".rjust(width) if value is None else f"{factor * value:{width}.{digits}f}"
+
+
+def comparison(result: Result) -> list[str]:
+    """A row for each quantity and speed, what the lines imply, the conclusion."""
+    found = result.table("figures")
+    told = [f"{one.level}: {one.text}" for one in result.notices]
+    for row in found["rows"]:
+        factor, unit = (1e6, "um") if row["quantity"] == "displacement" else (1.0, "Hz")
+        models = ", ".join(
+            f"{name} {value * factor:.5g} {unit} ({100 * error:+.2f} %)"
+            for name, value, error in zip(
+                found["models"], row["simulated"], row["errors"], strict=True
+            )
+        )
+        told.append(
+            f"{row['speed'] / RPM:.0f} rpm, {row['quantity']}: measured "
+            f"{row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
+            f"(num {100 * row['u_num']:.2f}, input {100 * row['u_input']:.2f}, data "
+            f"{100 * row['u_data']:.2f}); {row['verdict']}"
+        )
+    for item in found["implied"]:
+        text = f"{item['speed'] / RPM:.0f} rpm: the line implies {item['acceleration_g']:.1f} g"
+        if item["shaft_speed"] is not None:
+            text += f" and {item['shaft_speed'] / RPM:.1f} rpm"
+        if item["offset_bins"] is not None:
+            text += f", {item['offset_bins']:+.2f} bins off the nominal mesh line"
+        told.append(text)
+    return [*told, found["conclusion"]]

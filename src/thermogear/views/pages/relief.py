@@ -1,0 +1,93 @@
+"""The page of a tip relief: the relieved pair against the unrelieved one."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.results.result import Result
+from thermogear.views.page import Page, Shown, Table
+from thermogear.views.pages import survey_captions as words
+from thermogear.views.pages.survey import (
+    survey,
+)
+from thermogear.views.plots import relief
+from thermogear.views.words import exactly
+
+
+def page(result: Result) -> Page:
+    """The relief found, beside the unrelieved pair."""
+    torque = float(result.text("torque"))
+    before, after = 1e6 * float(result.text("unrelieved")), 1e6 * float(result.text("relieved"))
+    hot = [float(result.text(f"{gear}_addendum")) - ZERO_CELSIUS for gear in ("pinion", "wheel")]
+    summary = (
+        f"Made for {exactly(torque)} N m with teeth at {hot[0]:.0f} °C (pinion) and "
+        f"{hot[1]:.0f} °C (wheel): the transmission error goes from {before:.2f} to {after:.2f} "
+        f"um peak to peak, by {result.text('evaluations')} evaluations of the mesh period."
+    )
+    pictures = [
+        Shown(
+            "error",
+            "Transmission error over a mesh period",
+            words.relief_error(result.groups["error"]),
+            partial(relief.error, result.groups["error"]),
+        ),
+        Shown(
+            "stiffness",
+            "Tangent stiffness over a mesh period",
+            words.relief_stiffness(result.groups["error"]),
+            partial(relief.stiffness, result.groups["error"]),
+        ),
+        Shown(
+            "loads",
+            "What the relief does at other loads",
+            words.relief_loads(result.groups["loads"]),
+            partial(relief.over_load, result.groups["loads"], torque),
+        ),
+    ]
+    rows = [
+        [gear, f"{1e6 * r['amount_m']:.3f}", f"{1e3 * r['length_m']:.4f}", r["shape"]]
+        for gear, r in result.table("reliefs").items()
+    ]
+    table = Table(
+        "Tip relief; lengths along the line of action.",
+        ["gear", "amount [µm]", "length [mm]", "shape"],
+        [[row[0], row[1], row[2], row[3]] for row in rows],
+    )
+    return survey(
+        result,
+        summary,
+        pictures,
+        [table],
+        numbers=_numbers,
+        lines=_lines,
+        code=result.text("paste"),
+    )
+
+
+def _numbers(result: Result) -> dict[str, Any]:
+    error = result.groups["error"]
+    return {
+        "torque_Nm": float(result.text("torque")),
+        "unrelieved_m": float(result.text("unrelieved")),
+        "relieved_m": float(result.text("relieved")),
+        "evaluations": int(result.text("evaluations")),
+        "reliefs": result.table("reliefs"),
+        "edge_contact_share": {
+            str(one["pair_kind"].values): float(one) for one in error["edge_contact_share"]
+        },
+        "paste": result.text("paste"),
+    }
+
+
+def _lines(result: Result) -> list[str]:
+    before, after = (1e6 * float(result.text(name)) for name in ("unrelieved", "relieved"))
+    return [
+        f"transmission error at {float(result.text('torque')):g} N m: {before:.3f} um peak to peak "
+        f"without, {after:.3f} um with relief",
+        "",
+        "# for the case file, in place of tip reliefs it has already",
+        *result.text("paste").splitlines(),
+        "",
+    ]

@@ -1,0 +1,103 @@
+"""The page of a gear survey: pictures, numbers, the case, and every table as CSV."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from thermogear.base.units import RPM
+from thermogear.results.result import Result
+from thermogear.results.tables import frames
+from thermogear.views.page import Block, Code, Gallery, Page, Section, Shown, Table, notice_lines
+from thermogear.views.pages.background import case_file
+
+Lines = Sequence[str]
+
+
+def survey(
+    result: Result,
+    summary: str,
+    pictures: Sequence[Shown],
+    tables: Sequence[Table],
+    *,
+    numbers: Callable[[Result], dict[str, Any]],
+    lines: Callable[[Result], Lines],
+    code: str = "",
+) -> Page:
+    """Wide pictures come first; ``code`` is what may be copied into a case file."""
+    small = [one for one in pictures if not one.wide]
+    drawn: list[Block] = [Gallery([one]) for one in pictures if one.wide]
+    drawn += [Gallery(small)] * bool(small)
+    sections = [Section("pictures", "Pictures", drawn)]
+    if code:
+        sections.append(Section("paste", "For the case file", [Code(code)]))
+    sections.append(Section("numbers", "Numbers", list(tables)))
+    sections.append(case_file(result))
+    return Page(
+        result,
+        summary,
+        sections,
+        numbers=lambda: {
+            "title": result.title,
+            **numbers(result),
+            "notices": [one._asdict() for one in result.notices],
+        },
+        lines=lambda: [*lines(result), *notice_lines(result)],
+        tables=lambda: csv_tables(result),
+        files=("svg", "png"),
+    )
+
+
+def csv_tables(result: Result) -> dict[str, str]:
+    """One CSV text for each group and set of dimensions; the heads name the units."""
+    found = {}
+    for group, data in result.groups.items():
+        families = frames(data)
+        whole = any(not v.dims for v in data.data_vars.values()) + len(families)
+        for dims, frame in families.items():
+            tail = "" if whole == 1 else f"_by_{'_'.join(dims)}"
+            found[f"{result.kind}_{group}{tail}.csv"] = frame.to_csv(
+                index=False, float_format="%.9g", lineterminator="\n"
+            )
+    return found
+
+
+# --- figures as the terminal and JSON want them -----------------------------------------------
+
+
+def operating_rows(data: xr.Dataset) -> list[dict[str, float]]:
+    """Speed and torque of every operating point."""
+    pairs = zip(data["pinion_speed"].values, data["pinion_torque"].values, strict=True)
+    return [{"pinion_speed_rpm": float(s) / RPM, "pinion_torque_Nm": float(t)} for s, t in pairs]
+
+
+def known(value: object) -> float | None:
+    """A number; None where it is not finite."""
+    number = float(str(value))
+    return number if math.isfinite(number) else None
+
+
+def table_of(data: xr.DataArray) -> list[list[float | None]]:
+    """A grid as rows of numbers."""
+    return [[known(v) for v in row] for row in data.values]
+
+
+def digits(value: float | None) -> str:
+    """A number of a terminal's table."""
+    return "-" if value is None else f"{value:.4f}"
+
+
+def reach(values: Any) -> str:
+    """Least and greatest of ``values``, or the one there is; "-" without any."""
+    found = [float(v) for v in np.ravel(values) if math.isfinite(v)]
+    if not found:
+        return "-"
+    low, high = (f"{v:.4g}" for v in (min(found), max(found)))
+    return low if low == high else f"{low} .. {high}"
+
+
+__all__ = ["csv_tables", "digits", "known", "operating_rows", "reach", "survey", "table_of"]

@@ -1,0 +1,152 @@
+"""The figures of a diagram, map, basin, sweep or run-up as JSON and a terminal want them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import FASTER_RULE
+from thermogear.results.result import Result
+from thermogear.views.plots.parameters import shown
+
+JUMPS_AT = ("fold", "subcritical period doubling")
+
+
+def words_of(flags: xr.DataArray) -> NDArray[np.str_]:
+    """The words of a flag variable, in its shape."""
+    meanings = np.array([w.replace("_", " ") for w in flags.attrs["flag_meanings"].split()])
+    return np.asarray(meanings[flags.values.astype(int)])
+
+
+def _labels(result: Result) -> dict[str, Any]:
+    data = result.data
+    told = words_of(data["label"]).astype("U16")
+    periodic = told == "periodic"
+    told[periodic] = np.char.add("period-", data["period"].values[periodic].astype(str))
+    names, counts = np.unique(told, return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    found: dict[str, Any] = {
+        "points": int(data["label"].size),
+        "labels": {str(names[i]): int(counts[i]) for i in order},
+        "rule": FASTER_RULE,
+    }
+    for name in ("total_periods", "full_periods", "computed_points"):
+        if name in data.attrs:
+            found[name] = int(data.attrs[name])
+    found["notices"] = [one.text for one in result.notices]
+    return found
+
+
+def _bifurcations(data: xr.Dataset, name: str) -> list[dict[str, Any]]:
+    if "bifurcation_kind" not in data:
+        return []
+    kinds = words_of(data["bifurcation_kind"])
+    rows = []
+    for i in range(data.sizes["bifurcation"]):
+        row: dict[str, Any] = {
+            "kind": str(kinds[i]),
+            "period": int(data["bifurcation_period"].values[i]),
+            "value": float(shown(name, data["bifurcation_value"].values[i])),
+        }
+        if "bifurcation_state" in data:
+            row["gears_degC"] = _degrees(data, int(data["bifurcation_state"].values[i]))
+        rows.append(row)
+    return rows
+
+
+def _degrees(data: xr.Dataset, state: int) -> float:
+    return round(float(data["gear_temperature"].values[state]) - ZERO_CELSIUS, 6)
+
+
+def _diagram(result: Result) -> dict[str, Any]:
+    parameter = result.text("parameter")
+    return {
+        **_labels(result),
+        "parameter": parameter,
+        "bifurcations": _bifurcations(result.data, parameter),
+    }
+
+
+def _basins(result: Result) -> dict[str, Any]:
+    data = result.data
+    rows = [
+        {
+            "period": int(data["attractor_period"].values[i]),
+            "x": float(data["attractor_x"].values[i, 0]),
+            "v": float(data["attractor_v"].values[i, 0]),
+            "count": int(data["count"].values[i]),
+            "fraction": float(data["fraction"].values[i]),
+            "border_distance": float(data["border_distance"].values[i]),
+        }
+        for i in range(data.sizes["attractor_number"])
+    ]
+    figures = {
+        name: float(data.attrs[name])
+        for name in ("basin_entropy", "boundary_basin_entropy", "unassigned")
+    }
+    points = int(data["attractor"].size)
+    return {"points": points, "attractors": rows, **figures, "rule": FASTER_RULE}
+
+
+def _run_up(result: Result) -> dict[str, Any]:
+    data = result.data
+
+    def rpm(name: str, place: int) -> float:
+        return float(shown("pinion_speed", data[name].values[place]))
+
+    jumps = [
+        {
+            "gears_degC": _degrees(data, int(data["jump_state"].values[i])),
+            "direction": "up" if int(data["jump_direction"].values[i]) > 0 else "down",
+            "from_rpm": rpm("jump_from", i),
+            "to_rpm": rpm("jump_to", i),
+            "at": JUMPS_AT[int(data["jump_kind"].values[i])],
+            "fold_rpm": rpm("jump_fold", i),
+            "return_rpm": rpm("jump_return", i),
+            "into_period": int(data["jump_into"].values[i]),
+            "before_um": 1e6 * float(data["jump_before"].values[i]),
+            "after_um": 1e6 * float(data["jump_after"].values[i]),
+        }
+        for i in range(data.sizes["jump"])
+    ]
+    return {
+        **_labels(result),
+        "jumps": jumps,
+        "bifurcations": _bifurcations(data, "pinion_speed"),
+    }
+
+
+NUMBERS: dict[str, Callable[[Result], dict[str, Any]]] = {
+    "diagram": _diagram,
+    "map": _labels,
+    "basins": _basins,
+    "sweep": _labels,
+    "run-up": _run_up,
+}
+
+
+def numbers(result: Result) -> dict[str, Any]:
+    """The figures of a stored result, JSON-ready."""
+    found = {"kind": result.kind, **NUMBERS[result.kind](result)}
+    seconds = result.text("seconds")
+    return found | ({"seconds": float(seconds)} if seconds else {})
+
+
+def lines(result: Result) -> list[str]:
+    """The same as a terminal shows it."""
+    found = []
+    for name, value in numbers(result).items():
+        if isinstance(value, list):
+            found += [f"- {row if isinstance(row, str) else _line(row)}" for row in value]
+        else:
+            found.append(f"{name}: {_line(value) if isinstance(value, dict) else value}")
+    return found
+
+
+def _line(row: dict[str, Any]) -> str:
+    return ", ".join(f"{k} {v:.9g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())
