@@ -255,7 +255,7 @@ def test_run_hands_case_and_directory_on(
     assert pretended["directory"] == results
     assert pretended["reported"] != results
     assert pretended["result"].text("case") == example_text("rig")
-    assert pretended["result"].rows("overrides") == [["operating.torque", "150 N m"]]
+    assert pretended["result"].values("overrides") == [["operating.torque", "150 N m"]]
 
 
 def test_run_without_overrides_hands_the_text_on_as_it_is(
@@ -263,7 +263,7 @@ def test_run_without_overrides_hands_the_text_on_as_it_is(
 ) -> None:
     assert main(["run", str(rig), "-o", str(tmp_path / "results")]) == 0
     assert pretended["result"].text("case") == example_text("rig")
-    assert pretended["result"].rows("overrides") == []
+    assert pretended["result"].values("overrides") == []
 
 
 def test_the_reference_flash_is_asked_for_by_a_flag(

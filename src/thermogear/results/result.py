@@ -96,11 +96,18 @@ class Result:
         """An entry of the provenance as text, empty where it is absent."""
         return str(self.provenance.get(name, ""))
 
-    def rows(self, name: str) -> list[Any]:
+    def values(self, name: str) -> list[Any]:
         """An entry that holds a list; empty where it is absent."""
         found = self._json(name, "[]")
         if not isinstance(found, list):
             raise InputError(f"results attribute {name}", "no list", fix=FIX)
+        return found
+
+    def rows(self, name: str) -> list[dict[str, Any]]:
+        """An entry that holds a list of tables; empty where it is absent."""
+        found = self.values(name)
+        if not all(isinstance(row, dict) for row in found):
+            raise InputError(f"results attribute {name}", "no list of rows", fix=FIX)
         return found
 
     def table(self, name: str) -> dict[str, Any]:

@@ -50,7 +50,7 @@ def case_file(results: Result) -> Section:
     """The case as it was read, and below it what the command line put in its place."""
     text = results.text("case").rstrip()
     if "# on the command line:" not in text:
-        changes = results.rows("overrides")
+        changes = results.values("overrides")
         text += "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)
     return Section("case", "Case file", [Code(text)])
 

@@ -150,7 +150,7 @@ def _lines(results: Result) -> Section | None:
 
 
 def _evidence(results: Result) -> Section | None:
-    found = results.rows("evidence")
+    found = results.values("evidence")
     if not found:
         return None
     return Section("evidence", "How the gearing was found", [Text(str(text)) for text in found])

@@ -293,7 +293,7 @@ def _numbers(result: Result) -> dict[str, Any]:
     last = data["node_temperature"].values[-1]
     return {
         "worst": result.table("worst"),
-        "jams_s": result.rows("jams"),
+        "jams_s": result.values("jams"),
         "end_K": {str(node): float(t) for node, t in zip(data["node"].values, last, strict=True)},
         "sensor_error_at_the_end_K": {
             str(name): float(e) for name, e in zip(data["sensor"].values, error, strict=True)
