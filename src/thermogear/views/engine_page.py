@@ -11,18 +11,17 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
 from thermogear.base.files import put
 from thermogear.results.result import read_tree
 from thermogear.views.csv import quoted
 from thermogear.views.page import Block, Gallery, Picture, Section, Table, Text, render
+from thermogear.views.picture import Picture as Seen
 from thermogear.views.plots import engine as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
-from thermogear.views.style import styled
-from thermogear.views.svg import draw, put_figure
+from thermogear.views.svg import draw, put_picture
 from thermogear.views.words import number, prose
 
 KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
@@ -47,17 +46,14 @@ def write_pages(path: Path) -> list[Path]:
     """HTML, SVG, PNG and CSV beside the stored file ``path``; the files, the page first."""
     kind, summary, groups = read_engine(path)
     directory = path.parent
-    make = _picture(kind, groups)
     written = [put(directory / f"{kind}.html", page(kind, summary, groups))]
-    with styled():
-        figure = make()
-        for ending in ("svg", "png"):
-            target = directory / f"{kind}.{ending}"
-            written.append(put_figure(figure, target, resolution=160))
+    drawn = _picture(kind, groups)()
+    for ending in ("svg", "png"):
+        written.append(put_picture(drawn, directory / f"{kind}.{ending}", resolution=160))
     return written + write_tables(directory, kind, groups)
 
 
-def _picture(kind: str, groups: Groups) -> Callable[[], Figure]:
+def _picture(kind: str, groups: Groups) -> Callable[[], Seen]:
     if kind == "orbit":
         return partial(plots.orbit_picture, groups["orbit"])
     if kind == "lyapunov":

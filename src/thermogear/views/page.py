@@ -9,8 +9,8 @@ from typing import Any
 import jinja2
 import xarray as xr
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
+from thermogear.views import picture
 from thermogear.views.svg import draw
 from thermogear.views.words import prose
 
@@ -95,7 +95,7 @@ class Pictures:
         caption: Cell,
         data: xr.Dataset,
         needs: Iterable[str],
-        make: Callable[[], Figure],
+        make: Callable[[], picture.Picture],
         wide: bool = False,
     ) -> None:
         """Draw ``make()`` unless ``data`` lacks one of the variables it ``needs``."""
@@ -107,7 +107,7 @@ class Pictures:
         self._names.add(own)
         self.keep(name, Picture(own, heading, caption, Markup(), wide), make)
 
-    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
+    def keep(self, name: str, picture: Picture, make: Callable[[], picture.Picture]) -> None:
         """Draw the picture into the page."""
         svg = draw(make, picture.name, picture.heading)
         self.drawn.append(replace(picture, svg=svg))

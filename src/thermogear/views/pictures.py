@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,17 +9,17 @@ from pathlib import Path
 
 import xarray as xr
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError
 from thermogear.base.files import require_directory
 from thermogear.results.result import KINDS as RUNS
 from thermogear.results.result import read_results, results_of
+from thermogear.views import picture as data
+from thermogear.views.drawing import image
 from thermogear.views.page import Picture, Pictures
 from thermogear.views.report import ORDER, with_hot_temperature
-from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS
-from thermogear.views.svg import put_figure
+from thermogear.views.svg import put_picture
 
 KINDS = ("png", "svg", "pdf")
 RESOLUTION = 130
@@ -31,21 +30,23 @@ RESOLUTION = 130
 class ReportPicture:
     """A picture of a report; a notebook shows it where it stands last in a cell.
 
-    ``heading`` and ``caption`` say what one should see. It is drawn when first asked for.
+    ``heading`` and ``caption`` say what one should see. It is made when first asked for.
     """
 
     name: str
     heading: str
     caption: str
-    make: Callable[[], Figure] = field(repr=False)
+    make: Callable[[], data.Picture] = field(repr=False)
+
+    @cached_property
+    def picture(self) -> data.Picture:
+        """What is seen, as data: axes with words and units, curves, marks; ``to_json()`` of it."""
+        return self.make()
 
     @cached_property
     def image(self) -> bytes:
         """Its PNG file, on white."""
-        stream = io.BytesIO()
-        with styled():
-            self.make().savefig(stream, format="png", dpi=RESOLUTION, facecolor="white")
-        return stream.getvalue()
+        return image(self.picture, "png", dpi=RESOLUTION, facecolor="white")
 
     def _repr_png_(self) -> bytes:
         """For the notebook."""
@@ -58,7 +59,7 @@ class _Shown(Pictures):
 
     found: dict[str, ReportPicture] = field(default_factory=dict)
 
-    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
+    def keep(self, name: str, picture: Picture, make: Callable[[], data.Picture]) -> None:
         caption = picture.caption
         words = caption.striptags() if isinstance(caption, Markup) else caption
         self.found[name] = ReportPicture(name, picture.heading, words, make)
@@ -96,10 +97,9 @@ class _Files(Pictures):
     kind: str = "png"
     written: list[Path] = field(default_factory=list)
 
-    def keep(self, name: str, picture: Picture, make: Callable[[], Figure]) -> None:
+    def keep(self, name: str, picture: Picture, make: Callable[[], data.Picture]) -> None:
         path = self.folder / f"{name}.{self.kind}"
-        with styled():
-            self.written.append(put_figure(make(), path, resolution=RESOLUTION))
+        self.written.append(put_picture(make(), path, resolution=RESOLUTION))
 
 
 def write_pictures(directory: Path, folder: Path, kind: str = "png") -> list[Path]:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear.views.page import Table
+from thermogear.views.picture import Picture
 
 Groups = Mapping[str, xr.Dataset]
 
@@ -20,7 +20,7 @@ class Drawn:
     name: str
     heading: str
     caption: str
-    make: Callable[[], Figure]
+    make: Callable[[], Picture]
     wide: bool = False
 
 

@@ -14,9 +14,8 @@ from thermogear.base.errors import InputError
 from thermogear.base.files import put
 from thermogear.results.result import Results, read_tree
 from thermogear.views.page import Block, Code, Gallery, Picture, Section, render
-from thermogear.views.style import styled
 from thermogear.views.survey_sections import SURVEYS, Drawn, Survey
-from thermogear.views.svg import draw, put_figure
+from thermogear.views.svg import draw, put_picture
 from thermogear.views.words import prose
 
 RESOLUTION = 160
@@ -83,11 +82,10 @@ def _picture(one: Drawn) -> Picture:
 def _files(directory: Path, kind: str, one: Drawn) -> list[Path]:
     """SVG and PNG of a picture, on white."""
     written = []
-    with styled():
-        figure = one.make()
-        for ending in ("svg", "png"):
-            path = directory / f"{kind}_{one.name}.{ending}"
-            written.append(put_figure(figure, path, resolution=RESOLUTION))
+    drawn = one.make()
+    for ending in ("svg", "png"):
+        path = directory / f"{kind}_{one.name}.{ending}"
+        written.append(put_picture(drawn, path, resolution=RESOLUTION))
     return written
 
 

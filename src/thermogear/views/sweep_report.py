@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear import __version__
 from thermogear.base.errors import InputError
@@ -17,6 +16,7 @@ from thermogear.base.stores import read_store
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.views.page import Block, Pictures, Section, Table, Text, render
+from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.parameters import page_words, shown
 from thermogear.views.words import number
@@ -89,7 +89,7 @@ def _summary(data: xr.Dataset) -> str:
 
 def _pictures(data: xr.Dataset) -> Section:
     kind = str(data.attrs["kind"])
-    makers: dict[str, list[tuple[str, str, str | Words, Callable[[xr.Dataset], Figure]]]] = {
+    makers: dict[str, list[tuple[str, str, str | Words, Callable[[xr.Dataset], Picture]]]] = {
         "diagram": [
             (
                 "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture,
@@ -124,7 +124,7 @@ def _pictures(data: xr.Dataset) -> Section:
     pictures = Pictures()
     for name, heading, caption, make in makers[kind]:
 
-        def drawn(make: Callable[[xr.Dataset], Figure] = make) -> Figure:
+        def drawn(make: Callable[[xr.Dataset], Picture] = make) -> Picture:
             return make(data)
 
         said = caption if isinstance(caption, str) else caption(data)

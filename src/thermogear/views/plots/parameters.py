@@ -36,7 +36,8 @@ def shown(name: str, values: ArrayLike) -> NDArray[np.float64]:
 
 def axis_words(name: str) -> str:
     """The label of a parameter's axis in a picture."""
-    return math_symbol(_words(name))
+    words = math_symbol(_words(name))
+    return words if "[" in words or name not in PARAMETERS else f"{words} [–]"
 
 
 def page_words(name: str) -> Markup:
