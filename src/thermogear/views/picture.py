@@ -80,8 +80,8 @@ class Stems(Mark):
 
     x: ArrayLike
     y: ArrayLike
-    low: float
     _: KW_ONLY
+    low: float
     colour: str
     size: float
     open: bool = False
@@ -94,9 +94,9 @@ class Band(Mark):
     """The area between two curves over ``x``; ``at`` = "x": their y are parts of the height."""
 
     x: ArrayLike
+    _: KW_ONLY
     low: ArrayLike
     high: ArrayLike
-    _: KW_ONLY
     colour: str
     opacity: float = 1.0
     step: bool = False
@@ -197,6 +197,7 @@ class Contours(Mark):
     x: ArrayLike
     y: ArrayLike
     values: ArrayLike
+    _: KW_ONLY
     levels: ArrayLike
     words: Sequence[str]
 
@@ -226,6 +227,7 @@ class Axis:
     """
 
     words: str = ""
+    _: KW_ONLY
     low: float | None = None
     high: float | None = None
     log: str = ""
@@ -271,6 +273,7 @@ class Panel:
     x: Axis = field(default_factory=Axis)
     y: Axis = field(default_factory=Axis)
     title: str = ""
+    _: KW_ONLY
     top: Top | None = None
     equal: bool = False
     background: str = ""

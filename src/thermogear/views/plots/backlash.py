@@ -15,7 +15,7 @@ from thermogear.views.words import CELSIUS, FAR, plain, shown
 def over_phase(data: xr.Dataset) -> Picture:
     """Half backlash over a mesh period, undeformed and hot, at the first operating point."""
     panel = Panel(
-        axis_of("mesh_phase", "mesh phase", 0.0, 1.0),
+        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0),
         axis_of("half_backlash_curve", "half backlash"),
     )
     x = shown(data, "mesh_phase")

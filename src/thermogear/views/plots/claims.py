@@ -47,7 +47,7 @@ def diagram(diagrams: Mapping[str, xr.Dataset], flips: xr.Dataset, row: str) -> 
         data = diagrams[f"{row}/{heat}"]
         parameter = str(data.attrs["parameter"])
         low, high = float(data[parameter].min()), float(data[parameter].max())
-        x = Axis(AXES[row], low, high, most=5, inner=True, grid=False)
+        x = Axis(AXES[row], low=low, high=high, most=5, inner=True, grid=False)
         panel = Panel(x, Axis(grid=False), words)
         panel.points(*_points(data, parameter), marker="dot", size=0.9, colour=colour, pixels=True)
         for value in flips["value"].sel(row=row, heat=heat).values:
@@ -148,7 +148,7 @@ def sensitivity(data: xr.Dataset) -> Picture:
     columns, rows = np.arange(len(inputs) + 1) - 0.5, np.arange(len(outputs) + 1) - 0.5
     panel = Panel(
         Axis(ticks=columns[:-1] + 0.5, names=inputs, slant=35.0),
-        Axis("", rows[-1], rows[0], ticks=rows[:-1] + 0.5, names=outputs),
+        Axis(low=rows[-1], high=rows[0], ticks=rows[:-1] + 0.5, names=outputs),
     )
     panel.field(columns, rows, total, colours=scale("Blues"), low=0.0, high=1.0)
     spread = data["total_conf"].values

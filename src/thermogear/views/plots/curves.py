@@ -26,10 +26,10 @@ Floats = NDArray[np.float64]
 
 
 def axis_of(
-    name: str, words: str | None = None, low: float | None = None, high: float | None = None
+    name: str, words: str | None = None, *, low: float | None = None, high: float | None = None
 ) -> Axis:
     """The axis of a stored quantity: its words, symbol and unit."""
-    return Axis(axis_label(name, words), low, high)
+    return Axis(axis_label(name, words), low=low, high=high)
 
 
 def along_path(data: xr.Dataset, y: Axis, *, letters: bool = True) -> Panel:

@@ -114,7 +114,7 @@ def lyapunov_picture(data: xr.Dataset) -> Picture:
     panel = Panel(Axis("batches [–]"), Axis("largest Lyapunov exponent λ₁ [–]"))
     panel.line(y=0.0, colour=QUIET, width=1.0)
     panel.points(count, values, marker="dot", colour=QUIET, label="batch means")
-    panel.band(count, mean - error, mean + error, colour=COLD, opacity=0.25)
+    panel.band(count, low=mean - error, high=mean + error, colour=COLD, opacity=0.25)
     panel.curve(count, mean, colour=COLD, label="mean so far, one standard error")
     return Picture([[panel]], legend=2)
 

@@ -27,7 +27,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
     Laws in ``means`` give one value for the mesh and are drawn dashed; where the contact leaves a
     law's range its curve is thin and dotted.
     """
-    panel = along_path(data, Axis("friction coefficient |μ| [–]", 0.0))
+    panel = along_path(data, Axis("friction coefficient |μ| [–]", low=0.0))
     panel.title = plain(operating_names(data)[place])
     here = data.isel(operating=place)
     x = 1e3 * here["path_position"].values
@@ -48,7 +48,8 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
     for k, name in enumerate(str(n) for n in here["regime_name"].values):
         low = np.where(here["regime"].values == k, 1.0 - BAND, np.nan)
         panel.band(
-            x, low, np.ones(x.size), step=True, at="x", colour=REGIME_COLOURS.get(name, QUIET),
+            x, low=low, high=np.ones(x.size), step=True, at="x",
+            colour=REGIME_COLOURS.get(name, QUIET),
             label=f"band: {name}, {100.0 * float(shares[k]):.0f} % of the path",
         )  # fmt: skip
     return Picture([[panel]], size=(WIDE, 4.6), top=0.55, legend=4)
@@ -56,7 +57,7 @@ def laws(data: xr.Dataset, place: int, means: frozenset[str] = frozenset()) -> P
 
 def film(data: xr.Dataset) -> Picture:
     """Film parameter along the path at every operating point, with the regimes' borders."""
-    panel = along_path(data, Axis("film parameter Λ [–]", 0.0))
+    panel = along_path(data, Axis("film parameter Λ [–]", low=0.0))
     x = 1e3 * data["path_position"].values
     values = data["film_parameter"].values
     names = operating_names(data)

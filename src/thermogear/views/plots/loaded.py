@@ -22,7 +22,7 @@ def over_phase(data: xr.Dataset) -> Picture:
         ("secant_stiffness", 1e-8, "secant stiffness [10⁸ N/m]"),
         ("transmission_error", 1e6, "transmission error δ, heat's shift in it [µm]"),
     ):
-        panel = Panel(Axis("mesh phase φ [–]", 0.0, 1.0), Axis(words))
+        panel = Panel(Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis(words))
         for place, colour in enumerate(ramp(here.sizes["load"])):
             label = f"{float(here['load'][place]):.4g} N m"
             values = scale * here[name].values[place]
@@ -37,8 +37,8 @@ def along_path(data: xr.Dataset, points: dict[str, float]) -> Picture:
     The pressure stops where a tip corner carries, and those stretches are shaded.
     """
     across = "distance from the pinion's tangent point [mm]"
-    share = Panel(Axis(across), Axis("share of the load [–]", 0.0))
-    pressure = Panel(Axis(across), Axis("greatest Hertzian pressure on the flanks [MPa]", 0.0))
+    share = Panel(Axis(across), Axis("share of the load [–]", low=0.0))
+    pressure = Panel(Axis(across), Axis("greatest Hertzian pressure on the flanks [MPa]", low=0.0))
     for name, (colour, dash) in STATES.items():
         if name not in data["temperature"].values:
             continue
@@ -88,7 +88,7 @@ def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
         "peak_to_peak_error": (1e6, "transmission error, peak to peak [µm]"),
     }
     scale, text = words[name]
-    panel = Panel(Axis("pinion torque [N m]", log="full"), Axis(text, 0.0))
+    panel = Panel(Axis("pinion torque [N m]", log="full"), Axis(text, low=0.0))
     colours = (OKABE_ITO[0], OKABE_ITO[5], INK, OKABE_ITO[4], OKABE_ITO[1])
     for place, difference in enumerate(data["temperature_difference"].values):
         panel.curve(
@@ -104,7 +104,7 @@ def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
 
 def iso(data: xr.Dataset) -> Picture:
     """Mean stiffness of the loaded contact beside that of ISO 6336-1 over the load."""
-    panel = Panel(Axis("pinion torque [N m]"), Axis("mean mesh stiffness [10⁸ N/m]", 0.0))
+    panel = Panel(Axis("pinion torque [N m]"), Axis("mean mesh stiffness [10⁸ N/m]", low=0.0))
     for name, words, colour in (
         ("loaded_stiffness", "loaded contact, undeformed", HOT),
         ("iso_stiffness", "ISO 6336-1, method B", COLD),

@@ -52,7 +52,7 @@ def fastest(data: xr.Dataset) -> int:
 
 def load_share(data: xr.Dataset) -> Picture:
     """Share of the normal force that one tooth pair carries, for every bundle."""
-    panel = along_path(data, axis_of("load_share", "load share of one pair", 0.0, 1.08))
+    panel = along_path(data, axis_of("load_share", "load share of one pair", low=0.0, high=1.08))
     draw_by_bundle(panel, hot_state(data), "load_share", shown(data, S), colour=HOT)
     return Picture([[panel]])
 
@@ -60,8 +60,8 @@ def load_share(data: xr.Dataset) -> Picture:
 def hertz(data: xr.Dataset, bundle: int) -> Picture:
     """Hertzian pressure and half width of one bundle along the path, one curve per load."""
     here = hot_state(data).isel(bundle=bundle)
-    above = along_path(data, axis_of("hertz_pressure", "Hertzian pressure", 0.0))
-    below = along_path(data, axis_of("hertz_half_width", "half width", 0.0), letters=False)
+    above = along_path(data, axis_of("hertz_pressure", "Hertzian pressure", low=0.0))
+    below = along_path(data, axis_of("hertz_half_width", "half width", low=0.0), letters=False)
     above.x.words = axis_label(S, "")
     label = f"hot{', all operating points' if here.sizes['operating'] > 1 else ''}"
     for panel, name in ((above, "hertz_pressure"), (below, "hertz_half_width")):
@@ -83,7 +83,7 @@ def friction(data: xr.Dataset, bundle: int) -> Picture:
     Shaded behind it what the laws within their range span.
     """
     name, x = "friction_coefficient", shown(data, S)
-    panel = along_path(data, axis_of(name, "friction coefficient", 0.0))
+    panel = along_path(data, axis_of(name, "friction coefficient", low=0.0))
     here = hot_state(data).isel(bundle=bundle)
     if set(here.data_vars) >= BAND:
         _band(panel, here, x)
@@ -110,13 +110,13 @@ def _band(panel: Panel, here: xr.Dataset, x: Floats) -> None:
         low = np.min(least, axis=0, where=np.isfinite(least), initial=np.inf)
         high = np.max(greatest, axis=0, where=np.isfinite(greatest), initial=0.0)
         low, high = np.where(known, low, np.nan), np.where(known, high, np.nan)
-        panel.band(x, low, high, colour=FAINT, label="laws in their range")
+        panel.band(x, low=low, high=high, colour=FAINT, label="laws in their range")
 
 
 def flash(data: xr.Dataset, name: str) -> Picture:
     """Flash temperature rise ``name`` of :data:`FLASHES`: speeds by colour, bundles by line."""
     words = f"flash temperature rise, {FLASHES[name]}"
-    panel = along_path(data, axis_of("flash_temperature", words, 0.0))
+    panel = along_path(data, axis_of("flash_temperature", words, low=0.0))
     draw_by_both(panel, hot_state(data), name, shown(data, S), thin=1.2)
     return Picture([[panel]], legend=2)
 

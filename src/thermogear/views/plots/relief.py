@@ -13,7 +13,9 @@ COLOURS = {"unrelieved": COLD, "relieved": HOT}
 
 def error(data: xr.Dataset) -> Picture:
     """Static transmission error over a mesh period at the design load, mean taken off."""
-    panel = Panel(Axis("mesh phase φ [–]", 0.0, 1.0), Axis("transmission error, mean removed [µm]"))
+    panel = Panel(
+        Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis("transmission error, mean removed [µm]")
+    )
     x = data["mesh_phase"].values
     for place, name in enumerate(names_of(data, "pair_kind")):
         values = 1e6 * data["transmission_error"].values[place]
@@ -24,7 +26,10 @@ def error(data: xr.Dataset) -> Picture:
 
 def stiffness(data: xr.Dataset) -> Picture:
     """Tangent stiffness over a mesh period at the design load."""
-    panel = Panel(Axis("mesh phase φ [–]", 0.0, 1.0), Axis("tangent mesh stiffness [10⁸ N/m]", 0.0))
+    panel = Panel(
+        Axis("mesh phase φ [–]", low=0.0, high=1.0),
+        Axis("tangent mesh stiffness [10⁸ N/m]", low=0.0),
+    )
     _pairs(panel, data["mesh_phase"], 1e-8 * data["tangent_stiffness"])
     return Picture([[panel]], legend=2)
 
@@ -32,7 +37,7 @@ def stiffness(data: xr.Dataset) -> Picture:
 def over_load(data: xr.Dataset, design: float) -> Picture:
     """Peak-to-peak error over the torque, the design torque marked."""
     panel = Panel(
-        Axis("pinion torque [N m]", 0.0), Axis("transmission error, peak to peak [µm]", 0.0)
+        Axis("pinion torque [N m]", low=0.0), Axis("transmission error, peak to peak [µm]", low=0.0)
     )
     _pairs(panel, data["load"], 1e6 * data["peak_to_peak_error"])
     panel.line(x=design, colour=INK, width=0.9, dash=(2, 2), label="designed for")

@@ -21,8 +21,14 @@ ROOM, END = 0.2, 0.05
 def over_orders(x: str, y: str, *, floor: float, top: float, highest: float) -> Panel:
     """A panel from order 0 to ``highest`` with a dotted line at every half order."""
     panel = Panel(
-        Axis(x, 0.0, highest + ROOM + END, ticks=np.arange(0.0, highest + 0.1, 1.0), grid=False),
-        Axis(y, floor, top, log="decades"),
+        Axis(
+            x,
+            low=0.0,
+            high=highest + ROOM + END,
+            ticks=np.arange(0.0, highest + 0.1, 1.0),
+            grid=False,
+        ),
+        Axis(y, low=floor, high=top, log="decades"),
     )
     for order in np.arange(0.5, highest + ROOM, 1.0):
         panel.line(x=order, colour=QUIET, width=0.8, dash=(1, 2.5), order=0.4)
@@ -47,7 +53,7 @@ def draw_lines(
     above = y > floor
     if above.sum() <= FEW_LINES:
         panel.stems(
-            x[above], y[above], floor, colour=colour, size=4.2 if filled else 6.4,
+            x[above], y[above], low=floor, colour=colour, size=4.2 if filled else 6.4,
             open=not filled, label=label,
         )  # fmt: skip
         return

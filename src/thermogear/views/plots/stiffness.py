@@ -22,7 +22,7 @@ PARTS = {
 def over_phase(data: xr.Dataset, bundle: int) -> Picture:
     """Mesh stiffness of one bundle over a mesh period, undeformed and hot."""
     panel = Panel(
-        axis_of("mesh_phase", "mesh phase", 0.0, 1.0), axis_of("mesh_stiffness", None, 0.0)
+        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
     )
     x, here = shown(data, "mesh_phase"), data.isel(bundle=bundle, operating=0)
     for place, state in enumerate(names_of(data, "state")):
@@ -39,7 +39,7 @@ def over_phase(data: xr.Dataset, bundle: int) -> Picture:
 
 def pair(data: xr.Dataset) -> Picture:
     """Stiffness of one tooth pair along the path, undeformed and hot, for every bundle."""
-    panel = along_path(data, axis_of("pair_stiffness", "stiffness of one pair", 0.0))
+    panel = along_path(data, axis_of("pair_stiffness", "stiffness of one pair", low=0.0))
     x = shown(data, "path_position")
     for place, state in enumerate(names_of(data, "state")):
         here, colour = data.isel(state=place), STATES.get(state, INK)
@@ -74,7 +74,7 @@ def bars(data: xr.Dataset) -> Picture:
     for name, title in titles.items():
         x = Axis("bundle of choices", ticks=places, names=[plain(one[:18]) for one in bundles])
         values = shown(data.isel(operating=0).transpose("state", ...), name)
-        y = Axis("mesh stiffness k [10⁸ N/m]", 0.0, 1.176 * float(np.nanmax(values)))
+        y = Axis("mesh stiffness k [10⁸ N/m]", low=0.0, high=1.176 * float(np.nanmax(values)))
         panel = Panel(x, y, title)
         for i, state in enumerate(states):
             panel.bars(

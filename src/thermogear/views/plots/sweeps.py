@@ -65,12 +65,16 @@ def _parameter(data: xr.Dataset) -> str:
     return str(data.attrs["parameter"])
 
 
+def _along(data: xr.Dataset, name: str) -> Axis:
+    return Axis(axis_words(name, str(data[name].attrs.get("units", "1"))))
+
+
 def orbit_diagram_picture(data: xr.Dataset) -> Picture:
     """Sections over the parameter, up and down, with branches and bifurcations; exponent below."""
     name = _parameter(data)
     p = shown(name, data[name].values)
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
-    low = Panel(Axis(axis_words(name)), Axis("exponent λ₁ [–]"))
+    low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
     for direction, (colour, word) in enumerate(((COLD, "up"), (HOT, "down"))):
         x = data["section_x"].values[direction]
         places = np.broadcast_to(p[None, :, None], x.shape)
@@ -122,7 +126,7 @@ def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     """An empty panel over the first two axes of a grid, and the borders of its cells."""
     one, two = (str(name) for name in data["label"].dims[:2])
     borders = _edges(shown(one, data[one].values)), _edges(shown(two, data[two].values))
-    return Panel(Axis(axis_words(one)), Axis(axis_words(two))), borders
+    return Panel(_along(data, one), _along(data, two)), borders
 
 
 def _regimes(data: xr.Dataset) -> Panel:
@@ -136,8 +140,8 @@ def basins_picture(data: xr.Dataset) -> Picture:
     """Which attractor each start ends on, with the attractors' sections."""
     x, y = _edges(data["x"].values), _edges(data["v"].values)
     panel = Panel(
-        Axis("displacement X at phase 0 [–]", x[0], x[-1]),
-        Axis("velocity X′ at phase 0 [–]", y[0], y[-1]),
+        Axis("displacement X at phase 0 [–]", low=x[0], high=x[-1]),
+        Axis("velocity X′ at phase 0 [–]", low=y[0], high=y[-1]),
     )
     shades, names = scale("tab20"), []
     colours = [shades[n % 20] for n in range(data.sizes["attractor_number"])]
@@ -185,7 +189,7 @@ def run_up_picture(data: xr.Dataset) -> Picture:
                 for value in shown("pinion_speed", data["bifurcation_value"].values[fold]):
                     panel.line(x=float(value), colour=colour, width=0.7, opacity=0.6)
         panels.append([panel])
-    panels[-1][0].x.words = axis_words("pinion_speed")
+    panels[-1][0].x = _along(data, "pinion_speed")
     return Picture(panels, size=(WIDE, 8.0), above=0.15, share_x="column", legend=4)
 
 
@@ -199,7 +203,7 @@ def waterfall_picture(data: xr.Dataset) -> Picture:
     top = float(known.max()) if known.size else 1.0
     panels = []
     for state in range(data.sizes["state"]):
-        panel = Panel(Axis(axis_words("pinion_speed")), Axis(), _state_words(data, state))
+        panel = Panel(_along(data, "pinion_speed"), Axis(), _state_words(data, state))
         panel.field(
             *borders, np.clip(np.nan_to_num(lines[state], nan=1e-4 * top), 1e-4 * top, None).T,
             low=1e-4 * top, high=top, log=True, colours=scale("magma"),
@@ -216,7 +220,7 @@ def sweep_picture(data: xr.Dataset) -> Picture:
     here = data.isel(dict.fromkeys(dims[2:], 0))
     error, factor = "transmission error, p-p [µm]", "dynamic factor $K_{v}$ [–]"
     if len(dims) == 1:
-        above, below = Panel(Axis(), Axis(error)), Panel(Axis(axis_words(dims[0])), Axis(factor))
+        above, below = Panel(Axis(), Axis(error)), Panel(_along(here, dims[0]), Axis(factor))
         p = shown(dims[0], here[dims[0]].values)
         for panel, values in (
             (above, 1e6 * here["dte_peak_to_peak"].values), (below, here["dynamic_factor"].values)

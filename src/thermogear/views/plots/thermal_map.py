@@ -120,7 +120,7 @@ def _lines(
         if known.size and known.min() < level < known.max()
     }
     if inside and min(values.shape) > 1:
-        panel.contours(*_grid(data), values.T, list(inside), list(inside.values()))
+        panel.contours(*_grid(data), values.T, levels=list(inside), words=list(inside.values()))
 
 
 def _jam(panel: Panel, data: xr.Dataset, left: Floats) -> None:

@@ -35,7 +35,11 @@ def curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> Pictur
     unit = str(data[name].attrs["units"])
     here = data.isel(bundle=bundle, operating=operating)
     y = Axis(axis_label(name, None if len(axis_label(name)) < 40 else WORDS.get(name)))
-    panel = Panel(Axis(axis_label(along), 0.0, 1.0), y) if along == "mesh_phase" else _path(data, y)
+    panel = (
+        Panel(Axis(axis_label(along), low=0.0, high=1.0), y)
+        if along == "mesh_phase"
+        else _path(data, y)
+    )
     drawn: set[str] = set()
     count = data.sizes["case"]
     for c, colour in zip(range(count), OKABE_ITO, strict=False):

@@ -144,7 +144,7 @@ def _points(panel: Panel, record: xr.Dataset, colours: Mapping[str, str]) -> Non
 
 
 def _time(minutes: Any, logarithmic: bool) -> Axis:
-    axis = Axis("time from the start [min]", 0.0, float(minutes[-1]))
+    axis = Axis("time from the start [min]", low=0.0, high=float(minutes[-1]))
     if logarithmic and minutes[-1] > 10.0 * FIRST:
         axis.low, axis.log = FIRST, "plain"
     return axis
