@@ -210,18 +210,10 @@ def _hatch(axes: Axes, mark: data.Hatch) -> None:
 
 
 DRAWN: dict[type, Callable[[Axes, Any], Any]] = {
-    data.Curve: _curve,
-    data.Points: _points,
-    data.Stems: _stems,
-    data.Band: _band,
-    data.Span: _span,
-    data.Line: _line,
-    data.Text: _text,
-    data.Bars: _bars,
-    data.Field: _field,
-    data.Contours: _contours,
-    data.Hatch: _hatch,
-}
+    data.Curve: _curve, data.Points: _points, data.Stems: _stems, data.Band: _band,
+    data.Span: _span, data.Line: _line, data.Text: _text, data.Bars: _bars, data.Field: _field,
+    data.Contours: _contours, data.Hatch: _hatch,
+}  # fmt: skip
 
 
 def _dash(lengths: Sequence[float]) -> Any:
@@ -330,14 +322,9 @@ def _legend(figure: Figure, source: Sequence[Axes], columns: int) -> None:
         top=(layout.top * height + room) / grown,
     )
     figure.legend(
-        list(found.values()),
-        list(found),
-        loc="lower center",
-        bbox_to_anchor=(0.5, 0.0),
-        ncols=columns,
-        borderaxespad=0.25,
-        labelspacing=0.3,
-    )
+        list(found.values()), list(found), loc="lower center", bbox_to_anchor=(0.5, 0.0),
+        ncols=columns, borderaxespad=0.25, labelspacing=0.3,
+    )  # fmt: skip
 
 
 def _legend_width(names: Sequence[str], columns: int) -> float:

@@ -254,9 +254,7 @@ class Top:
     factor: float
 
 
-def _adds(
-    kind: Callable[_P, Mark],
-) -> Callable[Concatenate[Panel, _P], None]:
+def _adds(kind: Callable[_P, Mark]) -> Callable[Concatenate[Panel, _P], None]:
     """A method of a panel that adds a mark of this kind."""
 
     def add(panel: Panel, /, *args: _P.args, **look: _P.kwargs) -> None:
@@ -297,15 +295,14 @@ class Panel:
 
     def extent(self, axis: str) -> tuple[float, float]:
         """(low, high) of curves, points and lines along "x" or "y", with the axis's margin."""
-        found = [
-            np.ravel(places)
-            for mark in self.marks
-            if isinstance(mark, Curve | Points | Line)
-            and (places := getattr(mark, axis)) is not None
-        ]
-        flat = np.concatenate(found) if found else np.zeros(1)
-        flat = flat[np.isfinite(flat)]
-        low, high = (float(flat.min()), float(flat.max())) if flat.size else (0.0, 0.0)
+        found: list[Any] = []
+        for mark in self.marks:
+            if isinstance(mark, Curve | Points):
+                x, y = np.ravel(mark.x), np.ravel(mark.y)
+                found.extend((x if axis == "x" else y)[np.isfinite(x) & np.isfinite(y)])
+            elif isinstance(mark, Line) and getattr(mark, axis) is not None:
+                found.append(getattr(mark, axis))
+        low, high = (float(min(found)), float(max(found))) if found else (0.0, 0.0)
         if low == high:
             room = 0.05 * abs(low) or 0.05
             low, high = low - room, high + room
