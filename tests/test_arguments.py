@@ -60,7 +60,10 @@ SYMMETRIC: dict[str, Callable[[bool], object]] = {
 
 REASONS = {
     "base.progress.silent": "called as every Progress is: stage, done, total",
-    "views.style.picture": "rows and columns as in matplotlib's subplots",
+    **{
+        f"views.picture.{kind}": "x before y, as in every plot"
+        for kind in ("Curve", "Points", "Stems", "Text", "Bars", "Field", "Contours", "Hatch")
+    },
     "views.words.exactly": "value and digits as in round",
     "views.words.number": "value and digits as in round",
     "views.words.span": "values and digits as in round",

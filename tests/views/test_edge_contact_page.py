@@ -11,6 +11,7 @@ import xarray as xr
 
 from thermogear.case.case import GearCase, load_example
 from thermogear.study.contact import loaded_survey
+from thermogear.views.drawing import draw
 from thermogear.views.plots.loaded import along_path
 from thermogear.views.write import save
 
@@ -50,7 +51,7 @@ def test_the_page_says_where_and_how_long_corners_carry(folder: Path, data: xr.D
 
 
 def test_the_picture_stops_the_pressure_and_shades_the_corners(data: xr.Dataset) -> None:
-    figure = along_path(data, {})
+    figure = draw(along_path(data, {}))
     shares, pressures = figure.axes
     s, flags = data["pair_position"].values, data["edge_contact"].values
     for axis in (shares, pressures):

@@ -21,6 +21,7 @@ from thermogear.study.relief import relief_survey
 from thermogear.study.run import run
 from thermogear.study.temperature import thermal_map
 from thermogear.thesis.errata import with_errata
+from thermogear.views.drawing import draw
 from thermogear.views.page import render
 from thermogear.views.pages import captions
 from thermogear.views.plots import thermal_map as map_plots
@@ -173,7 +174,7 @@ def test_a_point_and_a_line_of_the_map(count: int) -> None:
         share = 100.0 * float(grid["regime_share"].isel(regime_name=0).item())
         assert f"boundary on {share:.0f} %" in text
         return
-    for axes in map_plots.thermal_map(grid).axes:
+    for axes in draw(map_plots.thermal_map(grid)).axes:
         assert axes.get_xlabel() == "pinion speed [rpm]"
         assert "torque" not in axes.get_ylabel()
         assert axes.get_ylabel().endswith("]")

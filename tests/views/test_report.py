@@ -17,8 +17,9 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from thermogear.base.errors import InputError, UnsealedWarning
+from thermogear.views import drawing
 from thermogear.views import page as pages
-from thermogear.views import style
+from thermogear.views.picture import Picture
 from thermogear.views.write import write_report
 
 GROUPS = ("path", "mesh", "profile", "motion", "temperature",
@@ -49,9 +50,8 @@ def figures(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
     """Figures that a page draws, by name; the page itself gets none."""
     found: dict[str, Figure] = {}
 
-    def keep(make: Callable[[], Figure], name: str, title: str) -> Markup:
-        with style.styled():
-            found[name] = make()
+    def keep(make: Callable[[], Picture], name: str, title: str) -> Markup:
+        found[name] = drawing.draw(make())
         return Markup("<svg></svg>")
 
     monkeypatch.setattr(pages, "draw", keep)
@@ -126,7 +126,7 @@ def test_every_axis_of_every_picture_is_labelled_and_nothing_is_cut_or_covered(
     assert len(figures) > 20
     for name, figure in figures.items():
         assert figure.axes, name
-        with style.styled():
+        with drawing.styled():
             figure.draw_without_rendering()
         for axes in axes_of(figure):
             assert axes.get_xlabel().strip(), name  # type: ignore[attr-defined]

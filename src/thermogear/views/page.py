@@ -10,9 +10,9 @@ from typing import Any
 import jinja2
 import xarray as xr
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from thermogear.results.result import Notice, Result
+from thermogear.views.picture import Picture
 from thermogear.views.svg import draw
 from thermogear.views.words import prose
 
@@ -54,13 +54,18 @@ class Shown:
     name: str
     heading: str
     caption: Cell
-    make: Callable[[], Figure] = field(repr=False)
+    make: Callable[[], Picture] = field(repr=False)
     wide: bool = False
 
     @cached_property
+    def picture(self) -> Picture:
+        """What is seen, as data: axes with words and units, curves, marks; ``to_json()`` of it."""
+        return self.make()
+
+    @property
     def svg(self) -> Markup:
         """The picture as a piece of a page."""
-        return draw(self.make, f"fig-{self.name}", self.heading)
+        return draw(lambda: self.picture, f"fig-{self.name}", self.heading)
 
 
 @dataclass(frozen=True)
@@ -114,7 +119,7 @@ class Pictures:
         caption: Cell,
         data: xr.Dataset,
         needs: Iterable[str],
-        make: Callable[[], Figure],
+        make: Callable[[], Picture],
         wide: bool = False,
     ) -> None:
         """Keep the picture unless ``data`` lacks one of the variables it ``needs``."""

@@ -3,26 +3,35 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any, cast
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
-import matplotlib as mpl
 import numpy as np
-import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullLocator
 
 from thermogear.base.vocabulary import UNDEFORMED
-from thermogear.views.words import axis_label, math_symbol, plain, raised
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 COLD, HOT = "#0072B2", "#D55E00"
 INK, QUIET, FAINT = "#22303c", "#66727d", "#d5dbe0"
 DRY, MIXED = "#8a5a2b", "#009E73"
 STATES = {UNDEFORMED: COLD, "hot": HOT}
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+SCALES = {
+    "viridis": "440154 48186a 472d7b 424086 3b528b 33638d 2c728e 26828e 21918c 1f9f88 27ad81 3dbc74"
+    " 5cc863 81d34d aadc32 d5e21a fde725",
+    "magma": "000004 0a0822 1d1147 36106b 51127c 6a1c81 832681 9c2e7f b73779 cf4070 e55064 f4695c"
+    " fb8761 fea571 fec287 fde0a1 fcfdbf",
+    "YlOrRd": "ffffcc ffeda0 fed976 feb24c fd8d3c fc4e2a e31a1c bd0026 800026",
+    "Reds": "fff5f0 fee0d2 fcbba1 fc9272 fb6a4a ef3b2c cb181d a50f15 67000d",
+    "PuBu": "fff7fb ece7f2 d0d1e6 a6bddb 74a9cf 3690c0 0570b0 045a8d 023858",
+    "Blues": "f7fbff deebf7 c6dbef 9ecae1 6baed6 4292c6 2171b5 08519c 08306b",
+    "RdYlGn": "a50026 d73027 f46d43 fdae61 fee08b ffffbf d9ef8b a6d96a 66bd63 1a9850 006837",
+    "tab20": "1f77b4 aec7e8 ff7f0e ffbb78 2ca02c 98df8a d62728 ff9896 9467bd c5b0d5 8c564b c49c94"
+    " e377c2 f7b6d2 7f7f7f c7c7c7 bcbd22 dbdb8d 17becf 9edae5",
+}
+"""Scales of colours, evenly from low to high; of tab20 each stands by itself."""
 
 SINGLE = (4.9, 3.1)
 """Size [in] of a picture with one axis, readable at phone width."""
@@ -77,15 +86,6 @@ RC: dict[str, Any] = {
 }
 
 
-@contextmanager
-def styled() -> Iterator[None]:
-    """Matplotlib's settings of this house, and nothing a user has set elsewhere."""
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(cast(Any, RC))  # its keys are a list of literals
-        yield
-
-
 LEFT, RIGHT, TOP, BOTTOM = 0.72, 0.14, 0.30, 0.48
 """Margins [in] of every picture: fixed, so that axes of neighbouring pictures line up."""
 BETWEEN, ABOVE = 0.78, 0.86
@@ -93,133 +93,6 @@ BETWEEN, ABOVE = 0.78, 0.86
 LEGEND_LINE = 0.20
 HANDLE, LETTER = 0.55, 0.066
 """Width [in] of a legend's line with its gaps, and of a letter."""
-
-
-def picture(
-    rows: int = 1,
-    columns: int = 1,
-    size: tuple[float, float] = SINGLE,
-    *,
-    top: float = TOP,
-    between: float = BETWEEN,
-    above: float = ABOVE,
-    left: float = LEFT,
-    **layout: Any,
-) -> tuple[Figure, np.ndarray[Any, np.dtype[np.object_]]]:
-    """A figure without any global state, and its axes as an array (rows, columns).
-
-    Lengths are in inches: ``top`` and ``left`` margins, the space ``between`` columns and
-    ``above`` each further row. Room for a legend is made by :func:`legend_below`.
-    """
-    figure = Figure(figsize=size)
-    FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, columns, squeeze=False, **layout)
-    width, height = size
-    one_wide = (width - left - RIGHT - (columns - 1) * between) / columns
-    one_high = (height - top - BOTTOM - (rows - 1) * above) / rows
-    figure.subplots_adjust(
-        left=left / width,
-        right=1.0 - RIGHT / width,
-        top=1.0 - top / height,
-        bottom=BOTTOM / height,
-        wspace=between / one_wide,
-        hspace=above / one_high,
-    )
-    return figure, axes
-
-
-def legend_below(figure: Figure, source: Axes | Sequence[Axes], columns: int = 3) -> None:
-    """One legend under the picture, never over data; entries of the same name once.
-
-    At most so many ``columns`` as fit beside each other. The picture grows downwards by the
-    legend's height, so that the axes keep theirs.
-    """
-    found: dict[str, Any] = {}
-    for axes in [source] if isinstance(source, Axes) else source:
-        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, handle)
-    if not found:
-        return
-    width, height = figure.get_size_inches()
-    columns = min(columns, len(found))
-    while columns > 1 and _legend_width(list(found), columns) > width:
-        columns -= 1
-    room = LEGEND_LINE * -(-len(found) // columns) + 0.08
-    layout = figure.subplotpars
-    grown = height + room
-    figure.set_size_inches(width, grown)
-    figure.subplots_adjust(
-        bottom=(layout.bottom * height + room) / grown,
-        top=(layout.top * height + room) / grown,
-    )
-    figure.legend(
-        list(found.values()),
-        list(found),
-        loc="lower center",
-        bbox_to_anchor=(0.5, 0.0),
-        ncols=columns,
-        borderaxespad=0.25,
-        labelspacing=0.3,
-    )
-
-
-def _legend_width(names: Sequence[str], columns: int) -> float:
-    """About how wide [in] a legend is whose entries run down its columns."""
-    rows = -(-len(names) // columns)
-    longest = [max(map(_letters, names[i : i + rows])) for i in range(0, len(names), rows)]
-    return sum(HANDLE + LETTER * count for count in longest)
-
-
-def _letters(name: str) -> int:
-    """How many letters a label shows, its marks of mathematics aside."""
-    return len(name) - 2 * name.count("$") - name.count("{") - name.count("_")
-
-
-def log_axis(axes: Axes) -> None:
-    """A logarithmic vertical axis with powers of ten written plainly."""
-    axes.set_yscale("log")
-    axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
-    axes.yaxis.set_minor_locator(NullLocator())
-
-
-def _power_of_ten(value: float, _: object = None) -> str:
-    power = round(np.log10(value)) if value > 0.0 else 0
-    return {0: "1", 1: "10", -1: "0.1"}.get(power, f"10{raised(power)}")
-
-
-def name_axes(axes: Axes, x: str, y: str, **words: str | None) -> None:
-    """Label both axes with words, symbol and unit of the stored quantities ``x`` and ``y``."""
-    axes.set_xlabel(axis_label(x, words.get("x_words"), words.get("x_unit")))
-    axes.set_ylabel(axis_label(y, words.get("y_words"), words.get("y_unit")))
-
-
-def mark_path(axes: Axes, data: xr.Dataset) -> None:
-    """Mark A..E of the path of contact [mm]; C, the pitch point, stands out."""
-    axes.set_xlabel(axis_label("path_position", "distance from the pinion's tangent point"))
-    for name, position in path_points(data).items():
-        pitch = name == "C"
-        axes.axvline(
-            1e3 * position,
-            color=QUIET if pitch else FAINT,
-            linewidth=1.1 if pitch else 0.9,
-            linestyle=(0, (1, 2)) if pitch else "-",
-            zorder=0.5,
-        )
-        axes.text(
-            1e3 * position,
-            1.015,
-            name,
-            transform=axes.get_xaxis_transform(),
-            ha="center",
-            va="bottom",
-            fontsize=8.5,
-            color=INK if pitch else QUIET,
-            fontweight="bold" if pitch else "normal",
-        )
-    axes.grid(visible=False, axis="x")
-    s = data["path_position"].values
-    low, high = 1e3 * float(s.min()), 1e3 * float(s.max())
-    axes.set_xlim(low - 0.02 * (high - low), high + 0.02 * (high - low))
 
 
 def path_points(data: xr.Dataset) -> dict[str, float]:
@@ -231,20 +104,28 @@ def path_points(data: xr.Dataset) -> dict[str, float]:
         return {}
 
 
-def bundle_line(bundles: Sequence[str], place: int) -> Any:
+def bundle_line(bundles: Sequence[str], place: int) -> tuple[float, ...]:
     """Solid for a bundle, dashed for the thesis's; others get dotted lines."""
     name = bundles[place]
     if name.startswith("thesis"):
-        return (0, (5, 2))
-    return "-" if place == 0 or name.startswith("consistent") else (0, (1, 1.5))
+        return (5, 2)
+    return () if place == 0 or name.startswith("consistent") else (1, 1.5)
+
+
+def scale(name: str) -> list[str]:
+    """The colours of a scale, evenly from its low to its high end."""
+    return [f"#{colour}" for colour in SCALES[name].split()]
 
 
 def ramp(count: int, warm: bool = False) -> list[str]:
     """``count`` colours in order: dark to light, or a warm ramp for temperatures."""
-    colours = mpl.colormaps["YlOrRd" if warm else "viridis"]
+    colours = scale("YlOrRd" if warm else "viridis")
     low, high = (0.42, 0.95) if warm else (0.12, 0.72)
     places = np.linspace(low, high, count) if count > 1 else np.array([high if warm else 0.3])
-    return [mpl.colors.to_hex(colours(float(p))) for p in places]
+    parts = np.array([[int(c[i : i + 2], 16) for c in colours] for i in (1, 3, 5)])
+    evenly = np.linspace(0.0, 1.0, len(colours))
+    found = np.round([np.interp(places, evenly, part) for part in parts]).astype(int)
+    return ["#{:02x}{:02x}{:02x}".format(*colour) for colour in found.T]
 
 
 def chosen(count: int, *, most: int = MOST_POINTS) -> list[int]:
@@ -257,39 +138,3 @@ def chosen(count: int, *, most: int = MOST_POINTS) -> list[int]:
 def names_of(data: xr.Dataset, axis: str) -> list[str]:
     """The names along a text coordinate, as stored."""
     return [str(v) for v in data[axis].values]
-
-
-def note(axes: Axes, text: str) -> None:
-    """A sentence in the middle of an axis that has nothing to draw."""
-    axes.text(
-        0.5, 0.5, plain(text), transform=axes.transAxes, ha="center", va="center",
-        color=QUIET, fontsize=9.0, wrap=True,
-    )  # fmt: skip
-
-
-__all__ = [
-    "COLD",
-    "DRY",
-    "FAINT",
-    "HOT",
-    "INK",
-    "MIXED",
-    "OKABE_ITO",
-    "QUIET",
-    "SINGLE",
-    "STATES",
-    "WIDE",
-    "bundle_line",
-    "chosen",
-    "legend_below",
-    "log_axis",
-    "mark_path",
-    "math_symbol",
-    "name_axes",
-    "names_of",
-    "note",
-    "path_points",
-    "picture",
-    "ramp",
-    "styled",
-]

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Callable
 from pathlib import Path
 
 from markupsafe import Markup, escape
-from matplotlib.figure import Figure
 
 from thermogear.base.files import put
-from thermogear.views.style import styled
+from thermogear.views.picture import Picture
 
 _ID = re.compile(r'\bid="([^"]+)"')
 _USE = re.compile(r'(?:xlink:)?href="#([^"]+)"')
@@ -21,30 +19,25 @@ _URL = re.compile(r"url\(#([^)]+)\)")
 _SIZE = re.compile(r'<svg\b[^>]*?viewBox="([^"]+)"[^>]*>', re.DOTALL)
 
 
-def draw(make: Callable[[], Figure], name: str, title: str) -> Markup:
+def draw(make: Callable[[], Picture], name: str, title: str) -> Markup:
     """The picture that ``make`` returns as inline SVG; ``name`` makes its ids unique.
 
     The same picture gives the same text. ``title`` is what a screen reader says.
     """
-    import matplotlib as mpl
+    from thermogear.views.drawing import image
 
-    with styled():
-        mpl.rcParams["svg.hashsalt"] = name
-        figure = make()
-        stream = io.StringIO()
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    return Markup(_inline(stream.getvalue(), name, title))
+    return Markup(_inline(image(make(), "svg", salt=name).decode(), name, title))
 
 
-def put_figure(figure: Figure, path: Path, *, resolution: int) -> Path:
-    """Save ``figure`` as ``path`` (its ending says what), white behind, whole or not at all.
+def put_picture(picture: Picture, path: Path, *, resolution: int) -> Path:
+    """Save ``picture`` as ``path`` (its ending says what), white behind, whole or not at all.
 
     ``resolution`` in dots per inch.
     """
-    stream = io.BytesIO()
+    from thermogear.views.drawing import image
+
     kind = path.suffix.removeprefix(".")
-    figure.savefig(stream, format=kind, dpi=resolution, facecolor="white")
-    return put(path, stream.getvalue())
+    return put(path, image(picture, kind, dpi=resolution, facecolor="white"))
 
 
 def _inline(text: str, name: str, title: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,8 +16,8 @@ from thermogear.results.files import RESULTS, SUMMARY, claimed, json_text
 from thermogear.results.result import Result, open_results
 from thermogear.views.page import Page, Shown, render
 from thermogear.views.pages import PAGES, STORED
-from thermogear.views.style import styled
-from thermogear.views.svg import put_figure
+from thermogear.views.picture import Picture
+from thermogear.views.svg import put_picture
 
 KINDS = ("png", "svg", "pdf")
 RESOLUTION = 160
@@ -58,11 +57,9 @@ def write(page: Page, folder: Path) -> list[Path]:
     if numbers:
         written.append(put(folder / figures, json_text(numbers)))
     for one in page.pictures if page.files else ():
-        with styled():
-            figure = one.make()
-            for ending in page.files:
-                path = folder / f"{_stem(page, one)}.{ending}"
-                written.append(put_figure(figure, path, resolution=RESOLUTION))
+        for ending in page.files:
+            path = folder / f"{_stem(page, one)}.{ending}"
+            written.append(put_picture(one.picture, path, resolution=RESOLUTION))
     for name, text in page.tables().items():
         (folder / name).parent.mkdir(exist_ok=True)
         written.append(put(folder / name, text))
@@ -142,14 +139,17 @@ class ReportPicture:
         words = self.shown.caption
         return words.striptags() if isinstance(words, Markup) else words
 
+    @property
+    def picture(self) -> Picture:
+        """What is seen, as data; ``to_json()`` of it."""
+        return self.shown.picture
+
     @cached_property
     def image(self) -> bytes:
         """Its PNG file, on white."""
-        stream = io.BytesIO()
-        with styled():
-            figure = self.shown.make()
-            figure.savefig(stream, format="png", dpi=IN_NOTEBOOK, facecolor="white")
-        return stream.getvalue()
+        from thermogear.views.drawing import image
+
+        return image(self.picture, "png", dpi=IN_NOTEBOOK, facecolor="white")
 
     def _repr_png_(self) -> bytes:
         """For the notebook."""
@@ -181,7 +181,6 @@ def write_pictures(directory: Path, folder: Path, kind: str = "png", of: str = "
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for one in page.pictures:
-        with styled():
-            path = folder / f"{one.name}.{kind}"
-            written.append(put_figure(one.make(), path, resolution=IN_NOTEBOOK))
+        path = folder / f"{one.name}.{kind}"
+        written.append(put_picture(one.picture, path, resolution=IN_NOTEBOOK))
     return written

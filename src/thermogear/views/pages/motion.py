@@ -7,12 +7,12 @@ from functools import partial
 from typing import Any
 
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear.results.result import Result
 from thermogear.views.csv_files import quoted
 from thermogear.views.page import Block, Gallery, Page, Section, Shown, Table, Text, notice_lines
 from thermogear.views.pages.motion_lines import LINES
+from thermogear.views.picture import Picture
 from thermogear.views.plots import engine as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
@@ -41,7 +41,7 @@ def page(result: Result) -> Page:
     )
 
 
-def _picture(kind: str, groups: Groups) -> Callable[[], Figure]:
+def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
     if kind == "orbit":
         return partial(plots.orbit_picture, groups["orbit"])
     if kind == "lyapunov":

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
 from thermogear.views.pages import record_lines
-from thermogear.views.style import COLD, HOT, INK, WIDE, log_axis, picture
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import COLD, HOT, INK, WIDE
 from thermogear.views.words import html_symbol, number, prose
 
 _SHOWN = 60  # lines of the table: the most prominent
@@ -50,18 +50,16 @@ def _record(results: Result) -> Section | None:
     rate = results.text("rate")
     unit = results.text("unit") or "the file's numbers"
 
-    def make() -> Figure:
-        figure, axes = picture(size=(WIDE, 2.8))
+    def make() -> Picture:
+        x_words = "time [s]" if rate else "sample [–]"
+        panel = Panel(Axis(x_words), Axis(f"reading [{unit}]"))
         count = min(data.sizes["sample"], 2048)
         place = data["record_sample"].values[:count]
         x = place / float(rate) if rate else place
         for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
             values = data["record_reading"].sel(channel=channel).values[:count]
-            axes[0, 0].plot(x, values, color=colour, linewidth=0.6, label=str(channel))
-        axes[0, 0].set_xlabel("time [s]" if rate else "sample")
-        axes[0, 0].set_ylabel(f"reading [{unit}]")
-        axes[0, 0].legend(loc="upper right", ncols=4, fontsize=8)
-        return figure
+            panel.curve(x, values, colour=colour, width=0.6, label=str(channel))
+        return Picture([[panel]], size=(WIDE, 2.8), legend=4)
 
     pictures = Pictures()
     caption = "The first samples, unfiltered."
@@ -78,29 +76,19 @@ def _spectrum(results: Result) -> Section | None:
     unit = results.text("unit") or "the file's numbers"
     scale = int(teeth) / float(mesh) if mesh and teeth else 1.0
 
-    def make() -> Figure:
-        figure, axes = picture(size=(WIDE, 3.6))
+    def make() -> Picture:
+        x_words = "order of the first shaft [–]" if scale != 1.0 else "frequency [cycles/sample]"
+        panel = Panel(Axis(x_words), Axis(f"amplitude (peak) [{unit}]", log="decades"))
         x = data["spectrum_position"].values * scale
         for channel, colour in zip(data["channel"].values[:4], _COLOURS, strict=False):
             values = data["spectrum_reading"].sel(channel=channel).values
-            axes[0, 0].plot(x[1:], values[1:], color=colour, linewidth=0.5, label=str(channel))
+            panel.curve(x[1:], values[1:], colour=colour, width=0.5, label=str(channel))
         if lines is not None:
             marked = lines.where(lines["kind"] != "sideband", drop=True)
-            axes[0, 0].plot(
-                marked["line_position"].values * scale,
-                marked["line_reading"].values,
-                linestyle="none",
-                marker="o",
-                markersize=4,
-                markerfacecolor="none",
-                color=INK,
-                label="lines of the table",
-            )
-        log_axis(axes[0, 0])
-        axes[0, 0].set_xlabel("order of the first shaft" if scale != 1.0 else "cycles per sample")
-        axes[0, 0].set_ylabel(f"amplitude (peak) [{unit}]")
-        axes[0, 0].legend(loc="upper right", ncols=5, fontsize=8)
-        return figure
+            places = marked["line_position"].values * scale
+            readings, words = marked["line_reading"].values, "lines of the table"
+            panel.points(places, readings, size=4, open=True, colour=INK, label=words)
+        return Picture([[panel]], size=(WIDE, 3.6), legend=5)
 
     pictures = Pictures()
     caption = "Hann window over the whole record; of each run of bins the highest is drawn."

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
+from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.parameters import page_words, shown
 from thermogear.views.words import number
@@ -71,7 +71,7 @@ def _summary(data: xr.Dataset) -> str:
 
 def _pictures(data: xr.Dataset) -> Section:
     kind = str(data.attrs["kind"])
-    makers: dict[str, list[tuple[str, str, str | Words, Callable[[xr.Dataset], Figure]]]] = {
+    makers: dict[str, list[tuple[str, str, str | Words, Callable[[xr.Dataset], Picture]]]] = {
         "diagram": [
             (
                 "orbits", "Orbit diagram", _diagram_caption, sweeps.orbit_diagram_picture,
@@ -106,7 +106,7 @@ def _pictures(data: xr.Dataset) -> Section:
     pictures = Pictures()
     for name, heading, caption, make in makers[kind]:
 
-        def drawn(make: Callable[[xr.Dataset], Figure] = make) -> Figure:
+        def drawn(make: Callable[[xr.Dataset], Picture] = make) -> Picture:
             return make(data)
 
         said = caption if isinstance(caption, str) else caption(data)

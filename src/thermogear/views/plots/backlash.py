@@ -2,111 +2,80 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from thermogear.base.vocabulary import UNDEFORMED
-from thermogear.views.plots.curves import draw_by_bundle
-from thermogear.views.style import (
-    COLD,
-    FAINT,
-    HOT,
-    INK,
-    QUIET,
-    STATES,
-    bundle_line,
-    legend_below,
-    name_axes,
-    names_of,
-    picture,
-)
-from thermogear.views.words import CELSIUS, FAR, axis_label, plain, shown
+from thermogear.views.picture import Panel, Picture, Text
+from thermogear.views.plots.curves import axis_of, draw_by_bundle
+from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET, STATES, bundle_line, names_of
+from thermogear.views.words import CELSIUS, FAR, plain, shown
 
 
-def over_phase(data: xr.Dataset) -> Figure:
+def over_phase(data: xr.Dataset) -> Picture:
     """Half backlash over a mesh period, undeformed and hot, at the first operating point."""
-    figure, axes = picture()
-    axis, x = axes[0, 0], shown(data, "mesh_phase")
-    for place, state in enumerate(names_of(data, "state")):
-        here = data.isel(state=place)
-        colour = STATES.get(state, INK)
-        draw_by_bundle(axis, here, "half_backlash_curve", x, colour, state)
-    axis.axhline(0.0, color=INK, linewidth=0.9)
-    axis.set_xlim(0.0, 1.0)
-    low, high = axis.get_ylim()
-    low = min(low, -0.12 * high)
-    axis.axhspan(low, 0.0, color=FAINT, alpha=0.5, linewidth=0)
-    axis.set_ylim(low, high + 0.05 * (high - low))
-    axis.text(0.99, 0.5 * low, "jammed", transform=axis.get_yaxis_transform(),
-              ha="right", va="center", color=QUIET, fontsize=8.5)  # fmt: skip
-    name_axes(
-        axis, "mesh_phase", "half_backlash_curve", x_words="mesh phase", y_words="half backlash"
+    panel = Panel(
+        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0),
+        axis_of("half_backlash_curve", "half backlash"),
     )
-    legend_below(figure, axis, 2)
-    return figure
+    x = shown(data, "mesh_phase")
+    for place, state in enumerate(names_of(data, "state")):
+        here, colour = data.isel(state=place), STATES.get(state, INK)
+        draw_by_bundle(panel, here, "half_backlash_curve", x, colour=colour, what=state)
+    panel.line(y=0.0, colour=INK, width=0.9)
+    low, high = panel.extent("y")
+    low = min(low, -0.12 * high)
+    panel.span(y=(low, 0.0), colour=FAINT, opacity=0.5)
+    panel.y.low, panel.y.high = low, high + 0.05 * (high - low)
+    panel.text(0.99, 0.5 * low, "jammed", at="y", across="right", colour=QUIET)
+    return Picture([[panel]], legend=2)
 
 
-WAYS: dict[str, tuple[Any, str]] = {
-    "jam_temperature": ((0, (1, 2)), "gears alone hotter"),
-    "proportional_jam_temperature": ((0, (6, 2, 1, 2)), "all in proportion"),
+WAYS: dict[str, tuple[tuple[float, ...], str]] = {
+    "jam_temperature": ((1, 2), "gears alone hotter"),
+    "proportional_jam_temperature": ((6, 2, 1, 2), "all in proportion"),
 }
 """Ways to the jam by the stored temperature at their end: line and words."""
 
 
-def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Figure:
+def over_temperature(row: xr.Dataset, mesh: xr.Dataset | None) -> Picture:
     """Half backlash over the gears' temperature, with the line at which the pair jams.
 
     ``mesh`` adds both ways to the jam: the gears alone get hotter and the housing stays, and all
     bodies rise on in proportion.
     """
-    figure, axes = picture()
-    axis, x = axes[0, 0], shown(row, "gear_temperature")
-    bundles = names_of(row, "bundle")
+    panel = Panel(axis_of("gear_temperature"), axis_of("half_backlash", "half backlash"))
+    x, bundles = shown(row, "gear_temperature"), names_of(row, "bundle")
     cold = 1e6 * float(row["cold_half_backlash"].max())
     if mesh is not None:
         cold = 1e6 * float(mesh["half_backlash"].isel(state=0, operating=0).max())
-    axis.axhline(cold, color=COLD, linewidth=1.2, label=UNDEFORMED)
+    panel.line(y=cold, colour=COLD, width=1.2, label=UNDEFORMED)
     for place, bundle in enumerate(bundles):
         values = shown(row.isel(bundle=place, operating=0), "half_backlash")
-        axis.plot(
-            x,
-            values,
-            color=HOT,
-            marker="o",
-            markersize=4.5,
-            linestyle=bundle_line(bundles, place),
+        panel.curve(
+            x, values, colour=HOT, marker="circle", size=4.5, dash=bundle_line(bundles, place),
             label=plain(f"{bundle}, both gears"),
-        )
-        for jam, (line, words) in WAYS.items():
+        )  # fmt: skip
+        for jam, (dash, words) in WAYS.items():
             way = None if mesh is None else _way_to_jam(mesh, bundle, jam)
             if way is not None:
-                axis.plot(*way, color=INK, linewidth=1.1, linestyle=line,
-                          label=plain(f"{bundle}, {words}"))  # fmt: skip
-                _mark_jam(axis, way[0][1], left=way[0][1] > float(x.mean()))
-    axis.axhline(0.0, color=INK, linewidth=0.9)
-    low = min(axis.get_ylim()[0], -0.16 * abs(cold))
-    axis.axhspan(low, 0.0, color=FAINT, alpha=0.5, linewidth=0)
-    axis.set_ylim(low, max(1.08 * cold, axis.get_ylim()[1]))
-    axis.set_xlabel(axis_label("gear_temperature"))
-    axis.set_ylabel(axis_label("half_backlash", "half backlash"))
-    legend_below(figure, axis, 2)
-    return figure
+                label = plain(f"{bundle}, {words}")
+                panel.curve(*way, colour=INK, width=1.1, dash=dash, label=label)
+                _mark_jam(panel, way[0][1], left=way[0][1] > float(x.mean()))
+    panel.line(y=0.0, colour=INK, width=0.9)
+    low, high = panel.extent("y")
+    panel.y.low, panel.y.high = min(low, -0.16 * abs(cold)), max(1.08 * cold, high)
+    panel.span(y=(panel.y.low, 0.0), colour=FAINT, opacity=0.5)
+    return Picture([[panel]], legend=2)
 
 
-def _mark_jam(axis: Axes, jam: float, *, left: bool) -> None:
+def _mark_jam(panel: Panel, jam: float, *, left: bool) -> None:
     """A cross where the backlash is used up, its temperature [degC] once beside it."""
-    axis.plot([jam], [0.0], marker="X", color=INK, markersize=7, linestyle="none")
+    panel.points([jam], [0.0], marker="cross", colour=INK, size=7)
     words = f"jams at {jam:.0f} °C"
-    if words in (text.get_text() for text in axis.texts):
-        return
-    axis.annotate(
-        words, (jam, 0.0), xytext=(-9 if left else 9, -5), textcoords="offset points",
-        ha="right" if left else "left", va="top", fontsize=8.5,
-    )  # fmt: skip
+    if not any(isinstance(mark, Text) and mark.words == words for mark in panel.marks):
+        across, away = ("right", -9) if left else ("left", 9)
+        panel.text(jam, 0.0, words, offset=(away, -5), across=across, up="top")
 
 
 def jams(row: xr.Dataset, mesh: xr.Dataset | None) -> list[str]:

@@ -1,4 +1,4 @@
-"""What several pictures share: one curve for each operating point, bundle and state."""
+"""What several pictures share: named axes, the path of contact, curves by point and by bundle."""
 
 from __future__ import annotations
 
@@ -7,13 +7,51 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from thermogear.views.style import bundle_line, chosen, names_of, ramp
-from thermogear.views.words import operating_names, plain, shown
+from thermogear.views.picture import Axis, Panel
+from thermogear.views.style import (
+    FAINT,
+    INK,
+    QUIET,
+    bundle_line,
+    chosen,
+    names_of,
+    path_points,
+    ramp,
+)
+from thermogear.views.words import axis_label, operating_names, plain, shown
 
 Floats = NDArray[np.float64]
+
+
+def axis_of(
+    name: str, words: str | None = None, *, low: float | None = None, high: float | None = None
+) -> Axis:
+    """The axis of a stored quantity: its words, symbol and unit."""
+    return Axis(axis_label(name, words), low=low, high=high)
+
+
+def along_path(data: xr.Dataset, y: Axis, *, letters: bool = True) -> Panel:
+    """A panel over the path of contact [mm], A..E marked; C, the pitch point, stands out."""
+    s = 1e3 * data["path_position"].values
+    room = 0.02 * float(np.ptp(s))
+    x = axis_of("path_position", "distance from the pinion's tangent point")
+    panel = Panel(x, y)
+    x.low, x.high, x.grid = float(s.min()) - room, float(s.max()) + room, False
+    for name, position in path_points(data).items():
+        pitch, at = name == "C", 1e3 * position
+        panel.line(
+            x=at,
+            colour=QUIET if pitch else FAINT,
+            width=1.1 if pitch else 0.9,
+            dash=(1, 2) if pitch else (),
+            order=0.5,
+        )
+        if letters:
+            colour = INK if pitch else QUIET
+            panel.text(at, 1.015, name, at="x", up="bottom", colour=colour, bold=pitch)
+    return panel
 
 
 def hot_state(data: xr.Dataset) -> xr.Dataset:
@@ -32,45 +70,55 @@ def distinct(curves: Sequence[Floats]) -> bool:
 
 
 def draw_by_operating(
-    axes: Axes, data: xr.Dataset, name: str, x: Floats, colour: str | None = None, **line: Any
+    panel: Panel, data: xr.Dataset, name: str, x: Floats, label: str = "", **look: Any
 ) -> None:
     """``name`` over ``x``, one curve per operating point; a single one where all agree.
 
-    ``data`` has the dimension ``operating`` left beside the curve's own.
+    ``data`` has the dimension ``operating`` left beside the curve's own; a ``colour`` is that of
+    the single one.
     """
     values = shown(data, name)
     places = chosen(values.shape[0])
     names = operating_names(data)
-    prefix = line.pop("label", "")
+    alone = look.pop("colour", ramp(1)[0])
     if not distinct([values[i] for i in places]):
         if np.isfinite(values[0]).any():
-            axes.plot(
-                x,
-                values[0],
-                color=colour or ramp(1)[0],
-                label=prefix or "all operating points",
-                **line,
-            )
+            words = label or "all operating points"
+            panel.curve(x, values[0], colour=alone, label=words, **look)
         return
     for i, own in zip(places, ramp(len(places)), strict=True):
         if np.isfinite(values[i]).any():
-            text = f"{prefix}, {names[i]}" if prefix else names[i]
-            axes.plot(x, values[i], color=own, label=plain(text), **line)
+            words = plain(f"{label}, {names[i]}" if label else names[i])
+            panel.curve(x, values[i], colour=own, label=words, **look)
 
 
 def draw_by_bundle(
-    axes: Axes, data: xr.Dataset, name: str, x: Floats, colour: str, what: str = "", **line: Any
+    panel: Panel, data: xr.Dataset, name: str, x: Floats, *, colour: str, what: str = ""
 ) -> None:
     """``name`` over ``x`` at the first operating point, one line style per bundle."""
     bundles = names_of(data, "bundle")
     values = shown(data.isel(operating=0) if "operating" in data.dims else data, name)
     for place, bundle in enumerate(bundles):
         if np.isfinite(values[place]).any():
-            axes.plot(
-                x,
-                values[place],
-                color=colour,
-                linestyle=bundle_line(bundles, place),
-                label=plain(f"{what}, {bundle}" if what else bundle),
-                **line,
-            )
+            words = plain(f"{what}, {bundle}" if what else bundle)
+            dash = bundle_line(bundles, place)
+            panel.curve(x, values[place], colour=colour, dash=dash, label=words)
+
+
+def draw_by_both(
+    panel: Panel, data: xr.Dataset, name: str, x: Floats, *, thin: float = 1.7, **look: Any
+) -> None:
+    """``name`` over ``x``, the first axis left: points by colour, bundles by line style.
+
+    ``thin`` is the width [pt] of every bundle but the first.
+    """
+    bundles, names = names_of(data, "bundle"), operating_names(data)
+    places = chosen(data.sizes["operating"])
+    for place, bundle in enumerate(bundles):
+        values = shown(data.isel(bundle=place).transpose("operating", ...), name)
+        for i, colour in zip(places, ramp(len(places)), strict=True):
+            if np.isfinite(values[i]).any():
+                panel.curve(
+                    x, values[i], colour=colour, dash=bundle_line(bundles, place),
+                    width=1.7 if place == 0 else thin, label=plain(f"{names[i]}, {bundle}"), **look,
+                )  # fmt: skip

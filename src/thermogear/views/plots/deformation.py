@@ -3,32 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
-from thermogear.views.plots.curves import hot_state
-from thermogear.views.style import (
-    HOT,
-    INK,
-    OKABE_ITO,
-    QUIET,
-    bundle_line,
-    legend_below,
-    mark_path,
-    names_of,
-    picture,
-)
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.curves import along_path, hot_state
+from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, bundle_line, names_of
 from thermogear.views.words import plain, shown
 
 
-def growth(data: xr.Dataset) -> Figure:
+def growth(data: xr.Dataset) -> Picture:
     """Normal growth of both flanks and their sum, each bundle with a line style of its own."""
-    figure, axes = picture()
-    axis, x = axes[0, 0], shown(data, "path_position")
-    here = hot_state(data).isel(operating=0)
+    panel = along_path(data, Axis("normal growth of the hot flank $δ_{n}$ [µm]"))
+    x, here = shown(data, "path_position"), hot_state(data).isel(operating=0)
     bundles = names_of(data, "bundle")
     lines = {
         "deformation_sum": ("sum", INK),
@@ -37,27 +25,26 @@ def growth(data: xr.Dataset) -> Figure:
     }
     for place, bundle in enumerate(bundles):
         for name, (words, colour) in lines.items():
-            axis.plot(
+            panel.curve(
                 x,
                 shown(here.isel(bundle=place), name),
-                color=colour,
-                linestyle=bundle_line(bundles, place),
+                colour=colour,
+                dash=bundle_line(bundles, place),
                 label=plain(f"{words}, {bundle}"),
             )
-    axis.set_ylabel("normal growth of the hot flank $δ_{n}$ [µm]")
-    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
-    mark_path(axis, data)
-    legend_below(figure, axis, 2)
-    return figure
+    panel.y.low = min(0.0, panel.extent("y")[0])
+    return Picture([[panel]], legend=2)
 
 
-def hot_profiles(data: xr.Dataset) -> dict[str, tuple[str, str, Any, float]]:
-    """The hot profiles that are stored: words, colour, line style and width of each."""
+def hot_profiles(data: xr.Dataset) -> dict[str, tuple[str, str, tuple[float, ...], float]]:
+    """The hot profiles that are stored: words, colour, dash and width of each."""
     printed = "printed_x" in data
     words = "hot, repaired" if printed else "hot"
-    found: dict[str, tuple[str, str, Any, float]] = {"consistent": (words, HOT, "-", 2.4)}
+    found: dict[str, tuple[str, str, tuple[float, ...], float]] = {
+        "consistent": (words, HOT, (), 2.4)
+    }
     if printed:
-        found["printed"] = ("hot, as printed", INK, (0, (4, 2)), 1.3)
+        found["printed"] = ("hot, as printed", INK, (4, 2), 1.3)
     return found
 
 
@@ -77,48 +64,37 @@ def magnification(data: xr.Dataset, gear: int) -> int:
     return int(next(step * power for step in (5.0, 2.0, 1.0) if step * power <= wanted))
 
 
-def profile(data: xr.Dataset, gear: int) -> Figure:
+def profile(data: xr.Dataset, gear: int) -> Picture:
     """One tooth: cold involute and the hot profiles, their displacement magnified."""
-    figure, axes = picture(size=(4.9, 4.3))
-    axis = axes[0, 0]
     here = data.isel(gear=gear)
     factor = magnification(data, gear)
+    panel = Panel(
+        Axis("across the tooth, from its centre line x [mm]"),
+        Axis("radius along the centre line y [mm]"),
+        plain(f"{here['gear'].item()}: displacement × {factor}"),
+        equal=True,
+    )
     x0, y0 = here["involute_x"].values, here["involute_y"].values
-    curves = {**hot_profiles(data), "involute": ("cold involute", QUIET, "-", 1.3)}
-    for kind, (words, colour, style, width) in curves.items():
+    curves = {**hot_profiles(data), "involute": ("cold involute", QUIET, (), 1.3)}
+    for kind, (words, colour, dash, width) in curves.items():
         x = 1e3 * (x0 + factor * (here[f"{kind}_x"].values - x0))
         y = 1e3 * (y0 + factor * (here[f"{kind}_y"].values - y0))
-        axis.plot(
-            np.concatenate([-x, x[::-1]]),
-            np.concatenate([y, y[::-1]]),
-            color=colour,
-            linestyle=style,
-            linewidth=width,
-            label=words,
-        )
-    axis.set_aspect("equal", adjustable="datalim")
-    axis.set_xlabel("across the tooth, from its centre line x [mm]")
-    axis.set_ylabel("radius along the centre line y [mm]")
-    axis.set_title(plain(f"{here['gear'].item()}: displacement × {factor}"))
-    legend_below(figure, axis)
-    return figure
+        x, y = np.concatenate([-x, x[::-1]]), np.concatenate([y, y[::-1]])
+        panel.curve(x, y, colour=colour, dash=dash, width=width, label=words)
+    return Picture([[panel]], size=(4.9, 4.3))
 
 
-def profile_growth(data: xr.Dataset, gear: int) -> Figure:
+def profile_growth(data: xr.Dataset, gear: int) -> Picture:
     """How far each hot profile stands off the cold involute, along the flank's normal."""
-    figure, axes = picture()
-    axis = axes[0, 0]
+    panel = Panel(Axis("radius on the flank r [mm]"), Axis("distance from the cold involute [µm]"))
     here = data.isel(gear=gear)
     x0, y0 = here["involute_x"].values, here["involute_y"].values
     across, along = (np.gradient(part, edge_order=2) for part in (x0, y0))
     length = np.hypot(across, along)
-    for kind, (words, colour, style, _) in hot_profiles(data).items():
+    for kind, (words, colour, dash, _) in hot_profiles(data).items():
         dx = here[f"{kind}_x"].values - x0
         dy = here[f"{kind}_y"].values - y0
         off = 1e6 * (dx * along - dy * across) / length
-        axis.plot(1e3 * np.hypot(x0, y0), off, color=colour, linestyle=style, label=words)
-    axis.set_xlabel("radius on the flank r [mm]")
-    axis.set_ylabel("distance from the cold involute [µm]")
-    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
-    legend_below(figure, axis)
-    return figure
+        panel.curve(1e3 * np.hypot(x0, y0), off, colour=colour, dash=dash, label=words)
+    panel.y.low = min(0.0, panel.extent("y")[0])
+    return Picture([[panel]])

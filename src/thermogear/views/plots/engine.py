@@ -7,42 +7,30 @@ from itertools import pairwise
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.orbits import refined
 from thermogear.views.plots.parameters import axis_words, shown
-from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
-from thermogear.views.style import (
-    COLD,
-    HOT,
-    INK,
-    OKABE_ITO,
-    QUIET,
-    SINGLE,
-    WIDE,
-    legend_below,
-    log_axis,
-    picture,
-)
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.style import COLD, HOT, OKABE_ITO, QUIET, WIDE
 from thermogear.views.words import plain
 
 Floats = NDArray[np.float64]
 
 HIGHEST_ORDER = 8.0
-DASHED = (0, (4, 2))
-DOTTED = (0, (1, 1.5))
+DASHED = (4, 2)
+DOTTED = (1, 1.5)
 MARKS = {
-    "fold": ("s", "#D55E00"),
-    "period doubling": ("o", "#0072B2"),
-    "grazing": ("^", "#009E73"),
-    "period halving": ("v", "#CC79A7"),
-    "pitchfork": ("D", "#E69F00"),
+    "fold": ("square", "#D55E00"),
+    "period doubling": ("circle", "#0072B2"),
+    "grazing": ("up", "#009E73"),
+    "period halving": ("down", "#CC79A7"),
+    "pitchfork": ("diamond", "#E69F00"),
 }
 
 
-def orbit_picture(data: xr.Dataset) -> Figure:
+def orbit_picture(data: xr.Dataset) -> Picture:
     """Time history, phase plane with section, Floquet multipliers and spectrum of one orbit."""
     si = data["displacement"].attrs.get("units") == "m"
     length, speed = (1e6, 1e3) if si else (1.0, 1.0)
@@ -63,24 +51,20 @@ def orbit_picture(data: xr.Dataset) -> Figure:
     t, x, v = refined(t, x=x, v=v, times=4)
     turns = t * float(data["orbit_period"]) / t[-1]
     x, v = x * length, v * speed
-    figure, axes = picture(2, 2, (WIDE, 6.6), above=0.95, between=0.9)
-    history, phase, unit, spectrum = axes.ravel()
-
-    history.plot(turns, x, color=COLD, linewidth=1.3)
-    history.set(title="One orbit", xlabel="time in mesh periods t/T [–]", ylabel=x_words)
-    phase.plot(x, v, color=COLD, linewidth=1.3)
-    phase.plot(
-        data["section_displacement"].values * length,
-        data["section_velocity"].values * speed,
-        linestyle="none", marker="o", markersize=6.5, color=HOT, markeredgecolor="white",
+    history = Panel(Axis("time in mesh periods t/T [–]"), Axis(x_words), "One orbit")
+    phase = Panel(Axis(x_words), Axis(v_words), "Phase plane, section at phase 0")
+    history.curve(turns, x, colour=COLD, width=1.3)
+    phase.curve(x, v, colour=COLD, width=1.3)
+    phase.points(
+        data["section_displacement"].values * length, data["section_velocity"].values * speed,
+        size=6.5, colour=HOT, edge="white",
     )  # fmt: skip
-    phase.set(title="Phase plane, section at phase 0", xlabel=x_words, ylabel=v_words)
     for place in edges_in_sight(data):
-        history.axhline(length * place, color=QUIET, linewidth=1.0, linestyle=DASHED)
-        phase.axvline(length * place, color=QUIET, linewidth=1.0, linestyle=DASHED)
-    _multipliers(unit, data["multiplier_real"].values, data["multiplier_imag"].values)
-    _spectrum(spectrum, data, length, "µm" if si else "")
-    return figure
+        history.line(y=length * place, colour=QUIET, width=1.0, dash=DASHED)
+        phase.line(x=length * place, colour=QUIET, width=1.0, dash=DASHED)
+    unit = _multipliers(data["multiplier_real"].values, data["multiplier_imag"].values)
+    spectrum = _spectrum(data, length, "µm" if si else "–")
+    return Picture([[history, phase], [unit, spectrum]], size=(WIDE, 6.6), above=0.95, between=0.9)
 
 
 def edges_in_sight(data: xr.Dataset) -> list[float]:
@@ -91,46 +75,35 @@ def edges_in_sight(data: xr.Dataset) -> list[float]:
     return [place for place in (edge, -edge) if low - room <= place <= high + room]
 
 
-def _multipliers(axes: Axes, real: Floats, imag: Floats) -> None:
+def _multipliers(real: Floats, imag: Floats) -> Panel:
+    panel = Panel(
+        Axis("real part [–]"), Axis("imaginary part [–]"), "Floquet multipliers", equal=True
+    )
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
-    axes.plot(np.cos(angle), np.sin(angle), color=QUIET, linewidth=1.0)
+    panel.curve(np.cos(angle), np.sin(angle), colour=QUIET, width=1.0)
     outside = np.hypot(real, imag) > 1.0
     for keep, colour in ((~outside, COLD), (outside, HOT)):
-        axes.plot(real[keep], imag[keep], linestyle="none", marker="o", markersize=7, color=colour)
-    axes.set(title="Floquet multipliers", xlabel="real part [–]", ylabel="imaginary part [–]")
-    axes.set_aspect("equal", adjustable="datalim")
+        panel.points(real[keep], imag[keep], size=7, colour=colour)
+    return panel
 
 
-def _spectrum(axes: Axes, data: xr.Dataset, length: float, unit: str) -> None:
+def _spectrum(data: xr.Dataset, length: float, unit: str) -> Panel:
     order, amplitude = data["order"].values, data["line_amplitude"].values * length
     floor, top = floor_of(amplitude, order=order, highest=HIGHEST_ORDER)
-    draw_lines(
-        axes,
-        order=order,
-        amplitude=amplitude,
-        colour=COLD,
-        floor=floor,
+    panel = over_orders(
+        "order of the mesh frequency [–]", f"amplitude [{unit}]", floor=floor, top=top,
         highest=HIGHEST_ORDER,
-        label="",
-    )
-    log_axis(axes)
-    axes.set_ylim(floor, top)
-    mark_half_orders(axes, HIGHEST_ORDER)
-    axes.set(
-        title="Spectrum, half orders dotted",
-        xlabel="order of the mesh frequency [–]",
-        ylabel=f"amplitude [{unit}]" if unit else "amplitude [–]",
-    )
+    )  # fmt: skip
+    draw_lines(panel, order=order, amplitude=amplitude, colour=COLD, label="")
     if "line_frequency" in data:
         mesh = float(data["line_frequency"].values[-1] / order[-1])
-        above = axes.secondary_xaxis(
-            "top", functions=(lambda q: np.multiply(q, mesh), lambda f: np.divide(f, mesh))
-        )
-        above.set_xlabel("frequency f [Hz]")
-        axes.set_title("")
+        panel.top = Top("frequency f [Hz]", mesh)
+    else:
+        panel.title = "Spectrum, half orders dotted"
+    return panel
 
 
-def lyapunov_picture(data: xr.Dataset) -> Figure:
+def lyapunov_picture(data: xr.Dataset) -> Picture:
     """Batch means and the running mean with its standard error."""
     values = data["lyapunov_batch"].values
     count = np.arange(1, values.size + 1)
@@ -138,35 +111,27 @@ def lyapunov_picture(data: xr.Dataset) -> Figure:
     error = np.array(
         [values[:n].std(ddof=1) / np.sqrt(n) if n > 1 else np.nan for n in count.tolist()]
     )
-    figure, axes = picture(1, 1, SINGLE)
-    (only,) = axes.ravel()
-    only.axhline(0.0, color=QUIET, linewidth=1.0)
-    only.plot(count, values, linestyle="none", marker=".", color=QUIET, label="batch means")
-    only.fill_between(count, mean - error, mean + error, color=COLD, alpha=0.25, linewidth=0.0)
-    only.plot(count, mean, color=COLD, label="mean so far, one standard error")
-    only.set(xlabel="batches", ylabel="largest Lyapunov exponent λ₁")
-    legend_below(figure, only, 2)
-    return figure
+    panel = Panel(Axis("batches [–]"), Axis("largest Lyapunov exponent λ₁ [–]"))
+    panel.line(y=0.0, colour=QUIET, width=1.0)
+    panel.points(count, values, marker="dot", colour=QUIET, label="batch means")
+    panel.band(count, low=mean - error, high=mean + error, colour=COLD, opacity=0.25)
+    panel.curve(count, mean, colour=COLD, label="mean so far, one standard error")
+    return Picture([[panel]], legend=2)
 
 
-def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Figure:
+def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
     """Displacement at phase 0 along the parameter: stable solid, unstable dotted."""
-    figure, axes = picture(1, 1, (WIDE, 4.0))
-    (only,) = axes.ravel()
     parameter = str(branches[0].attrs["parameter"])
+    panel = Panel(Axis(axis_words(parameter)), Axis("displacement X at phase 0 [–]"), plain(title))
     for data in branches:
         period = int(data.attrs["period"])
         colour = OKABE_ITO[min(int(np.log2(period)), len(OKABE_ITO) - 1)]
-        draw_branch(only, data, parameter, colour, f"period {period}")
-    _marks(only, branches, parameter)
-    only.set(
-        xlabel=axis_words(parameter), ylabel="displacement X at phase 0 [–]", title=plain(title)
-    )
-    legend_below(figure, only, 4)
-    return figure
+        draw_branch(panel, data, parameter, colour, f"period {period}")
+    _marks(panel, branches, parameter)
+    return Picture([[panel]], size=(WIDE, 4.0), legend=4)
 
 
-def draw_branch(axes: Axes, data: xr.Dataset, parameter: str, colour: str, label: str) -> None:
+def draw_branch(panel: Panel, data: xr.Dataset, parameter: str, colour: str, label: str) -> None:
     """One branch, cut at the located bifurcations where its stability changes."""
     value = shown(parameter, data["value"].values)
     events = shown(parameter, data["event_value"].values)
@@ -184,11 +149,11 @@ def draw_branch(axes: Axes, data: xr.Dataset, parameter: str, colour: str, label
                 )
                 along.insert(0 if place == 0 else len(along), float(at[0]))
                 up.insert(0 if place == 0 else len(up), float(at[1]))
-        firm = bool(stable[first])
-        axes.plot(
-            along, up, color=colour, linewidth=1.6 if firm else 1.1,
-            linestyle="-" if firm else DOTTED, label=f"{label}{'' if firm else ', unstable'}",
-        )  # fmt: skip
+        if stable[first]:
+            panel.curve(along, up, colour=colour, width=1.6, label=label)
+        else:
+            words = f"{label}, unstable"
+            panel.curve(along, up, colour=colour, width=1.1, dash=DOTTED, label=words)
 
 
 def _between(events: Floats, one: float, other: float) -> int | None:
@@ -198,44 +163,38 @@ def _between(events: Floats, one: float, other: float) -> int | None:
     return int(inside[-1]) if inside.size else None
 
 
-def _marks(axes: Axes, branches: Sequence[xr.Dataset], parameter: str) -> None:
+def _marks(panel: Panel, branches: Sequence[xr.Dataset], parameter: str) -> None:
     for kind, (marker, colour) in MARKS.items():
         for data in branches:
             here = data["event_kind"].values.astype(str) == kind
             if here.any():
-                axes.plot(
-                    shown(parameter, data["event_value"].values[here]),
-                    data["event_x"].values[here],
-                    linestyle="none", marker=marker, markersize=5.5, color=colour,
-                    markeredgecolor="white", markeredgewidth=0.6, label=kind,
+                at = shown(parameter, data["event_value"].values[here])
+                panel.points(
+                    at, data["event_x"].values[here], marker=marker, size=5.5, colour=colour,
+                    edge="white", edge_width=0.6, label=kind,
                 )  # fmt: skip
 
 
-def cascade_picture(branches: Sequence[xr.Dataset]) -> Figure:
+def cascade_picture(branches: Sequence[xr.Dataset]) -> Picture:
     """One axis for each row: the doubling branches, one colour for each state of heat."""
     rows = list(dict.fromkeys(str(b.attrs["row"]) for b in branches))
     heats = list(dict.fromkeys(str(b.attrs["heat"]) for b in branches))
-    figure, axes = picture(1, len(rows), (WIDE, 3.6), between=0.62)
-    for axis, row in zip(axes.ravel(), rows, strict=True):
+    panels = []
+    for row in rows:
         own = [b for b in branches if str(b.attrs["row"]) == row]
         parameter = str(own[0].attrs["parameter"])
+        panel = Panel(Axis(axis_words(parameter)))
         for data in own:
             place = heats.index(str(data.attrs["heat"]))
-            colour = INK if place == 0 else OKABE_ITO[place % len(OKABE_ITO)]
-            if place == 0:
-                colour = COLD
-            axis.plot(
-                shown(parameter, data["value"].values), data["section_x"].values,
-                color=colour, linewidth=1.2, label=plain(heats[place]),
-            )  # fmt: skip
+            colour = COLD if place == 0 else OKABE_ITO[place % len(OKABE_ITO)]
+            value = shown(parameter, data["value"].values)
+            label = plain(heats[place])
+            panel.curve(value, data["section_x"].values, colour=colour, width=1.2, label=label)
             flips = data["event_kind"].values.astype(str) == "period doubling"
-            axis.plot(
-                shown(parameter, data["event_value"].values[flips]),
-                data["event_x"].values[flips],
-                linestyle="none", marker="o", markersize=4.5, color=colour,
-                markeredgecolor="white", markeredgewidth=0.5,
+            panel.points(
+                shown(parameter, data["event_value"].values[flips]), data["event_x"].values[flips],
+                size=4.5, colour=colour, edge="white", edge_width=0.5,
             )  # fmt: skip
-        axis.set_xlabel(axis_words(parameter))
-    axes.ravel()[0].set_ylabel("displacement X at phase 0 [–]")
-    legend_below(figure, list(axes.ravel()), 3)
-    return figure
+        panels.append(panel)
+    panels[0].y.words = "displacement X at phase 0 [–]"
+    return Picture([panels], size=(WIDE, 3.6), between=0.62)

@@ -4,45 +4,42 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from thermogear.base.vocabulary import UNDEFORMED
-from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, legend_below, picture, ramp
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, ramp
 
 EDGE = OKABE_ITO[4]
-STATES = {UNDEFORMED: (COLD, (0, (5, 2))), "hot": (HOT, "-")}
+STATES: dict[str, tuple[str, tuple[float, ...]]] = {UNDEFORMED: (COLD, (5, 2)), "hot": (HOT, ())}
 
 
-def over_phase(data: xr.Dataset) -> Figure:
+def over_phase(data: xr.Dataset) -> Picture:
     """Tangent and secant stiffness and transmission error over a mesh period, hot, by load."""
-    figure, axes = picture(1, 3, size=(WIDE, 3.3))
     here = data.sel(temperature="hot")
-    x = here["mesh_phase"].values
-    panels = (
+    panels = []
+    for name, scale, words in (
         ("tangent_stiffness", 1e-8, "tangent stiffness [10⁸ N/m]"),
         ("secant_stiffness", 1e-8, "secant stiffness [10⁸ N/m]"),
         ("transmission_error", 1e6, "transmission error δ, heat's shift in it [µm]"),
-    )
-    colours = ramp(here.sizes["load"])
-    for axis, (name, scale, words) in zip(axes[0], panels, strict=True):
-        for place, colour in enumerate(colours):
-            torque = float(here["load"][place])
-            axis.plot(x, scale * here[name].values[place], color=colour, label=f"{torque:.4g} N m")
-        axis.set_xlim(0.0, 1.0)
-        axis.set_xlabel("mesh phase φ [–]")
-        axis.set_ylabel(words)
-    legend_below(figure, axes[0, 0], 6)
-    return figure
+    ):
+        panel = Panel(Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis(words))
+        for place, colour in enumerate(ramp(here.sizes["load"])):
+            label = f"{float(here['load'][place]):.4g} N m"
+            values = scale * here[name].values[place]
+            panel.curve(here["mesh_phase"].values, values, colour=colour, label=label)
+        panels.append(panel)
+    return Picture([panels], size=(WIDE, 3.3), legend=6)
 
 
-def along_path(data: xr.Dataset, points: dict[str, float]) -> Figure:
+def along_path(data: xr.Dataset, points: dict[str, float]) -> Picture:
     """Load share and pressure of a tooth pair along the path at the first and the last load.
 
     The pressure stops where a tip corner carries, and those stretches are shaded.
     """
-    figure, axes = picture(1, 2, size=(WIDE, 3.3))
-    for name, (colour, line) in STATES.items():
+    across = "distance from the pinion's tangent point [mm]"
+    share = Panel(Axis(across), Axis("share of the load [–]", low=0.0))
+    pressure = Panel(Axis(across), Axis("greatest Hertzian pressure on the flanks [MPa]", low=0.0))
+    for name, (colour, dash) in STATES.items():
         if name not in data["temperature"].values:
             continue
         here = data.sel(temperature=name)
@@ -54,53 +51,36 @@ def along_path(data: xr.Dataset, points: dict[str, float]) -> Figure:
             words = f"{name}, {float(one['load']):.4g} N m"
             shares = one["load_share"].values.ravel()[order]
             pressures = 1e-6 * one["contact_pressure"].values.ravel()[order]
-            for axis, values in ((axes[0, 0], shares), (axes[0, 1], pressures)):
-                axis.plot(
-                    s[order], values, color=colour, linestyle=line, linewidth=width, label=words
-                )
-    for axis, words in (
-        (axes[0, 0], "share of the load [–]"),
-        (axes[0, 1], "greatest Hertzian pressure on the flanks [MPa]"),
-    ):
-        _corners(axis, data)
-        _marks(axis, points)
-        axis.set_xlabel("distance from the pinion's tangent point [mm]")
-        axis.set_ylabel(words)
-        axis.set_ylim(bottom=0.0)
-    legend_below(figure, axes[0, 0], 4)
-    return figure
+            for panel, values in ((share, shares), (pressure, pressures)):
+                panel.curve(s[order], values, colour=colour, dash=dash, width=width, label=words)
+    for panel in (share, pressure):
+        _corners(panel, data)
+        _marks(panel, points)
+    return Picture([[share, pressure]], size=(WIDE, 3.3), legend=4)
 
 
-def _corners(axis: Axes, data: xr.Dataset) -> None:
+def _corners(panel: Panel, data: xr.Dataset) -> None:
     """Shade where a tip corner carries at any load and temperature."""
     positions, flags = data["pair_position"].values, data["edge_contact"].values
     label = "edge contact: pressure not valid"
     for corner in (1, 2):
-        touched = positions[(flags == corner).any(axis=tuple(range(flags.ndim - 2)))]
+        touched = 1e3 * positions[(flags == corner).any(axis=tuple(range(flags.ndim - 2)))]
         if touched.size:
-            low, high = 1e3 * touched.min(), 1e3 * touched.max()
-            axis.axvspan(low, high, color=EDGE, alpha=0.25, linewidth=0.0, zorder=0.1, label=label)
+            ends = float(touched.min()), float(touched.max())
+            panel.span(x=ends, colour=EDGE, opacity=0.25, order=0.1, label=label)
             label = ""
 
 
-def _marks(axis: Axes, points: dict[str, float]) -> None:
+def _marks(panel: Panel, points: dict[str, float]) -> None:
     for name, position in points.items():
-        axis.axvline(1e3 * position, color=INK, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0.5)
-        axis.text(
-            1e3 * position,
-            1.015,
-            name,
-            transform=axis.get_xaxis_transform(),
-            ha="center",
-            va="bottom",
-            fontsize=8.5,
-        )
+        panel.line(x=1e3 * position, colour=INK, width=0.6, dash=(1, 2), order=0.5)
+        panel.text(1e3 * position, 1.015, name, at="x", up="bottom")
     if points:
         low, high = 1e3 * min(points.values()), 1e3 * max(points.values())
-        axis.set_xlim(low - 0.12 * (high - low), high + 0.12 * (high - low))
+        panel.x.low, panel.x.high = low - 0.12 * (high - low), high + 0.12 * (high - low)
 
 
-def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Figure:
+def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Picture:
     """``name`` over the load (logarithmic) for gears of unequal temperature."""
     words = {
         "double_contact_length": (1e3, "length of double contact [mm]"),
@@ -108,40 +88,29 @@ def double_contact(data: xr.Dataset, base_pitch: float, name: str) -> Figure:
         "peak_to_peak_error": (1e6, "transmission error, peak to peak [µm]"),
     }
     scale, text = words[name]
-    figure, axes = picture()
-    axis = axes[0, 0]
+    panel = Panel(Axis("pinion torque [N m]", log="full"), Axis(text, low=0.0))
     colours = (OKABE_ITO[0], OKABE_ITO[5], INK, OKABE_ITO[4], OKABE_ITO[1])
     for place, difference in enumerate(data["temperature_difference"].values):
-        axis.plot(
+        panel.curve(
             data["load"].values,
             scale * data[name].values[place],
-            color=colours[place % len(colours)],
+            colour=colours[place % len(colours)],
             label=f"pinion {difference:+.0f} K".replace("-", "−") if difference else "equally hot",
         )
-    axis.set_xscale("log")
-    axis.set_xlabel("pinion torque [N m]")
-    axis.set_ylabel(text)
-    axis.set_ylim(bottom=0.0)
     if name == "double_contact_length":
-        axis.set_ylim(top=1.03e3 * base_pitch)
-    legend_below(figure, axis, 3)
-    return figure
+        panel.y.high = 1.03e3 * base_pitch
+    return Picture([[panel]])
 
 
-def iso(data: xr.Dataset) -> Figure:
+def iso(data: xr.Dataset) -> Picture:
     """Mean stiffness of the loaded contact beside that of ISO 6336-1 over the load."""
-    figure, axes = picture()
-    axis = axes[0, 0]
+    panel = Panel(Axis("pinion torque [N m]"), Axis("mean mesh stiffness [10⁸ N/m]", low=0.0))
     for name, words, colour in (
         ("loaded_stiffness", "loaded contact, undeformed", HOT),
         ("iso_stiffness", "ISO 6336-1, method B", COLD),
     ):
-        axis.plot(
-            data["load"].values, 1e-8 * data[name].values, color=colour, marker="o",
-            markersize=3.5, label=words,
-        )  # fmt: skip
-    axis.set_ylim(bottom=0.0)
-    axis.set_xlabel("pinion torque [N m]")
-    axis.set_ylabel("mean mesh stiffness [10⁸ N/m]")
-    legend_below(figure, axis, 2)
-    return figure
+        values = 1e-8 * data[name].values
+        panel.curve(
+            data["load"].values, values, colour=colour, marker="circle", size=3.5, label=words
+        )
+    return Picture([[panel]], legend=2)

@@ -3,36 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import UNDEFORMED
+from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.orbits import SMOOTH, periods_to_draw, refined, thinned
-from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
-from thermogear.views.style import (
-    INK,
-    QUIET,
-    STATES,
-    WIDE,
-    legend_below,
-    log_axis,
-    names_of,
-    note,
-    picture,
-)
-from thermogear.views.words import (
-    axis_label,
-    display,
-    label_text,
-    number,
-    plain,
-    shown,
-)
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.style import INK, QUIET, STATES, WIDE, names_of
+from thermogear.views.words import axis_label, display, label_text, number, plain
 
 Floats = NDArray[np.float64]
 
@@ -43,6 +24,7 @@ HISTORY = 4
 
 BEYOND = "beyond the gap's edge x − b′ [µm]"
 SPEED = axis_label("velocity")
+HALF_ORDERS = axis_label("order") + ", half orders dotted"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -99,7 +81,15 @@ def orbit_of(one: xr.Dataset) -> Orbit:
     )
 
 
-def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
+def draw_loop(
+    panel: Panel, orbit: Orbit, *, colour: str, width: float, opacity: float = 1.0
+) -> None:
+    """Speed over displacement of one whole orbit."""
+    loop = slice(0, orbit.loop)
+    panel.curve(orbit.x[loop], orbit.v[loop], colour=colour, width=width, opacity=opacity)
+
+
+def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
     """Time history, phase plane, Poincare section and spectrum, undeformed and hot together.
 
     ``data`` is the group ``motion`` with ``half_backlash`` of the same points beside it.
@@ -107,10 +97,10 @@ def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
     here = data.isel(bundle=bundle, operating=operating)
     states = names_of(data, "state")
     points = [here.isel(state=i) for i in range(len(states))]
-    figure, axes = picture(2, 2, (WIDE, 7.1), top=0.66, above=1.12, between=0.9)
-    history, phase, section, spectrum = axes.ravel()
+    history = Panel(Axis(axis_label("time"), margin=0.01), Axis(BEYOND), "Time history")
+    phase = Panel(Axis(BEYOND), Axis(SPEED), "Phase plane")
+    section = Panel(Axis(BEYOND), Axis(SPEED), "Poincaré section, once a mesh period")
     labels = ", ".join(f"{s}: {label_of(p)}" for s, p in zip(states, points, strict=True))
-    figure.suptitle(labels, y=0.985, fontsize=11, fontweight="bold")
 
     orbits = []
     for state, one in zip(states, points, strict=True):
@@ -118,67 +108,45 @@ def four_panels(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
             continue
         colour, orbit = STATES.get(state, INK), orbit_of(one)
         orbits.append(orbit)
-        history.plot(orbit.t, orbit.x, color=colour, linewidth=1.3, label=plain(state))
-        loop = slice(0, orbit.loop)
-        phase.plot(orbit.x[loop], orbit.v[loop], color=colour, linewidth=1.2)
-        section.plot(orbit.x[loop], orbit.v[loop], color=colour, linewidth=0.7, alpha=0.3)
-        section.plot(
-            orbit.section_x,
-            orbit.section_v,
-            linestyle="none",
-            marker="o",
-            markersize=6.0,
-            markeredgecolor="white",
-            markeredgewidth=0.6,
-            color=colour,
+        history.curve(orbit.t, orbit.x, colour=colour, width=1.3, label=plain(state))
+        draw_loop(phase, orbit, colour=colour, width=1.2)
+        draw_loop(section, orbit, colour=colour, width=0.7, opacity=0.3)
+        section.points(
+            orbit.section_x, orbit.section_v, colour=colour, edge="white", edge_width=0.6
         )
-    _spectra(spectrum, here, states, points)
     if orbits and min(float(o.x.min()) for o in orbits) < 0.25 * max(o.x.max() for o in orbits):
-        history.axhline(0.0, color=QUIET, linewidth=1.0, linestyle=(0, (4, 2)))
-        for axis in (phase, section):
-            axis.axvline(0.0, color=QUIET, linewidth=1.0, linestyle=(0, (4, 2)))
-    history.set(title="Time history", xlabel=axis_label("time"), ylabel=BEYOND)
-    history.margins(x=0.01)
-    phase.set(title="Phase plane", xlabel=BEYOND, ylabel=SPEED)
-    section.set(title="Poincaré section, once a mesh period", xlabel=BEYOND, ylabel=SPEED)
+        history.line(y=0.0, colour=QUIET, width=1.0, dash=(4, 2))
+        for panel in (phase, section):
+            panel.line(x=0.0, colour=QUIET, width=1.0, dash=(4, 2))
     if not orbits:
-        for axis in (history, phase, section):
-            note(axis, labels)
-    legend_below(figure, history)
-    return figure
+        for panel in (history, phase, section):
+            panel.note(plain(labels))
+    return Picture(
+        [[history, phase], [section, _spectra(here, states, points)]],
+        size=(WIDE, 7.1), title=labels, top=0.66, above=1.12, between=0.9,
+    )  # fmt: skip
 
 
-def _spectra(axes: Axes, here: xr.Dataset, states: list[str], points: list[xr.Dataset]) -> None:
+def _spectra(here: xr.Dataset, states: list[str], points: list[xr.Dataset]) -> Panel:
     """Amplitude over order, with the frequency in Hz along the top."""
     order = here["order"].values
     scale = display("line_amplitude")
     floor, top = floor_of(scale(here["line_amplitude"].values), order=order, highest=HIGHEST_ORDER)
+    words = axis_label("line_amplitude", "amplitude of displacement")
+    panel = over_orders(HALF_ORDERS, words, floor=floor, top=top, highest=HIGHEST_ORDER)
     for state, one in zip(states, points, strict=True):
         if moving(one):
             draw_lines(
-                axes, order=order, amplitude=scale(one["line_amplitude"].values),
-                colour=STATES.get(state, INK),
-                floor=floor, highest=HIGHEST_ORDER, label=plain(state), filled=state != UNDEFORMED,
+                panel, order=order, amplitude=scale(one["line_amplitude"].values),
+                colour=STATES.get(state, INK), label=plain(state), filled=state != UNDEFORMED,
             )  # fmt: skip
-    log_axis(axes)
-    axes.set_ylim(floor, top)
-    mark_half_orders(axes, HIGHEST_ORDER)
-    axes.set_xlabel(axis_label("order") + ", half orders dotted")
-    axes.set_ylabel(axis_label("line_amplitude", "amplitude of displacement"))
     mesh = mesh_frequency(here)
     width = float(here.attrs.get("bin_width_orders", order[1] - order[0]))
-    title = f"Spectrum, bin width {number(width)} orders"
+    panel.title = f"Spectrum, bin width {number(width)} orders"
     if mesh > 0.0:
-        title += f" = {number(width * mesh)} Hz"
-        above = axes.secondary_xaxis(
-            "top", functions=(partial(np.multiply, mesh), partial(_divided, mesh))
-        )
-        above.set_xlabel("frequency f [Hz]")
-    axes.set_title(title)
-
-
-def _divided(by: float, values: ArrayLike) -> Floats:
-    return np.asarray(np.asarray(values, dtype=float) / by)
+        panel.title += f" = {number(width * mesh)} Hz"
+        panel.top = Top("frequency f [Hz]", mesh)
+    return panel
 
 
 def mesh_frequency(here: xr.Dataset) -> float:
@@ -193,6 +161,3 @@ def needed(data: xr.Dataset, *, bundle: int, operating: int) -> bool:
     """Whether any state of this point moves at all."""
     here = data.isel(bundle=bundle, operating=operating)
     return any(moving(here.isel(state=i)) for i in range(data.sizes["state"]))
-
-
-__all__ = ["Orbit", "four_panels", "label_of", "moving", "needed", "orbit_of", "shown"]

@@ -34,9 +34,10 @@ def shown(name: str, values: ArrayLike) -> NDArray[np.float64]:
     return PARAMETERS.get(name, ("", NUMBER))[1](values)
 
 
-def axis_words(name: str) -> str:
-    """The label of a parameter's axis in a picture."""
-    return math_symbol(_words(name))
+def axis_words(name: str, unit: str = "1") -> str:
+    """The label of a parameter's axis in a picture, with its ``unit`` as stored if it says none."""
+    words = math_symbol(_words(name))
+    return words if "[" in words else f"{words} [{'–' if unit == '1' else unit}]"
 
 
 def page_words(name: str) -> Markup:

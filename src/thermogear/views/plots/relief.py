@@ -4,68 +4,46 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
-from thermogear.views.style import COLD, HOT, INK, legend_below, picture
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import COLD, HOT, INK, names_of
 
 COLOURS = {"unrelieved": COLD, "relieved": HOT}
 
 
-def error(data: xr.Dataset) -> Figure:
+def error(data: xr.Dataset) -> Picture:
     """Static transmission error over a mesh period at the design load, mean taken off."""
-    figure, axes = picture()
-    axis = axes[0, 0]
+    panel = Panel(
+        Axis("mesh phase φ [–]", low=0.0, high=1.0), Axis("transmission error, mean removed [µm]")
+    )
     x = data["mesh_phase"].values
-    for place, name in enumerate(str(n) for n in data["pair_kind"].values):
+    for place, name in enumerate(names_of(data, "pair_kind")):
         values = 1e6 * data["transmission_error"].values[place]
-        spread = float(np.ptp(values))
-        axis.plot(
-            x,
-            values - values.mean(),
-            color=COLOURS.get(name, INK),
-            label=f"{name}, {spread:.2f} µm peak to peak",
-        )
-    axis.set_xlim(0.0, 1.0)
-    axis.set_xlabel("mesh phase φ [–]")
-    axis.set_ylabel("transmission error, mean removed [µm]")
-    legend_below(figure, axis, 1)
-    return figure
+        label = f"{name}, {float(np.ptp(values)):.2f} µm peak to peak"
+        panel.curve(x, values - values.mean(), colour=COLOURS.get(name, INK), label=label)
+    return Picture([[panel]], legend=1)
 
 
-def stiffness(data: xr.Dataset) -> Figure:
+def stiffness(data: xr.Dataset) -> Picture:
     """Tangent stiffness over a mesh period at the design load."""
-    figure, axes = picture()
-    axis = axes[0, 0]
-    for place, name in enumerate(str(n) for n in data["pair_kind"].values):
-        axis.plot(
-            data["mesh_phase"].values,
-            1e-8 * data["tangent_stiffness"].values[place],
-            color=COLOURS.get(name, INK),
-            label=name,
-        )
-    axis.set_xlim(0.0, 1.0)
-    axis.set_ylim(bottom=0.0)
-    axis.set_xlabel("mesh phase φ [–]")
-    axis.set_ylabel("tangent mesh stiffness [10⁸ N/m]")
-    legend_below(figure, axis, 2)
-    return figure
+    panel = Panel(
+        Axis("mesh phase φ [–]", low=0.0, high=1.0),
+        Axis("tangent mesh stiffness [10⁸ N/m]", low=0.0),
+    )
+    _pairs(panel, data["mesh_phase"], 1e-8 * data["tangent_stiffness"])
+    return Picture([[panel]], legend=2)
 
 
-def over_load(data: xr.Dataset, design: float) -> Figure:
+def over_load(data: xr.Dataset, design: float) -> Picture:
     """Peak-to-peak error over the torque, the design torque marked."""
-    figure, axes = picture()
-    axis = axes[0, 0]
-    for place, name in enumerate(str(n) for n in data["pair_kind"].values):
-        axis.plot(
-            data["load"].values,
-            1e6 * data["peak_to_peak_error"].values[place],
-            color=COLOURS.get(name, INK),
-            label=name,
-        )
-    axis.axvline(design, color=INK, linewidth=0.9, linestyle=(0, (2, 2)), label="designed for")
-    axis.set_xlim(left=0.0)
-    axis.set_ylim(bottom=0.0)
-    axis.set_xlabel("pinion torque [N m]")
-    axis.set_ylabel("transmission error, peak to peak [µm]")
-    legend_below(figure, axis, 3)
-    return figure
+    panel = Panel(
+        Axis("pinion torque [N m]", low=0.0), Axis("transmission error, peak to peak [µm]", low=0.0)
+    )
+    _pairs(panel, data["load"], 1e6 * data["peak_to_peak_error"])
+    panel.line(x=design, colour=INK, width=0.9, dash=(2, 2), label="designed for")
+    return Picture([[panel]])
+
+
+def _pairs(panel: Panel, x: xr.DataArray, y: xr.DataArray) -> None:
+    for place, name in enumerate(str(n) for n in y["pair_kind"].values):
+        panel.curve(x.values, y.values[place], colour=COLOURS.get(name, INK), label=name)

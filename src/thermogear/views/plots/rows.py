@@ -4,25 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from thermogear.base.vocabulary import QUANTITIES
+from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.motion import label_of
 from thermogear.views.plots.orbits import periods_to_draw, thinned
-from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
-from thermogear.views.style import (
-    COLD,
-    FAINT,
-    HOT,
-    INK,
-    OKABE_ITO,
-    QUIET,
-    legend_below,
-    log_axis,
-    note,
-    picture,
-)
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
 from thermogear.views.words import CELSIUS, math_symbol, plain
 
 HIGHEST_ORDER = 4.0
@@ -66,44 +54,43 @@ def _is_temperature(data: xr.Dataset) -> bool:
     return str(np.ravel(data["parameter"].values)[0]) == "temperature"
 
 
-def panels(points: xr.Dataset, row: str) -> Figure:
+def panels(points: xr.Dataset, row: str) -> Picture:
     """One row: above each orbit with its Poincare section, below each spectrum."""
     data = of_row(points, row)
     count = data.sizes["point"]
     kept = sorted({round(i) for i in np.linspace(0, count - 1, min(count, MOST_COLUMNS))})
-    columns = len(kept)
-    width = max(4.9, (2.5 if columns < 5 else 2.2) * columns)
-    figure, axes = picture(2, columns, (width, 5.1), top=0.44, left=0.8, between=0.76, above=0.62)
+    width = max(4.9, (2.5 if len(kept) < 5 else 2.2) * len(kept))
     order = data["order"].values
     floor, top = floor_of(data["line_amplitude"].values, order=order, highest=HIGHEST_ORDER)
+    above, below = [], []
     for column, place in enumerate(kept):
         one = data.isel(point=place)
-        upper, lower = axes[:, column]
+        speed, height = ("velocity ", "amplitude ") if column == 0 else ("", "")
+        upper = Panel(
+            Axis("displacement X [–]", most=4, small=True),
+            Axis(f"{speed}Ẋ [–]", most=4, small=True),
+            f"{value_text(one)}\n{label_of(one)}",
+        )
+        lower = over_orders(
+            "mesh order [–]", f"{height}|X| [–]", floor=floor, top=top, highest=HIGHEST_ORDER
+        )
+        lower.x.small = lower.y.small = True
         if np.isfinite(one["scaled_displacement"].values).all():
             _orbit(upper, one)
-            draw_lines(lower, order=order, amplitude=one["line_amplitude"].values, colour=INK,
-                       floor=floor, highest=HIGHEST_ORDER, label="spectrum")  # fmt: skip
+            amplitude = one["line_amplitude"].values
+            draw_lines(lower, order=order, amplitude=amplitude, colour=INK, label="")
         else:
-            note(upper, label_of(one))
-        upper.set_title(f"{value_text(one)}\n{label_of(one)}", fontsize=9.5)
-        upper.set_xlabel("displacement X [–]", fontsize=8.5, labelpad=1.5)
-        upper.set_ylabel(("velocity " if column == 0 else "") + "Ẋ [–]", fontsize=8.5, labelpad=1.0)
-        upper.locator_params(nbins=4)
-        log_axis(lower)
-        lower.set_ylim(floor, top)
-        mark_half_orders(lower, HIGHEST_ORDER)
-        lower.set_xlabel("mesh order [–]", fontsize=8.5, labelpad=1.5)
-        lower.set_ylabel(
-            ("amplitude " if column == 0 else "") + "|X| [–]", fontsize=8.5, labelpad=1.0
-        )
-    heights = [axis.get_ylim() for axis in axes[0]]
-    for axis in axes[0]:
-        axis.set_ylim(1.1 * min(low for low, _ in heights), 1.1 * max(high for _, high in heights))
-    legend_below(figure, list(axes[0]))
-    return figure
+            upper.note(label_of(one))
+        above.append(upper)
+        below.append(lower)
+    heights = [upper.extent("y") for upper in above]
+    for upper in above:
+        upper.y.low = 1.1 * min(low for low, _ in heights)
+        upper.y.high = 1.1 * max(high for _, high in heights)
+    return Picture([above, below], size=(width, 5.1), top=0.44, left=0.8, between=0.76, above=0.62)
 
 
-def _orbit(axes: Axes, one: xr.Dataset) -> None:
+def _orbit(panel: Panel, one: xr.Dataset) -> None:
     """The orbit with its section, over the gap in which no teeth touch."""
     x, v = one["scaled_displacement"].values, one["scaled_velocity"].values
     samples = _samples_per_period(one)
@@ -111,23 +98,20 @@ def _orbit(axes: Axes, one: xr.Dataset) -> None:
         part[: periods_to_draw(str(one["label"].item()), samples_per_period=samples, stored=x.size)]
         for part in (x, v)
     )
-    axes.plot(x, v, color=COLD, linewidth=0.8, alpha=0.8, label="orbit", rasterized=x.size > DENSE)
+    panel.curve(x, v, colour=COLD, width=0.8, opacity=0.8, label="orbit", pixels=x.size > DENSE)
     section = thinned(
         x=one["section_displacement"].values,
         y=one["section_velocity"].values,
         scale=(float(np.ptp(x)), float(np.ptp(v))),
     )
-    axes.plot(
-        *section, linestyle="none", marker="o", markersize=3.8, color=HOT,
-        markeredgecolor="white", markeredgewidth=0.3,
-        label="Poincaré section",
-    )  # fmt: skip
+    panel.points(
+        *section, size=3.8, colour=HOT, edge="white", edge_width=0.3, label="Poincaré section"
+    )
     edge = float(one["half_backlash_ratio"])
     low, high = float(x.min()), float(x.max())
     pad = 0.06 * (high - low) or 1.0
-    axes.set_xlim(low - pad, high + pad)
-    axes.axvspan(-edge, edge, color=FAINT, alpha=0.45, linewidth=0, zorder=0,
-                 label="gap, no contact")  # fmt: skip
+    panel.x.low, panel.x.high = low - pad, high + pad
+    panel.span(x=(-edge, edge), colour=FAINT, opacity=0.45, order=0.0, label="gap, no contact")
 
 
 def _samples_per_period(one: xr.Dataset) -> int:
@@ -137,27 +121,23 @@ def _samples_per_period(one: xr.Dataset) -> int:
     return max(1, round(1.0 / step)) if step > 0.0 else int(one.sizes["sample"])
 
 
-def half_order(points: xr.Dataset) -> Figure:
+def half_order(points: xr.Dataset) -> Picture:
     """Amplitude of the line at half the mesh frequency along every row of temperatures."""
-    figure, axes = picture(left=0.88)
-    axis = axes[0, 0]
+    panel = Panel(Axis("gear temperature T [°C]"), Axis("half-order amplitude |X| [–]"))
     rows = [row for row in row_names(points) if _is_temperature(of_row(points, row))]
     for place, row in enumerate(rows):
         data = of_row(points, row)
-        axis.plot(
+        panel.curve(
             CELSIUS(data["value"].values),
             data["half_order_amplitude"].values,
-            marker="o",
-            markersize=5,
-            color=OKABE_ITO[place % len(OKABE_ITO)] if len(rows) > 2 else (HOT, COLD)[place],
-            linestyle=(0, (5, 2)) if row == "thesis" else "-",
+            marker="circle",
+            size=5,
+            colour=OKABE_ITO[place % len(OKABE_ITO)] if len(rows) > 2 else (HOT, COLD)[place],
+            dash=(5, 2) if row == "thesis" else (),
             label=plain(row),
         )
-    axis.axhline(0.0, color=QUIET, linewidth=0.8, zorder=0.5)
-    axis.set_xlabel("gear temperature T [°C]")
-    axis.set_ylabel("half-order amplitude |X| [–]")
-    legend_below(figure, axis)
-    return figure
+    panel.line(y=0.0, colour=QUIET, width=0.8, order=0.5)
+    return Picture([[panel]], left=0.88)
 
 
 def has_temperatures(points: xr.Dataset) -> bool:

@@ -4,48 +4,45 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from thermogear.base.units import RPM
-from thermogear.views.style import COLD, HOT, INK, QUIET, WIDE, legend_below, picture
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import COLD, HOT, INK, QUIET, WIDE
 
-FORMS = {
-    "exact": ("exact loaded contact", INK, (0, (5, 2))),
-    "shared": ("one spring for each tooth pair", COLD, "-"),
-    "one_spring": ("one spring k(t)", HOT, "-"),
+FORMS: dict[str, tuple[str, str, tuple[float, ...]]] = {
+    "exact": ("exact loaded contact", INK, (5, 2)),
+    "shared": ("one spring for each tooth pair", COLD, ()),
+    "one_spring": ("one spring k(t)", HOT, ()),
 }
 
 
-def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Figure:
+def shared_picture(rest: xr.Dataset, motion: xr.Dataset) -> Picture:
     """Stiffness and deflection over load; swing of the motion over speed at two loads."""
-    figure, axes = picture(2, 2, (WIDE, 6.4), above=0.85, between=0.85)
-    (stiffness, swing), below = axes
     load = rest["load"].values
     mean = float(load[np.argmin(np.abs(rest["factor"].values - 1.0))])
-    for form, (words, colour, line) in FORMS.items():
-        drawn = {"color": colour, "linestyle": line, "linewidth": 1.5, "label": words}
-        stiffness.plot(load, 1e-8 * rest[f"{form}_stiffness"].values, **drawn)
-        swing.plot(load, 1e6 * rest[f"{form}_swing"].values, **drawn)
-    for axis in (stiffness, swing):
-        axis.set_xscale("log")
-        axis.axvline(mean, color=QUIET, linewidth=1.0, linestyle=(0, (1, 2)))
-        axis.set_xlabel("normal force [N]")
-    swing.set_yscale("log")
-    stiffness.set(title="At rest: stiffness", ylabel="mean stiffness [10⁸ N/m]")
-    swing.set(title="At rest: deflection", ylabel="peak to peak [µm]")
+    stiffness = Panel(
+        Axis("normal force [N]", log="full"), Axis("mean stiffness [10⁸ N/m]"),
+        "At rest: stiffness",
+    )  # fmt: skip
+    swing = Panel(
+        Axis("normal force [N]", log="full"), Axis("peak to peak [µm]", log="full"),
+        "At rest: deflection",
+    )  # fmt: skip
+    for panel, name, scale in ((stiffness, "stiffness", 1e-8), (swing, "swing", 1e6)):
+        for form, (words, colour, dash) in FORMS.items():
+            values = scale * rest[f"{form}_{name}"].values
+            panel.curve(load, values, colour=colour, dash=dash, width=1.5, label=words)
+        panel.line(x=mean, colour=QUIET, width=1.0, dash=(1, 2))
     rpm = motion["speed"].values / RPM
-    for place, axis in enumerate(below):
-        part = float(motion["part"].values[place])
+    below = []
+    for place, part in enumerate(motion["part"].values):
+        panel = Panel(
+            Axis("pinion speed [rpm]"), Axis("displacement, peak to peak [µm]"),
+            f"In motion at {float(part):g} of the mean load",
+        )  # fmt: skip
         for form in ("shared", "one_spring"):
-            words, colour, line = FORMS[form]
+            words, colour, dash = FORMS[form]
             values = 1e6 * motion[f"{form}_swing"].values[:, place]
-            axis.plot(
-                rpm, values, color=colour, linestyle=line, linewidth=1.3, marker=".", label=words
-            )
-        axis.set(
-            title=f"In motion at {part:g} of the mean load",
-            xlabel="pinion speed [rpm]",
-            ylabel="displacement, peak to peak [µm]",
-        )
-    legend_below(figure, stiffness, 3)
-    return figure
+            panel.curve(rpm, values, colour=colour, dash=dash, width=1.3, marker="dot", label=words)
+        below.append(panel)
+    return Picture([[stiffness, swing], below], size=(WIDE, 6.4), above=0.85, between=0.85)

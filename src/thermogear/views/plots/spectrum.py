@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from thermogear.views.picture import Axis, Panel
 from thermogear.views.style import FAINT, QUIET
 
 Floats = NDArray[np.float64]
@@ -14,49 +14,51 @@ FEW_LINES = 80
 """Up to so many lines above the floor are drawn as stems; more are a continuum."""
 DECADES = 5.0
 """How far below the greatest line the picture reaches."""
+ROOM, END = 0.2, 0.05
+"""Lines so far [orders] beyond the highest one are drawn still, and what is free after them."""
 
 
-def mark_half_orders(axes: Axes, highest: float) -> None:
-    """A dotted line at every half order of the mesh frequency."""
-    for order in np.arange(0.5, highest + 0.2, 1.0):
-        axes.axvline(order, color=QUIET, linewidth=0.8, linestyle=(0, (1, 2.5)), zorder=0.4)
-    for order in np.arange(1.0, highest + 0.2, 1.0):
-        axes.axvline(order, color=FAINT, linewidth=0.7, zorder=0.3)
-    axes.grid(visible=False, axis="x")
-    axes.set_xlim(0.0, highest + 0.25)
-    axes.set_xticks(np.arange(0.0, highest + 0.1, 1.0))
+def over_orders(x: str, y: str, *, floor: float, top: float, highest: float) -> Panel:
+    """A panel from order 0 to ``highest`` with a dotted line at every half order."""
+    panel = Panel(
+        Axis(
+            x,
+            low=0.0,
+            high=highest + ROOM + END,
+            ticks=np.arange(0.0, highest + 0.1, 1.0),
+            grid=False,
+        ),
+        Axis(y, low=floor, high=top, log="decades"),
+    )
+    for order in np.arange(0.5, highest + ROOM, 1.0):
+        panel.line(x=order, colour=QUIET, width=0.8, dash=(1, 2.5), order=0.4)
+    for order in np.arange(1.0, highest + ROOM, 1.0):
+        panel.line(x=order, colour=FAINT, width=0.7, order=0.3)
+    return panel
 
 
 def draw_lines(
-    axes: Axes,
+    panel: Panel,
     *,
     order: Floats,
     amplitude: Floats,
     colour: str,
-    floor: float,
-    highest: float,
     label: str,
     filled: bool = True,
 ) -> None:
-    """Lines above ``floor`` up to the order ``highest``; the line at zero is left out."""
-    kept = (order > 0.0) & (order <= highest + 0.2) & np.isfinite(amplitude)
+    """Lines above the panel's floor up to its highest order; the line at zero is left out."""
+    floor, end = panel.y.low or 0.0, panel.x.high or np.inf
+    kept = (order > 0.0) & (order <= end - END) & np.isfinite(amplitude)
     x, y = order[kept], amplitude[kept]
     above = y > floor
     if above.sum() <= FEW_LINES:
-        axes.vlines(x[above], floor, y[above], color=colour, linewidth=1.3)
-        axes.plot(
-            x[above],
-            y[above],
-            linestyle="none",
-            marker="o",
-            markersize=4.2 if filled else 6.4,
-            markerfacecolor=colour if filled else "none",
-            markeredgecolor=colour,
-            label=label,
-        )
+        panel.stems(
+            x[above], y[above], low=floor, colour=colour, size=4.2 if filled else 6.4,
+            open=not filled, label=label,
+        )  # fmt: skip
         return
     x, y = _envelope(x, np.maximum(y, floor))
-    axes.plot(x, y, color=colour, linewidth=0.8, label=label)
+    panel.curve(x, y, colour=colour, width=0.8, label=label)
 
 
 def _envelope(x: Floats, y: Floats, most: int = 700) -> tuple[Floats, Floats]:
@@ -70,7 +72,7 @@ def _envelope(x: Floats, y: Floats, most: int = 700) -> tuple[Floats, Floats]:
 
 def floor_of(amplitudes: Floats, *, order: Floats, highest: float) -> tuple[float, float]:
     """(floor, top) of a logarithmic axis that holds every line worth seeing."""
-    kept = (order > 0.0) & (order <= highest + 0.2)
+    kept = (order > 0.0) & (order <= highest + ROOM)
     values = np.asarray(amplitudes)[..., kept]
     values = values[np.isfinite(values)]
     greatest = float(values.max()) if values.size else 0.0

@@ -4,22 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
-from thermogear.views.plots.motion import label_of, moving, orbit_of
-from thermogear.views.style import (
-    FAINT,
-    INK,
-    QUIET,
-    WIDE,
-    bundle_line,
-    chosen,
-    legend_below,
-    names_of,
-    picture,
-    ramp,
-)
-from thermogear.views.words import CELSIUS, axis_label, celsius, operating_names, plain, shown
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.curves import axis_of, draw_by_both
+from thermogear.views.plots.motion import draw_loop, label_of, moving, orbit_of
+from thermogear.views.style import FAINT, INK, QUIET, WIDE, chosen, ramp
+from thermogear.views.words import CELSIUS, celsius, operating_names
 
 MOST_COLUMNS = 6
 
@@ -29,38 +19,39 @@ FIGURES = {
 }
 
 
-def grid(row: xr.Dataset, bundle: int, operating: list[int]) -> Figure:
+def grid(row: xr.Dataset, bundle: int, operating: list[int]) -> Picture:
     """Phase plane with section: a column for each gear temperature, a row for each speed."""
     temperatures = row["gear_temperature"].values
     columns = chosen(temperatures.size, most=MOST_COLUMNS)
     names = operating_names(row)
     width = max(WIDE, 2.4 * len(columns)) if len(columns) > 2 else 4.9
-    figure, axes = picture(
-        len(operating), len(columns), (width, 2.35 * len(operating) + 0.5),
-        sharex="row", sharey="row", between=0.42, above=0.78, left=0.85,
-    )  # fmt: skip
     colours = ramp(len(columns), warm=True)
-    for line, point in enumerate(operating):
+    panels: list[list[Panel]] = []
+    for point in operating:
+        panels.append([])
         for column, place in enumerate(columns):
-            axis = axes[line, column]
             one = row.isel(bundle=bundle, operating=point, gear_temperature=place)
+            first = f"{names[point]}\n" if column == 0 else ""
+            panel = Panel(
+                Axis("x − b′ [µm]", most=4, small=True),
+                Axis(f"{first}ẋ [mm/s]", most=4, small=True),
+                f"{celsius(float(temperatures[place]))}: {label_of(one)}",
+            )
             if moving(one):
                 orbit = orbit_of(one)
-                loop = slice(0, orbit.loop)
-                axis.plot(orbit.x[loop], orbit.v[loop], color=colours[column], linewidth=1.3)
-                axis.plot(orbit.section_x, orbit.section_v, linestyle="none", marker="o",
-                          markersize=4.6, color=INK, markeredgecolor="white",
-                          markeredgewidth=0.5)  # fmt: skip
+                draw_loop(panel, orbit, colour=colours[column], width=1.3)
+                panel.points(
+                    orbit.section_x, orbit.section_v, size=4.6, colour=INK, edge="white",
+                    edge_width=0.5,
+                )  # fmt: skip
             else:
-                axis.text(0.5, 0.5, _still(one), transform=axis.transAxes, ha="center",
-                          va="center", color=INK, fontsize=9.5)  # fmt: skip
-                axis.set_facecolor(FAINT)
-            axis.set_title(f"{celsius(float(temperatures[place]))}: {label_of(one)}", fontsize=9)
-            axis.set_xlabel("x − b′ [µm]", fontsize=8.5, labelpad=1.5)
-            first = f"{names[point]}\n" if column == 0 else ""
-            axis.set_ylabel(f"{first}ẋ [mm/s]", fontsize=8.5, labelpad=1.0)
-            axis.locator_params(nbins=4)
-    return figure
+                panel.text(0.5, 0.5, _still(one), at="panel", size=9.5)
+                panel.background = FAINT
+            panels[-1].append(panel)
+    return Picture(
+        panels, size=(width, 2.35 * len(operating) + 0.5), share_x="row", share_y="row",
+        between=0.42, above=0.78, left=0.85,
+    )  # fmt: skip
 
 
 def _still(one: xr.Dataset) -> str:
@@ -71,30 +62,16 @@ def _still(one: xr.Dataset) -> str:
     return label_of(one)
 
 
-def over_temperature(row: xr.Dataset, name: str) -> Figure:
+def over_temperature(row: xr.Dataset, name: str) -> Picture:
     """One figure of the motion over the gears' temperature: speeds by colour, bundles by line."""
-    figure, axes = picture()
-    axis = axes[0, 0]
+    panel = Panel(axis_of("gear_temperature"), Axis(FIGURES[name]))
     x = CELSIUS(row["gear_temperature"].values)
-    bundles, names = names_of(row, "bundle"), operating_names(row)
-    places = chosen(row.sizes["operating"])
-    for place, bundle in enumerate(bundles):
-        values = shown(row.isel(bundle=place), name)
-        for i, colour in zip(places, ramp(len(places)), strict=True):
-            if np.isfinite(values[:, i]).any():
-                axis.plot(
-                    x, values[:, i], color=colour, marker="o", markersize=4,
-                    linestyle=bundle_line(bundles, place), label=plain(f"{names[i]}, {bundle}"),
-                )  # fmt: skip
-    axis.set_xlabel(axis_label("gear_temperature"))
-    axis.set_ylabel(FIGURES[name])
-    low, high = axis.get_ylim()
-    axis.set_ylim(min(0.0, low), max(high, 1.05 * high))
-    if not axis.lines:
-        axis.text(0.5, 0.5, "no motion at any temperature", transform=axis.transAxes,
-                  ha="center", color=QUIET)  # fmt: skip
-    legend_below(figure, axis, 2)
-    return figure
+    draw_by_both(panel, row, name, x, marker="circle", size=4)
+    low, high = panel.extent("y")
+    panel.y.low, panel.y.high = min(0.0, low), max(high, 1.05 * high)
+    if not panel.marks:
+        panel.text(0.5, 0.5, "no motion at any temperature", at="panel", size=9.0, colour=QUIET)
+    return Picture([[panel]], legend=2)
 
 
 def worth_drawing(row: xr.Dataset, name: str) -> bool:

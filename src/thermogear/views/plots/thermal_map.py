@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import matplotlib as mpl
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
-from thermogear.views.style import INK, OKABE_ITO, QUIET, WIDE, note, picture
-from thermogear.views.words import CELSIUS, plain
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import INK, OKABE_ITO, WIDE, scale
+from thermogear.views.words import CELSIUS
 
 Floats = NDArray[np.float64]
 
@@ -22,56 +21,53 @@ SAFE = 50.0
 """Scuffing margin [K] that is advised at least."""
 
 
-def thermal_map(data: xr.Dataset) -> Figure:
+def thermal_map(data: xr.Dataset) -> Picture:
     """Regime, flash, body temperature, backlash left, scuffing margin and friction: six maps.
 
     Points without a steady state are white; where the oil leaves its viscosity line the map is
     hatched. Where only one of speed and torque runs there are six lines over it instead.
     """
-    figure, axes = picture(2, 3, size=(WIDE, 6.6), between=1.0, above=0.95)
-    figure.subplots_adjust(right=0.95)
     settled = data["status"].values != STATUS.index("not_converged")
 
     def kept(values: Floats) -> Floats:
         return np.where(settled, values, np.nan)
 
-    boundary = 100.0 * data["regime_share"].isel(regime_name=0).values
+    share = kept(100.0 * data["regime_share"].isel(regime_name=0).values)
+    boundary = _panel(data, share, "boundary lubrication [% of path]", "Reds", (0, 100))
     film = kept(data["least_film_parameter"].values)
-    _panel(axes[0, 0], data, kept(boundary), "boundary lubrication [% of path]", "Reds", (0, 100))
-    _lines(axes[0, 0], data, film, _nice(film, 3), "Λ = %.2g")
-    flash = kept(data["greatest_flash"].values)
-    _panel(axes[0, 1], data, flash, "greatest flash temperature [K]", "YlOrRd")
-    teeth = data["node_temperature"].sel(node="pinion_tooth").values
-    body = kept(teeth - ZERO_CELSIUS)
-    _panel(axes[0, 2], data, body, "pinion teeth, body temperature [°C]", "YlOrRd")
+    levels = _nice(film, 3)
+    _lines(boundary, data, film, levels, [f"Λ = {level:.2g}" for level in levels])
+    greatest = kept(data["greatest_flash"].values)
+    flash = _panel(data, greatest, "greatest flash temperature [K]", "YlOrRd")
+    teeth = kept(data["node_temperature"].sel(node="pinion_tooth").values - ZERO_CELSIUS)
+    body = _panel(data, teeth, "pinion teeth, body temperature [°C]", "YlOrRd")
     tempering = np.where(data["tempered"].values == 1, 1.0, 0.0)
     if 0.0 < tempering.mean() < 1.0:
-        _lines(axes[0, 2], data, tempering, [0.5], "tempered")
-    left = kept(1e6 * data["least_half_backlash"].values)
-    _panel(axes[1, 0], data, left, "half backlash left [µm]", "viridis")
-    if min(left.shape) > 1:
-        _jam(axes[1, 0], data, left)
-    margin = kept(data["scuffing_margin"].values)
-    if np.isfinite(margin).any():
+        _lines(body, data, tempering, [0.5], ["tempered"])
+    gap = kept(1e6 * data["least_half_backlash"].values)
+    left = _panel(data, gap, "half backlash left [µm]", "viridis")
+    if min(gap.shape) > 1:
+        _jam(left, data, gap)
+    values, words = kept(data["scuffing_margin"].values), "scuffing margin [K]"
+    if np.isfinite(values).any():
         # red is always below 0 K and the deepest green the greatest margin
-        ends = (min(-SAFE, float(np.nanmin(margin))), max(2.0 * SAFE, float(np.nanmax(margin))))
-        _panel(axes[1, 1], data, margin, "scuffing margin [K]", "RdYlGn", ends)
-        if min(margin.shape) < 2:
+        ends = (min(-SAFE, float(np.nanmin(values))), max(2.0 * SAFE, float(np.nanmax(values))))
+        margin = _panel(data, values, words, "RdYlGn", ends)
+        if min(values.shape) < 2:
             for level in (0.0, SAFE):
-                axes[1, 1].axhline(level, color=INK, linewidth=0.9, linestyle=(0, (2, 2)))
-        _lines(axes[1, 1], data, margin, [0.0, SAFE], "%.0f K")
+                margin.line(y=level, colour=INK, width=0.9, dash=(2, 2))
+        _lines(margin, data, values, [0.0, SAFE], ["0 K", f"{SAFE:.0f} K"])
     else:
-        note(axes[1, 1], "scuffing margin: oil.scuffing_load_stage is not given")
-        if min(margin.shape) < 2:
-            axes[1, 1].set_axis_off()
-    friction = kept(data["mean_friction"].values)
-    _panel(axes[1, 2], data, friction, "mean friction coefficient [–]", "PuBu")
-    for axis in axes.ravel():
-        _hatch(axis, data, settled)
-        if min(settled.shape) > 1:
-            axis.set_xlabel(AXES[0])
-            axis.set_ylabel(AXES[1])
-    return figure
+        margin = Panel(Axis(AXES[0]), Axis(AXES[1])) if min(values.shape) > 1 else Panel()
+        margin.note("scuffing margin: oil.scuffing_load_stage is not given")
+    mean = kept(data["mean_friction"].values)
+    friction = _panel(data, mean, "mean friction coefficient [–]", "PuBu")
+    panels = [[boundary, flash, body], [left, margin, friction]]
+    outside = (data["within_oil_range"].values == 0) & settled
+    if outside.any() and min(outside.shape) > 1:
+        for panel in (*panels[0], *panels[1]):
+            panel.hatch(*_grid(data), outside.T)
+    return Picture(panels, size=(WIDE, 6.6), between=0.96, above=0.95, right=0.5)
 
 
 def _grid(data: xr.Dataset) -> tuple[Floats, Floats]:
@@ -79,40 +75,28 @@ def _grid(data: xr.Dataset) -> tuple[Floats, Floats]:
 
 
 def _panel(
-    axis: Axes,
     data: xr.Dataset,
     values: Floats,
     title: str,
     colours: str,
     ends: tuple[float, float] | None = None,
-) -> None:
+) -> Panel:
     """Filled contours over speed and torque; a grid of one line is drawn as that line."""
     speed, torque = _grid(data)
     line = min(values.shape) < 2
-    if line:
-        axis.set_xlabel(AXES[0] if speed.size >= torque.size else AXES[1])
-        axis.set_ylabel(plain(title))
-    else:
-        axis.set_title(plain(title))
+    along, words = (speed, AXES[0]) if speed.size >= torque.size else (torque, AXES[1])
+    panel = Panel(Axis(words), Axis(title)) if line else Panel(Axis(AXES[0]), Axis(AXES[1]), title)
     if not np.isfinite(values).any():
-        note(axis, "no point has a steady state")
-        return
-    low, high = ends or (float(np.nanmin(values)), float(np.nanmax(values)))
-    if line:
-        along = speed if speed.size >= torque.size else torque
-        axis.plot(along, values.ravel(), marker="o", markersize=3.5, color=OKABE_ITO[1])
-        return
-    if high - low < 1e-9 * max(abs(high), 1e-12):
-        high = low + max(abs(low), 1.0) * 1e-3
-    levels = np.linspace(low, high, 13)
-    drawn = axis.contourf(
-        speed, torque, values.T, levels=levels, cmap=mpl.colormaps[colours], extend="both"
-    )
-    bar = axis.figure.colorbar(drawn, ax=axis, pad=0.02, aspect=24, format="%.3g")
-    bar.set_ticks([t for t in MaxNLocator(5).tick_values(low, high) if low <= t <= high])
-    bar.ax.tick_params(labelsize=7.5)
-    bar.outline.set_visible(False)
-    axis.grid(visible=False)
+        panel.note("no point has a steady state")
+    elif line:
+        panel.curve(along, values.ravel(), marker="circle", size=3.5, colour=OKABE_ITO[1])
+    else:
+        low, high = ends or (float(np.nanmin(values)), float(np.nanmax(values)))
+        if high - low < 1e-9 * max(abs(high), 1e-12):
+            high = low + max(abs(low), 1.0) * 1e-3
+        levels = np.linspace(low, high, 13)
+        panel.field(speed, torque, values.T, levels=levels, colours=scale(colours), words=title)
+    return panel
 
 
 def _nice(values: Floats, count: int) -> list[float]:
@@ -125,54 +109,30 @@ def _nice(values: Floats, count: int) -> list[float]:
     return inside[-count:]
 
 
-def _lines(axis: Axes, data: xr.Dataset, values: Floats, levels: list[float], words: str) -> None:
+def _lines(
+    panel: Panel, data: xr.Dataset, values: Floats, levels: Sequence[float], words: Sequence[str]
+) -> None:
     """Named contour lines, where they exist."""
-    speed, torque = _grid(data)
     known = values[np.isfinite(values)]
-    inside = [v for v in levels if known.size and known.min() < v < known.max()]
-    if not inside or min(values.shape) < 2:
-        return
-    lines = axis.contour(speed, torque, values.T, levels=inside, colors=INK, linewidths=1.1)
-    text = (lambda v: words % v) if "%" in words else (lambda _: words)
-    for label in axis.clabel(lines, fmt=text, fontsize=7.5):
-        label.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
+    inside = {
+        level: name
+        for level, name in zip(levels, words, strict=True)
+        if known.size and known.min() < level < known.max()
+    }
+    if inside and min(values.shape) > 1:
+        panel.contours(*_grid(data), values.T, levels=list(inside), words=list(inside.values()))
 
 
-def _jam(axis: Axes, data: xr.Dataset, left: Floats) -> None:
+def _jam(panel: Panel, data: xr.Dataset, left: Floats) -> None:
     """The border where the backlash is used up, or that there is none."""
     known = left[np.isfinite(left)]
     if known.size and known.min() <= 0.0:
-        _lines(axis, data, left, [0.0], "jam")
+        _lines(panel, data, left, [0.0], ["jam"])
         return
     jam = data["jam_temperature"].values
     finite = jam[np.isfinite(jam) & np.isfinite(left)]
     words = "no point jams"
     if finite.size:
-        words += f";\npinion teeth would at {float(CELSIUS(finite.min())):.0f} °C, housing as it is"
-    axis.text(
-        0.03,
-        0.04,
-        words,
-        transform=axis.transAxes,
-        fontsize=7.5,
-        color=INK,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 2.0},
-    )
-
-
-def _hatch(axis: Axes, data: xr.Dataset, settled: NDArray[np.bool_]) -> None:
-    """Hatch what rests on an oil beyond its viscosity line."""
-    outside = (data["within_oil_range"].values == 0) & settled
-    if not outside.any() or min(outside.shape) < 2:
-        return
-    speed, torque = _grid(data)
-    hatched = axis.contourf(
-        speed,
-        torque,
-        outside.T.astype(float),
-        levels=[0.5, 1.5],
-        colors="none",
-        hatches=["///"],
-    )
-    hatched.set_edgecolor(QUIET)
-    hatched.set_linewidth(0.0)
+        at = float(CELSIUS(finite.min()))
+        words += f"; pinion teeth\nwould at {at:.0f} °C, housing as it is"
+    panel.text(0.03, 0.04, words, at="panel", across="left", up="baseline", size=7.5, box=True)

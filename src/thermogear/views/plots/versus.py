@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from thermogear.base.vocabulary import UNDEFORMED
-from thermogear.views.plots.spectrum import draw_lines, floor_of, mark_half_orders
-from thermogear.views.style import INK, OKABE_ITO, legend_below, log_axis, mark_path, picture
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.curves import along_path
+from thermogear.views.plots.motion import HALF_ORDERS
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.style import INK, OKABE_ITO, WIDE
 from thermogear.views.words import axis_label, display, plain
 
-STYLES: dict[str, Any] = {UNDEFORMED: (0, (4, 2)), "hot": "-"}
+DASHES: dict[str, tuple[float, ...]] = {UNDEFORMED: (4, 2), "hot": ()}
 HIGHEST_ORDER = 8.0
 SHIFT = 0.07
 """Lines of neighbouring cases in a spectrum stand so far apart [orders]."""
@@ -30,40 +29,35 @@ def has_curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> bo
     return bool((np.isfinite(values) & (values != 0.0)).any())
 
 
-def curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> Figure:
+def curve(data: xr.Dataset, name: str, *, bundle: int, operating: int) -> Picture:
     """``name`` of every case and state over its own positions, at one bundle and point."""
-    figure, axes = picture()
-    axis = axes[0, 0]
     along = "path_position" if "path_place" in data[name].dims else "mesh_phase"
     unit = str(data[name].attrs["units"])
     here = data.isel(bundle=bundle, operating=operating)
+    y = Axis(axis_label(name, None if len(axis_label(name)) < 40 else WORDS.get(name)))
+    panel = (
+        Panel(Axis(axis_label(along), low=0.0, high=1.0), y)
+        if along == "mesh_phase"
+        else _path(data, y)
+    )
     drawn: set[str] = set()
     count = data.sizes["case"]
     for c, colour in zip(range(count), OKABE_ITO, strict=False):
         # earlier cases are broader, so that a later one on the same curve does not hide them
         width = 1.3 + min(1.8, 3.0 / max(count - 1, 1)) * (count - 1 - c)
         x = display(along)(here[along].isel(case=c).values)
-        for s, state in enumerate(data["state"].values):
-            y = here[name].isel(case=c, state=s).values
-            if not (np.isfinite(y) & (y != 0.0)).any():
+        for s, state in enumerate(str(one) for one in data["state"].values):
+            values = here[name].isel(case=c, state=s).values
+            if not (np.isfinite(values) & (values != 0.0)).any():
                 continue
-            drawn.add(str(state))
-            axis.plot(
-                x,
-                display(name, unit)(y),
-                color=colour,
-                linestyle=STYLES.get(str(state), "-"),
-                linewidth=width,
-            )
-    axis.set_xlabel(axis_label(along))
-    axis.set_ylabel(axis_label(name, None if len(axis_label(name)) < 40 else WORDS.get(name)))
-    if along == "mesh_phase":
-        axis.set_xlim(0.0, 1.0)
-    else:
-        _mark_path(axis, data)
-    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
-    _legend(figure, axis, data, sorted(drawn))
-    return figure
+            drawn.add(state)
+            dash = DASHES.get(state, ())
+            panel.curve(x, display(name, unit)(values), colour=colour, dash=dash, width=width)
+    y.low = min(0.0, panel.extent("y")[0])
+    _entries(panel, data)
+    for state in sorted(drawn) if len(drawn) > 1 else ():
+        panel.curve([], [], colour=INK, dash=DASHES.get(state, ()), label=plain(state))
+    return Picture([[panel]], legend=4)
 
 
 WORDS = {
@@ -77,10 +71,8 @@ WORDS = {
 """Words of an axis where the long name would not fit beside it."""
 
 
-def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
+def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Picture:
     """Spectral lines of the displacement: a colour for each case, open undeformed and full hot."""
-    figure, axes = picture(size=(10.0, 3.6))
-    axis = axes[0, 0]
     here = data.isel(bundle=bundle, operating=operating)
     unit = str(data["line_amplitude"].attrs["units"])
     scale = display("line_amplitude", unit)
@@ -94,67 +86,54 @@ def spectrum(data: xr.Dataset, *, bundle: int, operating: int) -> Figure:
         for c in range(count)
         if np.isfinite(here["line_amplitude"].isel(case=c).values).any()
     ]
-    floor, top = max(low for low, _ in ends), max(high for _, high in ends)
+    panel = over_orders(
+        HALF_ORDERS, axis_label("line_amplitude", WORDS["line_amplitude"], unit),
+        floor=max(low for low, _ in ends), top=max(high for _, high in ends), highest=HIGHEST_ORDER,
+    )  # fmt: skip
     drawn: set[str] = set()
     for c, colour in zip(range(count), OKABE_ITO, strict=False):
         order = here["order"].isel(case=c).values
-        for s, state in enumerate(data["state"].values):
+        for s, state in enumerate(str(one) for one in data["state"].values):
             lines = here["line_amplitude"].isel(case=c, state=s).values
             if not np.isfinite(lines).any():
                 continue
-            drawn.add(str(state))
+            drawn.add(state)
             # the line at zero goes before the shift could move it away from zero
             kept = np.isfinite(order) & (order > 0.0)
             shift = SHIFT * (c - 0.5 * (count - 1))
             draw_lines(
-                axis, order=order[kept] + shift, amplitude=scale(lines[kept]), colour=colour,
-                floor=floor, highest=HIGHEST_ORDER, label="", filled=str(state) != UNDEFORMED,
+                panel, order=order[kept] + shift, amplitude=scale(lines[kept]), colour=colour,
+                label="", filled=state != UNDEFORMED,
             )  # fmt: skip
-    log_axis(axis)
-    axis.set_ylim(floor, top)
-    mark_half_orders(axis, HIGHEST_ORDER)
-    axis.set_xlabel(axis_label("order") + ", half orders dotted")
-    axis.set_ylabel(axis_label("line_amplitude", WORDS["line_amplitude"], unit))
-    _legend(figure, axis, data, sorted(drawn), marks=True)
-    return figure
+    _entries(panel, data)
+    for state in sorted(drawn) if len(drawn) > 1 else ():
+        cold = state == UNDEFORMED
+        panel.points([], [], size=6.4 if cold else 4.2, open=cold, colour=INK, label=plain(state))
+    return Picture([[panel]], size=(WIDE, 3.6), legend=4)
 
 
-def _legend(
-    figure: Figure, axis: Axes, data: xr.Dataset, states: Sequence[str], marks: bool = False
-) -> None:
-    """An entry for each case in its colour, then one for each state that is drawn."""
-    titles = [plain(title) for title in data["case"].values]
-    for title, colour in zip(titles, OKABE_ITO, strict=False):
-        axis.plot([], [], color=colour, linewidth=2.4, label=title)
-    for state in states if len(states) > 1 else ():
-        if marks:
-            filled = INK if state != UNDEFORMED else "none"
-            axis.plot(
-                [], [], linestyle="none", marker="o",
-                markersize=4.2 if state != UNDEFORMED else 6.4,
-                markerfacecolor=filled, markeredgecolor=INK, label=plain(state),
-            )  # fmt: skip
-        else:
-            axis.plot([], [], color=INK, linestyle=STYLES.get(state, "-"), label=plain(state))
-    legend_below(figure, axis, 4)
+def _entries(panel: Panel, data: xr.Dataset) -> None:
+    """An entry of the legend for each case in its colour."""
+    for title, colour in zip(data["case"].values, OKABE_ITO, strict=False):
+        panel.curve([], [], colour=colour, width=2.4, label=plain(title))
 
 
-def _mark_path(axis: Axes, data: xr.Dataset) -> None:
-    """Mark A..E where the cases share one path of contact, else give the axis its ends."""
+def _path(data: xr.Dataset, y: Axis) -> Panel:
+    """Over the path of contact, A..E marked where the cases share one."""
     points = json.loads(str(data.attrs.get("path_points", "[]")))
-    values = data["path_position"].values
-    flat = np.sort(values[np.isfinite(values)])
+    x = Axis(axis_label("path_position"))
     alike = bool(points) and all(
         set(each) == set(points[0])
         and np.allclose(list(each.values()), list(points[0].values()), rtol=1e-9)
         for each in points
     )
-    if alike:
-        mark_path(
-            axis,
-            xr.Dataset(
-                coords={"path_position": flat},
-                attrs={"path_points": json.dumps(points[0])},
-            ),
-        )
-        axis.set_xlabel(axis_label("path_position"))
+    if not alike:
+        return Panel(x, y)
+    values = data["path_position"].values
+    one = xr.Dataset(
+        coords={"path_position": np.sort(values[np.isfinite(values)])},
+        attrs={"path_points": json.dumps(points[0])},
+    )
+    panel = along_path(one, y)
+    panel.x.words = x.words
+    return panel

@@ -8,34 +8,20 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullLocator
-from numpy.typing import NDArray
 
-from thermogear.views.style import (
-    HOT,
-    INK,
-    OKABE_ITO,
-    QUIET,
-    WIDE,
-    legend_below,
-    note,
-    picture,
-)
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
 from thermogear.views.words import CELSIUS, number
 
-Floats = NDArray[np.float64]
-
-NODE_COLOURS = {
-    "pinion_tooth": (OKABE_ITO[1], "-"),
-    "pinion_body": (OKABE_ITO[1], (0, (4, 1.5))),
-    "pinion_shaft": (OKABE_ITO[1], (0, (1, 1.5))),
-    "wheel_tooth": (OKABE_ITO[0], "-"),
-    "wheel_body": (OKABE_ITO[0], (0, (4, 1.5))),
-    "wheel_shaft": (OKABE_ITO[0], (0, (1, 1.5))),
-    "oil": (OKABE_ITO[2], "-"),
-    "housing": (QUIET, "-"),
+NODE_COLOURS: dict[str, tuple[str, tuple[float, ...]]] = {
+    "pinion_tooth": (OKABE_ITO[1], ()),
+    "pinion_body": (OKABE_ITO[1], (4, 1.5)),
+    "pinion_shaft": (OKABE_ITO[1], (1, 1.5)),
+    "wheel_tooth": (OKABE_ITO[0], ()),
+    "wheel_body": (OKABE_ITO[0], (4, 1.5)),
+    "wheel_shaft": (OKABE_ITO[0], (1, 1.5)),
+    "oil": (OKABE_ITO[2], ()),
+    "housing": (QUIET, ()),
 }
 
 
@@ -56,137 +42,109 @@ def course(
     *,
     cold: float,
     logarithmic: bool,
-) -> Figure:
+) -> Picture:
     """Node temperatures above, half backlash below, the worst moment marked in both."""
-    figure, axes = picture(2, 1, size=(WIDE, 6.4), above=0.28, sharex=True)
-    above, below = axes[:, 0]
     minutes = data["time"].values / 60.0
+    above = Panel(Axis(), Axis("temperature [°C]"))
+    below = Panel(_time(minutes, logarithmic), Axis("half backlash b′ [µm]"))
     for name in (str(n) for n in data["node"].values):
         if name not in NODE_COLOURS:
             continue
-        colour, line = NODE_COLOURS[name]
+        colour, dash = NODE_COLOURS[name]
         values = CELSIUS(data["node_temperature"].sel(node=name).values)
-        above.plot(minutes, values, color=colour, linestyle=line, label=name.replace("_", " "))
+        above.curve(minutes, values, colour=colour, dash=dash, label=name.replace("_", " "))
     if record is not None:
         _points(above, record, {name: colour for name, (colour, _) in NODE_COLOURS.items()})
-    above.set_ylabel("temperature [°C]")
     left = 1e6 * data["half_backlash"].values
-    below.plot(minutes, left, color=INK, label="half backlash left")
+    below.curve(minutes, left, colour=INK, label="half backlash left")
     held = 1e6 * steady["half_backlash"].values
     ends = np.append(steady["begin"].values[1:] / 60.0, minutes[-1])
     begins = np.maximum(steady["begin"].values / 60.0, FIRST if logarithmic else 0.0)
     for place, (begin, end, value) in enumerate(zip(begins, ends, held, strict=True)):
         if math.isfinite(float(value)) and end > begin:
-            below.hlines(
-                value, begin, end, color=QUIET, linestyle=(0, (4, 2)), linewidth=1.2,
-                label="steady, if held for good" if place == 0 else None,
-            )  # fmt: skip
-    below.axhline(1e6 * cold, color=OKABE_ITO[5], linewidth=1.1, label="cold")
+            label = "" if place else "steady, if held for good"
+            level = [value, value]
+            below.curve([begin, end], level, colour=QUIET, dash=(4, 2), width=1.2, label=label)
+    below.line(y=1e6 * cold, colour=OKABE_ITO[5], width=1.1, label="cold")
     if left.min() <= 0.0:
-        below.axhline(0.0, color=HOT, linewidth=1.1, label="jammed below")
-    below.set_ylabel("half backlash b′ [µm]")
-    _time(below, minutes, logarithmic)
+        below.line(y=0.0, colour=HOT, width=1.1, label="jammed below")
     _mark(above, below, worst, logarithmic)
-    legend_below(figure, [above, below], 6)
-    return figure
+    return Picture([[above], [below]], size=(WIDE, 6.4), above=0.28, share_x="column", legend=6)
 
 
-def _mark(above: Axes, below: Axes, worst: Mapping[str, Any], logarithmic: bool) -> None:
-    when, least = float(worst["time_s"]) / 60.0, 1e6 * float(worst["half_backlash_m"])
-    at = max(when, FIRST) if logarithmic else when
-    for axis in (above, below):
-        axis.axvline(at, color=HOT, linewidth=1.0, linestyle=(0, (1, 1.5)), zorder=0.6)
-    below.plot([at], [least], marker="o", markersize=6, color=HOT, zorder=5)
-    low, high = below.get_xlim()
-    share = np.log(at / low) / np.log(high / low) if logarithmic else (at - low) / (high - low)
-    right = bool(share > 0.75)
-    below.annotate(
-        f"least: {number(least, 4)} µm\nat {number(when)} min",
-        (at, least),
-        xytext=(-8 if right else 8, 10),
-        ha="right" if right else "left",
-        textcoords="offset points",
-        fontsize=8.5,
-        color=HOT,
-        zorder=1.5,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1.5},
-    )
+def _worst(panel: Panel, worst: Mapping[str, Any], logarithmic: bool) -> float:
+    """Mark the worst moment; where it is drawn [min]."""
+    at = max(float(worst["time_s"]) / 60.0, FIRST if logarithmic else 0.0)
+    panel.line(x=at, colour=HOT, width=1.0, dash=(1, 1.5), order=0.6)
+    return at
 
 
-def mesh(data: xr.Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Figure:
+def _mark(above: Panel, below: Panel, worst: Mapping[str, Any], logarithmic: bool) -> None:
+    least = 1e6 * float(worst["half_backlash_m"])
+    at = [_worst(panel, worst, logarithmic) for panel in (above, below)][-1]
+    below.points([at], [least], colour=HOT, order=5)
+    low, high = below.x.low or 0.0, below.x.high or 1.0
+    share = np.log(at / low) / np.log(high / low) if below.x.log else (at - low) / (high - low)
+    across, away = ("right", -8) if share > 0.75 else ("left", 8)
+    words = f"least: {number(least, 4)} µm\nat {number(float(worst['time_s']) / 60.0)} min"
+    below.text(
+        at, least, words, offset=(away, 10), across=across, up="baseline", colour=HOT, box=True,
+        order=1.5,
+    )  # fmt: skip
+
+
+def mesh(data: xr.Dataset, worst: Mapping[str, Any], *, logarithmic: bool) -> Picture:
     """Flash temperature, film parameter, margin to the jam, mean stiffness over time."""
-    figure, axes = picture(2, 2, size=(WIDE, 5.6), above=0.62)
     minutes = data["time"].values / 60.0
-    panels = (
+    panels = []
+    for name, words, scale, colour in (
         ("greatest_flash", "greatest flash temperature [K]", 1.0, OKABE_ITO[1]),
         ("least_film_parameter", "least film parameter Λ [–]", 1.0, OKABE_ITO[2]),
         ("jam_margin", "margin to the jam [K]", 1.0, OKABE_ITO[3]),
         ("mean_stiffness", "mean mesh stiffness [10⁸ N/m]", 1e-8, OKABE_ITO[0]),
-    )
-    when = float(worst["time_s"]) / 60.0
-    for axis, (name, words, scale, colour) in zip(axes.ravel(), panels, strict=True):
+    ):
         values = scale * data[name].values
-        axis.set_ylabel(words)
+        panel = Panel(_time(minutes, logarithmic), Axis(words))
         if np.isfinite(values).any():
-            axis.plot(minutes, values, color=colour)
-            axis.axvline(
-                max(when, FIRST) if logarithmic else when,
-                color=HOT, linewidth=1.0, linestyle=(0, (1, 1.5)), zorder=0.6,
-            )  # fmt: skip
+            panel.curve(minutes, values, colour=colour)
+            _worst(panel, worst, logarithmic)
         else:
-            note(axis, "nothing to draw: no load, or no heat that jams")
-        _time(axis, minutes, logarithmic)
-    return figure
+            panel.note("nothing to draw: no load, or no heat that jams")
+        panels.append(panel)
+    return Picture([panels[:2], panels[2:]], size=(WIDE, 5.6), above=0.62)
 
 
-def sensors(data: xr.Dataset, record: xr.Dataset | None, *, logarithmic: bool) -> Figure:
+def sensors(data: xr.Dataset, record: xr.Dataset | None, *, logarithmic: bool) -> Picture:
     """What every sensor shows (solid) beside the true temperature (dashed), and the error."""
-    figure, axes = picture(1, 2, size=(WIDE, 3.6))
     minutes = data["time"].values / 60.0
+    level = Panel(_time(minutes, logarithmic), Axis("temperature [°C]"))
+    error = Panel(_time(minutes, logarithmic), Axis("shown less true [K]"))
     for name in (str(n) for n in data["sensor"].values):
         shown = data["sensor_temperature"].sel(sensor=name).values
         true = data["true_temperature"].sel(sensor=name).values
         colour = SENSOR_COLOURS.get(name, INK)
-        axes[0, 0].plot(minutes, CELSIUS(shown), color=colour, label=f"{name} shows")
-        axes[0, 0].plot(
-            minutes, CELSIUS(true), color=colour, linestyle=(0, (3, 1.5)), linewidth=1.1,
-            label=f"{name}: true",
-        )  # fmt: skip
-        axes[0, 1].plot(minutes, shown - true, color=colour)
+        level.curve(minutes, CELSIUS(shown), colour=colour, label=f"{name} shows")
+        level.curve(
+            minutes, CELSIUS(true), colour=colour, dash=(3, 1.5), width=1.1, label=f"{name}: true"
+        )
+        error.curve(minutes, shown - true, colour=colour)
     if record is not None:
-        _points(axes[0, 0], record, SENSOR_COLOURS)
-    axes[0, 0].set_ylabel("temperature [°C]")
-    axes[0, 1].set_ylabel("shown less true [K]")
-    for axis in axes.ravel():
-        _time(axis, minutes, logarithmic)
-    legend_below(figure, axes[0, 0], 6)
-    return figure
+        _points(level, record, SENSOR_COLOURS)
+    return Picture([[level, error]], size=(WIDE, 3.6), legend=6)
 
 
-def _points(axis: Axes, record: xr.Dataset, colours: Mapping[str, Any]) -> None:
+def _points(panel: Panel, record: xr.Dataset, colours: Mapping[str, str]) -> None:
     """The record's readings of what is drawn here."""
     minutes = record["time"].values / 60.0
     for name in (str(n) for n in record["channel"].values):
-        if name not in colours:
-            continue
-        axis.plot(
-            minutes,
-            CELSIUS(record["measured"].sel(channel=name).values),
-            linestyle="none",
-            marker="o",
-            markersize=3.2,
-            markerfacecolor="none",
-            color=colours[name],
-            label=f"{name.replace('_', ' ')}, measured",
-        )
+        if name in colours:
+            values = CELSIUS(record["measured"].sel(channel=name).values)
+            label = f"{name.replace('_', ' ')}, measured"
+            panel.points(minutes, values, size=3.2, open=True, colour=colours[name], label=label)
 
 
-def _time(axis: Axes, minutes: Floats, logarithmic: bool) -> None:
-    axis.set_xlabel("time from the start [min]")
+def _time(minutes: Any, logarithmic: bool) -> Axis:
+    axis = Axis("time from the start [min]", low=0.0, high=float(minutes[-1]))
     if logarithmic and minutes[-1] > 10.0 * FIRST:
-        axis.set_xscale("log")
-        axis.set_xlim(FIRST, float(minutes[-1]))
-        axis.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
-        axis.xaxis.set_minor_locator(NullLocator())
-    else:
-        axis.set_xlim(0.0, float(minutes[-1]))
+        axis.low, axis.log = FIRST, "plain"
+    return axis

@@ -1,0 +1,220 @@
+"""A picture by every function that a run's page does not call, from small made-up datasets."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from thermogear.base.vocabulary import STATUS
+from thermogear.views.picture import Picture
+from thermogear.views.plots import (
+    claims,
+    engine,
+    laws,
+    loaded,
+    relief,
+    sweeps,
+    thermal_map,
+    warm_up,
+)
+from thermogear.views.plots.shared import shared_picture
+
+SIZES = {
+    "direction": 2, "start": 1, "damping_ratio": 5, "frequency": 4, "section": 3, "branch": 1,
+    "branch_point": 4, "bifurcation": 2, "x": 4, "v": 5, "attractor_number": 2, "point": 2,
+    "state": 2, "pinion_speed": 5, "order": 6, "sample": 16, "multiplier": 2, "batch": 8, "leg": 6,
+    "event": 1, "load": 3, "speed": 4, "part": 2, "operating": 2, "law": 2, "path_position": 9,
+    "regime_name": 3, "temperature": 2, "mesh_phase": 8, "pair": 2, "temperature_difference": 3,
+    "pair_kind": 2, "speeds": 4, "torques": 3, "node": 2, "time": 12, "piece": 2, "sensor": 2,
+    "channel": 1, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2, "entry": 2,
+    "output": 2, "input": 3, "gears.pinion.face_width": 3,
+}  # fmt: skip
+S = "path_position"
+
+
+def rising(*dims: str, low: float = 1.0, high: float = 2.0) -> tuple[tuple[str, ...], np.ndarray]:
+    """Numbers from ``low`` to ``high`` over the axes ``dims``."""
+    shape = [SIZES[dim] for dim in dims]
+    return dims, np.linspace(low, high, int(np.prod(shape))).reshape(shape)
+
+
+def made(dims: str, *names: str, **others: object) -> xr.Dataset:
+    """A dataset of rising numbers over the axes ``dims`` under each of ``names``."""
+    return xr.Dataset({name: rising(*dims.split()) for name in names} | others)
+
+
+def of_sweeps() -> dict[str, Picture]:
+    branches = made("branch branch_point", "branch_value", "branch_x", "branch_multiplier")
+    two = ("bifurcation", np.array([0, 1]))
+    events = made("bifurcation", "bifurcation_value", "bifurcation_x", bifurcation_kind=two)
+    events["bifurcation_state"] = two
+    diagram = made("direction start damping_ratio", "lyapunov").assign(
+        section_x=rising("direction", "start", "damping_ratio", "section"),
+        damping_ratio=rising("damping_ratio"),
+    )
+    codes = {"label": np.array([1, 1, 2, 3])[:3], "period": np.array([1, 9, 0])}
+    grid = xr.Dataset(
+        {name: (("damping_ratio", "frequency"), np.resize(values, (5, 4)))
+         for name, values in codes.items()},
+        {"damping_ratio": rising("damping_ratio")[1], "frequency": rising("frequency")[1]},
+    )  # fmt: skip
+    basins = made("attractor_number point", "attractor_x", "attractor_v").assign(
+        x=rising("x"), v=rising("v"), fraction=rising("attractor_number"),
+        attractor=(("x", "v"), np.resize([-2, -1, 0, 1], (4, 5))),
+        attractor_period=("attractor_number", np.array([1, 0])),
+    )  # fmt: skip
+    run = "state direction pinion_speed"
+    run_up = made(run, "dte_peak_to_peak", "mesh_force_max", "dynamic_factor").assign(
+        pinion_speed=rising("pinion_speed"), order=rising("order"),
+        dte_line=rising(*run.split(), "order"), gear_temperature=rising("state", high=400.0),
+    )  # fmt: skip
+    width = "gears.pinion.face_width"
+    line = made(width, "dte_peak_to_peak", "dynamic_factor", "label")
+    line = line.assign_coords({width: (width, rising(width)[1], {"units": "m"})})
+    both = grid.assign(dynamic_factor=rising("damping_ratio", "frequency"))
+    diagram = diagram.merge(branches).merge(events).assign_attrs(parameter="damping_ratio")
+    return {
+        "diagram": sweeps.orbit_diagram_picture(diagram),
+        "map": sweeps.map_picture(grid),
+        "basins": sweeps.basins_picture(basins),
+        "runup": sweeps.run_up_picture(run_up.merge(events)),
+        "waterfall": sweeps.waterfall_picture(run_up),
+        "sweep-1": sweeps.sweep_picture(line),
+        "sweep-2": sweeps.sweep_picture(both),
+    }
+
+
+def of_orbits() -> dict[str, Picture]:
+    orbit = made("sample", "time", "displacement", "velocity").assign(
+        orbit_period=1.0, half_backlash=1.5, order=rising("order", high=9.0),
+        section_displacement=rising("section"), section_velocity=rising("section"),
+        line_amplitude=rising("order"), line_frequency=rising("order", high=900.0),
+        multiplier_real=rising("multiplier", low=0.5), multiplier_imag=rising("multiplier"),
+    )  # fmt: skip
+    branch = made("leg", "value", "section_x", stable=("leg", np.arange(6) < 3)).assign(
+        event_value=rising("event", low=1.5), event_x=rising("event"),
+        event_kind=("event", ["period doubling"]),
+    ).assign_attrs(parameter="frequency", period=2, row="omega", heat="without heat")  # fmt: skip
+    forms = ("exact", "shared", "one_spring")
+    rest = made(
+        "load", "load", "factor", *(f"{f}_{n}" for f in forms for n in ("stiffness", "swing"))
+    )
+    motion = made("speed part", *(f"{form}_swing" for form in forms)).assign(
+        speed=rising("speed"), part=rising("part")
+    )
+    return {
+        "orbit": engine.orbit_picture(orbit),
+        "lyapunov": engine.lyapunov_picture(made("batch", "lyapunov_batch")),
+        "branch": engine.branch_picture([branch], "a branch"),
+        "cascade": engine.cascade_picture([branch]),
+        "shared": shared_picture(rest, motion),
+    }
+
+
+def of_surveys() -> dict[str, Picture]:
+    points = json.dumps({"A": 1.0, "C": 1.5, "E": 2.0})
+    friction = made(f"operating law {S}", "friction_coefficient").assign(
+        outside_range=(("operating", "law", S), np.resize([0, 0, 1], (2, 2, 9))),
+        regime=(("operating", S), np.resize([0, 1], (2, 9))), law=["one", "two"],
+        regime_share=rising("operating", "regime_name"), film_parameter=rising("operating", S),
+        regime_name=["boundary", "mixed", "elastohydrodynamic"], path_position=rising(S),
+        pinion_speed=rising("operating"), pinion_torque=rising("operating"),
+    ).assign_attrs(path_points=points)  # fmt: skip
+    tooth = "temperature load mesh_phase pair"
+    curves = ("tangent_stiffness", "secant_stiffness", "transmission_error")
+    contact = made("temperature load mesh_phase", *curves).assign(
+        load_share=rising(*tooth.split()), contact_pressure=rising(*tooth.split()),
+        edge_contact=(tooth.split(), np.resize([0, 0, 1], (2, 3, 8, 2))),
+        pair_position=rising("mesh_phase", "pair"), mesh_phase=rising("mesh_phase"),
+        load=rising("load"), temperature=["undeformed", "hot"],
+    )  # fmt: skip
+    apart = made("temperature_difference load", "double_contact_length").assign(
+        load=rising("load"), temperature_difference=rising("temperature_difference", low=-1.0)
+    )
+    pairs = made("pair_kind mesh_phase", "transmission_error", "tangent_stiffness").assign(
+        mesh_phase=rising("mesh_phase"), load=rising("load"), pair_kind=["unrelieved", "relieved"],
+        peak_to_peak_error=rising("pair_kind", "load"),
+    )  # fmt: skip
+    return {
+        "laws": laws.laws(friction, 0, frozenset({"two"})),
+        "film": laws.film(friction),
+        "contact-phase": loaded.over_phase(contact),
+        "contact-path": loaded.along_path(contact, json.loads(points)),
+        "double-contact": loaded.double_contact(apart, 1.0, "double_contact_length"),
+        "iso": loaded.iso(made("load", "load", "loaded_stiffness", "iso_stiffness")),
+        "relief-error": relief.error(pairs),
+        "relief-stiffness": relief.stiffness(pairs),
+        "relief-load": relief.over_load(pairs, 1.5),
+        "thermal-map": thermal_map.thermal_map(closed_loop()),
+        "thermal-line": thermal_map.thermal_map(closed_loop().isel(torques=[0])),
+        "thermal-map-bare": thermal_map.thermal_map(closed_loop(np.nan)),
+        **of_warm_up(),
+    }
+
+
+def closed_loop(margin: float = 1.0) -> xr.Dataset:
+    status = np.zeros((4, 3), int)
+    status[0, 0] = STATUS.index("not_converged")
+    names = ("least_film_parameter", "greatest_flash", "least_half_backlash", "mean_friction",
+             "jam_temperature")  # fmt: skip
+    return made("speeds torques", *names).assign(
+        status=(("speeds", "torques"), status), within_oil_range=(("speeds", "torques"), status),
+        tempered=(("speeds", "torques"), status), pinion_speed=rising("speeds"),
+        pinion_torque=rising("torques"), regime_share=rising("speeds", "torques", "regime_name"),
+        scuffing_margin=(("speeds", "torques"), margin * np.linspace(-9.0, 99.0, 12).reshape(4, 3)),
+        node_temperature=rising("node", "speeds", "torques"), node=["pinion_tooth", "oil"],
+    )  # fmt: skip
+
+
+def of_warm_up() -> dict[str, Picture]:
+    time = rising("time", low=0.0, high=7200.0)
+    data = made("time", "half_backlash", "greatest_flash", "least_film_parameter").assign(
+        time=time, node=["pinion_tooth", "oil"], sensor=["ring", "infrared"],
+        node_temperature=rising("node", "time"), sensor_temperature=rising("sensor", "time"),
+        true_temperature=rising("sensor", "time"), mean_stiffness=rising("time"),
+        jam_margin=("time", np.full(12, np.nan)),
+    )  # fmt: skip
+    steady = made("piece", "half_backlash", begin=("piece", np.array([0.0, 3600.0])))
+    record = made("channel time", "measured", time=time).assign_coords(channel=["oil"])
+    worst = {"time_s": 7000.0, "half_backlash_m": 1e-4}
+    return {
+        "course": warm_up.course(data, steady, record, worst, cold=1.0, logarithmic=True),
+        "mesh": warm_up.mesh(data, worst, logarithmic=False),
+        "sensors": warm_up.sensors(data, record, logarithmic=True),
+    }
+
+
+def of_claims() -> dict[str, Picture]:
+    diagram = made("direction start damping_ratio section", "section_x").assign(
+        damping_ratio=rising("damping_ratio")
+    ).assign_attrs(parameter="damping_ratio")  # fmt: skip
+    flips = made("row heat flip", "value").assign_coords(row=["zeta", "omega"], heat=["none"])
+    given = made("thermal speed torque", "flash_mixed", "flash_dry").assign(
+        speed=rising("speed"), torque=rising("torque"), thermal=["given", "balance"]
+    )
+    multiplier = made("row temperature", "multiplier").assign(
+        temperature=rising("temperature", low=300.0, high=400.0), row=["thesis", "consistent"],
+        flip=("row", np.array([350.0, np.nan])),
+    )  # fmt: skip
+    entry = made("entry", "speed", "u_val", "with_error", "without_error").assign(
+        quantity=("entry", ["displacement", "frequency"]),
+        with_printed=("entry", ["1.0", "2.0"]), without_printed=("entry", ["1.0", "2.0"]),
+    )  # fmt: skip
+    total = made("output input", "total", total_conf=rising("output", "input", low=0, high=0.1))
+    total = total.assign(
+        output_words=("output", ["growth", "flash"]), input_words=("input", ["a", "b", "c"])
+    )
+    return {
+        "thesis-diagram": claims.diagram({"zeta/none": diagram}, flips, "zeta"),
+        "over-grid": claims.over_grid(given, "flash", "flash temperature [K]"),
+        "warming": claims.warming(multiplier),
+        "experiment": claims.experiment(entry),
+        "sensitivity": claims.sensitivity(total),
+    }
+
+
+def every() -> dict[str, Picture]:
+    """All of them by name."""
+    return of_sweeps() | of_orbits() | of_surveys() | of_claims()
