@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -50,8 +50,8 @@ def figures(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
     """Figures that a page draws, by name; the page itself gets none."""
     found: dict[str, Figure] = {}
 
-    def keep(make: Callable[[], Picture], name: str, title: str) -> Markup:
-        found[name] = drawing.draw(make())
+    def keep(picture: Picture, name: str, title: str) -> Markup:
+        found[name] = drawing.draw(picture)
         return Markup("<svg></svg>")
 
     monkeypatch.setattr(pages, "draw", keep)

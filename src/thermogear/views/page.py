@@ -65,7 +65,7 @@ class Shown:
     @property
     def svg(self) -> Markup:
         """The picture as a piece of a page."""
-        return draw(lambda: self.picture, f"fig-{self.name}", self.heading)
+        return draw(self.picture, f"fig-{self.name}", self.heading)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 from markupsafe import Markup, escape
@@ -19,14 +18,14 @@ _URL = re.compile(r"url\(#([^)]+)\)")
 _SIZE = re.compile(r'<svg\b[^>]*?viewBox="([^"]+)"[^>]*>', re.DOTALL)
 
 
-def draw(make: Callable[[], Picture], name: str, title: str) -> Markup:
-    """The picture that ``make`` returns as inline SVG; ``name`` makes its ids unique.
+def draw(picture: Picture, name: str, title: str) -> Markup:
+    """The picture as inline SVG; ``name`` makes its ids unique.
 
     The same picture gives the same text. ``title`` is what a screen reader says.
     """
     from thermogear.views.drawing import image
 
-    return Markup(_inline(image(make(), "svg", salt=name).decode(), name, title))
+    return Markup(_inline(image(picture, "svg", salt=name).decode(), name, title))
 
 
 def put_picture(picture: Picture, path: Path, *, resolution: int) -> Path:
