@@ -64,9 +64,10 @@ REASONS = {
         f"views.picture.{kind}": "x before y, as in every plot"
         for kind in ("Curve", "Points", "Stems", "Text", "Bars", "Field", "Contours", "Hatch")
     },
-    "views.words.exactly": "value and digits as in round",
-    "views.words.number": "value and digits as in round",
-    "views.words.span": "values and digits as in round",
+    "base.display.Display.text": "value and digits as in round",
+    "base.display.exactly": "value and digits as in round",
+    "base.display.number": "value and digits as in round",
+    "base.display.span": "values and digits as in round",
 }
 
 # --- units ---------------------------------------------------------------------------------------

@@ -20,15 +20,15 @@ _MARKED = "results of thermogear\n"
 
 def json_text(summary: Mapping[str, Any]) -> str:
     """A summary as a JSON text of lines; what is not finite is null."""
-    return json.dumps(_finite(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(finite(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """NaN and infinity as None: JSON has no word for them."""
     if isinstance(value, Mapping):
-        return {k: _finite(v) for k, v in value.items()}
+        return {k: finite(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(v) for v in value]
+        return [finite(v) for v in value]
     if isinstance(value, float) and not abs(value) < float("inf"):
         return None
     return value

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, attributes, status_attributes
 from thermogear.case.case import GearCase
 from thermogear.heat.film import REGIMES
@@ -211,8 +210,3 @@ def carried_uncertainty(case: GearCase) -> Floats:
             ends.append(gap.half_backlash.mean(axis=1))
         square += (0.5 * (ends[0] - ends[1])) ** 2
     return np.sqrt(square)
-
-
-def celsius(kelvin: float) -> str:
-    """A temperature to a tenth of a degree, as text."""
-    return f"{kelvin - ZERO_CELSIUS:.1f} °C"

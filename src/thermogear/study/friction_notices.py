@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.base.display import CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
-from thermogear.study.balances import celsius
 
 Floats = NDArray[np.float64]
 Notice = dict[str, str]
@@ -60,7 +60,7 @@ def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[N
 def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
     """Where the film forms at flanks that leave the range of the oil's viscosity line."""
     oil = case.stated.lubricant
-    low, high = (celsius(t) for t in oil.temperature_range)
+    low, high = (CELSIUS.text(t, 1) for t in oil.temperature_range)
     found = []
     for place, model in enumerate(case.models):
         hot = groups["mesh"].isel(bundle=place, state=-1)["film_outside_range"].values == 1
@@ -70,7 +70,7 @@ def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[N
             beyond_oil = row["film_outside_range"] == 1
             axes = [d for d in beyond_oil.dims if d != "gear_temperature"]
             at = row["gear_temperature"].values[beyond_oil.any(axes).values]
-            where += [celsius(float(t)) for t in at]
+            where += [CELSIUS.text(float(t), 1) for t in at]
         if where:
             found.append(
                 _notice(

@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.settle import PERIODIC
+from thermogear.base.display import reach
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
 from thermogear.results.result import Result, stored_dataset
@@ -97,12 +98,6 @@ def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
     return ", ".join(words)
 
 
-def _reach(values: NDArray[np.float64]) -> str:
-    """Least and greatest, or the one there is."""
-    low, high = (f"{v:.3f}" for v in (values.min(), values.max()))
-    return low if low == high else f"{low} .. {high}"
-
-
 def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
     """Notices as an attribute: the back side, and where the case's speeds lie."""
     found = contact_notices(data) + back_side_notice(data)
@@ -117,10 +112,10 @@ def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
         tests = case.pair.pinion.teeth * speeds / (2.0 * math.pi) / natural
         shown = ", ".join(f"{s / RPM:.4g}" for s in speeds)
         found.append(
-            f"the range covers omega_h {_reach(ratio)}; the mesh meets the "
+            f"the range covers omega_h {reach(ratio, '.3f')}; the mesh meets the "
             f"natural frequency of the mean stiffness, {natural:.0f} Hz, at "
             f"{natural * turns:.0f} rpm; the case's own speeds ({shown} rpm) lie at omega_h "
-            f"{_reach(tests)}"
+            f"{reach(tests, '.3f')}"
         )
     jammed = int(np.count_nonzero(data["status"].values == 1))
     if jammed:

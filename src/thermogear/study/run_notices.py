@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import thermogear
+from thermogear.base.display import CELSIUS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS, told_operating
 from thermogear.case.case import GearCase
@@ -23,7 +24,7 @@ from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
-from thermogear.study.balances import celsius, reasons, several_words
+from thermogear.study.balances import reasons, several_words
 from thermogear.study.friction_notices import friction_notices
 
 Floats = NDArray[np.float64]
@@ -178,15 +179,15 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
         oil = steady["node_temperature"].sel(node="oil")
         text = (
             f"{bundle}: temperatures computed from the heat balance; teeth "
-            f"{celsius(float(teeth.min()))} to {celsius(float(teeth.max()))}, oil "
-            f"{celsius(float(oil.min()))} to {celsius(float(oil.max()))}, settled within "
-            f"{int(steady['iterations'].max())} iterations to {float(steady['residual'].max()):.1g}"
-            f" K. They rest on the gearbox's values; {ours or 'none'} of them "
+            f"{CELSIUS.text(float(teeth.min()), 1)} to {CELSIUS.text(float(teeth.max()), 1)}, oil "
+            f"{CELSIUS.text(float(oil.min()), 1)} to {CELSIUS.text(float(oil.max()), 1)}, settled "
+            f"within {int(steady['iterations'].max())} iterations to "
+            f"{float(steady['residual'].max()):.1g} K. They rest on the gearbox's values; {ours or 'none'} of them "
             f"{'is' if ours == 1 else 'are'} ours."
         )
         hot = float(teeth.max()) > limit
         if hot:
-            text += f" The teeth pass {celsius(limit)}, where their material is tempered."
+            text += f" The teeth pass {CELSIUS.text(limit, 1)}, where their material is tempered."
         found.append(_notice("important" if hot else "info", text))
     return found
 
@@ -429,8 +430,10 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
         return []
     balance, found = groups["balance"], []
     for one in json.loads(str(balance.attrs["readings"])):
-        words = f"{one['node']}, {one['kind']} reading {celsius(one['indicated_K'])} corrected"
-        value = f"{celsius(one['temperature_K'])} +- {one['uncertainty_K']:.2g} K"
+        words = (
+            f"{one['node']}, {one['kind']} reading {CELSIUS.text(one['indicated_K'], 1)} corrected"
+        )
+        value = f"{CELSIUS.text(one['temperature_K'], 1)} +- {one['uncertainty_K']:.2g} K"
         found.append(Fact("measured temperatures", words, value))
     if "half_backlash_uncertainty" in balance:
         for o in range(min(balance.sizes["operating"], MOST_POINTS)):
@@ -450,7 +453,7 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
             for node, kelvin in zip(
                 here["node"].values, here["node_temperature"].values, strict=True
             ):
-                found.append(Fact(group, f"{node} temperature", celsius(float(kelvin))))
+                found.append(Fact(group, f"{node} temperature", CELSIUS.text(float(kelvin), 1)))
             for kind, watts in zip(here["loss_kind"].values, here["loss"].values, strict=True):
                 found.append(Fact(group, f"{kind} loss", float(watts), "W"))
             found.append(Fact(group, "iterations", int(here["iterations"])))

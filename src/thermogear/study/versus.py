@@ -7,7 +7,6 @@ value), bundles by name. What one case has and another has not is NaN there, and
 from __future__ import annotations
 
 import json
-import math
 from collections import Counter
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
@@ -493,10 +492,6 @@ def _rounded(values: xr.DataArray) -> list[float]:
 def _union(lists: Sequence[Sequence[Any]]) -> list[Any]:
     """Every entry once, in the order of first appearance."""
     return list(dict.fromkeys(entry for each in lists for entry in each))
-
-
-def _number(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 __all__ = [

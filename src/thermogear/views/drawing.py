@@ -24,9 +24,9 @@ from matplotlib.colors import (
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 
+from thermogear.base.display import raised
 from thermogear.views import picture as data
 from thermogear.views.style import HANDLE, INK, LEGEND_LINE, LETTER, QUIET, RC
-from thermogear.views.words import raised
 
 MARKERS = {
     "": "", "circle": "o", "dot": ".", "square": "s", "diamond": "D", "thin diamond": "d",

@@ -11,10 +11,11 @@ import jinja2
 import xarray as xr
 from markupsafe import Markup
 
+from thermogear.results.files import finite
 from thermogear.results.result import Notice, Result
 from thermogear.views.picture import Picture
 from thermogear.views.svg import draw
-from thermogear.views.words import prose
+from thermogear.views.typesetting import prose
 
 Cell = str | Markup
 
@@ -172,6 +173,11 @@ class Page:
     lines: Callable[[], Sequence[str]] = nothing
     tables: Callable[[], Mapping[str, str]] = nothing
     files: tuple[str, ...] = ()
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """The figures a script wants; what is not finite is None."""
+        return dict(finite(self.numbers()))
 
     @property
     def pictures(self) -> Iterator[Shown]:

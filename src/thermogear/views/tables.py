@@ -10,22 +10,11 @@ import numpy as np
 import xarray as xr
 from markupsafe import Markup
 
+from thermogear.base.display import celsius, display, exactly, number, percent, span
 from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS
 from thermogear.views.page import Cell, Table
 from thermogear.views.plots.rows import of_row, row_names, value_parts
-from thermogear.views.words import (
-    celsius,
-    display,
-    exactly,
-    html_symbol,
-    jam_at,
-    label_text,
-    number,
-    operating_names,
-    percent,
-    prose,
-    span,
-)
+from thermogear.views.typesetting import html_symbol, jam_at, label_text, operating_names, prose
 
 JAMMED = STATUS.index("jammed")
 _UNITS = {"um": "µm", "1": "", "deg": "°", "degC": "°C", "N m": "N m", "kg m2": "kg m²",

@@ -96,11 +96,11 @@ def save(result: Result, directory: str | Path) -> list[Path]:
 
 def save_results(result: Result, directory: str | Path) -> dict[str, Any]:
     """Store ``result`` in ``directory`` with its figures as JSON, without a page; the figures."""
-    numbers = page_of(result).numbers()
+    numbers = page_of(result).figures
     with claimed(Path(directory)) as folder:
         result.put(folder)
         put(folder / names(result)[1], json_text(numbers))
-    return dict(numbers)
+    return numbers
 
 
 def write_report(directory: str | Path, kind: str = "") -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Code, Section, Text
-from thermogear.views.words import field_name, prose
+from thermogear.views.typesetting import field_name, prose
 
 
 def background(results: Result) -> list[Section]:

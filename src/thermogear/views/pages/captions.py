@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.display import number, span
 from thermogear.base.vocabulary import told_operating
 from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
 from thermogear.views.style import chosen, names_of, path_points
-from thermogear.views.words import number, operating_names, span
+from thermogear.views.typesetting import operating_names
 
 Floats = NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import exactly, number
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
@@ -17,7 +18,7 @@ from thermogear.views.pages.survey import (
     table_of,
 )
 from thermogear.views.plots import loaded
-from thermogear.views.words import exactly, number, prose
+from thermogear.views.typesetting import prose
 
 
 def page(result: Result) -> Page:
@@ -150,9 +151,9 @@ def _lines(result: Result) -> list[str]:
     for place, torque in enumerate(found["pinion_torque_Nm"]):
         springs = [found["mean_stiffness"][t][place] for t in (0, 1)]
         springs.append(found["iso_6336_stiffness"][place])
-        cells = [digits(None if k is None else 1e-8 * k) for k in springs]
+        cells = [digits(1e-8 * k) for k in springs]
         edges = [found["edge_contact_share"][t][place] for t in (0, 1)]
-        shares = ["-" if s is None else f"{100.0 * s:.1f}" for s in edges]
+        shares = [f"{100.0 * s:.1f}" if s == s else "-" for s in edges]
         lines.append(
             f"{torque:>10.4g} {cells[0]:>14} {cells[1]:>12} {cells[2]:>12}"
             f"{shares[0]:>23} {shares[1]:>6}"

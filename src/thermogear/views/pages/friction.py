@@ -5,18 +5,18 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from thermogear.base.display import number
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import captions
 from thermogear.views.pages import survey_captions as words
 from thermogear.views.pages.survey import (
     digits,
-    known,
     operating_rows,
     survey,
 )
 from thermogear.views.plots import laws
-from thermogear.views.words import number, operating_names
+from thermogear.views.typesetting import operating_names
 
 MOST_PICTURES = 4
 """Operating points that get a picture of their own."""
@@ -91,7 +91,7 @@ def _numbers(result: Result) -> dict[str, Any]:
     rows: list[dict[str, Any]] = []
     for law in data["law"].values:
         mean = data["mean_friction"].sel(law=law).values
-        rows.append({"law": str(law), "mean_friction": [known(v) for v in mean]})
+        rows.append({"law": str(law), "mean_friction": [float(v) for v in mean]})
     return {
         "operating": operating_rows(data),
         "laws": rows,

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import celsius
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.pages import captions
 from thermogear.views.plots import backlash, deformation, motion, path, stiffness, temperature
 from thermogear.views.style import chosen, names_of
-from thermogear.views.words import celsius, jam_words, operating_names
+from thermogear.views.typesetting import jam_words, operating_names
 
 MOST_SPEEDS = 3
 """Rows of a grid over temperature."""

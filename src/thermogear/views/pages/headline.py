@@ -8,12 +8,13 @@ from collections import Counter
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import celsius, display, number, percent, span
 from thermogear.base.vocabulary import told_labels, told_operating
 from thermogear.results.result import Result
 from thermogear.views.page import Tile
 from thermogear.views.style import names_of
 from thermogear.views.tables import JAMMED
-from thermogear.views.words import celsius, display, jam_at, number, percent, span
+from thermogear.views.typesetting import jam_at
 
 STUDIED = "1.1 to 1.3"
 """Frequency ratios of the thesis's bifurcation study."""

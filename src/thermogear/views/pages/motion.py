@@ -8,6 +8,7 @@ from typing import Any
 
 import xarray as xr
 
+from thermogear.base.display import number
 from thermogear.results.result import Result
 from thermogear.views.csv_files import quoted
 from thermogear.views.page import Block, Gallery, Page, Section, Shown, Table, Text, notice_lines
@@ -16,7 +17,7 @@ from thermogear.views.picture import Picture
 from thermogear.views.plots import engine as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
-from thermogear.views.words import number, prose
+from thermogear.views.typesetting import prose
 
 Groups = Mapping[str, xr.Dataset]
 Summary = dict[str, Any]

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from markupsafe import Markup
 
+from thermogear.base.display import number
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.results.result import Result
 from thermogear.views import tables
@@ -13,7 +14,7 @@ from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, T
 from thermogear.views.pages import record_lines
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, WIDE
-from thermogear.views.words import html_symbol, number, prose
+from thermogear.views.typesetting import html_symbol, prose
 
 _SHOWN = 60  # lines of the table: the most prominent
 

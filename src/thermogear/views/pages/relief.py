@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from thermogear.base.display import exactly
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
@@ -13,7 +14,6 @@ from thermogear.views.pages.survey import (
     survey,
 )
 from thermogear.views.plots import relief
-from thermogear.views.words import exactly
 
 
 def page(result: Result) -> Page:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import xarray as xr
 
+from thermogear.base.display import number
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import rows
-from thermogear.views.words import number
 
 PREFIX = "base_sets/"
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from thermogear.base.units import RPM
@@ -33,11 +31,6 @@ def numbers(result: Result) -> dict[str, Any]:
     if sets:
         found["points"] = {name.split("/")[-1]: _point_summary(data) for name, data in sets.items()}
     return found
-
-
-def _number(value: object) -> float | None:
-    number = float(np.asarray(value))
-    return number if math.isfinite(number) else None
 
 
 FIGURES = (
@@ -75,14 +68,14 @@ def _operating_summary(groups: Mapping[str, xr.Dataset]) -> list[dict[str, Any]]
                     "pinion_speed_rpm": float(here["pinion_speed"]) / RPM,
                     "pinion_torque_Nm": float(here["pinion_torque"]),
                     "status": STATUS[int(here["status"])],
-                    "greatest_flash_temperature_K": _number(along["flash_temperature"].max()),
-                    "greatest_friction": _number(along["friction_coefficient"].max()),
+                    "greatest_flash_temperature_K": float(along["flash_temperature"].max()),
+                    "greatest_friction": float(along["friction_coefficient"].max()),
                 }
-                row |= {name: _number(here[name]) for name in FIGURES if name in here}
+                row |= {name: float(here[name]) for name in FIGURES if name in here}
                 if motion is not None and "label" in motion:
                     moving = motion.isel(at)
                     row["label"] = str(moving["label"].values)
-                    row |= {n: _number(moving[n]) for n in MOTION_FIGURES if n in moving}
+                    row |= {n: float(moving[n]) for n in MOTION_FIGURES if n in moving}
                 rows.append(row)
     return rows
 
@@ -101,7 +94,7 @@ def _temperature_summary(row: xr.Dataset) -> list[dict[str, Any]]:
                     "label": str(here["label"].values),
                 }
                 names = FIGURES + MOTION_FIGURES
-                found |= {name: _number(here[name]) for name in names if name in here}
+                found |= {name: float(here[name]) for name in names if name in here}
                 rows.append(found)
     return rows
 
@@ -120,7 +113,7 @@ def _point_summary(points: xr.Dataset) -> list[dict[str, Any]]:
                 "reason": str(here["label_reason"].values),
                 **{name: int(here[name]) for name in FOLLOWED if name in here},
                 "expected": str(here["expected"].values),
-                "half_order_amplitude": _number(here["half_order_amplitude"]),
+                "half_order_amplitude": float(here["half_order_amplitude"]),
             }
         )
     return rows

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import number
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.background import background
 from thermogear.views.plots import claims as plots
-from thermogear.views.words import number, prose
+from thermogear.views.typesetting import prose
 
 
 def page(result: Result) -> Page:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from thermogear.base.units import RPM
@@ -75,29 +74,11 @@ def operating_rows(data: xr.Dataset) -> list[dict[str, float]]:
     return [{"pinion_speed_rpm": float(s) / RPM, "pinion_torque_Nm": float(t)} for s, t in pairs]
 
 
-def known(value: object) -> float | None:
-    """A number; None where it is not finite."""
-    number = float(str(value))
-    return number if math.isfinite(number) else None
-
-
-def table_of(data: xr.DataArray) -> list[list[float | None]]:
+def table_of(data: xr.DataArray) -> list[list[float]]:
     """A grid as rows of numbers."""
-    return [[known(v) for v in row] for row in data.values]
+    return [[float(v) for v in row] for row in data.values]
 
 
-def digits(value: float | None) -> str:
+def digits(value: float) -> str:
     """A number of a terminal's table."""
-    return "-" if value is None else f"{value:.4f}"
-
-
-def reach(values: Any) -> str:
-    """Least and greatest of ``values``, or the one there is; "-" without any."""
-    found = [float(v) for v in np.ravel(values) if math.isfinite(v)]
-    if not found:
-        return "-"
-    low, high = (f"{v:.4g}" for v in (min(found), max(found)))
-    return low if low == high else f"{low} .. {high}"
-
-
-__all__ = ["csv_tables", "digits", "known", "operating_rows", "reach", "survey", "table_of"]
+    return f"{value:.4f}" if math.isfinite(value) else "-"

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.display import exactly, number, span
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
-from thermogear.views.words import exactly, number, span
 
 Floats = NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import number
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
@@ -16,7 +17,6 @@ from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.parameters import page_words, shown
-from thermogear.views.words import number
 
 Words = Callable[[xr.Dataset], str]
 TITLES = {

@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import exactly, number, reach
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages import survey_captions as words
 from thermogear.views.pages.survey import (
-    reach,
     survey,
     table_of,
 )
 from thermogear.views.plots import thermal_map
-from thermogear.views.words import exactly, number, prose
+from thermogear.views.typesetting import prose
 
 
 def page(result: Result) -> Page:

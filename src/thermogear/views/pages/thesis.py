@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from markupsafe import Markup
 
+from thermogear.base.display import celsius
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Cell, Gallery, Page, Pictures, Section, Table, Text, Tile
@@ -18,7 +19,7 @@ from thermogear.views.pages import gear_sections, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
-from thermogear.views.words import celsius, html_symbol, prose
+from thermogear.views.typesetting import html_symbol, prose
 
 PREFIX = "diagrams/"
 SECTIONS = {

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import Display, display, number, percent
 from thermogear.base.vocabulary import STATUS
 from thermogear.results.result import Result
 from thermogear.views.csv_files import table_text
@@ -26,16 +27,7 @@ from thermogear.views.page import (
 from thermogear.views.plots import versus as plots
 from thermogear.views.style import chosen
 from thermogear.views.tables import is_jammed
-from thermogear.views.words import (
-    Display,
-    display,
-    field_name,
-    jam_at,
-    number,
-    operating_names,
-    percent,
-    prose,
-)
+from thermogear.views.typesetting import field_name, jam_at, operating_names, prose
 
 MOST_POINTS = 3
 """At most so many operating points are drawn."""
@@ -317,7 +309,7 @@ def _numbers(result: Result) -> dict[str, Any]:
                     continue
                 for s, state in enumerate(data["state"].values):
                     one = here.isel(state=s)
-                    numbers = {name: _known(float(one[name])) for name in figures}
+                    numbers = {name: float(one[name]) for name in figures}
                     rows.append({
                         "case": str(title), "bundle": str(bundle), "point": str(point),
                         "state": str(state), "label": str(one["label"].item()), **numbers,
@@ -333,7 +325,3 @@ def _numbers(result: Result) -> dict[str, Any]:
         "units": {name: str(data[name].attrs.get("units", "1")) for name in figures},
         "figures": rows,
     }
-
-
-def _known(value: float) -> float | None:
-    return value if np.isfinite(value) else None

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import exactly, number
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import warm_up as plots
-from thermogear.views.words import exactly, number
 
 
 def page(result: Result) -> Page:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Panel, Picture, Text
 from thermogear.views.plots.curves import axis_of, draw_by_bundle
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET, STATES, bundle_line, names_of
-from thermogear.views.words import CELSIUS, FAR, plain, shown
+from thermogear.views.typesetting import FAR, plain, shown
 
 
 def over_phase(data: xr.Dataset) -> Picture:

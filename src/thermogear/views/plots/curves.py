@@ -20,7 +20,7 @@ from thermogear.views.style import (
     path_points,
     ramp,
 )
-from thermogear.views.words import axis_label, operating_names, plain, shown
+from thermogear.views.typesetting import axis_label, operating_names, plain, shown
 
 Floats = NDArray[np.float64]
 

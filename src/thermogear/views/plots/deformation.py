@@ -10,7 +10,7 @@ import xarray as xr
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, bundle_line, names_of
-from thermogear.views.words import plain, shown
+from thermogear.views.typesetting import plain, shown
 
 
 def growth(data: xr.Dataset) -> Picture:

@@ -14,7 +14,7 @@ from thermogear.views.plots.orbits import refined
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, HOT, OKABE_ITO, QUIET, WIDE
-from thermogear.views.words import plain
+from thermogear.views.typesetting import plain
 
 Floats = NDArray[np.float64]
 

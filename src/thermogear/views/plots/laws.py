@@ -8,7 +8,7 @@ import xarray as xr
 from thermogear.views.picture import Axis, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.style import DRY, FAINT, INK, OKABE_ITO, QUIET, WIDE, chosen
-from thermogear.views.words import operating_names, plain
+from thermogear.views.typesetting import operating_names, plain
 
 REGIME_COLOURS = {
     "boundary": "#c0504d",

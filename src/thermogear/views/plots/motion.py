@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.display import display, number
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture, Top
 from thermogear.views.plots.orbits import SMOOTH, periods_to_draw, refined, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, QUIET, STATES, WIDE, names_of
-from thermogear.views.words import axis_label, display, label_text, number, plain
+from thermogear.views.typesetting import axis_label, label_text, plain
 
 Floats = NDArray[np.float64]
 

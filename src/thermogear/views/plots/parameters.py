@@ -6,7 +6,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.views.words import CELSIUS, MICROMETRE, Display, display, math_symbol, prose
+from thermogear.base.display import CELSIUS, MICROMETRE, Display, display
+from thermogear.views.typesetting import math_symbol, prose
 
 NUMBER = Display(unit="")
 TURNS = display("pinion_speed")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import (
     Floats,
@@ -17,7 +18,7 @@ from thermogear.views.plots.curves import (
     hot_state,
 )
 from thermogear.views.style import DRY, FAINT, HOT, INK, OKABE_ITO, chosen
-from thermogear.views.words import axis_label, display, math_symbol, shown
+from thermogear.views.typesetting import axis_label, math_symbol, shown
 
 S = "path_position"
 FLASHES = {

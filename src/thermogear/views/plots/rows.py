@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.motion import label_of
 from thermogear.views.plots.orbits import periods_to_draw, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
-from thermogear.views.words import CELSIUS, math_symbol, plain
+from thermogear.views.typesetting import math_symbol, plain
 
 HIGHEST_ORDER = 4.0
 DENSE = 6000

@@ -8,7 +8,7 @@ import xarray as xr
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, axis_of, draw_by_bundle, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, STATES, names_of
-from thermogear.views.words import math_symbol, plain, shown
+from thermogear.views.typesetting import math_symbol, plain, shown
 
 PARTS = {
     "hertz": ("contact", OKABE_ITO[4]),

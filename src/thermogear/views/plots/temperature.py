@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import CELSIUS, celsius
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import axis_of, draw_by_both
 from thermogear.views.plots.motion import draw_loop, label_of, moving, orbit_of
 from thermogear.views.style import FAINT, INK, QUIET, WIDE, chosen, ramp
-from thermogear.views.words import CELSIUS, celsius, operating_names
+from thermogear.views.typesetting import operating_names
 
 MOST_COLUMNS = 6
 

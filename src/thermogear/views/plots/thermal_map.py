@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.display import CELSIUS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, scale
-from thermogear.views.words import CELSIUS
 
 Floats = NDArray[np.float64]
 

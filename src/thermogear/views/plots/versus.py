@@ -7,13 +7,14 @@ import json
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import display
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.plots.motion import HALF_ORDERS
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, OKABE_ITO, WIDE
-from thermogear.views.words import axis_label, display, plain
+from thermogear.views.typesetting import axis_label, plain
 
 DASHES: dict[str, tuple[float, ...]] = {UNDEFORMED: (4, 2), "hot": ()}
 HIGHEST_ORDER = 8.0

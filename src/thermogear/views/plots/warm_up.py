@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from thermogear.base.display import CELSIUS, number
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
-from thermogear.views.words import CELSIUS, number
 
 NODE_COLOURS: dict[str, tuple[str, tuple[float, ...]]] = {
     "pinion_tooth": (OKABE_ITO[1], ()),

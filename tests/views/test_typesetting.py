@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thermogear.analysis.outcome import outcome_variables
+from thermogear.base import display
 from thermogear.base.vocabulary import FASTER_RULE, QUANTITIES, told_labels
-from thermogear.views import words
+from thermogear.views import typesetting as words
 from thermogear.views.plots.orbits import periods_to_draw, refined, thinned
 from thermogear.views.plots.spectrum import floor_of
 from thermogear.views.plots.sweeps import CLASSES
@@ -30,23 +31,23 @@ from thermogear.views.plots.sweeps import CLASSES
     ],
 )
 def test_numbers_have_significant_figures(value: float, digits: int, shown: str) -> None:
-    assert words.number(value, digits) == shown
+    assert display.number(value, digits) == shown
 
 
 def test_given_values_carry_no_zeros_of_ours() -> None:
-    assert words.exactly(100.0) == "100"
-    assert words.exactly(0.18) == "0.18"
-    assert words.exactly(250000.0) == "250000"
+    assert display.exactly(100.0) == "100"
+    assert display.exactly(0.18) == "0.18"
+    assert display.exactly(250000.0) == "250000"
 
 
 @given(st.floats(1e-3, 1e5))
 def test_a_shown_number_is_the_number_to_its_digits(value: float) -> None:
-    assert float(words.number(value, 4)) == pytest.approx(value, rel=5.001e-4)
+    assert float(display.number(value, 4)) == pytest.approx(value, rel=5.001e-4)
 
 
 def test_temperatures_and_jams() -> None:
-    assert words.celsius(413.15) == "140 °C"
-    assert words.celsius(263.15) == "−10 °C"
+    assert display.celsius(413.15) == "140 °C"
+    assert display.celsius(263.15) == "−10 °C"
     assert words.jam_words(341.15) == "jammed: backlash used up at 68 °C"
     assert words.jam_at(1200.0) == "> 400 °C"
     assert words.jam_at(np.inf) == "never"
@@ -60,11 +61,11 @@ def test_every_stored_quantity_has_a_label_with_its_unit(name: str) -> None:
 
 
 def test_display_units_follow_the_stored_unit() -> None:
-    assert words.display("displacement").unit == "µm"
-    assert words.display("displacement", "1").unit == "–"
-    assert float(words.display("pinion_speed")(np.pi)) == pytest.approx(30.0)
-    assert float(words.display("gear_temperature")(373.15)) == pytest.approx(100.0)
-    assert float(words.display("flash_temperature")(20.0)) == 20.0
+    assert display.display("displacement").unit == "µm"
+    assert display.display("displacement", "1").unit == "–"
+    assert float(display.display("pinion_speed")(np.pi)) == pytest.approx(30.0)
+    assert float(display.display("gear_temperature")(373.15)) == pytest.approx(100.0)
+    assert float(display.display("flash_temperature")(20.0)) == 20.0
 
 
 def test_prose_is_escaped_before_it_is_polished() -> None:

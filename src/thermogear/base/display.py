@@ -1,0 +1,135 @@
+"""Numbers and units as a person reads them: one way for pages, pictures, notices, terminals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import QUANTITIES
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Display:
+    """How an SI number is shown: ``scale * (value - zero)`` in ``unit``."""
+
+    unit: str
+    scale: float = 1.0
+    _: KW_ONLY
+    zero: float = 0.0
+
+    def __call__(self, values: ArrayLike) -> Floats:
+        return np.asarray(self.scale * (np.asarray(values, dtype=float) - self.zero))
+
+    def text(self, value: float, digits: int) -> str:
+        """``value`` with its unit, to so many places behind the point."""
+        return f"{float(self(value)):.{digits}f} {self.unit}"
+
+
+MICROMETRE = Display("µm", 1e6)
+MILLIMETRE = Display("mm", 1e3)
+KELVIN = Display("K")
+CELSIUS = Display("°C", 1.0, zero=ZERO_CELSIUS)
+
+_BY_UNIT = {
+    "1": Display("–"),
+    "m": MICROMETRE,
+    "N/m": Display("10⁸ N/m", 1e-8),
+    "Pa": Display("MPa", 1e-6),
+    "K": CELSIUS,
+    "rad/s": Display("rpm", 1.0 / RPM),
+    "m/s": Display("m/s"),
+    "s": Display("ms", 1e3),
+}
+_BY_NAME = {
+    "path_position": MILLIMETRE,
+    "pinion_radius": MILLIMETRE,
+    "wheel_radius": MILLIMETRE,
+    "reduced_radius": MILLIMETRE,
+    "line_load": Display("N/mm", 1e-3),
+    "flash_temperature": KELVIN,
+    "flash_temperature_mixed": KELVIN,
+    "flash_temperature_dry": KELVIN,
+    "velocity": Display("mm/s", 1e3),
+    "section_velocity": Display("mm/s", 1e3),
+}
+
+
+def display(name: str, unit: str | None = None) -> Display:
+    """How the stored quantity ``name`` is shown; ``unit`` as stored, if it differs from usual."""
+    if unit is None:
+        unit = QUANTITIES[name].unit
+    elif name in QUANTITIES and unit != QUANTITIES[name].unit:
+        return _BY_UNIT.get(unit, Display(unit))
+    return _BY_NAME.get(name) or _BY_UNIT.get(unit) or Display(unit)
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number to ``digits`` significant figures, with a true minus and powers of ten.
+
+    A whole number that is longer keeps all its places; what is not finite is a dash.
+    """
+    if not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(value)))
+    if -4 <= size < 6:
+        text = f"{value:.{max(digits - 1 - size, 0)}f}"
+    else:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        text = f"{mantissa}·10{raised(int(exponent))}"
+    return text.replace("-", "−")
+
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def raised(exponent: int) -> str:
+    """A whole number as superscript."""
+    return str(exponent).translate(_SUPERSCRIPTS)
+
+
+def percent(ratio: float) -> str:
+    """A relative change as a signed percentage."""
+    if not math.isfinite(ratio):
+        return "–"
+    return f"{100.0 * ratio:+.1f} %".replace("-", "−")
+
+
+def celsius(kelvin: float) -> str:
+    """A temperature in whole degrees Celsius; "none" where there is no such temperature."""
+    if not math.isfinite(kelvin):
+        return "none"
+    return f"{kelvin - ZERO_CELSIUS:.0f} °C".replace("-", "−")
+
+
+def exactly(value: float, digits: int = 6) -> str:
+    """A given value without zeros it was not given with."""
+    text = number(value, digits)
+    return text.rstrip("0").rstrip(".") if "." in text and "·" not in text else text
+
+
+def span(values: ArrayLike, digits: int = 3) -> str:
+    """The range of ``values`` as one number, or "low to high"."""
+    found = np.asarray(values, dtype=float)
+    found = found[np.isfinite(found)]
+    if not found.size:
+        return "–"
+    low, high = exactly(float(found.min()), digits), exactly(float(found.max()), digits)
+    return low if low == high else f"{low} to {high}"
+
+
+def reach(values: ArrayLike, form: str = ".4g", between: str = " .. ") -> str:
+    """The least and the greatest of ``values`` in the format ``form``; "-" without any."""
+    found = np.asarray(values, dtype=float)
+    found = found[np.isfinite(found)]
+    if not found.size:
+        return "-"
+    low, high = format(found.min(), form), format(found.max(), form)
+    return low if low == high else f"{low}{between}{high}"
