@@ -182,7 +182,8 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
             f"{CELSIUS.text(float(teeth.min()), 1)} to {CELSIUS.text(float(teeth.max()), 1)}, oil "
             f"{CELSIUS.text(float(oil.min()), 1)} to {CELSIUS.text(float(oil.max()), 1)}, settled "
             f"within {int(steady['iterations'].max())} iterations to "
-            f"{float(steady['residual'].max()):.1g} K. They rest on the gearbox's values; {ours or 'none'} of them "
+            f"{float(steady['residual'].max()):.1g} K. They rest on the gearbox's values; "
+            f"{ours or 'none'} of them "
             f"{'is' if ours == 1 else 'are'} ours."
         )
         hot = float(teeth.max()) > limit
