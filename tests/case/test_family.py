@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
+from thermogear.case.allowed import gear_parameter, read_shown
+from thermogear.case.axes import parse_axis
 from thermogear.case.case import load_example
-from thermogear.case.family import GearFamily, Tabulated, read_word, word
+from thermogear.case.family import GearFamily, Tabulated
 from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
-from thermogear.study.diagrams import parse_axis
 
 RPM = np.pi / 30.0
 
@@ -89,12 +90,13 @@ def test_table_between_speeds_is_exact_where_nothing_depends_on_speed(rig):
 
 
 def test_words_and_units():
-    assert word("rpm") == "pinion_speed"
-    assert read_word("pinion_speed", "3000") == pytest.approx(100.0 * np.pi, rel=1e-15)
-    assert read_word("gear_temperature", "20") == 293.15
-    assert read_word("cold_half_backlash", "125") == pytest.approx(125e-6, rel=1e-15)
+    assert gear_parameter("rpm").name == "pinion_speed"
+    speed, heat, backlash = map(gear_parameter, ("pinion_speed", "temperature", "backlash"))
+    assert read_shown(speed, "3000") == pytest.approx(100.0 * np.pi, rel=1e-15)
+    assert read_shown(heat, "20") == 293.15
+    assert read_shown(backlash, "125") == pytest.approx(125e-6, rel=1e-15)
     with pytest.raises(InputError, match=r"parameter: got 'torqe'; did you mean 'torque'\?"):
-        word("torqe")
+        gear_parameter("torqe")
 
 
 def test_an_axis_of_lengths_is_the_case_with_that_length(rig):

@@ -13,7 +13,8 @@ from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.case.examples import example_text
 from thermogear.case.family import GearFamily
-from thermogear.case.subject import family, of_case
+from thermogear.case.one_point import of_case
+from thermogear.case.thermal_state import ThermalState
 from thermogear.gears.relief import optimise_tip_relief
 from thermogear.mesh.operating import Temperatures
 from thermogear.study.relief import relief_survey
@@ -64,12 +65,13 @@ def test_a_sweep_over_temperature_begins_at_the_cold_backlash() -> None:
 def test_a_continuation_over_temperature_passes_the_drawn_pair_and_the_stated_one() -> None:
     case = own_pair("temperatures.wheel_addendum=140 degC")
     subject = of_case(case)
-    models, present = family(subject, "temperature")
+    models, present = subject.along("temperature"), subject.value("temperature")
     assert present == pytest.approx(ZERO_CELSIUS + 140.0)
-    drawn, stated = models(T0), models(present)
-    cold = of_case(case, state="undeformed").model
-    assert drawn.half_backlash == cold.half_backlash == 1.0  # type: ignore[attr-defined]
-    assert stated.half_backlash == pytest.approx(subject.model.half_backlash, rel=1e-12)  # type: ignore[attr-defined]
+    drawn, stated = models(T0).flat, models(present).flat
+    cold = of_case(case, state="undeformed").points.flat
+    assert drawn.half_backlash[0] == cold.half_backlash[0] == 1.0
+    here = subject.points.flat.half_backlash
+    assert stated.half_backlash == pytest.approx(here, rel=1e-12)
 
 
 def test_each_operating_point_of_computed_temperatures_is_its_own() -> None:
@@ -81,11 +83,11 @@ def test_each_operating_point_of_computed_temperatures_is_its_own() -> None:
     for bundle in case.models:
         whole = np.ravel(case.operating_of(bundle).temperatures.pinion_addendum)
         for place in range(3):
-            gears = of_case(case, operating=place + 1, bundle=bundle.name).gears
-            assert gears is not None
-            assert gears.value("temperature") == whole[place]
-            assert gears.excitation().half_backlash < gears.operating.half_backlash
-    moved = gears.at("temperature", T0).operating
+            point = of_case(case, operating=place + 1, bundle=bundle.name)
+            assert point.operating is not None
+            assert point.value("temperature") == whole[place]
+            assert point.excitation().half_backlash < point.operating.half_backlash
+    moved = ThermalState.at(T0).operating(point.gears, point.bundle)
     assert all(np.all(body == T0) for body in moved.temperatures.bodies.values())
     assert np.all(moved.oil_temperature == T0)
 

@@ -12,12 +12,11 @@ import pytest
 import xarray as xr
 
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.parameters import NUMBERS, long_name
 from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.family import GearFamily
-from thermogear.case.subject import (
-    SHORT,
-    Subject,
-    family,
+from thermogear.case.one_point import (
+    OnePoint,
     of_case,
     of_numbers,
     parameter_name,
@@ -42,8 +41,8 @@ TRUTH = {
 BASE = {"zeta": 0.1535, "w": 1.245, "eps": 0.335, "fm": 0.017, "fh": -1.16}
 
 
-def plain(**changes: float) -> Subject:
-    return of_numbers({SHORT[k.replace("_", "-")]: v for k, v in {**BASE, **changes}.items()})
+def plain(**changes: float) -> OnePoint:
+    return of_numbers({long_name(k): v for k, v in {**BASE, **changes}.items()})
 
 
 @pytest.fixture(scope="module")
@@ -92,9 +91,9 @@ def test_a_motion_that_closes_sooner_has_its_least_period() -> None:
 def test_direct_newton_reaches_an_unstable_orbit() -> None:
     truth = TRUTH["D3"]
     numbers = {
-        SHORT[s]: truth["params"][name]
-        for s, name in zip(
-            SHORT,
+        number: truth["params"][name]
+        for number, name in zip(
+            NUMBERS,
             ("zeta", "omega_h", "epsilon", "F_m", "F_h", "b_prime", "epsilon_T"),
             strict=True,
         )
@@ -251,7 +250,7 @@ def test_the_flanks_of_a_gear_case_reach_its_orbits() -> None:
     assert isinstance(case, GearCase)
     phase = np.arange(64) / 64
     ours, without = (
-        of_case(one).model.lanes().values("stiffness", phase) for one in (case, load_example("rig"))
+        of_case(one).points.flat.values("stiffness", phase) for one in (case, load_example("rig"))
     )
     swept = GearFamily(case, ("pinion_speed",))(np.array([[case.speeds[0]]]))
     np.testing.assert_allclose(ours, swept.flat.values("stiffness", phase), rtol=1e-12)
@@ -260,24 +259,22 @@ def test_the_flanks_of_a_gear_case_reach_its_orbits() -> None:
 
 def test_speed_moves_the_frequency_alone(rig_case: GearCase) -> None:
     slow, fast = (of_case(rig_case, operating=k) for k in (1, 3))
-    models, present = family(slow, "speed")
+    models, present = slow.along("speed"), slow.value("speed")
     assert present == pytest.approx(1000 * np.pi / 30)
-    moved = models(3000 * np.pi / 30)
-    assert moved.frequency == pytest.approx(fast.model.frequency, rel=1e-14)  # type: ignore[attr-defined]
-    assert moved.stiffness == fast.model.stiffness  # type: ignore[attr-defined, union-attr]
-    assert moved.force.harmonics == pytest.approx(  # type: ignore[attr-defined]
-        fast.model.force.harmonics,
-        rel=1e-12,  # type: ignore[union-attr]
-    )
+    moved, there = models(3000 * np.pi / 30).model(), fast.points.model()
+    assert moved.frequency == pytest.approx(there.frequency, rel=1e-14)
+    assert moved.stiffness == there.stiffness
+    assert moved.force.harmonics == pytest.approx(there.force.harmonics, rel=1e-12)  # type: ignore[union-attr]
 
 
 def test_temperature_begins_where_the_case_stands(rig_case: GearCase) -> None:
     subject = of_case(rig_case)
-    models, present = family(subject, "temperature")
+    models, present = subject.along("temperature"), subject.value("temperature")
     assert present == pytest.approx(140.0 + 273.15)
-    assert models(present).frequency == pytest.approx(subject.model.frequency, rel=1e-14)  # type: ignore[attr-defined]
+    here = subject.points.model().frequency
+    assert models(present).model().frequency == pytest.approx(here, rel=1e-14)
     # E falls with temperature, and the natural frequency with it
-    assert models(present + 20.0).frequency > subject.model.frequency  # type: ignore[attr-defined]
+    assert models(present + 20.0).model().frequency > here  # type: ignore[operator]
 
 
 @pytest.mark.parametrize(
@@ -296,7 +293,7 @@ def test_what_does_not_fit_a_gear_case(rig_case: GearCase) -> None:
     with pytest.raises(InputError, match="--zeta: got a number beside a gear case"):
         of_case(rig_case, numbers={"damping_ratio": 0.1})
     with pytest.raises(InputError, match="--state: got undeformed, with a temperature to vary"):
-        family(of_case(rig_case, state="undeformed"), "temperature")
+        of_case(rig_case, state="undeformed").along("temperature")
     with pytest.raises(InputError, match="--bundle: got 'thesys'"):
         of_case(rig_case, bundle="thesys")
     with pytest.raises(InputError, match=r"--parameter: got 'sped'.*did you mean 'speed'"):

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
+from thermogear.base.parameters import long_name
 from thermogear.case.case import gear_case, load_case, load_example
 from thermogear.case.examples import example_text
-from thermogear.case.subject import SHORT, of_case, of_numbers
+from thermogear.case.one_point import of_case, of_numbers
 from thermogear.study.shared_force import shared_results
 
 
@@ -50,6 +51,6 @@ def test_deviations_reach_both_forms() -> None:
 def test_without_gears_there_is_no_load_to_share() -> None:
     numbers = {"zeta": 0.1, "w": 1.2, "eps": 0.3, "fm": 0.1, "fh": 0.1}
     with pytest.raises(InputError, match="it has no tooth pairs to share a load"):
-        shared_results(of_numbers({SHORT[k]: v for k, v in numbers.items()}))
+        shared_results(of_numbers({long_name(k): v for k, v in numbers.items()}))
     with pytest.raises(InputError, match="choose the bundle 'consistent'"):
         shared_results(of_case(load_example("rig"), bundle="thesis"))

@@ -10,22 +10,45 @@ from numpy.typing import ArrayLike
 from pydantic import BaseModel
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.parameters import (
+    EQUATION,
+    GEARS,
+    NUMBERS,
+    PARAMETERS,
+    Parameter,
+    long_name,
+    named,
+)
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.fields import BODY, Count, Measure, Number, Reader, Several
 from thermogear.case.refusals import reader_at, table_at
 from thermogear.case.schema import DimensionlessFile, GearFile
+from thermogear.case.units import KINDS
 
-FIELDS = {
-    "pinion_speed": "operating.speed",
-    "speed": "operating.speed",
-    "pinion_torque": "operating.torque",
-    "torque": "operating.torque",
-    "gear_temperature": "temperatures.pinion_addendum",
-    "temperature": "temperatures.pinion_addendum",
-    "cold_half_backlash": "backlash.value",
-    "damping_ratio": "dynamics.damping_ratio",
-}
-"""Gear parameters, and the field of a case file that each of them replaces."""
+LANE = ("frequency", "half_backlash")
+"""Numbers of the equation that can be put in place of a gear pair's own, all else as it is."""
+
+
+def gear_parameter(name: str, option: str = "parameter") -> Parameter:
+    """The parameter of a gear case that ``name`` stands for: out of the table, or a dotted field.
+
+    Raises :class:`InputError` where there is no such field, or none that holds numbers.
+    """
+    if "." not in name:
+        try:
+            return named(name, (*GEARS, *LANE), option)
+        except InputError as error:
+            fix = f"{error.fix} or a dotted field"
+            raise InputError(option, error.got, why=error.why, fix=fix) from error
+    reader = gear_reader(name)
+    kind = KINDS[reader.kind] if isinstance(reader, Measure) else None
+    unit = "1" if kind is None else kind.si
+    return Parameter(name=name, words=name, unit=unit, shown=unit if kind else "", fields=(name,))
+
+
+def number_parameter(name: str, option: str = "parameter") -> Parameter:
+    """The number of the dimensionless equation that ``name`` stands for."""
+    return named(name, NUMBERS, option)
 
 
 def gear_reader(parameter: str) -> Reader:
@@ -33,12 +56,15 @@ def gear_reader(parameter: str) -> Reader:
 
     Raises :class:`InputError` where there is no such field, or none that holds numbers.
     """
-    return _reader(GearFile, FIELDS.get(parameter, parameter))
+    one = PARAMETERS.get(long_name(parameter))
+    if one is not None and not one.fields:
+        return dimensionless_reader(one.name)
+    return _reader(GearFile, parameter if one is None else one.fields[0])
 
 
 def dimensionless_reader(parameter: str) -> Reader:
     """What reads one value of a number of the dimensionless equation."""
-    return _reader(DimensionlessFile, f"base.{parameter}")
+    return _reader(DimensionlessFile, f"{EQUATION}.{parameter}")
 
 
 def _reader(file: type[BaseModel], field: str) -> Reader:
@@ -81,6 +107,30 @@ def read_value(option: str, reader: Reader, text: str) -> float:
         raise InputError(option, repr(text), allowed="a number") from None
     within(option, reader, number)
     return number
+
+
+def read_shown(parameter: Parameter, text: str) -> float:
+    """A value of a gear parameter as a person writes it, as SI.
+
+    With its unit as in a case file; a bare number of a parameter of the table is in its shown unit.
+    """
+    name, reader = parameter.name, gear_reader(parameter.name)
+    try:
+        number = float(text)
+    except ValueError:
+        return read_value(name, reader, text)
+    if name not in PARAMETERS and isinstance(reader, Measure):
+        unit = KINDS[reader.kind].shown
+        raise InputError(
+            name,
+            text,
+            allowed=reader.allowed,
+            why="the unit is missing",
+            fix=f"write it at every value: {name}={text} {unit}:TO {unit}:COUNT",
+        )
+    value = parameter.read(number) if name in PARAMETERS else number
+    within(name, reader, value)
+    return value
 
 
 def positive_stiffness(option: str, amplitude: ArrayLike, *, thermal: ArrayLike = 0.0) -> None:

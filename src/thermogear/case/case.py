@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
+from thermogear.base.parameters import NUMBERS
 from thermogear.case import build as parts
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
@@ -225,21 +225,6 @@ class GearCase(Case):
             ),
         )
 
-    def settled_at(self, gear_temperature: float | None, model: MeshModel) -> NDArray[np.bool_]:
-        """Whether the heat balance behind :meth:`operating_at` (None: hot) settled, per point."""
-        if not self.computed:
-            return np.ones(self.stated.speed.size, dtype=np.bool_)
-        held = None if self.follow == "proportional" else gear_temperature
-        return self.balance(model, held).settled
-
-    def lost_at(self, gear_temperature: float | None, model: MeshModel) -> NDArray[np.bool_]:
-        """Where that heat balance has no value because a law has none, per point."""
-        lost = np.zeros(self.stated.speed.size, dtype=np.bool_)
-        if self.computed:
-            held = None if self.follow == "proportional" else gear_temperature
-            lost[list(self.balance(model, held).lost)] = True
-        return lost
-
 
 def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
     """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
@@ -260,9 +245,13 @@ def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
 
 @dataclass(frozen=True, kw_only=True)
 class DimensionlessCase(Case):
-    """Rows of points of the dimensionless equation; no gear stands behind them."""
+    """Rows of points of the dimensionless equation; no gear stands behind them.
+
+    ``base``: the numbers that the rows start from, one or several of each.
+    """
 
     points: tuple[Point, ...]
+    base: Mapping[str, tuple[float, ...]]
 
 
 def load_case(
@@ -291,7 +280,8 @@ def load_case(
         "overrides": changes,
     }
     if isinstance(read, DimensionlessFile):
-        return DimensionlessCase(points=points_of(read), **common)
+        base = {name: tuple(getattr(read.base, name)) for name in NUMBERS}
+        return DimensionlessCase(points=points_of(read), base=base, **common)
     return _gear_case(read, common)
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
+from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.case import Case, DimensionlessCase, GearCase
-from thermogear.case.schema import PARAMETERS
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import kinematic_viscosity
 
@@ -136,7 +136,7 @@ def _rows(case: DimensionlessCase) -> tuple[Fact, ...]:
     for point in case.points:
         value = point.value - ZERO_CELSIUS if point.unit == "K" else point.value
         unit = "degC" if point.unit == "K" else ""
-        numbers = ", ".join(f"{name} {getattr(point, name):.7g}" for name in PARAMETERS)
+        numbers = ", ".join(f"{name} {getattr(point, name):.7g}" for name in NUMBERS)
         found.append(
             Fact(f"row {point.row}", f"{point.parameter} {value:.7g} {unit}".strip(), numbers)
         )

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from thermogear.base.errors import InputError
+from thermogear.base.parameters import NUMBERS
 from thermogear.case.allowed import dimensionless_reader, positive_stiffness, within
-from thermogear.case.schema import PARAMETERS, DimensionlessFile, RowTable
+from thermogear.case.schema import DimensionlessFile, RowTable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +33,7 @@ class Point:
 
     def model_arguments(self) -> dict[str, float]:
         """The keywords of the dimensionless equation."""
-        return {name: getattr(self, name) for name in PARAMETERS}
+        return {name: getattr(self, name) for name in NUMBERS}
 
 
 def points_of(file: DimensionlessFile) -> tuple[Point, ...]:
@@ -47,7 +48,7 @@ def _row(name: str, row: RowTable, file: DimensionlessFile) -> list[Point]:
     count = len(row.values)
     where = f"rows.{name}"
     columns: dict[str, tuple[float, ...]] = {}
-    for parameter in PARAMETERS:
+    for parameter in NUMBERS:
         own = getattr(row, parameter)
         if own is not None and parameter == row.parameter:
             raise InputError(
@@ -90,7 +91,7 @@ def _row(name: str, row: RowTable, file: DimensionlessFile) -> list[Point]:
             value=row.values[i][0],
             unit=unit,
             expected=expected[i],
-            **{parameter: columns[parameter][i] for parameter in PARAMETERS},
+            **{parameter: columns[parameter][i] for parameter in NUMBERS},
         )
         for i in range(count)
     ]

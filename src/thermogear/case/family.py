@@ -1,199 +1,171 @@
-"""Gear words for the analyses: from speed, torque, temperature, backlash, damping to lanes.
+"""The one door in: from a case and the names of what varies to a function rows -> points.
 
-The analyses know lanes and numbers only. A :class:`GearFamily` turns rows of gear parameters
-into lanes; the :class:`GearPoints` it makes also carry the lengths, rates and forces that turn
-the dimensionless results back into micrometres, hertz and newtons.
+The analyses know lanes and numbers only. ``family(case, names, bundle, state)`` is called with
+rows of SI values, one column for each name, and returns :class:`~thermogear.case.points.Points`:
+lanes, and what turns dimensionless results back into micrometres, hertz and newtons.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import product
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.analysis.family import ModelFamily
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATES, STATUS, UNDEFORMED
-from thermogear.case.allowed import gear_reader, read_value, within
-from thermogear.case.case import GearCase, gear_case, load_case
-from thermogear.case.fields import Measure
+from thermogear.base.excitation import Excitation
+from thermogear.base.parameters import NUMBERS
+from thermogear.case.allowed import (
+    LANE,
+    gear_parameter,
+    gear_reader,
+    number_parameter,
+    require_numbers,
+    within,
+)
+from thermogear.case.case import Case, DimensionlessCase, GearCase, gear_case, load_case
+from thermogear.case.points import Points, excitations, on_numbers, points_of
 from thermogear.case.ranges import warn_of_torque
-from thermogear.case.units import KINDS
-from thermogear.dynamics.models import TorsionalModel, from_excitation
+from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.tables import Lanes
-from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 
 Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
 
 BATCH = 256
 """Operating points in one mesh cycle."""
+FEW = 3
+"""Positions along the path of contact: what moves the teeth hangs on the mesh phase alone."""
+KEPT = 8
+"""Mesh cycles a family remembers."""
+OF_A_POINT = (
+    "pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backlash", "damping_ratio",
+    *LANE,
+)  # fmt: skip
+"""What varies within one case; every value of another parameter is another case file."""
+
+
+def family(
+    case: Case,
+    names: Sequence[str] = (),
+    bundle: str = "",
+    state: StateLike = HOT,
+    *,
+    numbers: Mapping[str, float] | None = None,
+) -> GearFamily | NumberFamily:
+    """The family of ``case`` over the parameters ``names``: rows of SI values -> points.
+
+    Of a gear case: under ``bundle`` (the first by default) in ``state``; names are those of
+    :data:`~thermogear.base.parameters.GEARS` or dotted fields of the file. Of a dimensionless case:
+    its base set, some of its ``numbers`` changed, over numbers of the equation. Parameters that
+    are not named stay as in the case, at its first speed and torque. Raises InputError for what
+    the case does not have.
+    """
+    if isinstance(case, DimensionlessCase):
+        for option, given in (("bundle", bundle), ("state", ThermalState.of(state) != HOT)):
+            if given:
+                raise _without_gears(option, bundle if option == "bundle" else state)
+        full = tuple(number_parameter(name).name for name in names)
+        return NumberFamily(base_model(case, numbers), full)
+    if numbers:
+        raise InputError(
+            next(iter(numbers)),
+            "a number beside a gear case",
+            why="the gears decide the numbers of their equation",
+            fix="put a field in place, for instance dynamics.damping_ratio=0.1",
+        )
+    return GearFamily(gear_case(case), tuple(names), bundle, ThermalState.of(state))
+
+
+def _without_gears(option: str, got: object) -> InputError:
+    return InputError(
+        option, repr(got), why="a dimensionless case has no gears", fix="leave it out"
+    )
+
+
+# --- numbers ------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
-class Word:
-    """A gear parameter: its SI ``unit``, the ``shown`` unit with factor and zero, what it is."""
+class NumberFamily(ModelFamily):
+    """The dimensionless equation with some of its numbers put to other values."""
 
-    unit: str
-    shown: str
-    _: KW_ONLY
-    factor: float
-    zero: float
-    words: str
+    def require(self, axes: Mapping[str, ArrayLike]) -> None:
+        """Refuse ``axes`` that no case file could hold, before anything is computed."""
+        require_numbers({n: getattr(self.model, n) for n in NUMBERS} | dict(axes))
 
-
-WORDS: dict[str, Word] = {
-    "pinion_speed": Word("rad/s", "rpm", factor=1.0 / RPM, zero=0.0, words="pinion speed"),
-    "pinion_torque": Word("N m", "N m", factor=1.0, zero=0.0, words="pinion torque"),
-    "gear_temperature": Word(
-        "K",
-        "degC",
-        factor=1.0,
-        zero=ZERO_CELSIUS,
-        words="addendum temperature of both gears",
-    ),
-    "cold_half_backlash": Word(
-        "m", "um", factor=1e6, zero=0.0, words="cold half backlash on the line of action"
-    ),
-    "damping_ratio": Word("1", "1", factor=1.0, zero=0.0, words="damping ratio"),
-}
-SHORT = {
-    "rpm": "pinion_speed",
-    "speed": "pinion_speed",
-    "torque": "pinion_torque",
-    "temperature": "gear_temperature",
-    "backlash": "cold_half_backlash",
-    "damping": "damping_ratio",
-    "zeta": "damping_ratio",
-}
-"""Names a command line may use."""
+    def __call__(self, points: Floats) -> Points:
+        rows = np.asarray(points, dtype=float)
+        lanes: Lanes = super().__call__(rows).lanes()
+        return Points.plain(lanes.take(np.arange(len(rows)) % len(lanes)))
 
 
-def word(name: str) -> str:
-    """The full name of a gear parameter; dotted names are fields of the case file."""
-    full = SHORT.get(name, name)
-    if full not in WORDS and "." not in full:
-        raise InputError(
-            "parameter", repr(name), fix=nearest(name, [*WORDS, *SHORT]) + " or a dotted field"
-        )
-    return full
+def base_model(
+    case: DimensionlessCase, changes: Mapping[str, float] | None = None
+) -> TorsionalModel:
+    """The base set of a dimensionless case, with some numbers changed."""
+    values: dict[str, float] = {}
+    for name, given in case.base.items():
+        if len(given) != 1 and name not in (changes or {}):
+            raise InputError(
+                f"base.{name}",
+                f"{len(given)} entries",
+                allowed="one",
+                why="a base set is one point",
+            )
+        values[name] = float(given[0])
+    values |= changes or {}
+    require_numbers(values)
+    return TorsionalModel(**values)
 
 
-def unit_of(name: str) -> str:
-    """The SI unit of a gear parameter or a dotted field."""
-    if name in WORDS:
-        return WORDS[name].unit
-    reader = gear_reader(name)
-    return KINDS[reader.kind].si if isinstance(reader, Measure) else "1"
-
-
-def read_word(name: str, text: str) -> float:
-    """A value of a gear parameter as a person writes it, as SI.
-
-    With its unit as in a case file; a bare number of one of :data:`WORDS` is in its shown unit.
-    """
-    one, reader = WORDS.get(name), gear_reader(name)
-    try:
-        number = float(text)
-    except ValueError:
-        return read_value(name, reader, text)
-    if one is None and isinstance(reader, Measure):
-        unit = KINDS[reader.kind].shown
-        raise InputError(
-            name,
-            text,
-            allowed=reader.allowed,
-            why="the unit is missing",
-            fix=f"write it at every value: {name}={text} {unit}:TO {unit}:COUNT",
-        )
-    value = number if one is None else number / one.factor + one.zero
-    within(name, reader, value)
-    return value
-
-
-@dataclass(frozen=True, eq=False)
-class GearPoints:
-    """Lanes of gear operating points, and what turns their numbers back into SI.
-
-    ``status`` 1 where the pair is jammed (its lane is a placeholder). ``length`` b_c [m], ``rate``
-    omega_n [rad/s], ``stiffness`` mean k_m [N/m], ``force`` mean F [N], ``error`` Fourier
-    coefficients of e [m] (point, harmonic), ``mesh_frequency`` [rad/s], ``half_backlash`` hot b'
-    [m]; the last axis of arrays is the point.
-    """
-
-    flat: Lanes
-    status: NDArray[np.int8]
-    length: Floats
-    rate: Floats
-    stiffness: Floats
-    force: Floats
-    error: NDArray[np.complex128]
-    mesh_frequency: Floats
-    half_backlash: Floats
-
-    def lanes(self) -> Lanes:
-        """The dimensionless lanes."""
-        return self.flat
-
-    def take(self, index: NDArray[np.int64]) -> GearPoints:
-        """Some of the points."""
-        return GearPoints(
-            self.flat.take(index),
-            self.status[index],
-            self.length[index],
-            self.rate[index],
-            self.stiffness[index],
-            self.force[index],
-            self.error[index],
-            self.mesh_frequency[index],
-            self.half_backlash[index],
-        )
+# --- gears --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class GearFamily:
-    """Gear parameters -> lanes, for one ``case`` and one bundle of it, ``bundle``.
+    """Gear parameters -> points, for one ``case``, one bundle of it and one state of its heat.
 
-    ``state`` "hot" (as the case says), "undeformed" (everything at the reference temperature) or
-    the addendum temperature [K] of both gears; beside a parameter gear_temperature it is "hot".
-    Parameters that are not named stay as in the case, at its first speed and torque. A dotted
-    name is a field of the case file, so that every value there can be swept; each of its
-    values reads the case again.
+    Beside a parameter gear_temperature the state is "hot". A parameter that is no other operating
+    point (a dotted field, the face width) reads the case again for each of its values.
     """
 
     case: GearCase
     names: tuple[str, ...]
     bundle: str = ""
-    state: str | float = "hot"
+    state: ThermalState = HOT
+    _kept: dict[tuple[object, ...], tuple[GearCase, list[Excitation | None]]] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
 
     def __post_init__(self) -> None:
         gear_case(self.case)
-        for name in self.names:
-            word(name)
+        names = tuple(gear_parameter(name).name for name in self.names)
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "state", ThermalState.of(self.state))
         known = [m.name for m in self.case.models]
         if not self.bundle:
             object.__setattr__(self, "bundle", known[0])
         if self.bundle not in known:
             raise InputError("bundle", repr(self.bundle), fix=nearest(self.bundle, known))
-        if isinstance(self.state, str) and self.state not in STATES:
-            raise InputError("state", repr(self.state), allowed="'hot' | 'undeformed' | kelvins")
-        if self.state != "hot" and "gear_temperature" in self.names:
+        if self.state != HOT and "gear_temperature" in names:
             raise InputError(
                 "state",
-                repr(self.state) if isinstance(self.state, str) else f"{self.state:g} K",
+                self.state.words,
                 why="the gear temperature itself is varied here",
                 fix="leave out the state, or the temperature",
             )
 
     @property
     def units(self) -> tuple[str, ...]:
-        return tuple(unit_of(name) for name in self.names)
+        return tuple(gear_parameter(name).unit for name in self.names)
 
     @property
     def model(self) -> MeshModel:
@@ -206,23 +178,29 @@ class GearFamily:
             "overrides": [list(pair) for pair in self.case.overrides],
             "bundle": self.bundle,
             "choices": dict(self.model.choices()),
-            "state": self.state,
+            "state": self.state.stored,
         }
 
-    def __call__(self, points: Floats) -> GearPoints:
+    def __call__(self, points: Floats) -> Points:
         rows = np.asarray(points, dtype=float)
-        dotted = [i for i, name in enumerate(self.names) if "." in name]
-        if not dotted:
-            return self._points(self.case, rows)
+        made = points_of(self.excitations(rows))
+        numbers = {name: rows[:, i] for i, name in enumerate(self.names) if name in LANE}
+        return on_numbers(made, numbers) if numbers else made
+
+    def excitations(self, rows: Floats) -> list[Excitation | None]:
+        """The excitation of every row, in SI; None where the pair is jammed."""
+        read = [i for i, name in enumerate(self.names) if name not in OF_A_POINT]
+        if not read:
+            return self._excitations(self.case, self.names, rows)
         # one case for each combination of file fields
-        plain = [i for i in range(len(self.names)) if i not in dotted]
-        bare = replace(self, names=tuple(self.names[i] for i in plain))
-        parts: list[tuple[NDArray[np.int64], GearPoints]] = []
-        for values in np.unique(rows[:, dotted], axis=0):
-            chosen = np.flatnonzero((rows[:, dotted] == values).all(axis=1))
-            case = self._case_with(dict(zip((self.names[i] for i in dotted), values, strict=True)))
-            parts.append((chosen, bare._points(case, rows[chosen][:, plain])))
-        return _joined(parts, len(rows))
+        plain = [i for i in range(len(self.names)) if i not in read]
+        names = tuple(self.names[i] for i in plain)
+        found: list[Excitation | None] = [None] * len(rows)
+        for values in np.unique(rows[:, read], axis=0):
+            chosen = np.flatnonzero((rows[:, read] == values).all(axis=1))
+            case = self._case_with(dict(zip((self.names[i] for i in read), values, strict=True)))
+            _put(found, chosen, self._excitations(case, names, rows[chosen][:, plain]))
+        return found
 
     def require(self, axes: Mapping[str, ArrayLike]) -> None:
         """Refuse ``axes`` (SI) that no case file could hold, before anything is computed.
@@ -234,20 +212,24 @@ class GearFamily:
             within(name, gear_reader(name), values)
         if "pinion_torque" in axes:
             warn_of_torque(self.case.pair, axes["pinion_torque"])
-        dotted = {name: np.asarray(values) for name, values in axes.items() if "." in name}
-        ends = ({float(v.min()), float(v.max())} for v in dotted.values())
+        read = {name: np.asarray(values) for name, values in axes.items() if name not in OF_A_POINT}
+        ends = ({float(v.min()), float(v.max())} for v in read.values())
         for corner in product(*ends):
-            self._case_with(dict(zip(dotted, corner, strict=True)))
+            self._case_with(dict(zip(read, corner, strict=True)))
 
     def _case_with(self, values: Mapping[str, float]) -> GearCase:
-        """The case with fields of its file put to other ``values`` (SI)."""
+        """The case with parameters of its file put to other ``values`` (SI)."""
         fields = tuple(
-            (name, str(gear_reader(name).written(float(value)))) for name, value in values.items()
+            (place, str(gear_reader(name).written(float(value))))
+            for name, value in values.items()
+            for place in gear_parameter(name).fields
         )
         return _case_with(self.case.text, self.case.overrides, fields) if fields else self.case
 
-    def _points(self, case: GearCase, rows: Floats) -> GearPoints:
-        columns = dict(zip(self.names, rows.T, strict=True))
+    def _excitations(
+        self, case: GearCase, names: tuple[str, ...], rows: Floats
+    ) -> list[Excitation | None]:
+        columns = dict(zip(names, rows.T, strict=True))
         count = len(rows)
 
         def column(name: str, value: float) -> Floats:
@@ -259,33 +241,78 @@ class GearFamily:
         torque = column("pinion_torque", case.torques[0])
         backlash = column("cold_half_backlash", case.stated.half_backlash)
         damping = column("damping_ratio", case.damping_ratio)
-        state: Floats | None = columns.get("gear_temperature")
-        if state is None and not isinstance(self.state, str):
-            state = np.full(count, self.state)
-        keys = np.stack([backlash, np.zeros(count) if state is None else state], axis=1)
-        parts: list[tuple[NDArray[np.int64], GearPoints]] = []
-        for half, heat in np.unique(keys, axis=0):
-            rows_here = np.flatnonzero((backlash == half) & (keys[:, 1] == heat))
-            for first in range(0, rows_here.size, BATCH):
-                chosen = rows_here[first : first + BATCH]
-                cycle = self._cycle(case, speed[chosen], torque[chosen], float(half), float(heat))
-                parts.append((chosen, _points_of(case, cycle, damping[chosen])))
-        return _joined(parts, count)
+        found: list[Excitation | None] = [None] * count
+        for state, mine in self._states(columns.get("gear_temperature"), count):
+            for half in np.unique(backlash[mine]):
+                chosen = mine[backlash[mine] == half]
+                some = self._loaded(
+                    case, state, speed[chosen], torque[chosen], half_backlash=float(half)
+                )
+                _put(found, chosen, some)
+        return [
+            one if one is None else replace(one, damping_ratio=float(zeta))
+            for one, zeta in zip(found, damping, strict=True)
+        ]
+
+    def _states(
+        self, temperature: Floats | None, count: int
+    ) -> Iterator[tuple[ThermalState, Whole]]:
+        """Every state of heat, and the rows that are in it."""
+        if temperature is None:
+            yield self.state, np.arange(count)
+            return
+        for kelvins in np.unique(temperature):
+            yield ThermalState.of(float(kelvins)), np.flatnonzero(temperature == kelvins)
+
+    def _loaded(
+        self,
+        case: GearCase,
+        state: ThermalState,
+        speed: Floats,
+        torque: Floats,
+        *,
+        half_backlash: float,
+    ) -> list[Excitation | None]:
+        """The excitation of every row, those that share heat and load out of one mesh cycle."""
+        if state.hangs_on_the_load(case):
+            found: list[Excitation | None] = []
+            for first in range(0, speed.size, BATCH):
+                some = slice(first, first + BATCH)
+                found += self._cycle(case, state, speed[some], torque[some], half_backlash)
+            return found
+        # where the heat is given, springs and backlash do not know the speed
+        loads, which = np.unique(torque, return_inverse=True)
+        slow = float(speed.min())
+        key = (state.stored, half_backlash, *loads.tolist())
+        kept = self._kept.get(key)
+        if kept is None or kept[0] is not case or slow <= 0.0:
+            springs: list[Excitation | None] = []
+            for first in range(0, loads.size, BATCH):
+                load = loads[first : first + BATCH]
+                springs += self._cycle(case, state, np.full(load.size, slow), load, half_backlash)
+            while len(self._kept) >= KEPT:
+                self._kept.pop(next(iter(self._kept)), None)
+            self._kept[key] = kept = (case, springs)
+        teeth = case.pair.pinion.teeth
+        rows = (kept[1][place] for place in which.tolist())
+        return [
+            one if one is None else replace(one, mesh_frequency=teeth * float(omega))
+            for one, omega in zip(rows, speed, strict=True)
+        ]
 
     def _cycle(
-        self, case: GearCase, speed: Floats, torque: Floats, half_backlash: float, heat: float
-    ) -> xr.Dataset:
-        """The mesh cycle at these points; ``heat`` the gear temperature, 0: by the state."""
+        self,
+        case: GearCase,
+        state: ThermalState,
+        speed: Floats,
+        torque: Floats,
+        half_backlash: float,
+    ) -> list[Excitation | None]:
+        """The excitations of one mesh cycle."""
         model = next(m for m in case.models if m.name == self.bundle)
         stated = replace(case.stated, speed=speed, torque=torque, half_backlash=half_backlash)
         here = replace(case, stated=stated)
-        if heat != 0.0:
-            operating = here.operating_at(heat, model)
-        elif self.state == UNDEFORMED:
-            operating = stated.as_drawn()
-        else:
-            operating = here.operating_of(model)
-        return case.cycle(operating, model)
+        return excitations(case, case.cycle(state.moving(here, model), model, FEW))
 
 
 @lru_cache(maxsize=64)
@@ -295,109 +322,35 @@ def _case_with(
     return gear_case(load_case(text, dict(overrides) | dict(fields)))
 
 
-def _points_of(case: GearCase, cycle: xr.Dataset, damping: Floats) -> GearPoints:
-    """The lanes of a mesh cycle, jammed points as placeholders."""
-    lean = cycle.drop_dims("path_position", errors="ignore")
-    found = excitation(
-        lean,
-        case.pair,
-        damping_ratio=case.damping_ratio,
-        inertias=case.inertias,
-        transmission_error=case.transmission_error,
-        harmonics=case.harmonics,
-    )
-    jammed = np.array([one is None for one in found])
-    ready = [
-        replace(o, damping_ratio=float(z)) if o else o for o, z in zip(found, damping, strict=True)
-    ]
-    moving = [one for one in ready if one is not None]
-    count = len(found)
-    nan = np.full(count, np.nan)
-    if not moving:
-        idle = TorsionalModel(
-            damping_ratio=0.1,
-            frequency=np.ones(count),
-            stiffness_amplitude=0.0,
-            mean_force=0.1,
-            force_amplitude=0.0,
-        ).lanes()
-        status = np.full(count, STATUS.index("jammed"), np.int8)
-        none = np.full((count, 1), np.nan, complex)
-        return GearPoints(idle, status, nan, nan, nan, nan, none, nan, nan)
-    # a jammed point borrows the lane of a moving one; its status keeps it still
-    place = np.where(jammed, 0, np.cumsum(~jammed) - 1)
-    width = 1 + max(len(one.error.harmonics) for one in moving)
-    error = np.zeros((len(moving), width), complex)
-    for row, one in enumerate(moving):
-        error[row, 0] = one.error.mean
-        error[row, 1 : 1 + len(one.error.harmonics)] = one.error.harmonics
-    values = np.array(
-        [
-            (
-                one.reference_half_backlash,
-                one.natural_frequency,
-                one.stiffness.mean,
-                one.mean_force,
-                one.mesh_frequency,
-                one.half_backlash,
-            )
-            for one in moving
-        ]
-    )[place]
-    length, rate, stiffness, force, mesh, hot = values.T.copy()
-    return GearPoints(
-        from_excitation(moving).lanes().take(place),
-        np.where(jammed, STATUS.index("jammed"), 0).astype(np.int8),
-        length,
-        rate,
-        stiffness,
-        force,
-        error[place],
-        mesh,
-        hot,
-    )
+def _put(found: list[Excitation | None], places: Whole, some: Sequence[Excitation | None]) -> None:
+    for place, one in zip(places.tolist(), some, strict=True):
+        found[place] = one
 
 
-def _joined(parts: Sequence[tuple[NDArray[np.int64], GearPoints]], count: int) -> GearPoints:
-    """Parts put in the order of the rows."""
-    if len(parts) == 1:
-        return parts[0][1]
-    order = np.argsort(np.concatenate([index for index, _ in parts]), kind="stable")
-    points = [part for _, part in parts]
+def along(family: GearFamily | NumberFamily) -> Callable[[float], Points]:
+    """value -> the one moving point of a family of one parameter, remembered.
 
-    def wide(arrays: list[NDArray[Any]]) -> NDArray[Any]:
-        width = max(a.shape[1] for a in arrays) if arrays[0].ndim == 2 else 0
-        if width:
-            arrays = [np.pad(a, ((0, 0), (0, width - a.shape[1]))) for a in arrays]
-        return np.concatenate(arrays)[order]
+    InputError where the pair is jammed.
+    """
 
-    def of(name: str) -> NDArray[Any]:
-        return wide([getattr(part, name) for part in points])
+    @lru_cache(maxsize=256)
+    def at(value: float) -> Points:
+        return moving(family(np.array([[value]])), family)
 
-    def flat_of(name: str) -> NDArray[Any]:
-        return wide([getattr(part.flat, name) for part in points])
+    return at
 
-    none = (None,) * count
-    flat = Lanes(
-        period=flat_of("period"),
-        damping=flat_of("damping"),
-        half_backlash=flat_of("half_backlash"),
-        stiffness=flat_of("stiffness"),
-        force=flat_of("force"),
-        stiffness_pieces=none,
-        force_pieces=none,
-    )
-    return GearPoints(
-        flat,
-        of("status"),
-        of("length"),
-        of("rate"),
-        of("stiffness"),
-        of("force"),
-        of("error"),
-        of("mesh_frequency"),
-        of("half_backlash"),
-    )
+
+def moving(points: Points, family: GearFamily | NumberFamily) -> Points:
+    """``points`` themselves; InputError where the pair is jammed."""
+    if points.jammed.any():
+        words = family.state.words if isinstance(family, GearFamily) else ""
+        raise InputError(
+            "operating",
+            f"a jammed pair ({words})",
+            why="the half backlash is used up: no clearance is left to move in",
+            fix="lower the temperature or raise the backlash",
+        )
+    return points
 
 
 @dataclass(frozen=True, eq=False)
@@ -410,7 +363,7 @@ class Tabulated:
 
     family: GearFamily
     values: Floats
-    points: GearPoints
+    points: Points
 
     @classmethod
     def of(cls, family: GearFamily, values: Floats) -> Tabulated:
@@ -428,7 +381,7 @@ class Tabulated:
     def inputs(self) -> dict[str, Any]:
         return self.family.inputs()
 
-    def __call__(self, points: Floats) -> GearPoints:
+    def __call__(self, points: Floats) -> Points:
         at = np.asarray(points, dtype=float)[:, 0]
         place = np.clip(np.searchsorted(self.values, at, side="right") - 1, 0, len(self.values) - 2)
         low, high = self.values[place], self.values[place + 1]
@@ -461,15 +414,4 @@ class Tabulated:
             force_pieces=a.flat.force_pieces,
         )
         hot = mix(a.half_backlash, b.half_backlash)
-        return GearPoints(flat, status, length, rate, stiffness, force, error, mesh, hot)
-
-
-def gear_axes(axes: Mapping[str, ArrayLike]) -> dict[str, Floats]:
-    """Axes under their full names, values as given (SI)."""
-    found: dict[str, Floats] = {}
-    for name, values in axes.items():
-        full = word(name)
-        if full in found:
-            raise InputError("parameter", repr(name), allowed="different parameters")
-        found[full] = np.atleast_1d(np.asarray(values, dtype=float))
-    return found
+        return Points(flat, status, length, rate, stiffness, force, error, mesh, hot)

@@ -13,6 +13,7 @@ from pydantic.json_schema import models_json_schema
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
+from thermogear.base.parameters import NUMBERS
 from thermogear.case.fields import (
     BODY,
     FOLLOW,
@@ -33,16 +34,6 @@ from thermogear.mesh.model import CHOICES
 
 PICTURES = ("path", "profile", "stiffness", "motion", "temperature", "base-sets")
 BASE_SETS = ("table-4.2", "section-4.1")
-PARAMETERS = (
-    "damping_ratio",
-    "frequency",
-    "stiffness_amplitude",
-    "mean_force",
-    "force_amplitude",
-    "half_backlash",
-    "thermal_stiffness",
-)
-"""The numbers of the dimensionless equation, in the order of its keywords."""
 
 Shape = Annotated[float, Number(low=bounds.RACK.low, high=bounds.RACK.high, example="1.25")]
 Allowance = Annotated[
@@ -539,7 +530,7 @@ class BaseTable(Table):
 class RowTable(Table):
     """A row: one parameter runs through its values; others may be set, one for all or a list."""
 
-    parameter: Annotated[str, Choice(*PARAMETERS, "temperature")]
+    parameter: Annotated[str, Choice(*NUMBERS, "temperature")]
     values: Annotated[tuple[tuple[float, str], ...], Several(NumberOrTemperature())]
     expected: Annotated[tuple[str, ...], Several(Words('"period-1"'), least=0)] = Field(
         default=(), description="no label is expected"

@@ -17,6 +17,7 @@ import click
 
 from thermogear import __version__
 from thermogear.base.errors import ThermogearError, nearest
+from thermogear.base.parameters import long_name
 from thermogear.front import (
     delivery,
     engine_commands,
@@ -53,7 +54,15 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+def _one_name(token: str) -> str:
+    """An option by any of the names of its parameter, hyphens and underscores alike."""
+    return long_name(token).replace("_", "-")
+
+
+_SETTINGS = {"help_option_names": ["-h", "--help"], "token_normalize_func": _one_name}
+
+
+@click.group(cls=_Commands, context_settings=_SETTINGS)
 @click.version_option(__version__, prog_name="thermogear", message="%(prog)s %(version)s")
 def cli() -> None:
     """Dynamics of spur gear pairs that get hot.

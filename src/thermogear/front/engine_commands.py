@@ -6,53 +6,57 @@ numbers. Importing this module imports nothing heavy.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from thermogear.base.errors import InputError
+from thermogear.base.parameters import NUMBERS, PARAMETERS, Parameter
 from thermogear.base.progress import Progress
 from thermogear.front import delivery
 
 if TYPE_CHECKING:
-    from thermogear.case.subject import Subject
+    from thermogear.case.one_point import OnePoint
     from thermogear.results.result import Result
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
-SYMBOLS = {
-    "zeta": "damping ratio",
-    "w": "frequency ratio",
-    "eps": "stiffness amplitude",
-    "fm": "mean force",
-    "fh": "force amplitude",
-    "b": "half backlash over the cold one [1]",
-    "eps_t": "thermal stiffness [0]",
-}
+DEFAULTS = {"half_backlash": " over the cold one [1]", "thermal_stiffness": " [0]"}
+"""What is said of numbers that may be left out."""
+OF_GEARS = ("operating", "bundle", "state")
+OF_ROWS = ("row", "point")
 MOST_BATCHES = 100_000
 MOST_SPEEDS = 10_000
 
 
-def _subject_options(command: _Command) -> _Command:
+def _number(parameter: Parameter) -> Callable[[_Command], _Command]:
+    """The option of a number of the equation; its other names work as well."""
+    short, *others = (alias.replace("_", "-") for alias in parameter.aliases)
+    words = f"{parameter.words}{DEFAULTS.get(parameter.name, '')}"
+    also = ", ".join(f"--{name}" for name in others)
+    text = f"{words}{f'; also {also}' if also else ''}."
+    return click.option(f"--{short}", parameter.name, type=float, help=text)
+
+
+def _point_options(command: _Command) -> _Command:
     """CASE and the options that pick one motion out of it, or plain numbers."""
     options = [
         click.argument("case", metavar="[CASE]", required=False),
-        *(
-            click.option(f"--{name.replace('_', '-')}", name, type=float, help=f"{words}.")
-            for name, words in SYMBOLS.items()
-        ),
+        *(_number(PARAMETERS[name]) for name in NUMBERS),
         click.option("--start", metavar="X,V", help="Start (X, X') instead of the case's."),
         click.option("--row", metavar="NAME", help="Row of a dimensionless case [the first]."),
+        click.option("--point", type=int, help="Point of the row, from 1 [1]."),
         click.option(
-            "--point", type=int, default=1, show_default=True, help="Point of the row, from 1."
-        ),
-        click.option(
-            "--operating", type=int, default=1, show_default=True,
-            help="Operating point of a gear case, from 1 (speeds x torques).",
+            "--operating", type=int,
+            help="Operating point of a gear case, from 1 (speeds x torques) [1].",
         ),
         click.option("--bundle", metavar="NAME", help="Bundle of a gear case [the first]."),
-        click.option("--state", default="hot", show_default=True, help="undeformed | hot."),
+        click.option(
+            "--state",
+            help="undeformed | hot | computed | the gears' temperature in degC [hot]. Along speed "
+            "and torque the gears stay as hot as at the operating point.",
+        ),
         delivery.overrides,
         delivery.output("Also store data, pictures and a page.", required=False),
         delivery.as_json,
@@ -76,10 +80,14 @@ def _start(text: str | None) -> tuple[float, float] | None:
 
 def _numbers(options: dict[str, Any]) -> dict[str, float]:
     """The given numbers of the equation, by their long names."""
-    from thermogear.case.subject import SHORT
+    return {name: float(options[name]) for name in NUMBERS if options[name] is not None}
 
-    given = {name.replace("_", "-"): options[name] for name in SYMBOLS}
-    return {SHORT[name]: float(v) for name, v in given.items() if v is not None}
+
+def _unused(options: dict[str, Any], names: Sequence[str], why: str) -> None:
+    """Refuse options that would change nothing."""
+    for name in names:
+        if options[name]:
+            raise InputError(f"--{name}", options[name], why=why, fix="leave it out")
 
 
 def _case(options: dict[str, Any]) -> Any:
@@ -92,26 +100,33 @@ def _case(options: dict[str, Any]) -> Any:
     return delivery.load(name, options["overrides"])
 
 
-def _subject(options: dict[str, Any], case: Any) -> Subject:
-    from thermogear.case.subject import of_case, of_numbers
+def _point(options: dict[str, Any], case: Any) -> OnePoint:
+    from thermogear.case.one_point import of_case, of_numbers
+    from thermogear.case.thermal_state import HOT, ThermalState
 
     start, numbers = _start(options["start"]), _numbers(options)
     if case is None:
+        _unused(options, (*OF_ROWS, *OF_GEARS), "no case is named")
         return of_numbers(numbers, start)
+    if case.kind == "gear":
+        _unused(options, OF_ROWS, "a gear case has no rows")
+    else:
+        _unused(options, OF_GEARS, "a dimensionless case has no gears")
+    said = options["state"]
     return of_case(
         case,
         row=options["row"],
         point=options["point"],
         operating=options["operating"],
         bundle=options["bundle"],
-        state=options["state"],
+        state=HOT if said is None else ThermalState.parse(said, "--state"),
         numbers=numbers,
         start=start,
     )
 
 
 @click.command()
-@_subject_options
+@_point_options
 @click.option("--period", type=int, help="Mesh periods of the orbit [what the motion settles on].")
 @click.option(
     "--direct", is_flag=True, help="Newton from the start itself, which reaches unstable orbits."
@@ -125,16 +140,16 @@ def orbit(period: int | None, direct: bool, **options: Any) -> None:
     """
     from thermogear.study.orbit import orbit_results
 
-    subject = _subject(options, _case(options))
+    point = _point(options, _case(options))
 
     def make(report: Progress) -> Result:
-        return orbit_results(subject, period, transient=not direct, progress=report)
+        return orbit_results(point, period, transient=not direct, progress=report)
 
     delivery.deliver(make, options["output"], as_json=options["as_json"])
 
 
 @click.command()
-@_subject_options
+@_point_options
 @click.option("--discard", type=int, default=2000, show_default=True, help="Periods thrown away.")
 @click.option("--batches", type=int, default=40, show_default=True, help="Batches of the mean.")
 @click.option("--batch-periods", type=int, default=500, show_default=True, help="Periods in each.")
@@ -148,11 +163,11 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
 
     if batches > MOST_BATCHES:
         raise InputError("--batches", batches, allowed=f"4..{MOST_BATCHES}")
-    subject = _subject(options, _case(options))
+    point = _point(options, _case(options))
 
     def make(report: Progress) -> Result:
         return lyapunov_results(
-            subject,
+            point,
             discard=discard,
             batches=batches,
             batch_periods=batch_periods,
@@ -163,8 +178,12 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
 
 
 @click.command("continue")
-@_subject_options
-@click.option("--parameter", metavar="NAME", help="zeta, w, ...; speed, torque, temperature.")
+@_point_options
+@click.option(
+    "--parameter",
+    metavar="NAME",
+    help="zeta, w, ...; speed, torque, temperature, backlash, or a dotted field of a gear case.",
+)
 @click.option("--from", "begin", metavar="VALUE", help="Where to begin [the present value].")
 @click.option("--to", metavar="VALUE", help="Where to end; gear values with unit: '4000 rpm'.")
 @click.option("--period", type=int, help="Mesh periods of the orbit [what the motion settles on].")
@@ -204,11 +223,15 @@ def continue_(
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
     """
-    from thermogear.case.subject import parameter_name, parameter_value
+    from thermogear.case.one_point import parameter_name, parameter_value
     from thermogear.study.branches import branch_results, cascade_results
 
     case = _case(options)
     if cascade is not None:
+        own = {"period": period, "direct": direct, "switch": switch} | options
+        _unused(own, ("period", "direct", "switch", *OF_GEARS), "beside --cascade")
+        if parameter is None:
+            _unused(own, ("point",), "a cascade runs through the whole row")
         sweeps, title = _sweeps(options, case, parameter, begin, to)
 
         def make_cascade(report: Progress) -> Result:
@@ -224,14 +247,14 @@ def continue_(
     if parameter is None or to is None:
         missing = "--parameter" if parameter is None else "--to"
         raise InputError(missing, "nothing", fix="for instance --parameter zeta --to 0.1")
-    subject = _subject(options, case)
-    name = parameter_name(subject, parameter)
-    end = parameter_value("--to", subject, name, to)
-    first = None if begin is None else parameter_value("--from", subject, name, begin)
+    point = _point(options, case)
+    name = parameter_name(point, parameter)
+    end = parameter_value("--to", point, name, to)
+    first = None if begin is None else parameter_value("--from", point, name, begin)
 
     def make(report: Progress) -> Result:
         return branch_results(
-            subject, name, end, start=first, period=period, transient=not direct, switch=switch,
+            point, name, end, start=first, period=period, transient=not direct, switch=switch,
             progress=report,
         )  # fmt: skip
 
@@ -243,19 +266,19 @@ def _sweeps(
 ) -> tuple[Any, str]:
     """What a cascade runs through: the parameter, the case's rows, or those of table 4.2."""
     from thermogear.case.case import DimensionlessCase, load_example
-    from thermogear.case.subject import of_numbers, parameter_name, parameter_value
-    from thermogear.study.branches import on_numbers, sweep_of_subject, sweeps_of
+    from thermogear.case.one_point import of_numbers, parameter_name, parameter_value
+    from thermogear.study.branches import on_numbers, sweep_of_point, sweeps_of
 
     if parameter is not None:
-        subject = _subject(options, case)
-        name = parameter_name(subject, parameter)
+        point = _point(options, case)
+        name = parameter_name(point, parameter)
         if to is None:
             raise InputError("--to", "nothing", fix="for instance --to 0.1")
-        first = subject.parameters.get(name, 0.0)
+        first = point.parameters.get(name, 0.0)
         if begin is not None:
-            first = parameter_value("--from", subject, name, begin)
-        last = parameter_value("--to", subject, name, to)
-        return (sweep_of_subject(subject, name, first=first, last=last),), subject.title
+            first = parameter_value("--from", point, name, begin)
+        last = parameter_value("--to", point, name, to)
+        return (sweep_of_point(point, name, first=first, last=last),), point.title
     if begin is not None or to is not None:
         raise InputError("--parameter", "nothing", fix="name what runs from --from to --to")
     numbers = _numbers(options)
@@ -277,7 +300,7 @@ def _sweeps(
 
 
 @click.command("shared-force")
-@_subject_options
+@_point_options
 @click.option("--speeds", type=int, default=41, show_default=True, help="Speeds of the sweep.")
 def shared_force(speeds: int, **options: Any) -> None:
     """The mesh force shared pair by pair beside the one-spring form, at rest and in motion.
@@ -287,12 +310,13 @@ def shared_force(speeds: int, **options: Any) -> None:
     """
     from thermogear.study.shared_force import shared_results
 
+    _unused(options, ("start",), "every speed starts from rest")
     if not 2 <= speeds <= MOST_SPEEDS:
         raise InputError("--speeds", speeds, allowed=f"2..{MOST_SPEEDS}")
-    subject = _subject(options, _case(options))
+    point = _point(options, _case(options))
 
     def make(report: Progress) -> Result:
-        return shared_results(subject, count=speeds, progress=report)
+        return shared_results(point, count=speeds, progress=report)
 
     delivery.deliver(make, options["output"], as_json=options["as_json"])
 

@@ -20,6 +20,8 @@ from thermogear.front import delivery
 
 if TYPE_CHECKING:
     from thermogear.base.plan import Plan
+    from thermogear.case.case import DimensionlessCase, GearCase
+    from thermogear.case.thermal_state import ThermalState
     from thermogear.results.result import Result
     from thermogear.results.work import Report, Step
 
@@ -29,9 +31,9 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
     options = [
         delivery.output("Store of the results; the same command goes on with an unfinished one."),
         delivery.overrides,
-        click.option("--bundle", default="", help="Bundle of choices; default: the case's first."),
-        click.option("--state", default="hot", show_default=True,
-                     help="hot, undeformed, or the gears' temperature in degC."),
+        click.option("--bundle", help="Bundle of choices; default: the case's first."),
+        click.option("--state", help="undeformed, hot (as the case says), computed (from the heat "
+                     "balance) or the gears' temperature in degC; default: hot."),
         click.option("--threads", type=click.IntRange(1, 1024), help="Default: all cores."),
         click.option("--scheduler", metavar="ADDRESS",
                      help="Hand the chunks to this dask scheduler (extra [cluster])."),
@@ -89,8 +91,9 @@ def bifurcation(
     **options: Any,
 ) -> None:
     """Orbit diagram of CASE over one parameter, up and down, with located bifurcations."""
+    from thermogear.case.axes import parse_axis, parse_numbers
     from thermogear.results.files import json_text
-    from thermogear.study.diagrams import case_diagram, moved_points, parse_axis
+    from thermogear.study.diagrams import case_diagram, moved_points
     from thermogear.views.write import page_of
 
     read = delivery.load(case, options["overrides"])
@@ -98,15 +101,15 @@ def bifurcation(
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
     begin = tuple(_pair_of(text) for text in starts)
-    changes = _numbers(but)
+    changes = parse_numbers(but)
 
-    def plan(state: str | float, changed: dict[str, float]) -> Plan:
+    def plan(state: ThermalState, changed: dict[str, float]) -> Plan:
         return case_diagram(
-            read, name, values, bundle=options["bundle"], state=state, changes=changed,
+            read, name, values, bundle=bundle, state=state, changes=changed,
             branch_period=branch_period, starts=begin,
         )  # fmt: skip
 
-    state = _state(options["state"])
+    bundle, state = _choice(read, options)
     directory = Path(output)
     whole = plan(state, changes)
     if not against:
@@ -115,8 +118,9 @@ def bifurcation(
     other_state = state
     second: dict[str, str] = dict(_split(text) for text in against)
     if "state" in second:
-        other_state = _state(second.pop("state"))
-    other = plan(other_state, changes | _numbers(tuple(f"{k}={v}" for k, v in second.items())))
+        _, other_state = _choice(read, {"bundle": None, "state": second.pop("state")}, "--against")
+    texts = [f"{k}={v}" for k, v in second.items()]
+    other = plan(other_state, changes | parse_numbers(texts))
     one = _compute(whole, directory / "one", read.title, options)
     two = _compute(other, directory / "other", read.title, options)
     if one is None or two is None:
@@ -152,16 +156,17 @@ def map_(
     **options: Any,
 ) -> None:
     """Map of the regimes of CASE over two parameters (--over twice)."""
-    from thermogear.study.diagrams import case_map, parse_axes
+    from thermogear.case.axes import parse_axes, parse_numbers
+    from thermogear.study.diagrams import case_map
 
     read = delivery.load(case, options["overrides"])
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
     axes = parse_axes(read, over)
+    bundle, state = _choice(read, options)
     plan = case_map(
-        read, axes, bundle=options["bundle"], state=_state(options["state"]),
-        changes=_numbers(but), refine=not full,
-    )  # fmt: skip
+        read, axes, bundle=bundle, state=state, changes=parse_numbers(but), refine=not full
+    )
     _carry(plan, Path(output), read.title, as_json, options)
 
 
@@ -175,12 +180,14 @@ def basins(
     case: str, but: tuple[str, ...], x: str, v: str, output: str, as_json: bool, **options: Any
 ) -> None:
     """Basins of attraction of CASE at its base set (a gear case: first speed and torque)."""
+    from thermogear.case.axes import parse_numbers
     from thermogear.study.diagrams import case_basins
 
     read = delivery.load(case, options["overrides"])
+    bundle, state = _choice(read, options)
     plan = case_basins(
-        read, x=_grid("x", x), v=_grid("v", v), bundle=options["bundle"],
-        state=_state(options["state"]), changes=_numbers(but),
+        read, x=_grid("x", x), v=_grid("v", v), bundle=bundle, state=state,
+        changes=parse_numbers(but),
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
 
@@ -188,8 +195,8 @@ def basins(
 @click.command()
 @delivery.case
 @click.option("--rpm", default="200:12000:119", show_default=True, metavar="FROM:TO:COUNT")
-@click.option("--hot", multiple=True, type=float, metavar="DEGC",
-              help="Gear temperature beside undeformed; the case's own if left out.")  # fmt: skip
+@click.option("--hot", multiple=True, metavar="DEGC",
+              help="Gear temperature beside undeformed; as --state says if left out.")  # fmt: skip
 @click.option("--torque", type=float, metavar="NM", help="The case's first if left out.")
 @click.option("--branch-period", type=click.IntRange(0, 16), default=2, show_default=True,
               help="Locate folds on branches up to this period; 0: none.")  # fmt: skip
@@ -197,7 +204,7 @@ def basins(
 def runup(
     case: str,
     rpm: str,
-    hot: tuple[float, ...],
+    hot: tuple[str, ...],
     torque: float | None,
     branch_period: int,
     output: str,
@@ -205,15 +212,18 @@ def runup(
     **options: Any,
 ) -> None:
     """Run CASE up and down in speed, without heat and hot: error, mesh force, K_v, jumps."""
-    from thermogear.case.allowed import kelvin
+    from thermogear.case.thermal_state import UNDEFORMED, ThermalState
     from thermogear.study.run_up import run_up_plan
 
     read = delivery.load_gears(case, options["overrides"])
     speeds = _grid("rpm", rpm) * RPM
-    states = (None, *(kelvin("hot", t) for t in hot)) if hot else None
+    bundle, state = _choice(read, options)
+    if hot and options["state"] is not None:
+        raise InputError("--state", options["state"], why="beside --hot", fix="leave one out")
+    warm = [ThermalState.parse(text, "--hot") for text in hot] or [state]
     plan = run_up_plan(
-        read, speeds, temperatures=states, bundle=options["bundle"], torque=torque,
-        branch_period=branch_period,
+        read, speeds, temperatures=list(dict.fromkeys((UNDEFORMED, *warm))), bundle=bundle,
+        torque=torque, branch_period=branch_period,
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
 
@@ -224,12 +234,13 @@ def runup(
 @_common
 def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **options: Any) -> None:
     """Settled motion, mesh force and K_v of a gear CASE over any grid of parameters."""
-    from thermogear.study.diagrams import parse_axes
+    from thermogear.case.axes import parse_axes
     from thermogear.study.sweep import sweep_plan
 
     read = delivery.load_gears(case, options["overrides"])
     axes = parse_axes(read, over)
-    plan = sweep_plan(read, axes, bundle=options["bundle"], state=_state(options["state"]))
+    bundle, state = _choice(read, options)
+    plan = sweep_plan(read, axes, bundle=bundle, state=state)
     _carry(plan, Path(output), read.title, as_json, options)
 
 
@@ -240,21 +251,20 @@ COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, sweep)
 # --- from words to values -----------------------------------------------------------------
 
 
-def _state(text: str) -> str | float:
-    from thermogear.case.allowed import kelvin
+def _choice(
+    case: GearCase | DimensionlessCase, options: dict[str, Any], option: str = "--state"
+) -> tuple[str, ThermalState]:
+    """Bundle and state of heat; refused beside a case without gears."""
+    from thermogear.case.thermal_state import HOT, ThermalState
 
-    if text in ("hot", "undeformed"):
-        return text
-    try:
-        celsius = float(text)
-    except ValueError:
-        raise InputError(
-            "state",
-            repr(text),
-            allowed="hot | undeformed | degrees Celsius",
-            fix='"cold" is now called "undeformed"' if text == "cold" else None,
-        ) from None
-    return kelvin("state", celsius)
+    for name in ("bundle", "state"):
+        if options[name] is not None and case.kind != "gear":
+            raise InputError(
+                f"--{name}", options[name], why="a dimensionless case has no gears",
+                fix="leave it out",
+            )  # fmt: skip
+    said = options["state"]
+    return options["bundle"] or "", HOT if said is None else ThermalState.parse(said, option)
 
 
 def _split(text: str) -> tuple[str, str]:
@@ -262,20 +272,6 @@ def _split(text: str) -> tuple[str, str]:
     if not sign:
         raise InputError("change", repr(text), allowed="NAME=VALUE")
     return name, value
-
-
-def _numbers(texts: tuple[str, ...]) -> dict[str, float]:
-    from thermogear.case.allowed import dimensionless_reader, read_value
-    from thermogear.study.diagrams import dimensionless_name
-
-    found: dict[str, float] = {}
-    for text in texts:
-        name, value = _split(text)
-        full = dimensionless_name(name)
-        if full in found:
-            raise InputError("change", f"{full} twice", allowed="each number once")
-        found[full] = read_value(name, dimensionless_reader(full), value)
-    return found
 
 
 def _pair_of(text: str) -> tuple[float, float]:
@@ -300,10 +296,10 @@ def _grid(name: str, text: str) -> Any:
 
 
 def _show(name: str) -> Callable[[float], float]:
-    from thermogear.case.family import WORDS
+    from thermogear.base.parameters import PARAMETERS
 
-    one = WORDS.get(name)
-    return (lambda v: v) if one is None else (lambda v: one.factor * (v - one.zero))
+    one = PARAMETERS.get(name)
+    return (lambda v: v) if one is None else one.show
 
 
 # --- running ------------------------------------------------------------------------------

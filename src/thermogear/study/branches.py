@@ -19,13 +19,13 @@ from thermogear.analysis.continuation import (
 )
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.parameters import NUMBERS, Parameter
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.case.case import DimensionlessCase, load_example
+from thermogear.case.allowed import gear_parameter, number_parameter
+from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.dimensionless import Point
-from thermogear.case.schema import PARAMETERS
-from thermogear.case.subject import Family, Subject, family, of_numbers, shown_value
-from thermogear.dynamics.models import TorsionalModel
+from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
 from thermogear.study.orbit import complex_rows, found, orbit_of
 
@@ -33,6 +33,8 @@ STEPS = 1000
 """Progress of a branch counts in thousandths of the parameter's way."""
 MOST_DEPTH = 6
 INTERRUPTED = "interrupted"
+Models = Callable[[float], object]
+"""value -> what makes lanes."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Leg:
 
 
 def branch_results(
-    subject: Subject,
+    point: OnePoint,
     parameter: str,
     to: float,
     *,
@@ -56,17 +58,18 @@ def branch_results(
     switch: int = 0,
     progress: Progress = silent,
 ) -> Result:
-    """Follow the subject's orbit in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
+    """Follow the orbit of ``point`` in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
 
     ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
     pitchforks and grazing are located; Ctrl+C keeps the branches walked so far.
     """
-    models, present = family(subject, parameter)
-    begin = present if start is None else start
+    varied = parameter_of(point, parameter)
+    models = point.along(varied.name)
+    begin = point.value(varied.name) if start is None else start
     if not 0 <= switch <= MOST_DEPTH:
         raise InputError("--switch", switch, allowed=f"0..{MOST_DEPTH}")
-    orbit, _ = orbit_of(subject, period, transient=transient, model=models(begin))
-    legs = [Leg(_walk(orbit, parameter, to, models, begin, "branch", progress))]
+    orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
+    legs = [Leg(_walk(orbit, varied.name, to, models, begin, "branch", progress))]
     cut = legs[0].branch.ended == INTERRUPTED
     waiting = [(flip, 1) for flip in _forks(legs[0].branch)]
     try:
@@ -83,7 +86,7 @@ def branch_results(
             stage = f"period {doubled.orbit.period}"
             branch = _walk(
                 doubled.orbit,
-                parameter,
+                varied.name,
                 end,
                 models,
                 doubled.value,
@@ -98,19 +101,25 @@ def branch_results(
     except KeyboardInterrupt:
         cut = True
     summary = {
-        "title": subject.title,
-        "parameters": subject.parameters,
-        "parameter": parameter,
+        "title": point.title,
+        "parameters": point.parameters,
+        "parameter": varied.name,
         "from": begin,
         "to": to,
-        "unit": shown_value(parameter, 0.0)[1],
-        "branches": [_leg_summary(leg, parameter) for leg in legs],
-        "bifurcations": [_event(b, parameter) for leg in legs for b in leg.branch.bifurcations],
+        "unit": varied.shown,
+        "branches": [_leg_summary(leg, varied.name) for leg in legs],
+        "bifurcations": [_event(b, varied) for leg in legs for b in leg.branch.bifurcations],
         "interrupted": cut,
         "notices": [],
     }
-    groups = {f"branch_{i}": dataset(leg, parameter) for i, leg in enumerate(legs)}
+    groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
     return found("branch", groups, summary, interrupted=cut)
+
+
+def parameter_of(point: OnePoint, name: str) -> Parameter:
+    """The parameter that ``name`` stands for where ``point`` is."""
+    gears = isinstance(point.case, GearCase)
+    return gear_parameter(name) if gears else number_parameter(name)
 
 
 def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
@@ -122,7 +131,7 @@ def _walk(
     orbit: Orbit,
     parameter: str,
     to: float,
-    models: Family,
+    models: Models,
     begin: float,
     stage: str,
     progress: Progress,
@@ -153,13 +162,12 @@ def _walk(
     return branch
 
 
-def _event(b: Bifurcation, parameter: str) -> dict[str, Any]:
-    value, unit = shown_value(parameter, b.value)
+def _event(b: Bifurcation, parameter: Parameter) -> dict[str, Any]:
     return {
         "kind": b.kind,
-        "parameter": parameter,
+        "parameter": parameter.name,
         "value": b.value,
-        "shown": f"{value:.10g} {unit}".strip(),
+        "shown": f"{parameter.show(b.value):.10g} {parameter.shown}".strip(),
         "period": b.period,
         "state": [float(c) for c in b.state],
         "multipliers": complex_rows(b.multipliers),
@@ -181,11 +189,10 @@ def _leg_summary(leg: Leg, parameter: str) -> dict[str, Any]:
     }
 
 
-def dataset(leg: Leg, parameter: str) -> xr.Dataset:
+def dataset(leg: Leg, unit: str) -> xr.Dataset:
     """A branch as it is stored: points along it, bifurcations beside them."""
     data = leg.branch.dataset()
     data["stable"] = data["stable"].astype(np.int8)
-    unit = {"speed": "rad/s", "torque": "N m", "temperature": "K"}.get(parameter, "1")
     for name in ("value", "event_value"):
         data[name].attrs["units"] = unit
     for name in ("section_x", "section_v"):
@@ -248,13 +255,13 @@ def sweeps_of(case: DimensionlessCase, row: str | None = None) -> tuple[Sweep, .
     """One sweep for every row of ``case`` that runs through a number of the equation."""
     rows: dict[str, list[Point]] = {}
     for point in case.points:
-        if point.parameter in PARAMETERS and row in (None, point.row):
+        if point.parameter in NUMBERS and row in (None, point.row):
             rows.setdefault(point.row, []).append(point)
     if not rows:
         raise InputError(
             "--row",
             repr(row),
-            allowed=" | ".join({p.row: None for p in case.points if p.parameter in PARAMETERS}),
+            allowed=" | ".join({p.row: None for p in case.points if p.parameter in NUMBERS}),
             why="a cascade runs through a number of the equation",
         )
     return tuple(
@@ -300,14 +307,12 @@ def cascade_results(
         for sweep in sweeps:
             if cut:
                 break
-            subject = of_numbers(
-                {**sweep.base, **heat.numbers, sweep.parameter: sweep.first}, start
-            )
+            point = of_numbers({**sweep.base, **heat.numbers, sweep.parameter: sweep.first}, start)
             stage = f"{sweep.row}, {heat.name}".split(" (")[0]
             own: list[Leg] = []
             values: list[Bifurcation] = []
             try:
-                cut = _cascade(subject, sweep, flips, stage, progress, own, values)
+                cut = _cascade(point, sweep, flips, stage, progress, own, values)
             except ConvergenceError as error:
                 notices.append(f"{sweep.row}, {heat.name}: {error}")
             except KeyboardInterrupt:
@@ -327,7 +332,7 @@ def cascade_results(
         "interrupted": cut,
         "notices": notices + _backlash_notice(legs),
     }
-    groups = {f"branch_{i}": dataset(leg, leg.branch.parameter) for i, leg in enumerate(legs)}
+    groups = {f"branch_{i}": dataset(leg, "1") for i, leg in enumerate(legs)}
     return found("cascade", groups, summary, interrupted=cut)
 
 
@@ -368,7 +373,7 @@ def _backlash_notice(legs: Sequence[Leg]) -> list[str]:
 
 
 def _cascade(
-    subject: Subject,
+    point: OnePoint,
     sweep: Sweep,
     flips: int,
     stage: str,
@@ -377,8 +382,8 @@ def _cascade(
     values: list[Bifurcation],
 ) -> bool:
     """Walk one sweep, filling ``legs`` and flips as they come; whether Ctrl+C cut it short."""
-    models, _ = family(subject, sweep.parameter)
-    orbit, begin = _mother(subject, sweep, models)
+    models = point.along(sweep.parameter)
+    orbit, begin = _mother(point, sweep, models)
     direction, first = None, begin
     while True:
         name = f"{stage}: period {orbit.period}"
@@ -398,11 +403,9 @@ def _cascade(
         orbit, begin, direction = doubled.orbit, doubled.value, doubled.direction
 
 
-def _mother(
-    subject: Subject, sweep: Sweep, models: Callable[[float], object]
-) -> tuple[Orbit, float]:
+def _mother(point: OnePoint, sweep: Sweep, models: Models) -> tuple[Orbit, float]:
     """A stable orbit of period 1 to start from: at the sweep's first value or beyond it."""
-    orbit, _ = orbit_of(subject)
+    orbit, _ = orbit_of(point)
     if orbit.period == 1:
         return orbit, sweep.first
     centre = orbit.points.mean(axis=0)
@@ -421,9 +424,9 @@ def _mother(
     return branch.orbit(-1), float(branch.values[-1])
 
 
-def sweep_of_subject(subject: Subject, parameter: str, *, first: float, last: float) -> Sweep:
-    """One sweep on the numbers of a dimensionless subject."""
-    if not isinstance(subject.model, TorsionalModel):
+def sweep_of_point(point: OnePoint, parameter: str, *, first: float, last: float) -> Sweep:
+    """One sweep on the numbers of a dimensionless point."""
+    if isinstance(point.case, GearCase):
         raise InputError(
             "--cascade",
             "a gear case",
@@ -435,5 +438,5 @@ def sweep_of_subject(subject: Subject, parameter: str, *, first: float, last: fl
         parameter=parameter,
         first=first,
         last=last,
-        base={**subject.parameters, parameter: first},
+        base={**point.parameters, parameter: first},
     )

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.labels import Label, labels
-from thermogear.base.excitation import Excitation
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import Simulation
+from thermogear.case.points import Points
 from thermogear.dynamics.integrate import simulate
-from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
+from thermogear.dynamics.models import ClearanceModel
 from thermogear.signals.spectra import amplitude_spectrum, order_amplitudes
 from thermogear.study.response import lost_share
 
@@ -46,7 +47,7 @@ class Motion:
 
 
 def follow(
-    model: DeadZoneModel | TorsionalModel,
+    model: ClearanceModel,
     simulation: Simulation,
     advance: Advance | None = None,
 ) -> Motion:
@@ -152,9 +153,9 @@ def proofs(found: Sequence[Label]) -> dict[str, NDArray[np.generic]]:
 
 @dataclass(frozen=True, eq=False)
 class GearMotion:
-    """:class:`Motion` in SI over a whole array of excitations, jammed points included.
+    """:class:`Motion` in SI over a whole array of points, those of a jammed pair included.
 
-    ``values`` map names to arrays of the excitations' shape, then sample, section or order;
+    ``values`` map names to arrays of the points' shape, then sample, section or order;
     jammed points are NaN with the label "jammed".
     """
 
@@ -163,26 +164,23 @@ class GearMotion:
 
 
 def follow_gears(
-    excitations: Sequence[Excitation | None],
-    simulation: Simulation,
-    advance: Advance | None = None,
+    points: Points, simulation: Simulation, advance: Advance | None = None
 ) -> GearMotion | None:
-    """Motion of every excitation that is not jammed; None when all are."""
-    alive = [i for i, one in enumerate(excitations) if one is not None]
-    present = [one for one in excitations if one is not None]
-    if not present:
+    """Motion of every point that is not jammed; None when all are."""
+    alive = np.flatnonzero(~points.jammed)
+    if not alive.size:
         return None
-    motion = follow(from_excitation(present), simulation, advance)
-    length = np.array([one.reference_half_backlash for one in present])
-    rate = np.array([one.natural_frequency for one in present])
-    scales = {"velocity": length * rate, "section_velocity": length * rate}
+    present = points.take(alive)
+    motion = follow(present, simulation, advance)
+    length, rate = present.length, present.rate
+    scales: dict[str, Any] = {"velocity": length * rate, "section_velocity": length * rate}
     plain = {"contact_loss_share", "back_impacts", "status", "label", "label_reason", *PROOFS}
     values: dict[str, NDArray[np.generic]] = {}
     for name, rows in motion.values.items():
         if name not in plain:
-            scale = scales.get(name, length)
+            scale: Any = scales.get(name, length)
             rows = rows * scale.reshape(-1, *([1] * (rows.ndim - 1)))
-        values[name] = _spread(rows, alive, len(excitations), _missing(name))
+        values[name] = _spread(rows, alive, len(points.status), _missing(name))
     return GearMotion(motion, values)
 
 
@@ -198,7 +196,7 @@ def _missing(name: str) -> object:
 
 
 def _spread(
-    rows: NDArray[np.generic], places: list[int], count: int, missing: object
+    rows: NDArray[np.generic], places: NDArray[np.int64], count: int, missing: object
 ) -> NDArray[np.generic]:
     """``rows`` put at ``places`` of ``count``, ``missing`` elsewhere."""
     if rows.dtype.kind == "U":

@@ -1,4 +1,4 @@
-"""Orbits, Lyapunov exponents and branches of one subject, as trees of labelled results.
+"""Orbits, Lyapunov exponents and branches of one point of a case, as trees of labelled results.
 
 Each function returns a :class:`~thermogear.results.result.Result` with a summary. Numbers are
 dimensionless (X = x/b_c, omega_n t) unless a name says SI; where a gear stands behind them the
@@ -19,7 +19,7 @@ from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled
 from thermogear.base.vocabulary import label_words
-from thermogear.case.subject import Subject
+from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.results.result import Result
 from thermogear.signals.spectra import amplitude_spectrum
@@ -53,11 +53,11 @@ def found(
 # --- orbits -------------------------------------------------------------------------------
 
 
-def settled(subject: Subject, model: object | None = None) -> Label:
-    """What the motion of ``subject`` settles on from its start, with proof."""
-    simulation = subject.simulation
+def settled(point: OnePoint, model: object | None = None) -> Label:
+    """What the motion of ``point`` settles on from its start, with proof."""
+    simulation = point.simulation
     return label(
-        subject.model if model is None else model,
+        point.points if model is None else model,
         initial_state=simulation.initial_state,
         discard=max(simulation.discard, 1),
         cap=max(simulation.most_discarded, 32_000),
@@ -65,7 +65,7 @@ def settled(subject: Subject, model: object | None = None) -> Label:
 
 
 def orbit_of(
-    subject: Subject,
+    point: OnePoint,
     period: int | None = None,
     *,
     transient: bool = True,
@@ -77,11 +77,11 @@ def orbit_of(
     Newton starts from the given state itself, which reaches unstable
     orbits. Raises ConvergenceError where no orbit is reached.
     """
-    model = subject.model if model is None else model
-    start = subject.simulation.initial_state
+    model = point.points if model is None else model
+    start = point.simulation.initial_state
     if not transient:
         return _least(periodic_orbit(model, 1 if period is None else period, start)), None
-    proof = settled(subject, model)
+    proof = settled(point, model)
     if proof.orbit is not None and period in (None, proof.orbit.period):
         return proof.orbit, proof
     if period is None:
@@ -92,7 +92,7 @@ def orbit_of(
     end = simulate(
         model,
         periods=1,
-        discard=subject.simulation.discard,
+        discard=point.simulation.discard,
         samples_per_period=0,
         initial_state=start,
         method="exact",
@@ -116,7 +116,7 @@ def complex_rows(values: Any) -> list[dict[str, float]]:
 
 
 def orbit_results(
-    subject: Subject,
+    point: OnePoint,
     period: int | None = None,
     *,
     transient: bool = True,
@@ -124,9 +124,11 @@ def orbit_results(
 ) -> Result:
     """State, multipliers, contact changes, load factor and spectrum of one closed orbit."""
     progress("orbit", 0, 2)
-    orbit, proof = orbit_of(subject, period, transient=transient)
+    orbit, proof = orbit_of(point, period, transient=transient)
     progress("orbit", 1, 2)
-    scale, b = subject.scale, float(orbit.lanes.half_backlash[0])
+    points, b = point.points, float(orbit.lanes.half_backlash[0])
+    length, rate = float(points.length[0]), float(points.rate[0])
+    hertz = float(points.mesh_frequency[0] / (2.0 * np.pi))
     phase, x, v = orbit.samples(SAMPLES)
     spectrum = amplitude_spectrum(x, float(SAMPLES))
     kept = spectrum.frequencies <= HIGHEST_ORDER
@@ -136,16 +138,16 @@ def orbit_results(
     shares = orbit.time_share
     factor = orbit.dynamic_load_factor()
     mu = orbit.multipliers
-    period_time = float(orbit.lanes.period[0]) / scale.rate
-    speed = scale.length * scale.rate
+    period_time = float(orbit.lanes.period[0]) / rate
+    speed = length * rate
     variables: dict[str, Any] = {
         "time": (("sample",), phase * period_time),
-        "displacement": (("sample",), x * scale.length),
+        "displacement": (("sample",), x * length),
         "velocity": (("sample",), v * speed),
-        "section_displacement": (("section",), orbit.points[:, 0] * scale.length),
+        "section_displacement": (("section",), orbit.points[:, 0] * length),
         "section_velocity": (("section",), orbit.points[:, 1] * speed),
         "order": (("order",), order),
-        "line_amplitude": (("order",), amplitude * scale.length),
+        "line_amplitude": (("order",), amplitude * length),
         "multiplier_real": (("multiplier",), mu.real),
         "multiplier_imag": (("multiplier",), mu.imag),
         "orbit_period": ((), orbit.period),
@@ -155,38 +157,38 @@ def orbit_results(
         "free_share": ((), shares["free"]),
         "back_share": ((), shares["back"]),
         "dynamic_load_factor": ((), factor),
-        "half_backlash": ((), b * scale.length),
-        "least_displacement": ((), low * scale.length),
-        "greatest_displacement": ((), high * scale.length),
+        "half_backlash": ((), b * length),
+        "least_displacement": ((), low * length),
+        "greatest_displacement": ((), high * length),
     }
-    if scale.gear:
-        variables["line_frequency"] = (("order",), order * scale.mesh)
+    if points.gears:
+        variables["line_frequency"] = (("order",), order * hertz)
     data = labelled(variables)
     data["phase"] = (("sample",), phase, {"units": "1", "long_name": "time in mesh periods"})
-    if not scale.gear:
+    if not points.gears:
         _without_units(data)
     shown = (order > 0.0) & (amplitude > LEAST_LINE * max(float(amplitude[1:].max()), 1e-300))
     lines = [
         {
             "order": float(q),
-            "amplitude": float(a * scale.length),
-            "frequency_hz": float(q * scale.mesh) if scale.gear else None,
+            "amplitude": float(a * length),
+            "frequency_hz": float(q * hertz) if points.gears else None,
             "half_order": bool(abs(2.0 * q - round(2.0 * q)) < 1e-9 and round(2.0 * q) % 2 == 1),
         }
         for q, a in zip(order[shown], amplitude[shown], strict=True)
     ]
     summary: dict[str, Any] = {
-        "title": subject.title,
-        "parameters": subject.parameters,
-        "units": "SI" if scale.gear else "dimensionless",
+        "title": point.title,
+        "parameters": point.parameters,
+        "units": "SI" if points.gears else "dimensionless",
         "label": f"period-{orbit.minimal_period}",
         "settles_there": None if proof is None else str(proof),
         "reason": None if proof is None else proof.reason,
         "period": orbit.period,
         "state": [float(c) for c in orbit.state],
         "points": [[float(c) for c in p] for p in orbit.points],
-        "state_si": [float(orbit.state[0] * scale.length), float(orbit.state[1] * speed)]
-        if scale.gear
+        "state_si": [float(orbit.state[0] * length), float(orbit.state[1] * speed)]
+        if points.gears
         else None,
         "multipliers": complex_rows(mu),
         "determinant": orbit.determinant,
@@ -195,10 +197,10 @@ def orbit_results(
         "back_impacts": orbit.back_impacts,
         "time_share": shares,
         "dynamic_load_factor": factor if np.isfinite(factor) else None,
-        "least": low * scale.length,
-        "greatest": high * scale.length,
-        "half_backlash": b * scale.length,
-        "mesh_frequency_hz": scale.mesh if scale.gear else None,
+        "least": low * length,
+        "greatest": high * length,
+        "half_backlash": b * length,
+        "mesh_frequency_hz": hertz if points.gears else None,
         "residual": orbit.residual,
         "lines": lines,
         "notices": _orbit_notices(orbit, low, b, period),
@@ -241,7 +243,7 @@ def _orbit_notices(orbit: Orbit, low: float, b: float, asked: int | None) -> lis
 
 
 def lyapunov_results(
-    subject: Subject,
+    point: OnePoint,
     *,
     discard: int = 2000,
     batches: int = 40,
@@ -253,7 +255,7 @@ def lyapunov_results(
         raise InputError("--batches", batches, allowed=">= 4")
     rounds = min(ROUNDS, batches // 2)
     sizes = [batches // rounds + (1 if i < batches % rounds else 0) for i in range(rounds)]
-    state = np.asarray(subject.simulation.initial_state, dtype=float)
+    state = np.asarray(point.simulation.initial_state, dtype=float)
     means: list[float] = []
     total, damping = 0.0, 0.0
     cut = False
@@ -261,7 +263,7 @@ def lyapunov_results(
         for number, size in enumerate(sizes):
             progress("batches", number, rounds)
             (one,) = lyapunov_exponents(
-                subject.model,
+                point.points,
                 initial_state=state,
                 discard=discard if number == 0 else 0,
                 batches=size,
@@ -279,7 +281,7 @@ def lyapunov_results(
         raise ConvergenceError("lyapunov: the motion diverges (|x| > 1e6 half backlashes)")
     value = float(values.mean())
     error = float(values.std(ddof=1) / np.sqrt(values.size))
-    rate, period = subject.scale.rate, float(subject.model.lanes().period[0])
+    rate, period = float(point.points.rate[0]), float(point.points.flat.period[0])
     dimension = 1.0 + value / abs(total - value) if value > 0.0 else 0.0
     half = values.size // 2
     ran = discard + values.size * batch_periods
@@ -288,7 +290,7 @@ def lyapunov_results(
     verdict = chaos if sure else "not chaotic" if value < -4.0 * error else "undecided"
     notices = []
     # a positive mean says nothing of how long chaos lasts
-    end = label(subject.model, initial_state=state, discard=128, cap=512, starts=2, follow=1)
+    end = label(point.points, initial_state=state, discard=128, cap=512, starts=2, follow=1)
     if end.orbit is not None and not verdict.startswith("not"):
         verdict = f"not chaotic at its end: period {end.period} after {ran} periods"
         notices.append(
@@ -303,8 +305,8 @@ def lyapunov_results(
         }
     )
     summary: dict[str, Any] = {
-        "title": subject.title,
-        "parameters": subject.parameters,
+        "title": point.title,
+        "parameters": point.parameters,
         "exponent": value,
         "error": error,
         "sum": total,
@@ -313,7 +315,7 @@ def lyapunov_results(
         "second": total - value,
         "kaplan_yorke": dimension,
         "per_mesh_period": value * period,
-        "per_second": value * rate if subject.scale.gear else None,
+        "per_second": value * rate if point.points.gears else None,
         "batches": int(values.size),
         "batch_periods": batch_periods,
         "discarded": discard,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
-from thermogear.case.family import GearPoints
+from thermogear.case.points import Points
 from thermogear.dynamics import exact
 from thermogear.signals.spectra import order_amplitudes
 
@@ -76,7 +76,7 @@ def lost_share(drive_share: Floats) -> Floats:
 
 
 def respond(
-    points: GearPoints,
+    points: Points,
     state: Floats,
     record: Recording,
     *,
@@ -115,7 +115,7 @@ def respond(
 
 
 def _figures(
-    points: GearPoints, lane: int, x: Floats, phase: Floats, record: Recording, lines: bool
+    points: Points, lane: int, x: Floats, phase: Floats, record: Recording, lines: bool
 ) -> dict[str, Any]:
     length, scale = points.length[lane], points.stiffness[lane] * points.length[lane]
     ranks = np.arange(points.error.shape[1])

@@ -17,15 +17,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.excitation import Excitation
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATES, STATUS, attributes, label
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.case.citations import citations
+from thermogear.case.points import excitations, points_of
+from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
-from thermogear.mesh.excite import excitation
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Result, now
 from thermogear.study import run_notices
@@ -108,12 +108,7 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     found: dict[str, xr.Dataset] = {}
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
-        hot = case.operating_of(model)
-        undeformed = hot.as_drawn()
-        states = [
-            blanked(case.cycle(undeformed, model), case.lost_at(None, model), OF_OIL),
-            _with_status(case, model, case.cycle(hot, model)),
-        ]
+        states = [_cycle(case, model, state) for state in (UNDEFORMED, HOT)]
         found[model.name] = _with_numbers(
             case, xr.concat(states, xr.DataArray(list(STATES), dims="state", name="state"))
         )
@@ -121,15 +116,22 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     return found
 
 
-def _with_status(
-    case: GearCase, model: MeshModel, cycle: xr.Dataset, gear_temperature: float | None = None
-) -> xr.Dataset:
-    """``cycle``, its points not_converged where nothing settled, and nan where nothing is known."""
-    settled = case.settled_at(gear_temperature, model)
+def _cycle(case: GearCase, model: MeshModel, state: ThermalState) -> xr.Dataset:
+    """The mesh cycle in ``state``, nan where nothing is known of its temperatures.
+
+    Points are not_converged where these did not settle; undeformed gears ask only for the oil's.
+    """
+    cycle = case.cycle(state.operating(case, model), model)
+    balance = state.balance(case, model)
+    if balance is None:
+        return cycle
+    lost = np.zeros(balance.settled.size, dtype=np.bool_)
+    lost[list(balance.lost)] = True
+    if state == UNDEFORMED:
+        return blanked(cycle, lost, OF_OIL)
     status = cycle["status"]
-    values = np.where(settled, status.values, STATUS.index("not_converged")).astype(np.int8)
-    flagged = cycle.assign(status=(status.dims, values, status.attrs))
-    return blanked(flagged, case.lost_at(gear_temperature, model))
+    values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
+    return blanked(cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs)), lost)
 
 
 def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
@@ -195,30 +197,15 @@ def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
     return {"path": path, "mesh": whole[rest]}
 
 
-def _excitations(case: GearCase, cycle: xr.Dataset, axis: str) -> list[Excitation | None]:
-    found: list[Excitation | None] = []
-    for place in range(cycle.sizes[axis]):
-        found += excitation(
-            cycle.isel({axis: place}),
-            case.pair,
-            damping_ratio=case.damping_ratio,
-            inertias=case.inertias,
-            transmission_error=case.transmission_error,
-            harmonics=case.harmonics,
-        )
-    return found
-
-
 def _motion(
     case: GearCase, cycles: Mapping[str, xr.Dataset], axis: str, progress: Progress
 ) -> xr.Dataset:
     """Motion of every bundle, place on ``axis`` and operating point, in SI."""
     first = next(iter(cycles.values()))
-    excitations = [one for cycle in cycles.values() for one in _excitations(case, cycle, axis)]
+    every = [c.isel({axis: k}) for c in cycles.values() for k in range(c.sizes[axis])]
+    points = points_of([one for cycle in every for one in excitations(case, cycle)])
     stage = "motion" if axis == "state" else "motion over temperature"
-    found = follow_gears(
-        excitations, case.simulation, lambda done, total: progress(stage, done, total)
-    )
+    found = follow_gears(points, case.simulation, lambda done, total: progress(stage, done, total))
     dims = ("bundle", axis, "operating")
     shape = (len(cycles), first.sizes[axis], first.sizes["operating"])
     coordinates: dict[str, Any] = {
@@ -294,12 +281,9 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
     cycles: dict[str, xr.Dataset] = {}
     temperatures = np.asarray(case.gear_temperatures)
     for model in case.models:
-        row = [
-            _with_status(case, model, case.cycle(case.operating_at(t, model), model), t)
-            for t in map(float, temperatures)
-        ]
-        hot = case.operating_of(model)
-        reference = case.cycle(hot.as_drawn(), model)["mean_stiffness"].values
+        row = [_cycle(case, model, ThermalState.of(float(t))) for t in temperatures]
+        drawn = case.cycle(UNDEFORMED.operating(case, model), model)
+        reference = drawn["mean_stiffness"].values
         axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")
         axis.attrs = attributes("gear_temperature")
         joined = xr.concat(row, axis).assign_attrs(cold_mean_stiffness=reference)

@@ -27,9 +27,10 @@ from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.case.case import GearCase, gear_case
-from thermogear.case.family import GearFamily, GearPoints, Tabulated
+from thermogear.case.family import GearFamily, Tabulated
+from thermogear.case.points import Points
+from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
@@ -72,7 +73,7 @@ class RunUpPlan:
 
     case: GearCase
     speeds: tuple[float, ...]
-    temperatures: tuple[float | None, ...]
+    states: tuple[ThermalState, ...]
     bundle: str
     torque: float
     rule: Rule = RUN_UP_RULE
@@ -84,7 +85,7 @@ class RunUpPlan:
     @property
     def sizes(self) -> dict[str, int]:
         return {
-            "state": len(self.temperatures),
+            "state": len(self.states),
             "direction": len(DIRECTIONS),
             "pinion_speed": len(self.speeds),
             "section": KEEP,
@@ -100,7 +101,7 @@ class RunUpPlan:
         return {
             "model": self.family(0).inputs(),
             "speeds": list(self.speeds),
-            "temperatures": [UNDEFORMED if t is None else t for t in self.temperatures],
+            "temperatures": [state.stored for state in self.states],
             "torque": self.torque,
             "rule": rule_inputs(self.rule),
             "record": {f.name: getattr(self.record, f.name) for f in fields(self.record)},
@@ -110,11 +111,8 @@ class RunUpPlan:
 
     def family(self, state: int) -> GearFamily:
         """Speed -> lanes in one thermal state."""
-        temperature = self.temperatures[state]
         case = replace(self.case, torques=(self.torque,))
-        return GearFamily(
-            case, ("pinion_speed",), self.bundle, UNDEFORMED if temperature is None else temperature
-        )
+        return GearFamily(case, ("pinion_speed",), self.bundle, self.states[state])
 
     def variables(self) -> dict[str, Variable]:
         dims = ("state", "direction", "pinion_speed")
@@ -148,7 +146,9 @@ class RunUpPlan:
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         reference = self.case.stated.temperatures.reference
-        shown = np.array([reference if t is None else t for t in self.temperatures])
+        shown = np.array(
+            [reference if s.temperature is None else s.temperature for s in self.states]
+        )
         return {
             "gear_temperature": (
                 ("state",),
@@ -265,7 +265,7 @@ def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     speeds = np.array(plan.speeds)
     if speeds.size < 2:
         return data
-    for state in range(len(plan.temperatures)):
+    for state in range(len(plan.states)):
         here = data.isel(state=state).expand_dims(start=1)
         if not np.any(here["status"].values == 0):
             continue
@@ -318,7 +318,7 @@ class _Run:
         self.leaps: list[dict[str, float]] = []
         self.early = 0
 
-    def step(self, point: GearPoints, speed: float) -> Settled:
+    def step(self, point: Points, speed: float) -> Settled:
         """What is felt at ``speed``, coming from where the last step ended."""
         self.leaps, self.early = [], 0
         first = not np.isfinite(self.at)
@@ -369,11 +369,11 @@ class _Run:
         self.at = speed
         self.period = int(settled.period[0]) if int(settled.label[0]) == PERIODIC else 0
 
-    def _single(self, speed: float) -> GearPoints:
+    def _single(self, speed: float) -> Points:
         assert self.table is not None
         return self.table(np.array([[speed]]))
 
-    def _settled(self, point: GearPoints, state: Floats) -> Settled:
+    def _settled(self, point: Points, state: Floats) -> Settled:
         return settle_with_status(
             point.flat, point.status, state[None], self.plan.rule, KEEP, self.alive
         )
@@ -475,7 +475,7 @@ def run_up_plan(
     case: GearCase,
     speeds: ArrayLike,
     *,
-    temperatures: Sequence[float | None] | None = None,
+    temperatures: Sequence[StateLike] | None = None,
     bundle: str = "",
     torque: float | None = None,
     rule: Rule = RUN_UP_RULE,
@@ -484,20 +484,18 @@ def run_up_plan(
     """The plan of :func:`run_up`."""
     case = gear_case(case)
     axis = np.sort(axis_values("speeds", speeds))
-    if temperatures is None:
-        hot = np.asarray(case.operating.temperatures.pinion_addendum, dtype=float)
-        temperatures = (None, float(hot.ravel()[0]))
-    states = tuple(None if t is None else float(t) for t in temperatures)
+    given = (UNDEFORMED, HOT) if temperatures is None else map(ThermalState.of, temperatures)
+    states = tuple(_held(case, state) for state in given)
     if not states:
         raise InputError("temperatures", "none", allowed="at least one state")
     load = float(case.torques[0] if torque is None else torque)
     family = GearFamily(case, ("pinion_speed",), bundle)
-    hot_states = [t for t in states if t is not None]
-    family.require({"pinion_speed": axis, "pinion_torque": load, "gear_temperature": hot_states})
+    hot = [state.temperature for state in states if state.temperature is not None]
+    family.require({"pinion_speed": axis, "pinion_torque": load, "gear_temperature": hot})
     return RunUpPlan(
         case=case,
         speeds=tuple(axis.tolist()),
-        temperatures=states,
+        states=states,
         bundle=family.bundle,
         torque=load,
         rule=rule,
@@ -505,11 +503,19 @@ def run_up_plan(
     )
 
 
+def _held(case: GearCase, state: ThermalState) -> ThermalState:
+    """The state all through a run: as hot as the case is at its first operating point."""
+    if state == UNDEFORMED or state.temperature is not None:
+        return state
+    hot = state.operating(case, case.models[0]).temperatures.pinion_addendum
+    return ThermalState.of(float(np.ravel(np.asarray(hot, dtype=float))[0]))
+
+
 def run_up(
     case: GearCase,
     speeds: ArrayLike,
     *,
-    temperatures: Sequence[float | None] | None = None,
+    temperatures: Sequence[StateLike] | None = None,
     bundle: str = "",
     torque: float | None = None,
     rule: Rule = RUN_UP_RULE,
@@ -521,11 +527,12 @@ def run_up(
 ) -> xr.Dataset:
     """Run the gears up and down over ``speeds`` [rad/s], undeformed and hot.
 
-    ``temperatures`` [K] of both addenda, None for undeformed gears (default: these, and as hot
-    as the case is); bores, housing and oil go along by the case's rule. Each speed starts from the
-    motion at the speed before. Over (state, direction, pinion_speed): dynamic transmission
-    error (mean, rms, peak to peak), dynamic mesh force, dynamic factor, contact loss, label and
-    multipliers; ``dte_line`` over order as well, the waterfall. Between two speeds the orbit is
+    ``temperatures`` [K] of both addenda, None or "undeformed" for undeformed gears (default: these,
+    and "hot", as the case is at its first operating point); bores, housing and oil go along by the
+    case's rule. Each speed starts from the motion at the speed before. Over (state, direction,
+    pinion_speed): dynamic transmission error (mean, rms, peak to peak), dynamic mesh force, dynamic
+    factor, contact loss, label and multipliers; ``dte_line`` over order as well, the waterfall.
+    Between two speeds the orbit is
     followed slowly, and what is no orbit of up to 16 periods is carried on in steps of 0.5 % of
     the speed that stand still, so that jumps do not depend on the step of ``speeds``.
     ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up to 4 periods), and

@@ -12,7 +12,8 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.pair_springs import PairSprings
 from thermogear.base.progress import Progress, silent
-from thermogear.case.subject import Gears, Subject
+from thermogear.case.case import GearCase
+from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import from_excitation
@@ -33,7 +34,7 @@ SPRING = {"units": "N/m"}
 
 
 def shared_results(
-    subject: Subject,
+    point: OnePoint,
     *,
     speeds: tuple[float, float] | None = None,
     count: int = 41,
@@ -47,28 +48,28 @@ def shared_results(
     displacement at the mean load and at :data:`LIGHT` of it. Both forms are built at the mean
     load.
     """
-    gears = subject.gears
-    if gears is None:
+    if point.operating is None:
         raise InputError(
             "case", "a dimensionless case", why="it has no tooth pairs to share a load"
         )
-    if gears.bundle.stiffness != "loaded":
+    case = point.gears
+    if point.bundle.stiffness != "loaded":
         raise InputError(
             "--bundle",
-            repr(gears.bundle.name),
+            repr(point.bundle.name),
             why="tooth pairs share a load in the loaded contact alone",
             fix="choose the bundle 'consistent'",
         )
-    here = gears.excitation()
-    hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
+    here = point.excitation()
+    hot = HotPair(case.pair, point.operating, point.bundle)
     progress("springs", 0, 2)
     drive, back = (
-        pair_springs(hot, 0, gears.case.deviations, flank=flank, positions=POSITIONS)
+        pair_springs(hot, 0, case.deviations, flank=flank, positions=POSITIONS)
         for flank in ("drive", "back")
     )
     progress("springs", 2, 2)
-    data = at_rest(gears, here, drive).merge(free_play(gears, here, drive, back))
-    resonance = here.natural_frequency / gears.case.pair.pinion.teeth
+    data = at_rest(case, hot, here, drive).merge(free_play(case, hot, here, drive, back))
+    resonance = here.natural_frequency / case.pair.pinion.teeth
     low, high = speeds or (resonance / 3.0, 5.0 * resonance / 3.0)
     rows: dict[str, list[list[float]]] = {"shared_swing": [], "one_spring_swing": []}
     done: list[float] = []
@@ -76,8 +77,8 @@ def shared_results(
     try:
         for number, speed in enumerate(np.linspace(low, high, count).tolist()):
             progress("speeds", number, count)
-            turning = replace(here, mesh_frequency=gears.case.pair.pinion.teeth * speed)
-            pairs = [_swings(turning, gears, drive, back, part) for part in (1.0, LIGHT)]
+            turning = replace(here, mesh_frequency=case.pair.pinion.teeth * speed)
+            pairs = [_swings(turning, case, drive, back, part) for part in (1.0, LIGHT)]
             for name, place in (("shared_swing", 0), ("one_spring_swing", 1)):
                 rows[name].append([pair[place] for pair in pairs])
             done.append(speed)
@@ -95,20 +96,19 @@ def shared_results(
             "part": ("part", [1.0, LIGHT], {"units": "1", "long_name": "load over the mean load"}),
         },
     )
-    summary = {"title": subject.title, **_summary(data, moving), "interrupted": cut, "notices": []}
+    summary = {"title": point.title, **_summary(data, moving), "interrupted": cut, "notices": []}
     return found("shared", {"rest": data, "motion": moving}, summary, interrupted=cut)
 
 
-def at_rest(gears: Gears, here: Excitation, drive: PairSprings) -> xr.Dataset:
+def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) -> xr.Dataset:
     """Mean stiffness and peak to peak deflection over load: exact, pair springs, one spring."""
-    hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
     phase = np.arange(POSITIONS) / POSITIONS + 1e-12
     loads = FACTORS * here.mean_force
-    exact = contact_at(hot, 0, loads, phase, gears.case.deviations)
+    exact = contact_at(hot, 0, loads, phase, case.deviations)
     shared = drive.deflection(loads[:, None], phase)
     k = here.stiffness(phase)
     # the kinematic error is in neither of the static curves
-    error = here.error + (gears.case.transmission_error * -1.0)
+    error = here.error + (case.transmission_error * -1.0)
     one = loads[:, None] / k + error(phase)
     values = {
         "exact_stiffness": exact.tangent.mean(axis=1),
@@ -130,15 +130,16 @@ def at_rest(gears: Gears, here: Excitation, drive: PairSprings) -> xr.Dataset:
     )
 
 
-def free_play(gears: Gears, here: Excitation, drive: PairSprings, back: PairSprings) -> xr.Dataset:
+def free_play(
+    case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings, back: PairSprings
+) -> xr.Dataset:
     """Free play 2 b' [m] over the mesh phase: of the pairs' springs and of the one spring.
 
     Both from one gap function; in motion the one spring keeps its mean all along.
     """
-    hot = HotPair(gears.case.pair, gears.operating, gears.bundle)
     phase = np.arange(POSITIONS) / POSITIONS
     shared = LoadSharedModel.from_excitation(here, drive, back)
-    one = clearance(hot, phase, gears.case.deviations).half_backlash[0]
+    one = clearance(hot, phase, case.deviations).half_backlash[0]
     values = {"shared_clearance": shared.clearance(phase), "one_spring_clearance": 2.0 * one}
     return xr.Dataset(
         {name: ("mesh_phase", play, METRES) for name, play in values.items()},
@@ -147,11 +148,11 @@ def free_play(gears: Gears, here: Excitation, drive: PairSprings, back: PairSpri
 
 
 def _swings(
-    here: Excitation, gears: Gears, drive: PairSprings, back: PairSprings, part: float
+    here: Excitation, case: GearCase, drive: PairSprings, back: PairSprings, part: float
 ) -> tuple[float, float]:
     """Peak to peak [m] of the settled motion: load-shared, one spring."""
     light = replace(here, mean_force=part * here.mean_force)
-    shared = LoadSharedModel.from_excitation(light, drive, back, gears.case.transmission_error)
+    shared = LoadSharedModel.from_excitation(light, drive, back, case.transmission_error)
     length = here.reference_half_backlash
     run: dict[str, Any] = {"periods": PERIODS, "discard": DISCARD, "samples_per_period": SAMPLES}
     ours = simulate(shared, steps_per_period=STEPS, initial_state=(shared.rest(), 0.0), **run)

@@ -29,8 +29,10 @@ from thermogear.base.plan import (
     keep_going,
     ranges_of,
 )
+from thermogear.case.allowed import gear_parameter
 from thermogear.case.case import GearCase, gear_case
-from thermogear.case.family import GearFamily, gear_axes
+from thermogear.case.family import GearFamily
+from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
@@ -116,9 +118,20 @@ class SweepPlan:
         return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        data.attrs |= {"bundle": self.family.bundle, "state": self.family.state}
+        data.attrs |= {"bundle": self.family.bundle, "state": self.family.state.stored}
         data.attrs |= range_notices(self.family.case, data)
         return data
+
+
+def _by_long_names(axes: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """Axes under the long names of their parameters, values as given (SI)."""
+    found: dict[str, Floats] = {}
+    for name, values in axes.items():
+        full = gear_parameter(name).name
+        if full in found:
+            raise InputError("parameter", repr(name), allowed="different parameters")
+        found[full] = np.atleast_1d(np.asarray(values, dtype=float))
+    return found
 
 
 def sweep_plan(
@@ -126,7 +139,7 @@ def sweep_plan(
     axes: Mapping[str, ArrayLike],
     *,
     bundle: str = "",
-    state: str | float = "hot",
+    state: StateLike = HOT,
     rule: Rule = SWEEP_RULE,
     record: Recording = RECORD,
 ) -> SweepPlan:
@@ -134,9 +147,9 @@ def sweep_plan(
     case = gear_case(case)
     if not axes:
         raise InputError("axes", "none", allowed="at least one parameter")
-    named = gear_axes(axes)
+    named = _by_long_names(axes)
     values = tuple(tuple(axis_values(n, v).tolist()) for n, v in named.items())
-    family = GearFamily(case, tuple(named), bundle, state)
+    family = GearFamily(case, tuple(named), bundle, ThermalState.of(state))
     family.require(named)
     return SweepPlan(
         family=family, axes=values, start=case.simulation.initial_state, rule=rule, record=record
@@ -148,7 +161,7 @@ def sweep(
     axes: Mapping[str, ArrayLike],
     *,
     bundle: str = "",
-    state: str | float = "hot",
+    state: StateLike = HOT,
     rule: Rule = SWEEP_RULE,
     store: str | Path | None = None,
     threads: int | None = None,

@@ -9,10 +9,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
-from thermogear.case.subject import of_case
+from thermogear.case.one_point import of_case
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import PairModel, from_excitation
 from thermogear.gears.contact import flank_radii, path_of_contact, rolling_velocities
@@ -252,10 +251,8 @@ def two_gears_against_one(case: GearCase, periods: int = 6) -> dict[str, float]:
     ``difference``: largest |x| difference over the cold half backlash; ``momentum``: largest
     change of I1 omega1/r_b1 + I2 omega2/r_b2 over its parts' size; ``length``, ``rate``: scales.
     """
-    gears = of_case(case, operating=len(case.speeds), bundle=case.models[0].name).gears
-    if gears is None:
-        raise InputError("case", case.title, why="no gears stand behind its motion")
-    found = gears.excitation()
+    point = of_case(case, operating=len(case.speeds), bundle=case.models[0].name)
+    found = point.excitation()
     pair = PairModel.from_excitation(found)
     length, rate = found.reference_half_backlash, found.natural_frequency
     start = pair.start(x=length, v=0.0)

@@ -1,0 +1,128 @@
+"""How hot the gears are: the one type that says it, in files, commands, calls and results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+from thermogear.base import vocabulary
+from thermogear.base.errors import InputError
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.allowed import within
+from thermogear.case.case import GearCase
+from thermogear.case.fields import BODY
+from thermogear.case.units import read_quantity
+from thermogear.mesh.balance import HeatBalance
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating
+
+ALLOWED = "undeformed | hot | computed | degrees Celsius"
+
+
+@dataclass(frozen=True)
+class ThermalState:
+    """A state of heat of a gear pair.
+
+    ``kind`` "undeformed": bodies as drawn, oil as in operation; "hot": as the case says, its
+    temperatures given or computed; "computed": from the heat balance, whatever the case gives;
+    "at": both addenda at ``temperature`` [K], the rest as ``temperatures.follow`` says; "held": as
+    hot as the operating point ``held``, at any speed and torque.
+    """
+
+    kind: str = vocabulary.HOT
+    temperature: float | None = None
+    held: Operating | None = field(default=None, repr=False, compare=False)
+
+    @classmethod
+    def at(cls, temperature: float, option: str = "state") -> ThermalState:
+        """Both addenda at ``temperature`` [K]; InputError where no case file could say it."""
+        within(option, BODY, temperature)
+        return cls("at", float(temperature))
+
+    @classmethod
+    def of(cls, given: StateLike) -> ThermalState:
+        """The state that a caller means: one of these, a word, kelvins, or None: undeformed."""
+        if isinstance(given, ThermalState):
+            return given
+        if given is None:
+            return UNDEFORMED
+        if not isinstance(given, str):
+            return cls("at", float(given))
+        if given not in BY_WORD:
+            raise InputError("state", repr(given), allowed=" | ".join((*BY_WORD, "kelvins")))
+        return BY_WORD[given]
+
+    @classmethod
+    def parse(cls, text: str, option: str = "state") -> ThermalState:
+        """What a person writes: a word, or degrees Celsius, with a unit or without."""
+        word = text.strip()
+        if word in BY_WORD:
+            return BY_WORD[word]
+        try:
+            kelvins = float(word) + ZERO_CELSIUS
+        except ValueError:
+            kelvins = _degrees(word, option)
+        return cls.at(kelvins, option)
+
+    @property
+    def stored(self) -> str | float:
+        """The state as results and stores name it: a word or kelvins."""
+        return self.kind if self.temperature is None else self.temperature
+
+    @property
+    def words(self) -> str:
+        """The state as a reader is told it."""
+        if self.temperature is None:
+            return self.kind
+        return f"gears at {self.temperature - ZERO_CELSIUS:.6g} °C"
+
+    def operating(self, case: GearCase, model: MeshModel) -> Operating:
+        """Every operating point of ``case`` in this state under ``model``."""
+        if self.held is not None:
+            at = case.stated
+            return replace(
+                self.held, speed=at.speed, torque=at.torque, half_backlash=at.half_backlash
+            )
+        if self.temperature is not None:
+            return case.operating_at(self.temperature, model)
+        hot = case.balance(model).operating if self == COMPUTED else case.operating_of(model)
+        return hot.as_drawn() if self == UNDEFORMED else hot
+
+    def moving(self, case: GearCase, model: MeshModel) -> Operating:
+        """:meth:`operating` as far as the teeth feel it: no balance for undeformed gears' oil."""
+        return case.stated.as_drawn() if self == UNDEFORMED else self.operating(case, model)
+
+    def hangs_on_the_load(self, case: GearCase) -> bool:
+        """Whether another speed or torque makes it another temperature."""
+        if self.held is not None or self == UNDEFORMED:
+            return False
+        return case.computed or self == COMPUTED
+
+    def balance(self, case: GearCase, model: MeshModel) -> HeatBalance | None:
+        """The heat balance behind its temperatures; None where they are given."""
+        if self != COMPUTED and not case.computed:
+            return None
+        return case.balance(model, None if case.follow == "proportional" else self.temperature)
+
+
+StateLike: TypeAlias = "ThermalState | str | float | None"
+"""What public functions take for a state: the words "hot", "undeformed", or kelvins."""
+
+
+def _degrees(text: str, option: str) -> float:
+    """A temperature with its unit as K."""
+    fix = '"cold" is now called "undeformed"' if text == "cold" else None
+    if not any(letter.isdigit() for letter in text):
+        raise InputError(option, repr(text), allowed=ALLOWED, fix=fix)
+    try:
+        return read_quantity(text, "temperature")
+    except InputError as error:
+        raise InputError(
+            option, repr(text), allowed=ALLOWED, why=error.why, fix=error.fix
+        ) from error
+
+
+UNDEFORMED = ThermalState(vocabulary.UNDEFORMED)
+HOT = ThermalState(vocabulary.HOT)
+COMPUTED = ThermalState("computed")
+BY_WORD = {one.kind: one for one in (HOT, UNDEFORMED, COMPUTED)}
