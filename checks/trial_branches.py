@@ -372,7 +372,7 @@ def run_ups(count: int, found: Found) -> None:
         lists = []
         for step in (COARSE, FINE):
             speeds = (first + np.arange(0.0, WIDTH + 0.5 * step, step)) * RPM
-            data = run_up(case, speeds, temperatures=(None,), branch_period=0)
+            data = run_up(case, speeds, temperatures=(None,), branch_period=0).data
             folds = data["jump_fold"].values / RPM
             kinds = data["jump_kind"].values
             lists.append(

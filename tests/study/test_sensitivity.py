@@ -81,7 +81,7 @@ def test_samples_computed_together_are_those_computed_alone(case: GearCase) -> N
 
 def test_one_input_alone_brings_all_the_variance(case: GearCase) -> None:
     plan = Plan(samples=64, inputs=(BY_NAME["gear"],))
-    data = study.sensitivity(case, plan)
+    data = study.sensitivity(case, plan).data
     assert data.attrs["evaluations"] == 192
     growth = data.sel(output="growth")
     # as far from 1 as the estimate itself says it may be, at 95 %
@@ -93,7 +93,7 @@ def test_one_input_alone_brings_all_the_variance(case: GearCase) -> None:
 @pytest.fixture(scope="module")
 def small(case: GearCase):  # type: ignore[no-untyped-def]
     names = ("gear", "damping", "housing")
-    return study.sensitivity(case, Plan(samples=16, inputs=tuple(BY_NAME[n] for n in names)))
+    return study.sensitivity(case, Plan(samples=16, inputs=tuple(BY_NAME[n] for n in names))).data
 
 
 def test_damping_and_housing_touch_what_they_can(small) -> None:  # type: ignore[no-untyped-def]

@@ -1,5 +1,7 @@
 """Sweeps and run-ups of the rig: static limits, linear response, hysteresis, one by one."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -7,10 +9,14 @@ from thermogear.base.errors import InputError
 from thermogear.case.case import load_case, load_example
 from thermogear.study.notices import difference_notices
 from thermogear.study.response import Recording, respond
-from thermogear.study.run_up import notices_of, run_up
+from thermogear.study.run_up import run_up
 from thermogear.study.sweep import sweep
 
 RPM = np.pi / 30.0
+
+
+def notices_of(data):
+    return json.loads(data.attrs["notices"])
 
 
 @pytest.fixture(scope="module")
@@ -22,19 +28,19 @@ def rig():
 def runs(rig):
     """Through the jump near 4400..5000 rpm, cold and at 140 C, with folds."""
     speeds = np.arange(4200.0, 5301.0, 100.0) * RPM
-    return run_up(rig, speeds, temperatures=(None, 413.15), branch_period=1)
+    return run_up(rig, speeds, temperatures=(None, 413.15), branch_period=1).data
 
 
 @pytest.fixture(scope="module")
 def plain(rig):
     """The same, cold, without folds."""
     speeds = np.arange(4200.0, 5301.0, 100.0) * RPM
-    return run_up(rig, speeds, temperatures=(None,), branch_period=0)
+    return run_up(rig, speeds, temperatures=(None,), branch_period=0).data
 
 
 def test_slow_mesh_carries_its_static_force(rig):
     """Turning slowly the mesh force is the static one: K_v tends to 1."""
-    data = run_up(rig, np.array([60.0, 120.0]) * RPM, temperatures=(None,), branch_period=0)
+    data = run_up(rig, np.array([60.0, 120.0]) * RPM, temperatures=(None,), branch_period=0).data
     factor = data.dynamic_factor.values[0]
     assert np.all(np.abs(factor - 1.0) < 0.02)
     assert np.all(factor[:, 0] - 1.0 < factor[:, 1] - 1.0)
@@ -90,7 +96,7 @@ def test_steep_growth_that_is_the_same_both_ways_is_no_jump():
     data = run_up(
         variant(60, 0.05, 10), np.array([2340.0, 2440.0]) * RPM, temperatures=(None,),
         branch_period=0,
-    )  # fmt: skip
+    ).data  # fmt: skip
     size = data.dte_peak_to_peak.values[0]
     assert size[0] == pytest.approx(size[1], rel=1e-9)
     assert data.sizes["jump"] == 0
@@ -101,7 +107,7 @@ def test_jumps_are_the_same_in_coarse_and_in_fine_steps():
     lists = []
     for step in (100.0, 50.0):
         speeds = np.arange(2200.0, 2501.0, step) * RPM
-        data = run_up(variant(100, 0.03, 5), speeds, temperatures=(None,), branch_period=0)
+        data = run_up(variant(100, 0.03, 5), speeds, temperatures=(None,), branch_period=0).data
         lists.append(data.jump_fold.values / RPM)
         assert data.jump_direction.values.tolist() == [1, -1]
         # a run back from either meets the other
@@ -117,10 +123,12 @@ def test_contact_that_lasts_is_not_called_lost():
     data = run_up(
         variant(60, 0.05, 10), np.array([1800.0, 2400.0]) * RPM, temperatures=(None,),
         branch_period=0,
-    )  # fmt: skip
+    ).data  # fmt: skip
     assert np.all(data.contact_loss_share.values[..., 0] == 0.0)
     assert np.all(data.contact_loss_share.values[..., 1] > 0.01)
-    assert "contact is lost at 2400 rpm (in any state, up or down)" in notices_of(data)
+    assert "contact is lost at 2400 rpm (in any state, up or down)" in json.loads(
+        data.attrs["notices"]
+    )
 
 
 def test_where_the_runs_differ_is_said(plain):
@@ -147,7 +155,7 @@ def test_notices_say_where_the_tests_lie(plain):
 
 def test_sweep_points_do_not_know_each_other(rig):
     axes = {"rpm": np.array([900.0, 6000.0]) * RPM, "gear_temperature": [380.0, 420.0]}
-    whole = sweep(rig, axes)
+    whole = sweep(rig, axes).data
     for i in range(2):
         for j in range(2):
             alone = sweep(
@@ -156,14 +164,14 @@ def test_sweep_points_do_not_know_each_other(rig):
                     "pinion_speed": axes["rpm"][i : i + 1],
                     "gear_temperature": [axes["gear_temperature"][j]],
                 },
-            )
+            ).data
             for name in ("label", "period", "dte_rms", "dynamic_factor", "dte_line"):
                 one, many = alone[name].values[0, 0], whole[name].values[i, j]
                 assert np.allclose(one, many, rtol=1e-9, atol=1e-15), name
 
 
 def test_jammed_corner_of_a_sweep_is_a_status(rig):
-    data = sweep(rig, {"backlash": [2e-6, 125e-6]})
+    data = sweep(rig, {"backlash": [2e-6, 125e-6]}).data
     assert data.status.values.tolist() == [1, 0]
     assert np.isnan(data.dynamic_factor.values[0])
     assert any("1 of 2 points are jammed" in text for text in notices_of(data))

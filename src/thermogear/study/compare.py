@@ -34,8 +34,6 @@ from thermogear.results.result import Notice, Result, now
 from thermogear.study.simulated import CaseLines, case_lines, tree_lines
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from thermogear.case.case import Case
 
 _IMPLAUSIBLE_G = 50.0
@@ -118,7 +116,7 @@ def verdict(errors: Sequence[float], names: Sequence[str], u_val: float) -> str:
 
 
 def compare(
-    simulated: str | Path | Case | xr.DataTree | Mapping[str, LineTable],
+    simulated: str | Path | Case | Result | Mapping[str, LineTable],
     measured: str | Path | LineTable | Printed | Measurement | Record | None = None,
     *,
     teeth: int | None = None,
@@ -230,7 +228,7 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
 
 
 def _simulated(
-    simulated: str | Path | Case | xr.DataTree | Mapping[str, LineTable],
+    simulated: str | Path | Case | Result | Mapping[str, LineTable],
     tolerances: Mapping[str, float],
     samples: int,
     seed: int,
@@ -245,12 +243,10 @@ def _simulated(
         path = Path(simulated)
         stored = path / "results.nc" if path.is_dir() else path
         if stored.suffix == ".nc":
-            from thermogear.base.netcdf import read_tree
-
             if not stored.is_file():
                 raise InputError("simulated", str(simulated), why="there are no results")
-            return CaseLines(tree_lines(read_tree(stored)), u_num or 0.0, {}, ())
-    if hasattr(simulated, "children"):
+            return CaseLines(tree_lines(Result.read(stored)), u_num or 0.0, {}, ())
+    if isinstance(simulated, Result):
         return CaseLines(tree_lines(simulated), u_num or 0.0, {}, ())
     return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
 

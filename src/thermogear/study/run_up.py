@@ -31,8 +31,9 @@ from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
+from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
-from thermogear.study.notices import difference_notices, range_notices
+from thermogear.study.notices import difference_notices, finished, range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
 
 Floats = NDArray[np.float64]
@@ -524,7 +525,7 @@ def run_up(
     threads: int | None = None,
     scheduler: str | None = None,
     report: Report | None = None,
-) -> xr.Dataset:
+) -> Result:
     """Run the gears up and down over ``speeds`` [rad/s], undeformed and hot.
 
     ``temperatures`` [K] of both addenda, None or "undeformed" for undeformed gears (default: these,
@@ -550,10 +551,5 @@ def run_up(
         rule=rule,
         branch_period=branch_period,
     )
-    return carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
-
-
-def notices_of(data: xr.Dataset) -> list[str]:
-    """The notices stored with a result."""
-    found = json.loads(str(data.attrs.get("notices", "[]")))
-    return [str(text) for text in found]
+    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
+    return finished(data, case.title)

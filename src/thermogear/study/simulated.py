@@ -16,10 +16,9 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.measured.published import LineTable, SpeedLine
 from thermogear.measured.record import Channel, Record
+from thermogear.results.result import Result
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from thermogear.case.case import Case
 
 Floats = NDArray[np.float64]
@@ -35,15 +34,15 @@ class CaseLines:
     notices: tuple[tuple[str, str], ...]
 
 
-def tree_lines(tree: Any) -> dict[str, LineTable]:
+def tree_lines(result: Result) -> dict[str, LineTable]:
     """The mesh line of the simulated motion, one table per bundle and state ("thesis hot").
 
     Operating points without a motion (jammed, diverged) are left out; of several torques at one
     speed the first stands for it.
     """
-    if "motion" not in tree.children:
+    motion = result.group("motion")
+    if motion is None:
         raise InputError("simulated", "no motion", fix='draw.pictures must hold "motion"')
-    motion: xr.Dataset = tree["motion"].to_dataset()
     first = int(np.argmin(np.abs(motion["order"].values - 1.0)))
     speeds = np.asarray(motion["pinion_speed"].values, dtype=float)
     frequency = motion["line_frequency"].isel(order=first)

@@ -33,8 +33,9 @@ from thermogear.case.allowed import gear_parameter
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
-from thermogear.study.notices import range_notices
+from thermogear.study.notices import finished, range_notices
 from thermogear.study.response import RECORD, Recording, respond, response_variables
 
 Floats = NDArray[np.float64]
@@ -167,7 +168,7 @@ def sweep(
     threads: int | None = None,
     scheduler: str | None = None,
     report: Report | None = None,
-) -> xr.Dataset:
+) -> Result:
     """Settled motion and its gear figures over any grid of gear parameters.
 
     ``axes`` map names to SI values: pinion_speed [rad/s], pinion_torque [N m], gear_temperature
@@ -177,4 +178,5 @@ def sweep(
     same call resumes; ``scheduler`` is a dask address. Jammed and diverged points are a status.
     """
     plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
-    return carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
+    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
+    return finished(data, case.title)
