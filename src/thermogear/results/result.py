@@ -21,7 +21,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.stores import RESULT as STORE
 from thermogear.base.stores import read_store
-from thermogear.results.files import RESULTS, claimed
+from thermogear.results.files import RESULTS, claimed, finite
 from thermogear.results.tables import frames
 
 if TYPE_CHECKING:
@@ -289,6 +289,6 @@ def _plain(value: Any) -> Plain:
     if isinstance(value, bool):
         return int(value)
     if isinstance(value, Mapping | list | tuple) or value is None:
-        return json.dumps(value, allow_nan=False)
+        return json.dumps(finite(value), allow_nan=False)
     found: Plain = value.item() if hasattr(value, "item") else value
     return found
