@@ -135,6 +135,11 @@ class Result:
         """Whether Ctrl+C cut the study short; what is here was finished before."""
         return bool(self.provenance.get("interrupted", 0))
 
+    @property
+    def stored(self) -> bool:
+        """Whether it stands in a store of long work, and not in a file of its own."""
+        return bool(self.provenance.get("store", 0))
+
     # --- as others know it ----------------------------------------------------------------
 
     @cached_property
@@ -219,7 +224,7 @@ def result_of(tree: xr.DataTree) -> Result:
 
 def stored_dataset(data: xr.Dataset, title: str = "") -> Result:
     """The result behind the one Dataset of a store of long work, its attributes as provenance."""
-    return _from_attributes({"title": title, **data.attrs}, {"": data})
+    return _from_attributes({"title": title, **data.attrs, "store": True}, {"": data})
 
 
 def _from_attributes(attrs: Mapping[Any, Any], groups: Mapping[str, xr.Dataset]) -> Result:

@@ -15,7 +15,7 @@ from thermogear.base.files import put, require_directory
 from thermogear.results.files import RESULTS, SUMMARY, claimed, json_text
 from thermogear.results.result import Result, open_results
 from thermogear.views.page import Page, Shown, render
-from thermogear.views.pages import PAGES, STORED
+from thermogear.views.pages import PAGES
 from thermogear.views.picture import Picture
 from thermogear.views.svg import put_picture
 
@@ -41,7 +41,7 @@ def page_of(result: Result) -> Page:
 
 def names(result: Result) -> tuple[str, str]:
     """The file names of the page and of the figures of ``result``."""
-    if result.file == RESULTS or result.kind in STORED:
+    if result.file == RESULTS or result.stored:
         return "report.html", SUMMARY
     return f"{result.kind}.html", f"{result.kind}.json"
 

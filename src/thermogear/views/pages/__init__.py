@@ -1,51 +1,29 @@
-"""A page for every kind of result."""
+"""A page for every kind of result.
+
+A module of this folder that has ``KINDS`` and ``page(result)`` makes the pages of these kinds: a
+new kind is a new file.
+"""
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 from collections.abc import Callable
 
 from thermogear.results.result import Result
 from thermogear.views.page import Page
-from thermogear.views.pages import (
-    contact,
-    friction,
-    motion,
-    record,
-    relief,
-    run,
-    sensitivity,
-    sweeps,
-    temperature,
-    thesis,
-    versus,
-    warm_up,
-)
 
-PAGES: dict[str, Callable[[Result], Page]] = {
-    "gear": run.page,
-    "dimensionless": run.page,
-    "friction": friction.page,
-    "temperature": temperature.page,
-    "warmup": warm_up.page,
-    "relief": relief.page,
-    "contact": contact.page,
-    "orbit": motion.page,
-    "lyapunov": motion.page,
-    "branch": motion.page,
-    "cascade": motion.page,
-    "shared": motion.page,
-    "diagram": sweeps.page,
-    "map": sweeps.page,
-    "basins": sweeps.page,
-    "sweep": sweeps.page,
-    "run-up": sweeps.page,
-    "versus": versus.page,
-    "measured": record.page,
-    "comparison": record.page,
-    "sensitivity": sensitivity.page,
-    "thesis": thesis.page,
-}
+
+def _found() -> dict[str, Callable[[Result], Page]]:
+    pages: dict[str, Callable[[Result], Page]] = {}
+    for name in sorted(one.name for one in pkgutil.iter_modules(__path__)):
+        module = importlib.import_module(f"{__name__}.{name}")
+        for kind in getattr(module, "KINDS", ()):
+            if kind in pages:
+                raise ValueError(f"two pages of kind {kind}")
+            pages[kind] = module.page
+    return pages
+
+
+PAGES: dict[str, Callable[[Result], Page]] = _found()
 """Kind of a result -> what makes its page."""
-
-STORED = ("diagram", "map", "basins", "sweep", "run-up")
-"""Kinds of long work, which stand in a store of their own."""

@@ -20,6 +20,8 @@ from thermogear.views.pages.survey import (
 from thermogear.views.plots import loaded
 from thermogear.views.typesetting import prose
 
+KINDS = ("contact",)
+
 
 def page(result: Result) -> Page:
     """Loaded contact over position, load and temperature."""

@@ -22,6 +22,9 @@ MOST_PICTURES = 4
 """Operating points that get a picture of their own."""
 
 
+KINDS = ("friction",)
+
+
 def page(result: Result) -> Page:
     """All friction laws with their ranges."""
     data = result.groups["laws"]

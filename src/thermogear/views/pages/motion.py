@@ -23,6 +23,9 @@ Groups = Mapping[str, xr.Dataset]
 Summary = dict[str, Any]
 
 
+KINDS = ("orbit", "lyapunov", "branch", "cascade", "shared")
+
+
 def page(result: Result) -> Page:
     """One picture, and the numbers of the summary as tables."""
     kind, groups, summary = result.kind, result.groups, result.summary

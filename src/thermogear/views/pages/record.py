@@ -19,6 +19,9 @@ from thermogear.views.typesetting import html_symbol, prose
 _SHOWN = 60  # lines of the table: the most prominent
 
 
+KINDS = ("measured", "comparison")
+
+
 def page(result: Result) -> Page:
     """A measured record, or models against one."""
     made = (_comparison, _record, _spectrum, _lines, _evidence, _settings)

@@ -15,6 +15,8 @@ from thermogear.views.pages.survey import (
 )
 from thermogear.views.plots import relief
 
+KINDS = ("relief",)
+
 
 def page(result: Result) -> Page:
     """The relief found, beside the unrelieved pair."""

@@ -27,6 +27,9 @@ ORDER = (
 """The sections between key results and closing, in the order of the page."""
 
 
+KINDS = ("gear", "dimensionless")
+
+
 def page(result: Result) -> Page:
     """Friction, temperature, gap, springs and vibration, and what they rest on."""
     whole = with_hot_temperature(result)

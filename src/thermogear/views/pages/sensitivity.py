@@ -16,6 +16,8 @@ from thermogear.views.pages.background import background
 from thermogear.views.plots import claims as plots
 from thermogear.views.typesetting import prose
 
+KINDS = ("sensitivity",)
+
 
 def page(result: Result) -> Page:
     """What decides what, the ranges, the indices."""

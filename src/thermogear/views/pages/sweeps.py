@@ -43,6 +43,9 @@ EXPLAINED = {
 }
 
 
+KINDS = ("diagram", "map", "basins", "sweep", "run-up")
+
+
 def page(result: Result) -> Page:
     """Pictures, located points, and how it was computed."""
     data = result.data

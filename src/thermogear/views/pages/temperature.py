@@ -22,6 +22,8 @@ from thermogear.views.pages.survey import (
 from thermogear.views.plots import thermal_map
 from thermogear.views.typesetting import prose
 
+KINDS = ("temperature",)
+
 
 def page(result: Result) -> Page:
     """The closed loop over speed and torque."""

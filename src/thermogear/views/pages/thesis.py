@@ -33,6 +33,9 @@ MARKED = ("contradicted",)
 BASE_SETS = ("base_sets/table-4.2", "base_sets/section-4.1")
 
 
+KINDS = ("thesis",)
+
+
 def page(result: Result) -> Page:
     """Verdicts, then every section of the document with its claims and pictures."""
     pictures = Pictures()

@@ -64,6 +64,9 @@ CURVES = (
 )
 
 
+KINDS = ("versus",)
+
+
 def page(result: Result) -> Page:
     """What differs, key figures, curves over each other, the cases themselves."""
     data = result.data.assign_attrs(result.attrs)

@@ -16,6 +16,8 @@ from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import warm_up as plots
 
+KINDS = ("warmup",)
+
 
 def page(result: Result) -> Page:
     """A pair through its duty."""
