@@ -32,6 +32,7 @@ BLANKED = {
     r"\bin \d+(\.\d+)? s\b": "in <seconds> s",
 }
 """The same in running text."""
+_DRAWN = re.compile(r"<svg\b.*?</svg>", re.DOTALL)
 FILES_LEFT_OUT = ("lock", "journal.jsonl", "manifest*.json", "*.sha256", ".thermogear")
 """Files that hold hashes of others, versions, or nothing."""
 TEXTS = (".txt", ".toml", ".html", ".svg")
@@ -177,9 +178,14 @@ def _bytes(array: Array) -> tuple[str, bytes]:
 
 def blank(text: str) -> str:
     """``text`` without dates, versions and seconds; its hash where it is long."""
+    text = _without(text)
+    return text if len(text) <= LONGEST else f"{text[:40]}... {_hash(text.encode())}"
+
+
+def _without(text: str) -> str:
     for pattern, word in BLANKED.items():
         text = re.sub(pattern, word, text)
-    return text if len(text) <= LONGEST else f"{text[:40]}... {_hash(text.encode())}"
+    return text
 
 
 def _hash(raw: bytes) -> str:
@@ -238,4 +244,9 @@ def _text(text: str, place: str) -> dict[str, list[str]]:
             return _leaves(f"{place}:", json.loads(text))
         except ValueError:
             pass
-    return {f"{place}:": [blank(line) for line in text.splitlines()]}
+    return {f"{place}:": [blank(line) for line in _DRAWN.sub(_picture, text).splitlines()]}
+
+
+def _picture(found: re.Match[str]) -> str:
+    """One word for a picture."""
+    return f"<svg {_hash(_without(found[0]).encode())}>"
