@@ -28,14 +28,18 @@ import tarfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, field
+from functools import partial
 from importlib.metadata import version
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from typing import Any
 
 import numpy as np
-from same_cases import CASES, PYTHON, Case
+from filelock import FileLock
+from same_cases import CASES, Case
 from same_digest import Array, Digest, Stored, digest, values
 
 ROOT = Path(__file__).parents[1]
@@ -47,7 +51,19 @@ RENAMED: dict[str, str] = {}
 A path is ``case/file:group/variable``; dimensions and columns of tables have such paths too. A
 ``*`` stands for any text and keeps it: ``{"*/results.nc:mesh/*": "*/results.nc:cycle/*"}``.
 """
-THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+SETTINGS = {
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "NUMBA_NUM_THREADS": "1",
+    "PYTHONHASHSEED": "0",
+    "MPLBACKEND": "Agg",
+    "LC_ALL": "C.UTF-8",
+    "TZ": "UTC",
+    "COLUMNS": "100",
+}
+"""Environment of every command, beside this process's own."""
+SHOWN = 20
+"""So many of a case's texts that are told differently are shown."""
 
 
 # --- one side -------------------------------------------------------------------------------
@@ -62,65 +78,71 @@ class Outcome:
     digest: Digest
 
 
-@dataclass(frozen=True)
 class Side:
-    """The sources below ``home``/src, and the folders of what they made."""
+    """The sources below ``home``/src, and the folders of what they made.
 
-    home: Path
-    words: Callable[[Case], Sequence[str]]
+    ``reference``: whether a case's earlier words are taken.
+    """
+
+    def __init__(self, home: Path, *, reference: bool) -> None:
+        self.home, self.reference = home, reference
+        self.machine_code = home / f"numba-{kernels(home / 'src')[:12]}"
+        self._idle: SimpleQueue[subprocess.Popen[str]] = SimpleQueue()
+        self._started: list[subprocess.Popen[str]] = []
 
     def folder(self, case: Case) -> Path:
         return self.home / "out" / case.name
 
+    def words(self, case: Case) -> list[list[str]]:
+        """The words of every step."""
+        steps = case.before if self.reference and case.before is not None else case.steps
+        return [shlex.split(step) for step in steps]
+
     def run(self, case: Case) -> Outcome:
-        """The case from its beginning; what it printed stands in ``said-N.txt``."""
+        """The case from its beginning."""
         folder = self.folder(case)
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         for name, content in case.files.items():
             raw = content if isinstance(content, bytes) else content.encode()
             (folder / name).write_bytes(raw)
-        codes, seconds = [], 0.0
-        for number, step in enumerate(self.words(case), start=1):
-            code, spent = self._step(step, folder, number)
-            codes.append(code)
-            seconds += spent
-        return Outcome(tuple(codes), seconds, self.digest(case))
+        answer = self._ask({"folder": str(folder), "steps": self.words(case)})
+        return Outcome(
+            tuple(code for code, _ in answer), sum(spent for _, spent in answer), self.digest(case)
+        )
 
     def digest(self, case: Case) -> Digest:
         return digest(self.folder(case), case.name, without=case.files)
 
-    def _step(self, step: str, folder: Path, number: int) -> tuple[int, float]:
-        words = shlex.split(step)
-        program = [] if step.startswith(PYTHON) else ["-m", "thermogear"]
-        command = [sys.executable, *program, *words]
-        with (
-            (folder / f"said-{number}.txt").open("wb") as said,
-            (folder / f"complained-{number}.txt").open("wb") as complained,
-            subprocess.Popen(
-                command, cwd=folder, env=self._environment(), stdout=said, stderr=complained
-            ) as process,
-        ):
-            try:
-                _, status, used = os.wait4(process.pid, 0)
-            except BaseException:
-                process.kill()
-                raise
-            process.returncode = os.waitstatus_to_exitcode(status)
-        return process.returncode, used.ru_utime + used.ru_stime
+    def _ask(self, order: dict[str, Any]) -> list[tuple[int, float]]:
+        """Of one of the processes that wait, or of a new one."""
+        try:
+            process = self._idle.get_nowait()
+        except Empty:
+            process = subprocess.Popen(
+                [sys.executable, "-P", Path(__file__).with_name("same_run.py")],
+                env=self._environment(), text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            )  # fmt: skip
+            self._started.append(process)
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(json.dumps(order) + "\n")
+        process.stdin.flush()
+        line = process.stdout.readline()
+        self._idle.put(process)
+        return [(int(code), float(spent)) for code, spent in json.loads(line)]
+
+    def close(self) -> None:
+        for process in self._started:
+            process.communicate()
 
     def _environment(self) -> dict[str, str]:
         kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "NUMBA"))}
-        return kept | dict.fromkeys(THREADS, "1") | {
+        return kept | SETTINGS | {
             "PYTHONPATH": str(self.home / "src"),
             "PYTHONPYCACHEPREFIX": str(STORE / "pycache"),
-            "PYTHONHASHSEED": "0",
-            "NUMBA_CACHE_DIR": str(self.home / f"numba-{kernels(self.home / 'src')[:12]}"),
-            "MPLBACKEND": "Agg",
+            "NUMBA_CACHE_DIR": str(self.machine_code),
             "MPLCONFIGDIR": str(STORE / "matplotlib"),
-            "LC_ALL": "C.UTF-8",
-            "TZ": "UTC",
-            "COLUMNS": "100",
         }  # fmt: skip
 
 
@@ -142,81 +164,66 @@ def kernels(sources: Path) -> str:
 def this_tree() -> Side:
     """A copy of the sources as they stand, so that they may be edited meanwhile."""
     home = STORE / "new"
-    shutil.rmtree(home / "src", ignore_errors=True)
-    # Python knows compiled modules by second and size: an edit within one second is stale
-    shutil.rmtree(STORE / "pycache" / home.relative_to("/"), ignore_errors=True)
-    unwanted = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(ROOT / "src", home / "src", ignore=unwanted)
-    for old in home.glob("numba-*"):
-        if not old.name.endswith(kernels(home / "src")[:12]):
-            shutil.rmtree(old)
-    return Side(home, lambda case: case.steps)
+    # Python knows compiled modules by second and size: an edit within one second would be stale
+    for old in (home / "src", home / "out", STORE / "pycache" / home.relative_to(home.anchor)):
+        shutil.rmtree(old, ignore_errors=True)
+    shutil.copytree(ROOT / "src", home / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    side = Side(home, reference=False)
+    for old in set(home.glob("numba-*")) - {side.machine_code}:
+        shutil.rmtree(old)
+    return side
 
 
-def of_commit(name: str) -> Side:
+def of_commit(name: str, store: Path) -> Side:
     """The sources of a commit."""
-    home = STORE / name
+    home = store / name
     if not (home / "src").is_dir():
         raw = subprocess.run(
             ["git", "archive", name, "src"], cwd=ROOT, check=True, capture_output=True
         ).stdout
-        draft = home / f"draft-{os.getpid()}"
+        draft = home / "draft"
+        shutil.rmtree(draft, ignore_errors=True)
         with tarfile.open(fileobj=io.BytesIO(raw)) as packed:
             packed.extractall(draft, filter="data")
         (draft / "src").replace(home / "src")
         draft.rmdir()
-    return Side(home, lambda case: case.steps if case.before is None else case.before)
+    return Side(home, reference=True)
 
 
 # --- the reference, once --------------------------------------------------------------------
 
 
-@dataclass
-class Kept:
-    """What the reference did, by case, in a file beside its folder."""
-
-    side: Side
-    entries: dict[str, dict[str, Any]] = field(default_factory=dict)
-
-    @property
-    def file(self) -> Path:
-        return self.side.home.with_name(f"{self.side.home.name}.json")
-
-    def read(self) -> Kept:
-        if self.file.is_file():
-            self.entries = json.loads(self.file.read_text("utf-8"))
-        return self
-
-    def outcome(self, case: Case, *, fresh: bool) -> Outcome:
-        """As kept; run where it is not, or where the case or the machine is another now."""
-        entry = self.entries.get(case.name, {})
-        asked, reading = _asked(self.side, case), _reading()
-        if fresh or entry.get("asked") != asked or not self.side.folder(case).is_dir():
-            found = self.side.run(case)
-        elif entry["reading"] != reading:
-            found = Outcome(tuple(entry["codes"]), entry["seconds"], self.side.digest(case))
-        else:
-            return Outcome(
-                tuple(entry["codes"]), entry["seconds"], Digest.of_plain(entry["digest"])
-            )
-        self.entries[case.name] = {
-            "asked": asked,
-            "reading": reading,
-            "codes": found.codes,
-            "seconds": found.seconds,
-            "digest": found.digest.plain(),
-        }
-        draft = self.file.with_suffix(f".{os.getpid()}")
-        draft.write_text(json.dumps(dict(self.entries)), "utf-8")
-        draft.replace(self.file)
-        return found
+def kept(side: Side, case: Case, *, fresh: bool) -> Outcome:
+    """What the reference made of a case; run where that is not known, or not of this machine."""
+    file = side.home / f"{case.name}.json"
+    asked, reading = _asked(side, case), _reading()
+    entry = json.loads(file.read_text("utf-8")) if file.is_file() and not fresh else {}
+    if entry.get("asked") != asked or not side.folder(case).is_dir():
+        found = side.run(case)
+        print(f"{case.name:<22} by the reference {found.seconds:.1f} s", file=sys.stderr)
+    elif entry["reading"] != reading:
+        found = Outcome(tuple(entry["codes"]), entry["seconds"], side.digest(case))
+    else:
+        return Outcome(tuple(entry["codes"]), entry["seconds"], Digest.of_plain(entry["digest"]))
+    content = {
+        "asked": asked,
+        "reading": reading,
+        "codes": found.codes,
+        "seconds": found.seconds,
+        "digest": found.digest.plain(),
+    }
+    draft = file.with_suffix(".part")
+    draft.write_text(json.dumps(content), "utf-8")
+    draft.replace(file)
+    return found
 
 
 def _asked(side: Side, case: Case) -> str:
     """What decides the numbers of the reference: the case, the libraries, the machine."""
     libraries = [version(name) for name in ("numpy", "scipy", "numba", "xarray", "zarr")]
     kind = [platform.python_version(), platform.machine(), os.environ.get("OPENBLAS_CORETYPE")]
-    asked = [list(side.words(case)), sorted(case.files.items()), libraries, kind]
+    files = sorted(case.files.items())
+    asked = [side.words(case), files, libraries, kind, SETTINGS]
     return hashlib.sha256(repr(asked).encode()).hexdigest()
 
 
@@ -229,7 +236,7 @@ def _reading() -> str:
 
 @dataclass
 class Verdict:
-    """One case beside its reference: how many variables and told texts are equal, and what is not."""
+    """A case beside its reference: how many variables and texts are equal, and what is not."""
 
     case: str
     variables: int = 0
@@ -247,8 +254,7 @@ def new_path(path: str, renamed: Mapping[str, str]) -> str:
     for old, new in renamed.items():
         found = re.fullmatch("(.*)".join(map(re.escape, old.split("*"))), path)
         if found is not None:
-            texts = iter(found.groups())
-            return re.sub(r"\*", lambda _: next(texts), new)
+            return "".join(chain(*zip_longest(new.split("*"), found.groups(), fillvalue="")))
     return path
 
 
@@ -285,7 +291,8 @@ def _compare_variables(
         ):  # fmt: skip
             found.equal += 1
             continue
-        found.differences.append(f"{now}: {_otherwise(one, dims, other, lambda: how(path, now))}")  # noqa: B023
+        words = _otherwise(one, dims, other, partial(how, path, now))
+        found.differences.append(f"{now}: {words}")
     for path in left:
         found.variables += 1
         found.differences.append(f"{path}: new")
@@ -378,56 +385,47 @@ def chosen(only: str | None) -> list[Case]:
     return [case for case in CASES if case.name.startswith(tuple(names))]
 
 
-def verdicts(cases: Sequence[Case], kept: Kept, *, fresh: bool, jobs: int) -> Iterator[Verdict]:
-    """One after another; the sides never at once."""
-    before = {}
-    with ThreadPoolExecutor(jobs) as crew:
-        for case, outcome in zip(
-            cases, crew.map(lambda c: kept.outcome(c, fresh=fresh), cases), strict=True
-        ):
-            before[case.name] = outcome
+def verdicts(
+    cases: Sequence[Case], reference: Side, *, fresh: bool, jobs: int
+) -> Iterator[tuple[Verdict, float]]:
+    """Each with the reference's processor seconds; the sides never at once."""
+    with FileLock(reference.home / "lock"), ThreadPoolExecutor(jobs) as crew:
+        before = list(crew.map(lambda case: kept(reference, case, fresh=fresh), cases))
+        reference.close()
     now = this_tree()
-    with ThreadPoolExecutor(jobs) as crew:
-        for case, outcome in zip(cases, crew.map(now.run, cases), strict=True):
-            yield judged(case, kept.side, before[case.name], now, outcome)
+    with ThreadPoolExecutor(jobs) as crew, closing(now):
+        for case, one, two in zip(cases, before, crew.map(now.run, cases), strict=True):
+            yield judged(case, reference, one, now, two), one.seconds
 
 
 def main(words: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description="Do all commands store the same numbers?")
     parser.add_argument("ref", nargs="?", default=REFERENCE, help=f"a commit [{REFERENCE}]")
-    parser.add_argument("--only", metavar="NAME,...", help="cases, or the beginnings of their names")
+    parser.add_argument("--only", metavar="NAME,...", help="cases, by the beginning of their names")
     parser.add_argument("--list", action="store_true", help="print the cases and stop")
     parser.add_argument("--fresh", action="store_true", help="run the reference anew")
     parser.add_argument("--strict", action="store_true", help="told differences fail too")
-    parser.add_argument("--verbose", action="store_true", help="show what is told differently")
+    parser.add_argument("--verbose", action="store_true", help="show some that is told differently")
     parser.add_argument("--jobs", type=int, default=1, help="cases at once [1]")
+    parser.add_argument("--store", type=Path, default=STORE, help="home of the reference [.same]")
     options = parser.parse_args(words)
     cases = chosen(options.only)
     if options.list:
         for case in cases:
-            print(f"{case.name:<24} {' ; '.join(case.steps)}")
+            print(f"{case.name:<22} {'; '.join(case.steps)}")
         return 0
     name = subprocess.run(
         ["git", "rev-parse", "--short", f"{options.ref}^{{commit}}"],
         cwd=ROOT, check=True, capture_output=True, text=True,
     ).stdout.strip()  # fmt: skip
-    settings = STORE / "matplotlib" / "matplotlibrc"
-    settings.parent.mkdir(parents=True, exist_ok=True)
-    settings.write_text("svg.hashsalt: same\n", "utf-8")  # else it draws names at random
-    kept = Kept(of_commit(name)).read()
-    began = time.monotonic()
-    all_found = []
-    for found in verdicts(cases, kept, fresh=options.fresh, jobs=max(options.jobs, 1)):
+    home = options.store.resolve() / name
+    home.mkdir(parents=True, exist_ok=True)
+    reference = of_commit(name, home.parent)
+    began, all_found, before = time.monotonic(), [], 0.0
+    for found, spent in verdicts(cases, reference, fresh=options.fresh, jobs=max(options.jobs, 1)):
         all_found.append(found)
-        print(
-            f"{found.case:<24} variables {found.equal:>5} of {found.variables:<5} "
-            f"told {found.told_equal:>6} of {found.told:<6} {found.seconds:6.1f} s",
-            flush=True,
-        )
-        for text in found.differences:
-            print(f"    DIFFERENT {text}")
-        for text in found.otherwise[: 20 if options.verbose else 0]:
-            print(f"    told: {text}")
+        before += spent
+        _tell(found, SHOWN if options.verbose else 0)
     for old, new in RENAMED.items():
         count = sum(new_path(p, {old: new}) == q for f in all_found for p, q in f.renamed.items())
         print(f"renamed {old} -> {new}: {count} variables")
@@ -437,9 +435,21 @@ def main(words: Sequence[str]) -> int:
         f"{len(all_found)} cases beside {name}: {sum(f.equal for f in all_found)} of "
         f"{sum(f.variables for f in all_found)} variables equal, {different} differences, "
         f"{otherwise} told differently; {sum(f.seconds for f in all_found):.0f} s of processor "
-        f"time, {time.monotonic() - began:.0f} s"
+        f"time (the reference took {before:.0f} s), {time.monotonic() - began:.0f} s in all"
     )
     return int(different > 0 or (options.strict and otherwise > 0))
+
+
+def _tell(found: Verdict, most: int) -> None:
+    print(
+        f"{found.case:<22} variables {found.equal:>4} of {found.variables:<4} "
+        f"told {found.told_equal:>6} of {found.told:<6} {found.seconds:6.1f} s",
+        flush=True,
+    )
+    for text in found.differences:
+        print(f"    DIFFERENT {text}")
+    for text in found.otherwise[:most]:
+        print(f"    told {text}")
 
 
 if __name__ == "__main__":

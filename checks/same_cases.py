@@ -10,16 +10,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-PYTHON = "-c "
-"""A step that begins so is a line of Python and not words after ``thermogear``."""
-
 
 @dataclass(frozen=True)
 class Case:
     """Commands carried out one after another in a folder of their own.
 
-    ``steps``: words after ``thermogear``, as a shell splits them; ``files``: what stands in the
-    folder beforehand; ``before``: the steps of the reference, where its words were others.
+    ``steps``: words after ``thermogear``, as a shell splits them, or ``-c`` and a line of Python.
+    ``files``: what stands in the folder beforehand. ``before``: the steps of the reference, where
+    its words were others.
     """
 
     name: str
@@ -220,6 +218,7 @@ FEW = (
 BARE = f"""{FEW} --set 'draw.base_sets=[]'"""
 SHORT = f"""{BARE} --set 'operating.speed="3000 rpm"' --set 'temperatures.row=[]'"""
 ONE_BUNDLE = f"{SHORT} --set model.bundle=consistent"
+MOTION = f"""{ONE_BUNDLE} --set 'draw.pictures=["motion"]'"""
 NUMBERS = "--zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16"
 CHOICES = (
     "friction=dry inlet=oil flash=exact heat_distribution=uniform bore=rigid spring=secant "
@@ -227,15 +226,17 @@ CHOICES = (
     "friction=xu-kahraman heat_distribution=parabola flank=thesis bore=shaft modulus=constant "
     "stiffness=textbook-30-degree thermal_stiffness=thesis housing=rigid",
 )
-COMMANDS = (
-    "run report check example schema friction temperature warmup relief contact orbit lyapunov "
-    "continue shared-force bifurcation map basins runup sweep measure compare thesis sensitivity "
-    "verify versus"
-).split()
+COMMANDS = [
+    *("run", "report", "check", "example", "schema"),
+    *("friction", "temperature", "warmup", "relief", "contact"),
+    *("orbit", "lyapunov", "continue", "shared-force"),
+    *("bifurcation", "map", "basins", "runup", "sweep"),
+    *("measure", "compare", "thesis", "sensitivity", "verify", "versus"),
+]
 SMALL_THESIS = (
-    PYTHON + "'from pathlib import Path; from thermogear.thesis.evidence import Size; "
+    "-c 'from pathlib import Path; from thermogear.thesis.evidence import Size; "
     "from thermogear.thesis.report import build_to_directory; "
-    "build_to_directory(Path(\"out\"), Size(speeds=2, torques=2, diagram=21, flips=1, samples=8))'"
+    'build_to_directory(Path("out"), Size(speeds=2, torques=2, diagram=21, flips=2, samples=8))\''
 )
 PITCH = str([f"{3 * (n * n % 7) - 9} um" for n in range(TEETH)]).replace("'", '"')
 MINE = {"own.toml": OWN}
@@ -268,7 +269,7 @@ CASES = (
         (
             f"""run rig -o out --json {FEW} --set 'draw.base_sets=["section-4.1"]' """
             """--set 'operating.speed=["1000 rpm","8000 rpm"]' """
-            """--set 'operating.torque=["20 N m","200 N m"]'""",
+            """--set 'operating.torque="40 N m"'""",
         ),
     ),
     Case(
@@ -299,8 +300,8 @@ CASES = (
     Case(
         "versus",
         (
-            f"run rig -o one {ONE_BUNDLE}",
-            f"run rig -o two {ONE_BUNDLE} --set 'operating.torque=150 N m'",
+            f"run rig -o one {MOTION}",
+            f"run rig -o two {MOTION} --set 'operating.torque=150 N m'",
             "versus one two -o out --json",
             "versus table-4.2 section-4.1 -o rows --json",
         ),
@@ -394,7 +395,8 @@ CASES = (
     Case(
         "runup",
         (
-            "runup rig --rpm 6000:8000:3 --hot 100 --torque 60 --bundle thesis -o out --json --threads 1",
+            "runup rig --rpm 6000:8000:3 --hot 100 --torque 60 --bundle thesis -o out --json"
+            " --threads 1",
             "runup own.toml --rpm 3000:6000:2 --branch-period 0 -o own --json",
         ),
         MINE,
@@ -459,7 +461,7 @@ CASES = (
             "compare thesis-5.2 -o out --json",
             "compare own.toml lines.csv --tolerance dynamics.damping_ratio=10"
             " --samples 2 --teeth 28 -o own --json",
-            f"run rig -o run {ONE_BUNDLE} --set 'operating.speed=\"1000 rpm\"'",
+            f"run rig -o run {MOTION} --set 'operating.speed=\"1000 rpm\"'",
             "compare run record.csv --speed 1000 --teeth 25 -o record --json",
         ),
         {**MINE, "lines.csv": LINES, "record.csv": _table()},

@@ -33,6 +33,8 @@ BLANKED = {
 }
 """The same in running text."""
 _DRAWN = re.compile(r"<svg\b.*?</svg>", re.DOTALL)
+_NAMES = re.compile(r"(?<=[a-z_])[0-9a-f]{10}\b")
+"""The ends of names inside a picture, which matplotlib draws at random."""
 FILES_LEFT_OUT = ("lock", "journal.jsonl", "manifest*.json", "*.sha256", ".thermogear")
 """Files that hold hashes of others, versions, or nothing."""
 TEXTS = (".txt", ".toml", ".html", ".svg")
@@ -131,8 +133,10 @@ class _Variable:
 def _variables(path: Path) -> Iterator[_Variable]:
     if path.suffix == ".zarr":
         for name, array in sorted(zarr.open_group(path, mode="r").arrays()):
-            dims = tuple(str(d) for d in array.metadata.to_dict().get("dimension_names") or ())
-            yield _Variable(name, dims, np.asarray(array[...]), dict(array.attrs))
+            names: Any = array.metadata.to_dict().get("dimension_names")
+            yield _Variable(
+                name, tuple(map(str, names or ())), np.asarray(array[...]), dict(array.attrs)
+            )
         return
     with h5netcdf.File(path, "r") as file:
         yield from _in_group(file, "")
@@ -249,4 +253,6 @@ def _text(text: str, place: str) -> dict[str, list[str]]:
 
 def _picture(found: re.Match[str]) -> str:
     """One word for a picture."""
-    return f"<svg {_hash(_without(found[0]).encode())}>"
+    known: dict[str, str] = {}
+    text = _NAMES.sub(lambda name: known.setdefault(name[0], f"-{len(known)}"), found[0])
+    return f"<svg {_hash(_without(text).encode())}>"
