@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate sbom test check lint unit lock compile clean look house
+.PHONY: friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -84,6 +84,9 @@ $(AUDIT_STAMP): $(STAMP) requirements/audit.txt
 	VIRTUAL_ENV=$(CURDIR)/.audit-venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/audit.txt
 	@touch $@
 
+same: $(STAMP)  ## do all commands still store the same numbers? SAME="HEAD~1 --only run" for another commit, some cases
+	@$(BIN)/python checks/same.py $(SAME)
+
 trial-damage: $(STAMP)  ## 300 single damages to finished files and stores, minutes; docs/trial_damage.md
 	@$(BIN)/python checks/trial_damage.py
 
@@ -130,4 +133,4 @@ lock: $(STAMP)  ## refresh the hashed locks (no addresses are written)
 	  --no-header --no-emit-index-url --no-emit-find-links requirements/audit.in -o requirements/audit.txt
 
 clean:
-	rm -rf .venv .bench-venv .audit-venv .mutate .demo .look
+	rm -rf .venv .bench-venv .audit-venv .mutate .same .demo .look
