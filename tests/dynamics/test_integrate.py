@@ -316,6 +316,35 @@ def test_a_model_of_the_state_falls_back_and_says_why():
         simulate(Duffing(), method="exact")
 
 
+class TwoBodies:
+    """Two rotations of a pair as a model of its own: a derivative and a period, no lanes."""
+
+    def __init__(self, pair, *, relative):
+        self.pair, self.period, self.derivative = pair, pair.period, pair.derivative
+        if relative:
+            self.displacement, self.half_backlash = pair.displacement, pair.half_backlash
+            self.states = ("theta1", "theta2", "omega1", "omega2")
+
+
+def test_four_states_go_by_their_own_names():
+    """The second of four states is a rotation and no velocity."""
+    pair = PairModel.from_excitation(PAIR)
+    start = pair.start(x=2.0 * pair.half_backlash, v=0.0)
+    run = {"periods": 3, "samples_per_period": 16, "initial_state": start, "method": "adaptive"}
+    known = simulate(pair, **run)
+    named = simulate(TwoBodies(pair, relative=True), **run)
+    for name in ("x", "v", "section_x", "theta2", "omega1", "section_omega2"):
+        scale = np.abs(known[name].values).max()
+        np.testing.assert_allclose(named[name].values, known[name].values, atol=1e-9 * scale)
+    bare = simulate(TwoBodies(pair, relative=False), **run)
+    assert "x" not in bare
+    assert "section_v" not in bare
+    assert bare["y2"].shape == (1, 48)
+    assert bare["status"].values.tolist() == [0]
+    assert bare["section_y2"].values[0, 0] == start[1]
+    assert bare["y4"].attrs["long_name"] == "state y4 of the model"
+
+
 @pytest.mark.parametrize("method", ["exact", "rk4"])
 def test_a_diverging_lane_is_a_status_and_its_neighbours_go_on(method):
     """w = 2 and eps = .9: the straight system gains energy every period, for ever."""

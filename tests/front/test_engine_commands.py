@@ -133,6 +133,29 @@ def test_ctrl_c_keeps_what_is_done(
         (["continue", *NUMBERS, "--parameter", "zeta", "--to", "x"], "--to: got 'x'"),
         (["continue", *NUMBERS, "--cascade", "9"], "--cascade: got 9; allowed 1..6"),
         (["continue", *NUMBERS, "--hot"], "--hot: got without --cascade"),
+        (["orbit", *NUMBERS, "--row", "zeta"], "--row: got zeta; no case is named"),
+        (["orbit", *NUMBERS, "--state", "hot"], "--state: got hot; no case is named"),
+        (["orbit", "rig", "--point", "2"], "--point: got 2; a gear case has no rows"),
+        (
+            ["orbit", "table-4.2", "--bundle", "thesis"],
+            "--bundle: got thesis; a dimensionless case has no gears",
+        ),
+        (
+            ["continue", "table-4.2", "--cascade", "2", "--period", "2"],
+            "--period: got 2; beside --cascade",
+        ),
+        (
+            ["continue", "table-4.2", "--cascade", "2", "--point", "2"],
+            "--point: got 2; a cascade runs through the whole row",
+        ),
+        (["shared-force", "rig", "--start", "0,0"], "--start: got 0,0; every speed starts"),
+        (["report", "somewhere", "--kind", "svg"], "--kind: got svg; no picture is saved"),
+        (["compare", "rig", "thesis-5.2", "--samples", "3"], "--samples: got 3; beside no"),
+        (["compare", "rig", "thesis-5.2", "--rate", "3"], "--rate: got 3.0; there is no record"),
+        (
+            ["compare", "thesis-5.2", "--tolerance", "torque=5"],
+            "tolerances: got torque; stored lines are not computed anew",
+        ),
         (["continue", "rig", "--cascade", "2"], "--cascade: got a gear case"),
         (
             ["continue", "rig", "--parameter", "speed", "--to", "4000"],

@@ -3,12 +3,15 @@
 import json
 
 import pytest
+import xarray as xr
 from click.testing import CliRunner
 
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.sweep_commands import COMMANDS
+from thermogear.results.store import RESULT
 
+GRID = ("--over", "zeta=0.1:0.2:3", "--over", "w=1:2:3")
 BY_NAME = {command.name: command for command in COMMANDS}
 
 
@@ -84,6 +87,18 @@ def test_run_up_and_sweep_of_the_rig(cases, tmp_path):
     assert (tmp_path / "s" / "report.html").exists()
 
 
+def test_a_run_up_is_run_in_the_state_it_is_given(cases, tmp_path):
+    words = [cases / "rig.toml", "--rpm", "4200:4400:2", "--branch-period", 0]
+    states = {"hot": [20.0, 140.0], "60": [20.0, 60.0], "undeformed": [20.0]}
+    for state, expected in states.items():
+        call("runup", *words, "--state", state, "-o", tmp_path / state)
+        with xr.open_zarr(tmp_path / state / RESULT, consolidated=False) as data:
+            kelvins = data["gear_temperature"].values
+        assert kelvins - 273.15 == pytest.approx(expected)
+    with pytest.raises(InputError, match=r"--state: got 60; beside --hot; leave one out"):
+        call("runup", *words, "--state", "60", "--hot", "80", "-o", tmp_path / "both")
+
+
 def test_estimate_alone_writes_nothing(cases, tmp_path):
     call("map", cases / "table-4.2.toml", "--over", "omega=1.1:1.3:8", "--over", "eps=0.1:0.9:8",
          "-o", tmp_path / "e", "--estimate")  # fmt: skip
@@ -99,9 +114,32 @@ def test_estimate_alone_writes_nothing(cases, tmp_path):
         ("sweep", ["--over", "zeta=0.1:0.2:3"], "allowed kind = 'gear'"),
         ("runup", [], "allowed kind = 'gear'"),
         ("basins", ["--x", "1:2"], "x: got '1:2'; allowed FROM:TO:COUNT"),
+        (
+            "map",
+            [*GRID, "--bundle", "thesis", "--estimate"],
+            "--bundle: got thesis; a dimensionless case has no gears",
+        ),
+        (
+            "map",
+            [*GRID, "--state", "hot", "--estimate"],
+            "--state: got hot; a dimensionless case has no gears",
+        ),
+        (
+            "bifurcation",
+            [*GRID[:2], "--against", "state=undeformed"],
+            "--state: got undeformed; a dimensionless case has no gears",
+        ),
+        ("map", [*GRID, "--estimate", "--json"], "--json: got beside --estimate"),
     ],
 )
 def test_wrong_words_are_one_line(cases, tmp_path, name, words, message):
     with pytest.raises(InputError, match=message) as caught:
         call(name, cases / "table-4.2.toml", *words, "-o", tmp_path / "x")
     assert "\n" not in str(caught.value)
+
+
+def test_numbers_beside_a_gear_case_are_refused(cases, tmp_path):
+    words = [cases / "rig.toml", "--over", "rpm=4200:4400:2", "-o", tmp_path / "x"]
+    for option in ("--but", "--against"):
+        with pytest.raises(InputError, match="damping_ratio: got a number beside a gear case"):
+            call("bifurcation", *words, option, "zeta=0.1")

@@ -8,7 +8,7 @@ import pytest
 from thermogear.base.errors import InputError
 from thermogear.measured.published import RPM, LineTable, SpeedLine
 from thermogear.study.fit import fit, fit_case
-from thermogear.study.simulated import override_of, tree_lines
+from thermogear.study.simulated import overrides_of, tree_lines
 
 RATIOS = np.array([0.2, 0.5, 0.9, 1.0, 1.1, 1.6])
 
@@ -83,14 +83,13 @@ def test_refusals() -> None:
 def test_overrides_scale_values_with_their_units() -> None:
     text = "[dynamics]\ndamping_ratio = 0.1\n[transmission_error]\nharmonics = [{ order = 1, "
     text += 'amplitude = "4 um" }]\n'
-    assert override_of(text, {}, "dynamics.damping_ratio", 1.5) == (
-        "dynamics.damping_ratio",
-        str(0.1 * 1.5),
-    )
-    assert override_of(text, {}, "transmission_error.amplitude", 2.0) == (
-        "transmission_error.harmonics",
-        "[{ order = 1, amplitude = '8.0 um' }]",
-    )
+    assert overrides_of(text, {}, "dynamics.damping_ratio", 1.5) == {
+        "dynamics.damping_ratio": str(0.1 * 1.5)
+    }
+    assert overrides_of(text, {}, "zeta", 1.5) == {"dynamics.damping_ratio": str(0.1 * 1.5)}
+    assert overrides_of(text, {}, "transmission_error.amplitude", 2.0) == {
+        "transmission_error.harmonics": "[{ order = 1, amplitude = '8.0 um' }]"
+    }
 
 
 @pytest.mark.slow

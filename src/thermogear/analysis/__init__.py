@@ -1,1 +1,1 @@
-"""Sections, labels and proofs for any model with a derivative and a period."""
+"""Sections, labels and proofs of clearance oscillators, on their event-exact return map."""

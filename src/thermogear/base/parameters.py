@@ -81,6 +81,33 @@ _ALL = (
         name="roughness", words="roughness Ra", unit="m", shown="µm", factor=1e6,
         fields=("gears.pinion.roughness", "gears.wheel.roughness"),
     ),
+    Parameter(
+        name="housing_below_gears", words="housing below the gears", unit="K", shown="K",
+        fields=("temperatures.housing_below_addendum",),
+    ),
+    Parameter(
+        name="shafts_below_gears", words="shafts below the gears", unit="K", shown="K",
+        fields=(
+            "temperatures.pinion_bore_below_addendum", "temperatures.wheel_bore_below_addendum",
+        ),
+    ),
+    Parameter(
+        name="oil_below_gears", words="oil below the gears", unit="K", shown="K",
+        fields=("oil.temperature_below_addendum",),
+    ),
+    # what no single field says: the sensitivity study alone
+    Parameter(
+        name="oil_viscosity", words="oil viscosity at 40 °C", unit="m^2/s", shown="mm²/s",
+        factor=1e6,
+    ),
+    Parameter(
+        name="cold_backlash", words="cold backlash (total, normal)", unit="m", shown="mm",
+        factor=1e3,
+    ),
+    Parameter(
+        name="error_amplitude", words="kinematic error amplitude", unit="m", shown="µm",
+        factor=1e6,
+    ),
     # gears and the equation alike
     Parameter(
         name="damping_ratio", words="damping ratio", symbol="ζ", number=True,
@@ -141,5 +168,6 @@ def named(name: str, among: Iterable[str] = PARAMETERS, option: str = "parameter
     names = [alias for one in known for alias in (one, *PARAMETERS[one].aliases)]
     why = None
     if full in PARAMETERS:
-        why = "a number of the dimensionless equation" if full in NUMBERS else "of gears alone"
+        of_gears = "a parameter of gears, and none of these"
+        why = "a number of the dimensionless equation" if full in NUMBERS else of_gears
     raise InputError(option, repr(name), why=why, fix=nearest(name, names))

@@ -1,72 +1,93 @@
-"""The sources that the results of a case rest on."""
+"""The sources that the results of a case rest on: those of the laws it used, and no others."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from thermogear.case.case import Case, GearCase
 from thermogear.case.thesis_cases import of_the_thesis
-from thermogear.heat.friction import LAWS
+from thermogear.heat.friction import LAWS, ConstantDry, LambdaBlend
+from thermogear.mesh.model import MeshModel
+
+Source = tuple[str, str, str]
+"""Key, text, what it is used for."""
+
+THESIS = (
+    "Dynamic Modeling and Analysis of Spur Gear Transmission Systems Considering Thermal "
+    "Deformation (web summary of a thesis)"
+)
+BLOK = ("blok", "H. Blok (1937), flash temperature of a moving heat source", "flash temperature")
+JAEGER = (
+    "jaeger",
+    "J. C. Jaeger (1942), moving sources of heat at sliding contacts",
+    "flash temperature at finite speed",
+)
+FLASH = {"blok": (BLOK,), "peclet": (BLOK, JAEGER), "exact": (JAEGER,)}
+HERTZ = ("johnson", "K. L. Johnson, Contact Mechanics, eqs. 4.43 and 4.45", "Hertzian contact")
+FILM = ("dowson-higginson", "D. Dowson, G. R. Higginson, line contact", "least film thickness")
+GRUBIN = ("grubin", "A. N. Grubin (1949)", "central film thickness")
+LOADED = (
+    (
+        "weber-banaschek",
+        "C. Weber, K. Banaschek (1953), deformation and profile relief of gears",
+        "stiffness of tooth and contact",
+    ),
+    (
+        "timoshenko-goodier",
+        "S. Timoshenko, J. N. Goodier, Theory of Elasticity, sec. 43",
+        "the gear body as a ring",
+    ),
+)
+TEXTBOOK = (
+    (
+        "yang-sun",
+        "D. C. H. Yang, Z. S. Sun, J. Mech. Trans. Autom. Des. 107 (1985) 529-535",
+        "the tooth as a beam, energy method; contact stiffness",
+    ),
+    (
+        "sainsot",
+        "P. Sainsot, P. Velex, O. Duverger, J. Mech. Design 126 (2004) 748-752",
+        "stiffness of the gear body, textbook sum",
+    ),
+)
 
 
 def citations(case: Case) -> list[dict[str, str]]:
     """The sources that this case's results rest on."""
-    found: list[tuple[str, str, str]] = []
+    found: list[Source] = []
     own = of_the_thesis(case)
     bundle = isinstance(case, GearCase) and any(m.name.startswith("thesis") for m in case.models)
     if own or bundle:
         found.append(
-            (
-                "thesis",
-                "Dynamic Modeling and Analysis of Spur Gear Transmission Systems Considering "
-                "Thermal Deformation (web summary of a thesis)",
-                "the model under study" if own else "the bundle named thesis",
-            )
+            ("thesis", THESIS, "the model under study" if own else "the bundle named thesis")
         )
     if isinstance(case, GearCase):
-        found += _gear_citations(case)
+        found += dict.fromkeys(one for model in case.models for one in _of_choices(model))
+        found += _of_materials(case)
     return [{"key": key, "text": text, "used_for": use} for key, text, use in found]
 
 
-def _gear_citations(case: GearCase) -> list[tuple[str, str, str]]:
-    """Sources of the formulas, the oil and the materials that a gear case uses."""
-    found = [
-        ("blok", "H. Blok (1937), flash temperature of a moving heat source", "flash temperature"),
-        (
-            "benedict-kelley",
-            "G. H. Benedict, B. W. Kelley, ASLE Transactions 4 (1961) 59-70",
-            "friction of lubricated flanks",
-        ),
-        ("johnson", "K. L. Johnson, Contact Mechanics, eqs. 4.43 and 4.45", "Hertzian contact"),
-        (
-            "yang-sun",
-            "D. C. H. Yang, Z. S. Sun, J. Mech. Trans. Autom. Des. 107 (1985) 529-535",
-            "the tooth as a beam, energy method",
-        ),
-    ]
-    for name in dict.fromkeys(m.friction for m in case.models):
-        if name not in ("benedict-kelley", "dry"):
-            found.append((name, LAWS[name].source, f"friction, {name}"))
-    if any(m.stiffness == "loaded" for m in case.models):
-        found.append(
-            (
-                "weber-banaschek",
-                "C. Weber, K. Banaschek (1953), deformation and profile relief of gears",
-                "stiffness of tooth and contact",
-            )
-        )
-    if any(m.stiffness.startswith("textbook") for m in case.models):
-        found += [
-            (
-                "sainsot",
-                "P. Sainsot, P. Velex, O. Duverger, J. Mech. Design 126 (2004) 748-752",
-                "stiffness of the gear body, textbook sum",
-            ),
-        ]
-    oil = case.operating.lubricant
-    found += [
-        ("walther", "ASTM D341", "viscosity over temperature"),
-        ("oil", oil.source, f"oil {oil.name}"),
-    ]
+def _of_choices(model: MeshModel) -> Iterator[Source]:
+    """Sources of the laws that a bundle chose."""
+    yield from FLASH[model.flash]
+    if model.friction != ConstantDry.name:
+        yield model.friction, LAWS[model.friction].source, f"friction, {model.friction}"
+    yield FILM
+    if model.friction == LambdaBlend.name:
+        yield GRUBIN
+    yield HERTZ
+    loaded = model.stiffness == "loaded"
+    if loaded or model.sharing == "loaded":
+        yield from LOADED
+    if not loaded or model.sharing == "stiffness":
+        yield from TEXTBOOK
+
+
+def _of_materials(case: GearCase) -> Iterator[Source]:
+    """Sources of the oil and the materials."""
+    oil = case.stated.lubricant
+    yield "walther", "ASTM D341", "viscosity over temperature"
+    yield "oil", oil.source, f"oil {oil.name}"
     bodies = (case.pair.pinion.material, case.pair.wheel.material, case.housing)
     for material in dict.fromkeys(bodies):
-        found.append(("material", material.source, f"material {material.name}"))
-    return found
+        yield "material", material.source, f"material {material.name}"

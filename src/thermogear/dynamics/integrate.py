@@ -16,7 +16,7 @@ from thermogear.dynamics.blocks import Pace, Progress, run_blocks
 from thermogear.dynamics.kernels.rk4 import advance_rk4
 from thermogear.dynamics.load_shared import LoadSharedModel, simulate_shared
 from thermogear.dynamics.models import ClearanceModel, PairModel
-from thermogear.dynamics.outcome import Result, dataset
+from thermogear.dynamics.outcome import DIVERGED, Result, dataset
 from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
 from thermogear.dynamics.tables import Lanes
 
@@ -201,7 +201,8 @@ def simulate(
 
     ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
     :class:`PairModel`, :class:`LoadSharedModel`, or anything with ``derivative(t, y)`` and
-    ``period``.
+    ``period``: of two states they are x and x'; of more each is stored by its name in the model's
+    ``states`` (else y1, y2, ...), x and x' beside them where it has ``displacement(t, state)``.
     ``initial_state`` (x, x') for all lanes, or an array (lane, 2); for the pair (x, x') or
     (theta1, theta2, theta1', theta2'). ``samples_per_period`` (0: none) uniform samples of the
     kept periods, the first of each at phase 0. ``method``: "exact", "rk4" (with
@@ -296,10 +297,9 @@ def simulate(
             data = with_angles(data, model, pair_start)
     si = isinstance(model, PairModel | LoadSharedModel)
     unit, rate_unit = ("m", "m/s") if si else ("1", "1")
-    for name in ("x", "section_x"):
-        data[name].attrs["units"] = unit
-    for name in ("v", "section_v"):
-        data[name].attrs["units"] = rate_unit
+    units = {"x": unit, "section_x": unit, "v": rate_unit, "section_v": rate_unit}
+    for name in units.keys() & data.variables.keys():
+        data[name].attrs["units"] = units[str(name)]
     for name in ("time", "section_time"):
         data[name].attrs["units"] = "s" if si else "1"
     data.attrs.update(settings)
@@ -323,15 +323,28 @@ def _free(
     samples: int,
     tolerances: tuple[float, float],
 ) -> xr.Dataset:
-    """Any model with ``derivative`` and ``period``: the first two states are x and x'."""
+    """Any model with ``derivative`` and ``period``: x, x' of two states, else each by its name.
+
+    The names are the model's ``states``, or y1, y2, ...; x and x' of more than two states come from
+    the model's ``displacement(t, state)``, where it has one.
+    """
     derivative = getattr(model, "derivative", None)
     period = getattr(model, "period", None)
     if derivative is None or period is None:
         raise InputError("model", type(model).__name__, allowed="derivative(t, y) and period")
+    if start.ndim != 1:
+        raise InputError("initial_state", f"shape {start.shape}", allowed="one state")
+    relative = getattr(model, "displacement", None) if start.size != 2 else _first_two
     backlash = getattr(model, "half_backlash", None)
+    gap = None
+    if backlash is not None and relative is not None:
+        gap = adaptive.Gap(
+            lambda t, y: float(relative(t, y)[0]), lambda t, y: float(relative(t, y)[1]),
+            float(backlash),
+        )  # fmt: skip
     sections, path, _ = adaptive.follow(
         lambda t, y, _region: np.asarray(derivative(t, y), dtype=float),
-        None if backlash is None else adaptive.Gap(_displacement, _velocity, float(backlash)),
+        gap,
         float(period),
         start,
         periods=discard + periods,
@@ -339,9 +352,28 @@ def _free(
         rtol=tolerances[0],
         atol=tolerances[1],
     )
+    sections, path = sections[discard:], path[discard * samples :]
     result = Result(lanes=1, periods=periods, samples=samples)
-    result.sections[0] = sections[discard:, :2].T
-    result.samples[0] = path[discard * samples :, :2].T
-    return dataset(
+    if relative is not None:
+        within = np.tile(np.arange(samples) / max(samples, 1), periods) * float(period)
+        result.samples[0] = np.stack(relative(within, path.T))
+        result.sections[0] = np.stack(relative(np.zeros(periods + 1), sections.T))
+    data = dataset(
         result, period=np.array([float(period)]), periods=periods, discard=discard, samples=samples
     )
+    if start.size == 2:
+        return data
+    names = [str(name) for name in getattr(model, "states", ())]
+    if len(names) != start.size:
+        names = [f"y{place + 1}" for place in range(start.size)]
+    for place, name in enumerate(names):
+        words = {"long_name": f"state {name} of the model"}
+        data[name] = (("point", "sample"), path[None, :, place], words)
+        data[f"section_{name}"] = (("point", "section"), sections[None, :, place], words)
+    good = bool(np.isfinite(sections).all())
+    data["status"] = ("point", np.array([0 if good else DIVERGED], np.int8), data["status"].attrs)
+    return data if relative is not None else data.drop_vars(["x", "v", "section_x", "section_v"])
+
+
+def _first_two(_t: ArrayLike, y: Floats) -> tuple[Floats, Floats]:
+    return y[0], y[1]

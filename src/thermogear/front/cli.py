@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import click
 
 from thermogear import __version__
-from thermogear.base.errors import ThermogearError, nearest
+from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.parameters import long_name
 from thermogear.front import (
     delivery,
@@ -112,14 +112,16 @@ def run(
 @click.argument("directory", metavar="DIR")
 @click.option("--of", default="", metavar="KIND", help="Which results, where DIR holds several.")
 @click.option("--pictures", metavar="FOLDER", help="Save the page's pictures to FOLDER as well.")
-@click.option("--kind", default="png", metavar="KIND", help="Of the pictures: png, svg or pdf.")
-def report(directory: str, of: str, pictures: str | None, kind: str) -> None:
+@click.option("--kind", metavar="KIND", help="Of the pictures: png [the default], svg or pdf.")
+def report(directory: str, of: str, pictures: str | None, kind: str | None) -> None:
     """Draw the page anew from the results of any command stored in DIR."""
     from thermogear.views.write import write_pictures, write_report
 
     place, written = Path(directory), list[Path]()
+    if kind is not None and pictures is None:
+        raise InputError("--kind", kind, why="no picture is saved", fix="add --pictures FOLDER")
     if pictures is not None:
-        written = write_pictures(place, Path(pictures), kind, of)
+        written = write_pictures(place, Path(pictures), kind or "png", of)
     for path in (write_report(place, of), *written):
         click.echo(path)
 

@@ -121,7 +121,7 @@ def measure(file: str, as_json: bool, output: str | None, **options: Any) -> Non
     metavar="FIELD=PERCENT",
     help="Standard uncertainty of a field of the case, as operating.torque=5. May be repeated.",
 )
-@click.option("--samples", type=int, default=12, help="Runs for the input uncertainty.")
+@click.option("--samples", type=int, help="Runs for the input uncertainty of --tolerance [12].")
 @click.option("--u-data", type=float, metavar="PERCENT", help="Uncertainty of the measurement.")
 @delivery.as_json
 @delivery.output("Also write comparison.nc and comparison.html.", required=False)
@@ -129,7 +129,7 @@ def compare(
     case: str,
     measured: str | None,
     tolerances: tuple[str, ...],
-    samples: int,
+    samples: int | None,
     u_data: float | None,
     as_json: bool,
     output: str | None,
@@ -140,12 +140,22 @@ def compare(
     from thermogear.study import compare as comparison
 
     _require_gear(options)
+    if samples is not None and not tolerances:
+        raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
+    table = measured in PUBLISHED or (measured is not None and comparison.is_table(measured))
+    record = measured is not None and not table
+    for name, value in options.items():
+        # a table of lines may count in shaft turns: its teeth are asked for
+        given = value if name != "method" else value != "frequency"
+        if given and not record and not (name == "teeth" and table):
+            option = "--channel" if name == "channels" else f"--{name.replace('_', '-')}"
+            raise InputError(option, value, why="there is no record to read", fix="leave it out")
     speed = options["speed"]
     tolerated = dict(_tolerance(text) for text in tolerances)
 
     def make(report: Progress) -> Result:
         against: Any = measured
-        if measured is not None and measured not in PUBLISHED and not comparison.is_table(measured):
+        if measured is not None and record:
             against = _measured(measured, options)
         found = comparison.compare(
             case,
@@ -154,7 +164,7 @@ def compare(
             speed=None if speed is None else speed * RPM,
             u_data=None if u_data is None else u_data / 100.0,
             tolerances=tolerated,
-            samples=samples,
+            samples=12 if samples is None else samples,
         )
         return comparison.result_of(found)
 

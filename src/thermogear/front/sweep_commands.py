@@ -116,6 +116,7 @@ def bifurcation(
         _carry(whole, directory, read.title, as_json, options)
         return
     other_state = state
+    _estimate_alone(options, as_json)
     second: dict[str, str] = dict(_split(text) for text in against)
     if "state" in second:
         _, other_state = _choice(read, {"bundle": None, "state": second.pop("state")}, "--against")
@@ -330,6 +331,11 @@ def _watched() -> Iterator[Report]:
         yield report
 
 
+def _estimate_alone(options: dict[str, Any], as_json: bool) -> None:
+    if options["only_estimate"] and as_json:
+        raise InputError("--json", "beside --estimate", why="an estimate is a sentence")
+
+
 def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -> Result | None:
     """Carry ``plan`` out and draw its page; None where only an estimate was wanted."""
     from thermogear.front.lines import say
@@ -374,6 +380,7 @@ def _carry(plan: Plan, directory: Path, title: str, as_json: bool, options: dict
     """Compute, draw, and print."""
     from thermogear.views.write import page_of
 
+    _estimate_alone(options, as_json)
     result = _compute(plan, directory, title, options)
     if result is not None:
         delivery.tell(page_of(result), directory / "report.html", as_json=as_json)

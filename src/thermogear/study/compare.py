@@ -146,6 +146,13 @@ def compare(
     for name, sigma in (tolerances or {}).items():
         if not 0.0 <= sigma <= 1.0:
             raise InputError(f"tolerance of {name}", f"{100 * sigma:g} %", allowed="0..100 %")
+    if tolerances and not _computes(simulated):
+        raise InputError(
+            "tolerances",
+            ", ".join(tolerances),
+            why="stored lines are not computed anew",
+            fix="name the case instead of its results",
+        )
     if tolerances and not 2 <= samples <= _MOST_RUNS:
         why = "one run has no scatter" if samples < 2 else None
         raise InputError("samples", samples, allowed=f"2..{_MOST_RUNS}", why=why)
@@ -225,6 +232,14 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
         (found.record.rate or 1.0) / found.samples,
         processing_stated=True,
     )
+
+
+def _computes(simulated: object) -> bool:
+    """Whether the lines come from a case that is computed here."""
+    if isinstance(simulated, (str, Path)):
+        path = Path(simulated)
+        return str(simulated) not in PUBLISHED and not path.is_dir() and path.suffix != ".nc"
+    return not isinstance(simulated, Mapping) and not hasattr(simulated, "children")
 
 
 def _simulated(

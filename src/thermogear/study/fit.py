@@ -17,7 +17,7 @@ from scipy import optimize
 
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.measured.published import LineTable
-from thermogear.study.simulated import override_of, tree_lines
+from thermogear.study.simulated import overrides_of, tree_lines
 
 if TYPE_CHECKING:
     from thermogear.case.case import Case
@@ -165,9 +165,9 @@ def fit_case(
     errors = values * np.array([line.uncertainty or u_data for line in lines])
 
     def simulate(factors: Floats) -> Floats:
-        changes = dict(
-            override_of(text, kept, name, float(f)) for name, f in zip(names, factors, strict=True)
-        )
+        changes: dict[str, str] = {}
+        for name, factor in zip(names, factors, strict=True):
+            changes |= overrides_of(text, kept, name, float(factor))
         table = tables(changes)[chosen]
         found = [table.near(line.speed) for line in lines]
         return np.array([0.0 if line is None else line.displacement for line in found])

@@ -21,16 +21,17 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.materials import LUBRICANTS, Lubricant
+from thermogear.base.parameters import PARAMETERS, Parameter
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
+from thermogear.case.points import excitations, points_of
+from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
-from thermogear.dynamics.models import from_excitation
 from thermogear.gears.geometry import GearPair
 from thermogear.heat.lubrication import kinematic_viscosity
-from thermogear.mesh.cycle import mesh_cycle
-from thermogear.mesh.excite import disc_inertia, excitation
+from thermogear.mesh.excite import NO_ERROR, disc_inertia
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
 from thermogear.results.result import Result, now
@@ -39,7 +40,6 @@ Floats = NDArray[np.float64]
 PATH, PHASES, HARMONICS = 41, 64, 16
 DISCARD, PERIODS, SAMPLES = 300, 8, 64
 LANES = 1024
-COLD, HOT = 0, 1
 
 ABOUT = "the ranges and the conclusions of this study"
 """What belongs to the thesis's rig alone."""
@@ -50,20 +50,22 @@ FIXED = ("face_width", "viscosity", "roughness", "backlash")
 
 @dataclass(frozen=True)
 class Input:
-    """An input without a stated value: its range in SI, how it is shown, and its spacing.
+    """An input without a stated value: its ``name`` in the results, what it is, its range in SI.
 
-    Shown value = ``scale`` times the SI value less ``zero``. ``logarithmic``: all decades alike.
+    ``logarithmic``: all decades alike.
     """
 
     name: str
-    words: str
-    unit: str
+    parameter: Parameter
     _: KW_ONLY
     low: float
     high: float
-    scale: float = 1.0
-    zero: float = 0.0
     logarithmic: bool = False
+
+    @property
+    def unit(self) -> str:
+        """The unit it is shown in."""
+        return self.parameter.shown or "–"
 
     def values(self, unit_interval: Floats) -> Floats:
         """The range's values at places 0..1."""
@@ -73,26 +75,17 @@ class Input:
 
 
 INPUTS: tuple[Input, ...] = (
-    Input("face_width", "face width", "mm", low=0.015, high=0.040, scale=1e3),
-    Input("torque", "pinion torque", "N m", low=50.0, high=200.0),
-    Input(
-        "viscosity",
-        "oil viscosity at 40 °C",
-        "mm²/s",
-        low=46e-6,
-        high=320e-6,
-        scale=1e6,
-        zero=0.0,
-        logarithmic=True,
-    ),
-    Input("roughness", "roughness Ra", "µm", low=0.2e-6, high=0.8e-6, scale=1e6),
-    Input("backlash", "cold backlash (total, normal)", "mm", low=0.20e-3, high=0.40e-3, scale=1e3),
-    Input("damping", "damping ratio", "–", low=0.03, high=0.17),
-    Input("error", "kinematic error amplitude", "µm", low=1e-6, high=10e-6, scale=1e6),
-    Input("gear", "gear temperature", "°C", low=373.15, high=433.15, scale=1.0, zero=ZERO_CELSIUS),
-    Input("housing", "housing below the gears", "K", low=0.0, high=60.0),
-    Input("shaft", "shafts below the gears", "K", low=0.0, high=40.0),
-    Input("oil", "oil below the gears", "K", low=0.0, high=60.0),
+    Input("face_width", PARAMETERS["face_width"], low=0.015, high=0.040),
+    Input("torque", PARAMETERS["pinion_torque"], low=50.0, high=200.0),
+    Input("viscosity", PARAMETERS["oil_viscosity"], low=46e-6, high=320e-6, logarithmic=True),
+    Input("roughness", PARAMETERS["roughness"], low=0.2e-6, high=0.8e-6),
+    Input("backlash", PARAMETERS["cold_backlash"], low=0.20e-3, high=0.40e-3),
+    Input("damping", PARAMETERS["damping_ratio"], low=0.03, high=0.17),
+    Input("error", PARAMETERS["error_amplitude"], low=1e-6, high=10e-6),
+    Input("gear", PARAMETERS["gear_temperature"], low=373.15, high=433.15),
+    Input("housing", PARAMETERS["housing_below_gears"], low=0.0, high=60.0),
+    Input("shaft", PARAMETERS["shafts_below_gears"], low=0.0, high=40.0),
+    Input("oil", PARAMETERS["oil_below_gears"], low=0.0, high=60.0),
 )
 """Every range is ours, as wide as rigs of this kind are; only the gear temperature's is stated."""
 
@@ -278,10 +271,10 @@ def _dataset(
             "output_words": (one, [o.words for o in OUTPUTS]),
             "output_unit": (one, [o.unit for o in OUTPUTS]),
             "conclusion": (one, [o.conclusion for o in OUTPUTS]),
-            "input_words": (("input",), [i.words for i in plan.inputs]),
+            "input_words": (("input",), [i.parameter.words for i in plan.inputs]),
             "input_unit": (("input",), [i.unit for i in plan.inputs]),
-            "input_low": (("input",), [i.scale * (i.low - i.zero) for i in plan.inputs]),
-            "input_high": (("input",), [i.scale * (i.high - i.zero) for i in plan.inputs]),
+            "input_low": (("input",), [i.parameter.show(i.low) for i in plan.inputs]),
+            "input_high": (("input",), [i.parameter.show(i.high) for i in plan.inputs]),
         },
         {
             "output": [o.name for o in OUTPUTS],
@@ -347,54 +340,62 @@ def _chain(
 ) -> tuple[dict[str, Floats], list[tuple[Excitation, Excitation] | None]]:
     """The quasi-static outputs of samples of one pair and oil, and their excitations.
 
-    The operating points are all cold ones, then all hot ones; a jammed pair has None.
+    Undeformed and hot, by their places; a jammed pair has None.
     """
-    one = {name: float(at[name][0]) for name in FIXED if name in at}
-    pair = _pair(case, one)
-    operating = _operating(case, speed, at, one, count)
-    model = MeshModel.consistent()
-    cycle = mesh_cycle(pair, operating, model, path_positions=PATH, mesh_positions=PHASES)
-    printed = mesh_cycle(
-        pair, operating, MeshModel.thesis(), path_positions=2, mesh_positions=PHASES
+    here = _case_of(case, speed, at, count)
+    consistent, thesis = MeshModel.consistent(), MeshModel.thesis()
+    cold, hot = (
+        here.cycle(state.operating(here, consistent), consistent, PATH)
+        for state in (UNDEFORMED, HOT)
     )
+    printed = (here.cycle(state.operating(here, thesis), thesis, 2) for state in (UNDEFORMED, HOT))
     row: dict[str, Floats] = {}
-    for name, data in (("stiffness_change", cycle), ("stiffness_change_thesis", printed)):
-        cold, hot = data["mean_stiffness"].values.reshape(2, count)
-        row[name] = hot / cold - 1.0
-    warm = cycle.isel(operating=slice(count, None))
-    flash = {
-        kind: warm[f"flash_temperature_{kind}"].values.max(axis=1) for kind in ("mixed", "dry")
-    }
+    for name, data in (("stiffness_change", (cold, hot)), ("stiffness_change_thesis", printed)):
+        before, after = (one["mean_stiffness"].values for one in data)
+        row[name] = after / before - 1.0
+    flash = {kind: hot[f"flash_temperature_{kind}"].values.max(axis=1) for kind in ("mixed", "dry")}
     row |= {
-        "friction": warm["friction_coefficient_mixed"].values.mean(axis=1),
+        "friction": hot["friction_coefficient_mixed"].values.mean(axis=1),
         "flash": flash["mixed"],
         "dry_over_mixed": flash["dry"] / flash["mixed"],
-        "growth": warm["deformation_sum"].values.mean(axis=1),
-        "backlash_left": warm["half_backlash"].values / warm["cold_half_backlash"].values,
+        "growth": hot["deformation_sum"].values.mean(axis=1),
+        "backlash_left": hot["half_backlash"].values / hot["cold_half_backlash"].values,
     }
-    found = excitation(
-        cycle,
-        pair,
-        damping_ratio=case.damping_ratio,
-        inertias=_inertias(case, pair),
-        harmonics=HARMONICS,
-    )
+    found = zip(excitations(here, cold), excitations(here, hot), strict=True)
     ratio = np.zeros(count)
     pairs: list[tuple[Excitation, Excitation] | None] = []
-    for k in range(count):
-        here, there = found[k], found[count + k]
-        if here is None or there is None:
+    for k, (drawn, warm) in enumerate(found):
+        if drawn is None or warm is None:
             pairs.append(None)
             continue
         damping = float(at["damping"][k]) if "damping" in at else case.damping_ratio
         error = _error(case, float(at["error"][k]) if "error" in at else None)
         cold_one, hot_one = (
-            replace(x, error=x.error + error, damping_ratio=damping) for x in (here, there)
+            replace(x, error=x.error + error, damping_ratio=damping) for x in (drawn, warm)
         )
         ratio[k] = hot_one.mesh_frequency / hot_one.natural_frequency
         pairs.append((cold_one, hot_one))
     row["frequency_ratio"] = ratio
     return row, pairs
+
+
+def _case_of(case: GearCase, speed: float, at: dict[str, Floats], count: int) -> GearCase:
+    """The case of samples of one pair and oil: their own widths, loads, temperatures and backlash.
+
+    Without its kinematic error, which each sample has to its own size.
+    """
+    one = {name: float(at[name][0]) for name in FIXED if name in at}
+    pair = _pair(case, one)
+    return replace(
+        case,
+        pair=pair,
+        inertias=_inertias(case, pair),
+        stated=_operating(case, speed, at, one, count),
+        computed=False,
+        transmission_error=NO_ERROR,
+        mesh_positions=PHASES,
+        harmonics=HARMONICS,
+    )
 
 
 def _pair(case: GearCase, at: dict[str, float]) -> GearPair:
@@ -431,9 +432,8 @@ def _error(case: GearCase, amplitude: float | None) -> Periodic:
 def _operating(
     case: GearCase, speed: float, at: dict[str, Floats], one: dict[str, float], count: int
 ) -> Operating:
-    """All samples cold, then all hot; the oil that enters is equally warm in both."""
+    """The samples as hot as their inputs say."""
     given = case.operating.temperatures
-    reference = given.reference
     own = _first(given.pinion_addendum)
     tip = at.get("gear", np.full(count, own))
 
@@ -441,27 +441,21 @@ def _operating(
         return np.asarray(tip - at.get(name, np.full(count, own - _first(value))))
 
     bore, housing = below("shaft", given.pinion_bore), below("housing", given.housing)
-    oil = below("oil", case.operating.oil_temperature)
-    hot = {
-        "pinion_addendum": tip,
-        "pinion_bore": bore,
-        "wheel_addendum": tip,
-        "wheel_bore": bore,
-        "housing": housing,
-    }
-    cold = np.full(count, reference)
-    torque = at.get("torque", np.full(count, float(case.torques[0])))
     return replace(
         case.operating,
-        speed=np.full(2 * count, speed),
-        torque=np.tile(torque, 2),
+        speed=np.full(count, speed),
+        torque=at.get("torque", np.full(count, float(case.torques[0]))),
         lubricant=grade(one["viscosity"]) if "viscosity" in one else case.operating.lubricant,
-        oil_temperature=np.tile(oil, 2),
+        oil_temperature=below("oil", case.operating.oil_temperature),
         temperatures=Temperatures(
-            reference=reference, **{name: np.concatenate([cold, row]) for name, row in hot.items()}
+            reference=given.reference,
+            pinion_addendum=tip,
+            pinion_bore=bore,
+            wheel_addendum=tip,
+            wheel_bore=bore,
+            housing=housing,
         ),
         half_backlash=0.5 * one["backlash"] if "backlash" in one else case.operating.half_backlash,
-        housing=case.housing,
     )
 
 
@@ -474,21 +468,21 @@ def _vibrate(
 ) -> None:
     """Settled swing and loss of contact of many samples at once."""
     swings = []
-    for state in (COLD, HOT):
-        lanes = [hot if state == HOT else cold for _, cold, hot in waiting]
+    for lanes in ([cold for _, cold, _ in waiting], [hot for _, _, hot in waiting]):
+        points = points_of(lanes)
         data = simulate(
-            from_excitation(lanes),
+            points,
             discard=DISCARD,
             periods=PERIODS,
             samples_per_period=SAMPLES,
             initial_state=(1.0, 0.0),
         )
-        length = np.array([one.reference_half_backlash for one in lanes])
-        swings.append(np.ptp(data["x"].values, axis=1) * length)
+        swings.append(np.ptp(data["x"].values, axis=1) * points.length)
         lost = 1.0 - data["time_share"].sel(side="drive").values
+    cold_swing, hot_swing = swings
     places = [sample for sample, _, _ in waiting]
-    values["swing"][places] = swings[HOT]
-    values["swing_change"][places] = swings[HOT] / swings[COLD] - 1.0
+    values["swing"][places] = hot_swing
+    values["swing_change"][places] = hot_swing / cold_swing - 1.0
     values["out_of_contact"][places] = np.where(lost > 1e-9, lost, 0.0)
 
 

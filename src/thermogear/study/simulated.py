@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.case.allowed import gear_parameter
 from thermogear.measured.published import LineTable, SpeedLine
 from thermogear.measured.record import Channel, Record
 from thermogear.results.result import Result
@@ -102,10 +103,10 @@ def case_lines(
         rng = np.random.default_rng(seed)
         spread: dict[float, list[float]] = {}
         for _ in range(max(2, samples)):
-            changes = dict(
-                override_of(text, kept, name, float(1.0 + sigma * rng.standard_normal()))
-                for name, sigma in tolerances.items()
-            )
+            changes: dict[str, str] = {}
+            for name, sigma in tolerances.items():
+                factor = float(1.0 + sigma * rng.standard_normal())
+                changes |= overrides_of(text, kept, name, factor)
             for speed, value in _relative(base, tables(changes)).items():
                 spread.setdefault(speed, []).append(value)
         u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
@@ -165,13 +166,15 @@ def scaled(value: str, factor: float) -> str:
     return f"{number!r} {found.group(2)}".strip()
 
 
-def override_of(text: str, changes: Mapping[str, str], name: str, factor: float) -> tuple[str, str]:
-    """The override that multiplies a field by a factor.
+def overrides_of(text: str, changes: Mapping[str, str], name: str, factor: float) -> dict[str, str]:
+    """The overrides that multiply a parameter by a factor, in every field it stands for.
 
+    ``name``: a gear parameter by any of its names, or a dotted field;
     "transmission_error.amplitude" means the amplitudes of all its harmonics.
     """
     if name != "transmission_error.amplitude":
-        return name, scaled(_stated(text, changes, name), factor)
+        fields = gear_parameter(name, "tolerances").fields
+        return {one: scaled(_stated(text, changes, one), factor) for one in fields}
     field = "transmission_error.harmonics"
     if field in changes:
         table: Any = tomllib.loads(f"harmonics = {changes[field]}")
@@ -185,7 +188,7 @@ def override_of(text: str, changes: Mapping[str, str], name: str, factor: float)
         grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
         pairs = (f"{k} = {v if not isinstance(v, str) else repr(v)}" for k, v in grown.items())
         parts.append("{ " + ", ".join(pairs) + " }")
-    return field, "[" + ", ".join(parts) + "]"
+    return {field: "[" + ", ".join(parts) + "]"}
 
 
 def simulated_record(
