@@ -7,7 +7,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.allowed import gear_parameter, read_shown
 from thermogear.case.axes import parse_axis
 from thermogear.case.case import load_example
-from thermogear.case.family import GearFamily, Tabulated
+from thermogear.case.family import GearFamily, Tabulated, family
 from thermogear.dynamics.models import from_excitation
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import excitation
@@ -132,3 +132,34 @@ def test_a_unit_may_stand_at_every_value(rig, bare, written):
 def test_standstill_is_refused(rig):
     with pytest.raises(InputError, match=r"operating\.speed: got 0 rpm; allowed > 0 rpm"):
         GearFamily(rig, ("pinion_speed",))(np.array([[0.0]]))
+
+
+def test_speeds_that_share_heat_and_load_share_a_mesh_cycle(rig):
+    """Springs of given temperatures do not know the speed: row by row gives the same numbers."""
+    rows = np.array([[50.0, 80.0], [300.0, 120.0], [900.0, 80.0], [90.0, 120.0]])
+    whole = GearFamily(rig, ("pinion_speed", "pinion_torque"))
+    together = whole(rows)
+    for place, row in enumerate(rows):
+        alone = GearFamily(rig, ("pinion_speed", "pinion_torque"))(row[None])
+        for name in ("period", "damping", "half_backlash", "stiffness", "force"):
+            one, all_ = getattr(alone.flat, name), getattr(together.flat, name)
+            assert np.array_equal(one[0], all_[place]), name
+    assert len(whole._kept) == 1
+    again = whole(rows[:, :] * [2.0, 1.0])
+    assert np.array_equal(again.flat.stiffness, together.flat.stiffness)
+    assert again.mesh_frequency == pytest.approx(2.0 * together.mesh_frequency, rel=1e-15)
+
+
+def test_one_door_for_gears_and_numbers(rig):
+    table = load_example("table-4.2")
+    lanes = family(table, ("zeta", "w"), numbers={"half_backlash": 0.9})
+    points = lanes(np.array([[0.1, 1.2], [0.2, 1.3]]))
+    assert points.flat.damping == pytest.approx([0.2, 0.4])
+    assert points.flat.half_backlash.tolist() == [0.9, 0.9]
+    assert points.length.tolist() == [1.0, 1.0]
+    with pytest.raises(InputError, match=r"bundle: got 'thesis'; a dimensionless case has no gea"):
+        family(table, ("zeta",), "thesis")
+    with pytest.raises(InputError, match=r"state: got 'undeformed'; a dimensionless case has no"):
+        family(table, ("zeta",), state="undeformed")
+    with pytest.raises(InputError, match="half_backlash: got a number beside a gear case"):
+        family(rig, ("rpm",), numbers={"half_backlash": 0.9})

@@ -199,6 +199,8 @@ class GearFamily:
         for values in np.unique(rows[:, read], axis=0):
             chosen = np.flatnonzero((rows[:, read] == values).all(axis=1))
             case = self._case_with(dict(zip((self.names[i] for i in read), values, strict=True)))
+            if not any(self.names[i].startswith("operating.") for i in read):
+                case = replace(case, speeds=self.case.speeds, torques=self.case.torques)
             _put(found, chosen, self._excitations(case, names, rows[chosen][:, plain]))
         return found
 

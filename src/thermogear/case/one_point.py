@@ -138,7 +138,12 @@ class OnePoint:
             "cold_half_backlash": at.half_backlash,
         }
         if name not in here:
-            raise InputError("--from", "nothing", why=f"{name} is read from the case alone")
+            raise InputError(
+                "--from",
+                "nothing",
+                why=f"{name} stands in the file alone",
+                fix="say where to begin",
+            )
         return float(np.ravel(here[name])[0])
 
 

@@ -239,7 +239,7 @@ def _computes(simulated: object) -> bool:
     if isinstance(simulated, (str, Path)):
         path = Path(simulated)
         return str(simulated) not in PUBLISHED and not path.is_dir() and path.suffix != ".nc"
-    return not isinstance(simulated, Mapping) and not hasattr(simulated, "children")
+    return not isinstance(simulated, (Mapping, Result))
 
 
 def _simulated(

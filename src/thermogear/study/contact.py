@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.deviations import Contacts
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.gears.loaded import LoadedModel, loaded_contact
@@ -75,13 +75,10 @@ def loaded_survey(
     if not np.all(np.isfinite(moments) & (moments > 0.0)):
         raise InputError("torques", f"{moments} N m", allowed="> 0 N m, finite")
     model = case.models[0].override(stiffness="loaded")
-    hot = case.operating_of(case.models[0])
-    states: dict[str, Operating] = {
-        UNDEFORMED: hot.as_drawn(),
-        "hot": hot,
-    }
+    named = {state.kind: state for state in (UNDEFORMED, HOT)}
     for kelvin in case.gear_temperatures:
-        states[f"{kelvin - ZERO_CELSIUS:.4g} degC"] = case.operating_at(kelvin, case.models[0])
+        named[f"{kelvin - ZERO_CELSIUS:.4g} degC"] = ThermalState.of(kelvin)
+    states = {name: state.operating(case, case.models[0]) for name, state in named.items()}
     progress("loaded contact", 0, 2)
     ones = [one_point(state, float(moments[0])) for state in states.values()]
     contact = _solve(case, model, stacked(ones), moments, body)
@@ -128,7 +125,7 @@ def loaded_survey(
             ),
             "loaded_stiffness": dressed(
                 ("load",),
-                contact["mean_stiffness"].sel(temperature=UNDEFORMED).values,
+                contact["mean_stiffness"].sel(temperature=UNDEFORMED.kind).values,
                 "N/m",
                 "mean tangent stiffness of the loaded contact, undeformed",
             ),

@@ -14,6 +14,7 @@ from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import edge_attributes
 from thermogear.case.case import GearCase
 from thermogear.case.flanks import relief_text
+from thermogear.case.thermal_state import HOT, ThermalState
 from thermogear.gears.deviations import Contacts, Relief
 from thermogear.gears.loaded import LoadedMesh, LoadedModel, solve_mesh
 from thermogear.gears.relief import MOST_EVALUATIONS, STARTS, optimise_tip_relief
@@ -60,11 +61,8 @@ def relief_survey(
     if not (np.isfinite(moment) and moment > 0.0):
         raise InputError("torque", f"{moment} N m", allowed="> 0 N m")
     model = case.models[0].override(stiffness="loaded")
-    found = (
-        case.operating_of(case.models[0])
-        if gear_temperature is None
-        else case.operating_at(gear_temperature, case.models[0])
-    )
+    state = HOT if gear_temperature is None else ThermalState.of(gear_temperature)
+    found = state.operating(case, case.models[0])
     hot = HotPair(case.pair, one_point(found, moment), model)
     elastic = LoadedPair(hot)
     moduli = [Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in elastic.moduli]
