@@ -27,7 +27,7 @@ from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import from_excitation
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.excite import disc_inertia, excitation
