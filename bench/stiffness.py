@@ -9,8 +9,9 @@ import numpy as np
 
 from thermogear.gears import ring
 from thermogear.gears.body import sainsot_compliance
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, solve_mesh
+from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import mesh_stiffness
 from thermogear.gears.tooth import tooth_compliances
 

@@ -23,7 +23,7 @@ _HOME = {
     "Periodic": "thermogear.base.excitation",
     "Excitation": "thermogear.base.excitation",
     "Gear": "thermogear.gears.geometry",
-    "GearPair": "thermogear.gears.geometry",
+    "GearPair": "thermogear.gears.pair",
     "Rack": "thermogear.gears.geometry",
     "Relief": "thermogear.gears.deviations",
     "BasePitchDifference": "thermogear.gears.deviations",

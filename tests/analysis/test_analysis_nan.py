@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermogear.analysis import bifurcations, labels, settle
+from thermogear.analysis import labels, settle
 from thermogear.analysis.attractors import (
     Field,
     attractors_from,
@@ -16,8 +16,8 @@ from thermogear.analysis.attractors import (
     trapped,
 )
 from thermogear.analysis.basins import basins
-from thermogear.analysis.bifurcations import Curve
 from thermogear.analysis.continuation import continuation, family_of
+from thermogear.analysis.curve import Curve
 from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.maps import parameter_map
@@ -108,7 +108,7 @@ def test_no_point_of_a_branch_without_numbers(
         class Broken(Lost):
             part = "jacobian" if lost == "derivative of the map" else "points"
 
-        monkeypatch.setattr(bifurcations, "ReturnMap", Broken)
+        monkeypatch.setattr("thermogear.analysis.curve.ReturnMap", Broken)
     # on the curve already, and a step beside it
     for away in (0.0, 1e-3):
         assert curve.correct(guess + np.array([away, 0.0, 0.0]), normal=heading) is None

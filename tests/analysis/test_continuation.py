@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermogear.analysis.bifurcations import LONGEST_STEP, Curve
+from thermogear.analysis.bifurcations import LONGEST_STEP
 from thermogear.analysis.continuation import (
     BIRTH,
     FLIP,
@@ -21,6 +21,7 @@ from thermogear.analysis.continuation import (
     family_of,
     switch_branch,
 )
+from thermogear.analysis.curve import Curve
 from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.base.errors import InputError

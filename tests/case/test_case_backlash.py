@@ -17,7 +17,8 @@ from thermogear.case.backlash import (
     normal_from_distance,
     normal_from_thickness,
 )
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 PINION = Gear(25, 5e-3, profile_shift=0.3)
 WHEEL = Gear(75, 5e-3, profile_shift=-0.1)

@@ -23,7 +23,8 @@ from thermogear.gears.contact import (
     sliding_velocity,
     sum_velocity,
 )
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 RIG = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
 SHIFTED = GearPair(

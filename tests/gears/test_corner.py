@@ -10,7 +10,8 @@ from scipy.optimize import brentq
 
 from conftest import Compared
 from thermogear.gears.corner import contact_point
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 RIG = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
 SHIFTED = GearPair(

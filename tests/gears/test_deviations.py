@@ -18,8 +18,9 @@ from thermogear.gears.deviations import (
     Relief,
     active_profile,
 )
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import solve_mesh
+from thermogear.gears.pair import GearPair
 
 PAIR = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
 PHASE = np.linspace(0.0, 0.99, 34)

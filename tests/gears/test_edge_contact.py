@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 
 from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact, solve_mesh
+from thermogear.gears.pair import GearPair
 
 WIDTH = 20e-3
 PAIR = GearPair(

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from thermogear.gears.contact import hertz_pressure
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.iso6336 import theoretical_single_stiffness
+from thermogear.gears.pair import GearPair
 from thermogear.gears.relief import optimise_tip_relief
 from thermogear.gears.sharing_kernel import _share_one
 

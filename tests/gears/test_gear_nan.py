@@ -10,8 +10,9 @@ import pytest
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.gears import mesh_system
 from thermogear.gears.deviations import Contacts, PathTable
-from thermogear.gears.geometry import Gear, GearPair, Rack
+from thermogear.gears.geometry import Gear, Rack
 from thermogear.gears.loaded import loaded_contact, mesh_force, solve_mesh
+from thermogear.gears.pair import GearPair
 from thermogear.gears.relief import optimise_tip_relief
 
 PAIR = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))

@@ -30,7 +30,8 @@ from thermogear.gears import (
 )
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import BasePitchDifference, PitchError, Relief
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 
 class Units(NamedTuple):

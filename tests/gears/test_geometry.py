@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 
 from conftest import Compared
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
-from thermogear.gears.geometry import Gear, GearPair, Rack, inverse_involute, involute
+from thermogear.gears.geometry import Gear, Rack, inverse_involute, involute
+from thermogear.gears.pair import GearPair
 
 RIG = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
 

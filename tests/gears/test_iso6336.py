@@ -10,13 +10,14 @@ import pytest
 
 from conftest import Compared
 from thermogear.base.errors import ValidityWarning
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.iso6336 import (
     iso6336_stiffness,
     single_stiffness,
     theoretical_single_stiffness,
     virtual_teeth,
 )
+from thermogear.gears.pair import GearPair
 
 RIG = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))
 

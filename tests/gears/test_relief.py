@@ -7,8 +7,9 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.gears.deviations import BasePitchDifference, Relief
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import loaded_contact
+from thermogear.gears.pair import GearPair
 from thermogear.gears.relief import optimise_tip_relief
 
 PAIR = GearPair(

@@ -9,7 +9,8 @@ from conftest import Compared
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.gears.body import sainsot_compliance
 from thermogear.gears.contact_compliance import yang_sun_stiffness
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.gears.sharing import equal_share, stiffness_share
 from thermogear.gears.stiffness import (
     Moduli,

@@ -20,7 +20,8 @@ from thermogear.gears.deviations import (
     PressureAngleError,
     Relief,
 )
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.gears.touch import first_touch
 
 RIG = GearPair(Gear(25, 5e-3), Gear(75, 5e-3))

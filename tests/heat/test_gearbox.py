@@ -9,7 +9,8 @@ from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
 from thermogear.gears.contact import reduced_radius, sum_velocity
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.heat.convection import disc_nusselt
 from thermogear.heat.gearbox import (
     Losses,

@@ -5,7 +5,8 @@ import pytest
 from scipy.integrate import simpson
 
 from conftest import Compared
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.heat.laws import schlenk
 from thermogear.heat.losses import (
     bearing_loss,

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.gears.geometry import GearPair
 from thermogear.gears.loaded import LoadedModel, mesh_force, solve_mesh
+from thermogear.gears.pair import GearPair
 from thermogear.mesh.load_shared import LADDER, OUT_OF_REACH, _springs, pair_springs
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating

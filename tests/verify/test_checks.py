@@ -7,7 +7,8 @@ import pytest
 
 from conftest import Compared
 from thermogear.base.errors import InputError
-from thermogear.gears.geometry import Gear, GearPair, Rack
+from thermogear.gears.geometry import Gear, Rack
+from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import RadialField
 from thermogear.verify import (
     Density,

@@ -22,16 +22,13 @@ from thermogear.analysis.bifurcations import (
     SUPERCRITICAL,
     VERTICAL,
     Bifurcation,
-    Curve,
-    Family,
-    Point,
     birth_of,
     doubled_beside,
     locate,
     looked_closer,
-    mirrored,
     passed_mother,
 )
+from thermogear.analysis.curve import Curve, Family, Point, mirrored
 from thermogear.analysis.orbits import Orbit, closed, multipliers
 from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.base.errors import ConvergenceError, InputError, nearest
@@ -191,6 +188,46 @@ def continuation(
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
     """
+    family, start, behind = _range(orbit, parameter, to, family, start, back_to)
+    mirrors, symmetric = _symmetry(orbit, family, start, to)
+    curve = Curve(
+        family,
+        parameter,
+        orbit.period,
+        start=start,
+        span=abs(to - behind),
+        mirrors=mirrors,
+        symmetric=symmetric,
+    )
+    ahead = np.array([0.0, 0.0, float(np.sign(to - start))])
+    heading, step = (ahead, 0.01) if direction is None else (np.asarray(direction, float), 5e-4)
+    first = curve.correct(np.append(orbit.state, start) / curve.unit, normal=heading)
+    if first is None:
+        raise ConvergenceError(f"continuation in {parameter}: the first orbit does not close")
+    course = _Course(curve, [first], progress)
+    stops = {stop_at} if isinstance(stop_at, str) else set(stop_at or ())
+    ended = ""
+    try:
+        for point in _walk(curve, first, (behind, to), most_points, step):
+            ended = point if isinstance(point, str) else course.add(point, stops)
+            if ended or len(course.points) > most_points:
+                break
+    except KeyboardInterrupt:
+        if not keep_on_interrupt:
+            raise
+        ended = "interrupted"
+    return course.branch(ended or f"{most_points} points")
+
+
+def _range(
+    orbit: Orbit,
+    parameter: str,
+    to: float,
+    family: Family | None,
+    start: float | None,
+    back_to: float | None,
+) -> tuple[Family, float, float]:
+    """The family of models, where its walk starts and how far it may run back; refusals."""
     if family is None:
         family, start = family_of(orbit.model, parameter)
     if start is None:
@@ -202,81 +239,57 @@ def continuation(
     behind = start if back_to is None else back_to
     if not np.isfinite(behind):
         raise InputError("back_to", behind, allowed="finite")
-    if (behind - start) * (to - start) > 0.0:
-        behind = start
-    span = abs(to - behind)
-    stops = {stop_at} if isinstance(stop_at, str) else set(stop_at or ())
-    mirrors, symmetric = _symmetry(orbit, family, start, to)
-    curve = Curve(
-        family,
-        parameter,
-        orbit.period,
-        start=start,
-        span=span,
-        mirrors=mirrors,
-        symmetric=symmetric,
-    )
-    guess = np.append(orbit.state, start) / curve.unit
-    heading = np.array([0.0, 0.0, float(np.sign(to - start))])
-    if direction is None:
-        first = curve.correct(guess, normal=heading)
-    else:
-        toward = np.asarray(direction, dtype=float)
-        first = curve.correct(guess, normal=toward, old=toward)
-    if first is None:
-        raise ConvergenceError(f"continuation in {parameter}: the first orbit does not close")
-    points = [first]
-    found: list[Bifurcation] = []
-    ended = f"{most_points} points"
-    step = 0.01 if direction is None else 5e-4
-    try:
-        for point in _walk(curve, first, (behind, to), most_points, step):
-            if isinstance(point, str):
-                ended = point
-                break
-            here = points[-1]
-            if point.floats and not curve.symmetric:
-                ended = FLOATS
-                break
-            mother = passed_mother(curve, here, point)
-            if mother:
-                birth = birth_of(curve, here, mother)
-                found += [] if birth is None else [birth]
-                ended = SHRUNK[mother]
-                break
-            try:
-                fine = looked_closer(curve, points[-2] if len(points) > 1 else None, here, point)
-                fresh = [b for one, two in pairwise([here, *fine]) for b in locate(curve, one, two)]
-            except ConvergenceError as error:
-                ended = f"{GAP}: {error}"
-                break
-            found += fresh
-            points += fine
-            if progress is not None:
-                progress(len(points), float(point.scaled[2] * span))
-            last = next((b.kind for b in fresh if b.kind in stops), "")
-            if last:
-                ended = f"stopped at a {last}"
-                break
-            if len(points) > most_points:
-                break
-    except KeyboardInterrupt:
-        if not keep_on_interrupt:
-            raise
-        ended = "interrupted"
-    scaled = np.array([p.scaled for p in points])
-    return Branch(
-        parameter=parameter,
-        period=orbit.period,
-        family=family,
-        values=scaled[:, 2] * span,
-        states=scaled[:, :2] * curve.unit[:2],
-        multipliers=np.array([multipliers(p.visit.jacobian, p.determinant) for p in points]),
-        contact_losses=np.array([p.contacts[0] for p in points]),
-        back_impacts=np.array([p.contacts[1] for p in points]),
-        bifurcations=tuple(found),
-        ended=ended,
-    )
+    return family, start, start if (behind - start) * (to - start) > 0.0 else behind
+
+
+@dataclass
+class _Course:
+    """A walk along ``curve`` so far: its points, and the bifurcations between them."""
+
+    curve: Curve
+    points: list[Point]
+    progress: Callable[[int, float], None] | None
+    found: list[Bifurcation] = field(default_factory=list)
+
+    def add(self, point: Point, stops: Collection[str]) -> str:
+        """Go on to ``point``, finely enough; why the branch ends there, "" where it does not."""
+        curve, here = self.curve, self.points[-1]
+        if point.floats and not curve.symmetric:
+            return FLOATS
+        mother = passed_mother(curve, here, point)
+        if mother:
+            birth = birth_of(curve, here, mother)
+            self.found += [] if birth is None else [birth]
+            return SHRUNK[mother]
+        try:
+            before = self.points[-2] if len(self.points) > 1 else None
+            fine = looked_closer(curve, before, here, point)
+            fresh = [b for one, two in pairwise([here, *fine]) for b in locate(curve, one, two)]
+        except ConvergenceError as error:
+            return f"{GAP}: {error}"
+        self.found += fresh
+        self.points += fine
+        if self.progress is not None:
+            self.progress(len(self.points), float(point.scaled[2] * curve.span))
+        last = next((b.kind for b in fresh if b.kind in stops), "")
+        return f"stopped at a {last}" if last else ""
+
+    def branch(self, ended: str) -> Branch:
+        """The course as a branch in units of the model."""
+        curve, points = self.curve, self.points
+        scaled = np.array([p.scaled for p in points])
+        return Branch(
+            parameter=curve.parameter,
+            period=curve.period,
+            family=curve.family,
+            values=scaled[:, 2] * curve.span,
+            states=scaled[:, :2] * curve.unit[:2],
+            multipliers=np.array([multipliers(p.visit.jacobian, p.determinant) for p in points]),
+            contact_losses=np.array([p.contacts[0] for p in points]),
+            back_impacts=np.array([p.contacts[1] for p in points]),
+            bifurcations=tuple(self.found),
+            ended=ended,
+        )
 
 
 def _symmetry(orbit: Orbit, family: Family, start: float, to: float) -> tuple[bool, bool]:

@@ -19,9 +19,6 @@ from thermogear.analysis.bifurcations import (
     FOLD,
     SUBCRITICAL,
     Bifurcation,
-    Curve,
-    Family,
-    Point,
 )
 from thermogear.analysis.continuation import (
     BIRTH,
@@ -32,7 +29,8 @@ from thermogear.analysis.continuation import (
     continuation,
     switch_branch,
 )
-from thermogear.analysis.orbits import Orbit, closed, shoot
+from thermogear.analysis.curve import Curve, Family, Point
+from thermogear.analysis.orbits import closed, shoot
 from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.base.errors import ConvergenceError
 
@@ -106,67 +104,85 @@ def follow(
     ``most_leaps`` jumps.
     """
     leaps: list[Leap] = []
-    here, at, n = np.asarray(state, dtype=float), start, period
-    doubled: Doubled | None = None
+    stand = _Stand(start, np.asarray(state, dtype=float), period)
     for _ in range(MOST_EVENTS):
-        if at == to:
-            return Followed(at, here, n, tuple(leaps))
-        if doubled is None:
-            quick = _straight(family, parameter, at, to, here, n)
+        if stand.value == to or stand.period == 0:
+            return Followed(stand.value, stand.state, stand.period, tuple(leaps))
+        if stand.beside is None:
+            quick = _straight(family, parameter, to, stand)
             if quick is not None:
-                at, here, n = quick
+                stand = quick
                 continue
         try:
-            branch = _walked(family, parameter, (start, at, to), here, n, doubled)
+            branch = _walked(family, parameter, start, to, stand)
         except ConvergenceError:
             break
         event = _end_of_life(branch)
-        doubled = None
+        if event is None and branch.ended == REACHED:
+            return Followed(to, branch.states[-1], stand.period, tuple(leaps))
         if event is None:
-            here, at = branch.states[-1], float(branch.values[-1])
-            if branch.ended == REACHED:
-                return Followed(to, here, n, tuple(leaps))
-            if branch.ended != SHRUNK[BIRTH]:
-                break
-            # onto the orbit of half its period, stable from here on
-            at = _behind(at, start=start, to=to)
-            mother = shoot(ReturnMap(lanes_of(family(at))), here, n // 2)
-            if mother is None or not mother.stable:
-                break
-            here, n = mother.state, mother.minimal_period
-            continue
-        if event.kind == FLIP and event.note != SUBCRITICAL:
-            here, at = _pushed(event), event.value
-            if 2 * n > LONGEST_PERIOD:
-                break
-            try:
-                doubled = switch_branch(event, family)
-            except ConvergenceError:
-                break
-            if (to - doubled.value) * (to - start) <= 0.0:
-                break
-            here, at, n = doubled.orbit.state, doubled.value, doubled.orbit.period
-            continue
-        landed = _behind(event.value, start=start, to=to)
-        found, n_new = settle(landed, _pushed(event))
-        leaps.append(
-            Leap(
-                kind=event.kind,
-                period=n,
-                value=event.value,
-                state=event.state,
-                landed=landed,
-                found=found,
-                found_period=n_new,
-            )
-        )
-        here, at = found, landed
-        if n_new == 0:
-            break
-        n = n_new
-        if len(leaps) == most_leaps:
-            return Followed(at, here, n, tuple(leaps))
-    return Followed(at, here, 0, tuple(leaps))
+            stand = _shrunk(branch, start, to)
+        elif event.kind == FLIP and event.note != SUBCRITICAL:
+            stand = _doubled(event, family, start, to)
+        else:
+            leaps.append(_leap(event, settle, start, to))
+            landed = leaps[-1]
+            stand = _Stand(landed.landed, landed.found, landed.found_period)
+            if len(leaps) == most_leaps:
+                return Followed(stand.value, stand.state, stand.period, tuple(leaps))
+    return Followed(stand.value, stand.state, 0, tuple(leaps))
+
+
+@dataclass(frozen=True)
+class _Stand:
+    """A motion on the way: ``state`` (2,) and ``period`` (0: it is followed no further) at
+    ``value``; ``beside``: the flip that it has just gone through by."""
+
+    value: float
+    state: Floats
+    period: int
+    beside: Doubled | None = None
+
+
+def _shrunk(branch: Branch, start: float, to: float) -> _Stand:
+    """Onto the orbit of half the period into which the branch shrank, stable from there on."""
+    here, at = branch.states[-1], float(branch.values[-1])
+    if branch.ended != SHRUNK[BIRTH]:
+        return _Stand(at, here, 0)
+    at = _behind(at, start=start, to=to)
+    mother = shoot(ReturnMap(lanes_of(branch.family(at))), here, branch.period // 2)
+    if mother is None or not mother.stable:
+        return _Stand(at, here, 0)
+    return _Stand(at, mother.state, mother.minimal_period)
+
+
+def _doubled(event: Bifurcation, family: Family, start: float, to: float) -> _Stand:
+    """Through a supercritical flip onto the orbit of twice the period, where that lies ahead."""
+    lost = _Stand(event.value, _pushed(event), 0)
+    if 2 * event.period > LONGEST_PERIOD:
+        return lost
+    try:
+        doubled = switch_branch(event, family)
+    except ConvergenceError:
+        return lost
+    if (to - doubled.value) * (to - start) <= 0.0:
+        return lost
+    return _Stand(doubled.value, doubled.orbit.state, doubled.orbit.period, doubled)
+
+
+def _leap(event: Bifurcation, settle: Settle, start: float, to: float) -> Leap:
+    """Off the branch, to what the state at its end settles on."""
+    landed = _behind(event.value, start=start, to=to)
+    found, period = settle(landed, _pushed(event))
+    return Leap(
+        kind=event.kind,
+        period=event.period,
+        value=event.value,
+        state=event.state,
+        landed=landed,
+        found=found,
+        found_period=period,
+    )
 
 
 def _end_of_life(branch: Branch) -> Bifurcation | None:
@@ -190,25 +206,24 @@ def _pushed(event: Bifurcation) -> Floats:
     return np.asarray(event.state + 0.05 * two * np.linalg.svd(matrix + np.eye(2))[2][1])
 
 
-def _straight(
-    family: Family, parameter: str, start: float, to: float, state: Floats, period: int
-) -> tuple[float, Floats, int] | None:
-    """``to``, the state there and its periods by steps whose straight prediction holds.
+def _straight(family: Family, parameter: str, to: float, stand: _Stand) -> _Stand | None:
+    """Where steps whose straight prediction holds lead: to ``to``.
 
     As far as the orbit has shrunk into one of fewer periods, where it does; None where the
     prediction does not hold.
     """
+    start, period = stand.value, stand.period
     curve = Curve(family, parameter, period, start=start, span=abs(to - start))
     upright = np.array([0.0, 0.0, 1.0])
     end = to / curve.span
-    point = curve.correct(np.append(state, start) / curve.unit, normal=upright)
+    point = curve.correct(np.append(stand.state, start) / curve.unit, normal=upright)
     if point is None:
         return None
     while True:
         least = _least_period(point, curve)
         if point.scaled[2] == end or least < period:
             value = to if point.scaled[2] == end else float(point.scaled[2] * curve.span)
-            return value, np.asarray(point.scaled[:2] * curve.unit[:2]), least
+            return _Stand(value, np.asarray(point.scaled[:2] * curve.unit[:2]), least)
         ahead = end - point.scaled[2]
         if abs(point.tangent[2]) < 1e-6:
             return None
@@ -255,30 +270,22 @@ def _even(a: Point, b: Point) -> bool:
     return float(np.max(np.abs(moved - mean))) <= CLOSE * float(np.max(np.abs(mean))) + 1e-5
 
 
-def _walked(
-    family: Family,
-    parameter: str,
-    way: tuple[float, float, float],
-    state: Floats,
-    period: int,
-    doubled: Doubled | None,
-) -> Branch:
+def _walked(family: Family, parameter: str, start: float, to: float, stand: _Stand) -> Branch:
     """The branch by arclength, as far as the motion can stay on it."""
-    orbit: Orbit
-    behind, start, to = way
-    if doubled is None:
-        model = family(start)
-        orbit = closed(ReturnMap(lanes_of(model)), state, period, model=model)
+    at, beside = stand.value, stand.beside
+    if beside is None:
+        model = family(at)
+        orbit = closed(ReturnMap(lanes_of(model)), stand.state, stand.period, model=model)
     else:
-        orbit = doubled.orbit
+        orbit = beside.orbit
     return continuation(
         orbit,
         parameter,
         to,
         family=family,
-        start=start,
-        back_to=start if doubled is None else behind,
+        start=at,
+        back_to=at if beside is None else start,
         stop_at=(FOLD, FLIP),
-        direction=None if doubled is None else doubled.direction,
+        direction=None if beside is None else beside.direction,
         most_points=600,
     )

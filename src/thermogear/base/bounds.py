@@ -59,6 +59,12 @@ class Bounds:
             allowed = f"{_plain(self.low)}..{_plain(self.high)} {self.unit}"
             raise InputError(name, self._shown(value), allowed=allowed, fix=self._meant(value))
 
+    def require_number(self, name: str, value: object) -> None:
+        """Refuse a ``value`` that is not one SI number within the bounds."""
+        if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
+            raise InputError(name, repr(value), allowed=f"a number [{self.si}]")
+        self.require(name, value)
+
     def _shown(self, value: float) -> str:
         number = f"{value:.6g} {self.si}"
         if self.unit == self.si or not math.isfinite(value):

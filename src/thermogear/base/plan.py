@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
@@ -147,6 +148,36 @@ def bytes_of(plan: Plan) -> int:
     return total
 
 
+class Queue:
+    """The ``wanted`` chunks of a plan, each handed out once the chunk that it needs is there."""
+
+    def __init__(self, plan: Plan, wanted: Sequence[Key]) -> None:
+        self._plan = plan
+        self._waiting, self._missing = list(wanted), set(wanted)
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def take(self, most: int) -> Iterator[tuple[Key, Key | None]]:
+        """Up to ``most`` chunks that can be computed now, each with the one it needs."""
+        for key in list(self._waiting):
+            if most <= 0:
+                return
+            need = self._plan.needs(key)
+            if need not in self._missing:
+                most -= 1
+                self._waiting.remove(key)
+                yield key, need
+
+    def back(self, key: Key) -> None:
+        """A chunk handed out in vain: it comes first now."""
+        self._waiting.insert(0, key)
+
+    def there(self, key: Key) -> None:
+        """A chunk is computed: those that need it can be."""
+        self._missing.discard(key)
+
+
 def computed(
     plan: Plan,
     wanted: list[Key],
@@ -166,38 +197,31 @@ def computed(
             raise Stopped
 
     count = max(1, threads or os.cpu_count() or 1)
-    missing = set(wanted)
-    waiting = list(wanted)
+    waiting = Queue(plan, wanted)
     kept: dict[Key, Arrays] = {}
-    heirs: dict[Key, int] = {}
-    for key in wanted:
-        need = plan.needs(key)
-        if need is not None:
-            heirs[need] = heirs.get(need, 0) + 1
+    heirs = Counter(need for key in wanted if (need := plan.needs(key)) is not None)
+
+    def inherited(need: Key) -> Arrays:
+        """A chunk for one of those that need it, kept for the others."""
+        heirs[need] -= 1
+        found = kept[need] if need in kept else load(need)
+        if not heirs[need]:
+            kept.pop(need, None)
+        return found
+
     with ThreadPoolExecutor(count) as pool:
         running: dict[Future[Arrays], Key] = {}
         try:
             while waiting or running:
-                for key in list(waiting):
-                    if len(running) >= count:
-                        break
-                    need = plan.needs(key)
-                    if need is not None and need in missing:
-                        continue
-                    before = None
-                    if need is not None:
-                        before = kept[need] if need in kept else load(need)
-                        heirs[need] -= 1
-                        if not heirs[need]:
-                            kept.pop(need, None)
-                    waiting.remove(key)
+                for key, need in waiting.take(count - len(running)):
+                    before = None if need is None else inherited(need)
                     running[pool.submit(plan.compute, key, before, alive)] = key
                 ended, _ = wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
                 for future in ended:
                     key = running.pop(future)
                     arrays = checked(plan, key, future.result())
-                    missing.discard(key)
-                    if heirs.get(key):
+                    waiting.there(key)
+                    if heirs[key]:
                         kept[key] = arrays
                     yield key, arrays
         finally:

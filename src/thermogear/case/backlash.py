@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from thermogear.base.errors import InputError
-from thermogear.gears.geometry import GearPair, involute
+from thermogear.gears.geometry import involute
+from thermogear.gears.pair import GearPair
 
 
 @dataclass(frozen=True, kw_only=True)

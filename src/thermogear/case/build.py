@@ -20,7 +20,8 @@ from thermogear.case.backlash import Backlash, from_tolerances, from_value
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import short, shown
-from thermogear.gears.geometry import LEFT_OUT, Gear, GearPair, Rack
+from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
+from thermogear.gears.pair import GearPair
 from thermogear.heat.friction import ROUGHNESS_LIMIT
 from thermogear.mesh.excite import disc_inertia
 from thermogear.mesh.model import MeshModel

@@ -33,7 +33,7 @@ from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.source import case_text, overridden, pairs, tables
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel

@@ -16,7 +16,7 @@ from thermogear.gears.deviations import (
     PressureAngleError,
     Relief,
 )
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 
 
 def deviations(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:

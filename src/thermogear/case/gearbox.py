@@ -9,7 +9,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
 from thermogear.case.gearbox_schema import NODES, GearboxTable, ReadingTable
 from thermogear.case.schema import GearFile
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading, ThermocoupleReading
 from thermogear.mesh.balance import Gearbox

@@ -11,7 +11,7 @@ from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.mesh.operating import Operating
 
 COLDEST = ZERO_CELSIUS - 60.0

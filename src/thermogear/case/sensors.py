@@ -15,7 +15,8 @@ from thermogear.case.sensor_schema import (
     ThermocoupleTable,
 )
 from thermogear.gears.contact import curvature_radii
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import buried_temperature, infrared_indication
 from thermogear.mesh.warm_up import WarmUp

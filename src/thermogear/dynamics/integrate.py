@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -92,14 +94,13 @@ def _exact_block(
 def _rk4_block(
     lanes: Lanes,
     index: NDArray[np.int64],
-    steps: int,
-    samples: int,
+    run: _Run,
     start: Floats,
-    discard: int,
     result: Result,
-    precision: type[np.floating],
     pace: Pace,
 ) -> None:
+    steps, samples = run.steps, run.samples
+    precision: type[np.floating] = np.float64 if run.precision == "float64" else np.float32
     mine = lanes.take(index)
     phase = np.arange(2 * steps) / (2 * steps)
     stiffness = np.ascontiguousarray(mine.values("stiffness", phase), precision)
@@ -111,7 +112,7 @@ def _rk4_block(
     v = start[index, 1].astype(precision)
     none = np.empty((0, 2, index.size), precision)
     stride = steps // samples if samples else 1
-    for _, count in pace.chunks(discard, lanes=index.size):
+    for _, count in pace.chunks(run.discard, lanes=index.size):
         sections = np.empty((count, 2, index.size), precision)
         advance_rk4(stiffness, force, damping, backlash, step, x, v, sections, none, stride)
     result.sections[index, 0, 0] = x
@@ -131,23 +132,22 @@ def _rk4_block(
 def _adaptive_lane(
     lanes: Lanes,
     lane: int,
-    samples: int,
+    run: _Run,
     start: Floats,
-    discard: int,
     result: Result,
-    tolerances: tuple[float, float],
     pace: Pace,
 ) -> None:
+    samples = run.samples
     one = lanes.take(lane)
     backlash = float(one.half_backlash[0])
     periods = result.sections.shape[2] - 1
     y = np.array(start[lane], dtype=float)
-    total = discard + periods
+    total = run.discard + periods
     rate = adaptive.lane_rate(one)
     result.sections[lane, :, 0] = y
     for turn in range(total):
         for _ in pace.chunks(1, lanes=1):
-            kept = turn - discard
+            kept = turn - run.discard
             sections, path, _crossings = adaptive.follow(
                 rate,
                 adaptive.Gap(_displacement, _velocity, backlash),
@@ -156,8 +156,8 @@ def _adaptive_lane(
                 periods=1,
                 samples=samples if kept >= 0 else 0,
                 jumps=one.jumps(0),
-                rtol=tolerances[0],
-                atol=tolerances[1] * backlash,
+                rtol=run.tolerances[0],
+                atol=run.tolerances[1] * backlash,
             )
             y = sections[-1]
             if not np.all(np.abs(y[0]) <= 1e6 * backlash):
@@ -218,96 +218,41 @@ def simulate(
     Raises InputError for a non-finite start, counts out of range, an unknown method, and
     ``steps_per_period`` that is not a multiple of ``samples_per_period``.
     """
-    periods = _count("periods", periods, 1)
-    discard = _count("discard", discard, 0)
-    steps = _count("steps_per_period", steps_per_period, 4)
-    samples = _count("samples_per_period", samples_per_period, 0)
-    chosen, reason = _choose(model, method)
-    if chosen == "rk4" and samples and steps % samples:
-        raise InputError(
-            "samples_per_period", samples, allowed=f"a divisor of steps_per_period = {steps}"
-        )
-    if precision not in ("float64", "float32"):
-        raise InputError("precision", repr(precision), allowed="'float64' | 'float32'")
-    if precision == "float32" and isinstance(model, PairModel | LoadSharedModel):
-        raise InputError("precision", repr(precision), allowed="'float64' for models in SI units")
+    run = _Run.of(
+        model,
+        method,
+        periods=_count("periods", periods, 1),
+        discard=_count("discard", discard, 0),
+        steps=_count("steps_per_period", steps_per_period, 4),
+        samples=_count("samples_per_period", samples_per_period, 0),
+        precision=precision,
+        tolerances=(rtol, atol),
+    )
     start = np.asarray(initial_state, dtype=float)
     if not np.all(np.isfinite(start)):
         raise InputError("initial_state", start.tolist(), allowed="finite numbers")
-    settings: dict[str, object] = {"discard": discard, "periods": periods}
-    if chosen == "rk4":
-        settings |= {"steps_per_period": steps, "precision": precision}
-    if chosen == "adaptive":
-        settings |= {"rtol": rtol, "atol": atol}
-    if isinstance(model, LoadSharedModel) and chosen == "rk4":
-        data = simulate_shared(
-            model, start, periods=periods, discard=discard, steps=steps, samples=samples
-        )
+    if isinstance(model, LoadSharedModel) and run.method == "rk4":
+        data = simulate_shared(model, start, **run.counts, steps=run.steps)
     elif not isinstance(model, ClearanceModel):
-        data = _free(model, start, periods, discard, samples, (rtol, atol))
-    elif isinstance(model, PairModel) and chosen != "exact":
+        data = _free(model, start, run)
+    elif isinstance(model, PairModel) and run.method != "exact":
         data = simulate_pair(
-            model,
-            chosen,
-            start,
-            periods=periods,
-            discard=discard,
-            steps=steps,
-            samples=samples,
-            tolerances=(rtol, atol),
+            model, run.method, start, **run.counts, steps=run.steps, tolerances=run.tolerances
         )
+    elif isinstance(model, PairModel):
+        state = four_of(start, model)
+        x0, v0 = model.displacement(0.0, state)
+        data = _batch(model.lanes(), np.array([float(x0), float(v0)]), run, threads, progress)
+        data = with_angles(data, model, state)
     else:
-        if isinstance(model, PairModel):
-            state = four_of(start, model)
-            x0, v0 = model.displacement(0.0, state)
-            pair_start, start = state, np.array([float(x0), float(v0)])
-        lanes = model.lanes()
-        try:
-            starts = np.broadcast_to(start, (len(lanes), 2))
-        except ValueError:
-            raise InputError(
-                "initial_state", f"shape {start.shape}", allowed=f"(2,) or ({len(lanes)}, 2)"
-            ) from None
-        result = Result(lanes=len(lanes), periods=periods, samples=samples)
-        work: list[Callable[[Pace], None]] = []
-        if chosen == "exact":
-            for index, borders, marks in exact.layouts(lanes, samples=samples):
-                work.append(
-                    partial(_exact_block, lanes, index, borders, marks, starts, discard, result)
-                )
-        elif chosen == "rk4":
-            kind = np.float64 if precision == "float64" else np.float32
-            for first in range(0, len(lanes), RK4_BLOCK):
-                index = np.arange(first, min(first + RK4_BLOCK, len(lanes)))
-                work.append(
-                    partial(_rk4_block, lanes, index, steps, samples, starts, discard, result, kind)
-                )
-        else:
-            for lane in range(len(lanes)):
-                work.append(
-                    partial(
-                        _adaptive_lane, lanes, lane, samples, starts, discard, result, (rtol, atol)
-                    )
-                )
-        run_blocks(work, len(lanes) * (periods + discard), threads=threads, progress=progress)
-        data = dataset(
-            result, period=lanes.period, periods=periods, discard=discard, samples=samples
-        )
-        if isinstance(model, PairModel):
-            data = with_angles(data, model, pair_start)
-    si = isinstance(model, PairModel | LoadSharedModel)
-    unit, rate_unit = ("m", "m/s") if si else ("1", "1")
-    units = {"x": unit, "section_x": unit, "v": rate_unit, "section_v": rate_unit}
-    for name in units.keys() & data.variables.keys():
-        data[name].attrs["units"] = units[str(name)]
-    for name in ("time", "section_time"):
-        data[name].attrs["units"] = "s" if si else "1"
-    data.attrs.update(settings)
+        data = _batch(model.lanes(), start, run, threads, progress)
+    _give_units(data, si=isinstance(model, PairModel | LoadSharedModel))
+    data.attrs.update(run.settings)
     data.attrs.update(
         {
-            "method": chosen,
-            "method_long_name": METHODS[chosen],
-            "method_reason": reason,
+            "method": run.method,
+            "method_long_name": METHODS[run.method],
+            "method_reason": run.reason,
             "model": type(model).__name__,
             "thermogear_version": __version__,
         }
@@ -315,14 +260,91 @@ def simulate(
     return data
 
 
-def _free(
-    model: object,
-    start: Floats,
-    periods: int,
-    discard: int,
-    samples: int,
-    tolerances: tuple[float, float],
+@dataclass(frozen=True, kw_only=True)
+class _Run:
+    """How a model is run: counts, the method and why it was taken, precision, tolerances."""
+
+    periods: int
+    discard: int
+    steps: int
+    samples: int
+    precision: str
+    tolerances: tuple[float, float]
+    method: str
+    reason: str
+
+    @classmethod
+    def of(cls, model: object, method: str, **asked: Any) -> _Run:
+        """What was ``asked`` for, with the method chosen; refuses what does not go together."""
+        chosen, reason = _choose(model, method)
+        run = cls(method=chosen, reason=reason, **asked)
+        if chosen == "rk4" and run.samples and run.steps % run.samples:
+            raise InputError(
+                "samples_per_period",
+                run.samples,
+                allowed=f"a divisor of steps_per_period = {run.steps}",
+            )
+        if run.precision not in ("float64", "float32"):
+            raise InputError("precision", repr(run.precision), allowed="'float64' | 'float32'")
+        if run.precision == "float32" and isinstance(model, PairModel | LoadSharedModel):
+            raise InputError(
+                "precision", repr(run.precision), allowed="'float64' for models in SI units"
+            )
+        return run
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What every method needs."""
+        return {"periods": self.periods, "discard": self.discard, "samples": self.samples}
+
+    @property
+    def settings(self) -> dict[str, object]:
+        """What is stored of them."""
+        found: dict[str, object] = {"discard": self.discard, "periods": self.periods}
+        if self.method == "rk4":
+            found |= {"steps_per_period": self.steps, "precision": self.precision}
+        if self.method == "adaptive":
+            found |= {"rtol": self.tolerances[0], "atol": self.tolerances[1]}
+        return found
+
+
+def _batch(
+    lanes: Lanes, start: Floats, run: _Run, threads: int | None, progress: Progress | None
 ) -> xr.Dataset:
+    """Lanes side by side, in blocks on threads."""
+    try:
+        starts = np.broadcast_to(start, (len(lanes), 2))
+    except ValueError:
+        raise InputError(
+            "initial_state", f"shape {start.shape}", allowed=f"(2,) or ({len(lanes)}, 2)"
+        ) from None
+    result = Result(lanes=len(lanes), periods=run.periods, samples=run.samples)
+    work: list[Callable[[Pace], None]]
+    if run.method == "exact":
+        work = [
+            partial(_exact_block, lanes, index, borders, marks, starts, run.discard, result)
+            for index, borders, marks in exact.layouts(lanes, samples=run.samples)
+        ]
+    elif run.method == "rk4":
+        firsts = range(0, len(lanes), RK4_BLOCK)
+        blocks = [np.arange(n, min(n + RK4_BLOCK, len(lanes))) for n in firsts]
+        work = [partial(_rk4_block, lanes, index, run, starts, result) for index in blocks]
+    else:
+        work = [
+            partial(_adaptive_lane, lanes, lane, run, starts, result) for lane in range(len(lanes))
+        ]
+    run_blocks(work, len(lanes) * (run.periods + run.discard), threads=threads, progress=progress)
+    return dataset(result, period=lanes.period, **run.counts)
+
+
+def _give_units(data: xr.Dataset, *, si: bool) -> None:
+    """Units of displacement, velocity and time: SI or pure numbers."""
+    for name, unit in (("x", "m"), ("v", "m/s"), ("time", "s")):
+        for variable in {name, f"section_{name}"} & data.variables.keys():
+            data[variable].attrs["units"] = unit if si else "1"
+
+
+def _free(model: object, start: Floats, run: _Run) -> xr.Dataset:
     """Any model with ``derivative`` and ``period``: x, x' of two states, else each by its name.
 
     The names are the model's ``states``, or y1, y2, ...; x and x' of more than two states come from
@@ -347,32 +369,37 @@ def _free(
         gap,
         float(period),
         start,
-        periods=discard + periods,
-        samples=samples,
-        rtol=tolerances[0],
-        atol=tolerances[1],
+        periods=run.discard + run.periods,
+        samples=run.samples,
+        rtol=run.tolerances[0],
+        atol=run.tolerances[1],
     )
-    sections, path = sections[discard:], path[discard * samples :]
-    result = Result(lanes=1, periods=periods, samples=samples)
+    sections, path = sections[run.discard :], path[run.discard * run.samples :]
+    result = Result(lanes=1, periods=run.periods, samples=run.samples)
     if relative is not None:
-        within = np.tile(np.arange(samples) / max(samples, 1), periods) * float(period)
-        result.samples[0] = np.stack(relative(within, path.T))
-        result.sections[0] = np.stack(relative(np.zeros(periods + 1), sections.T))
-    data = dataset(
-        result, period=np.array([float(period)]), periods=periods, discard=discard, samples=samples
-    )
+        within = np.tile(np.arange(run.samples) / max(run.samples, 1), run.periods)
+        result.samples[0] = np.stack(relative(within * float(period), path.T))
+        result.sections[0] = np.stack(relative(np.zeros(run.periods + 1), sections.T))
+    data = dataset(result, period=np.array([float(period)]), **run.counts)
     if start.size == 2:
         return data
+    data = _with_states(data, model, sections=sections, path=path)
+    return data if relative is not None else data.drop_vars(["x", "v", "section_x", "section_v"])
+
+
+def _with_states(data: xr.Dataset, model: object, *, sections: Floats, path: Floats) -> xr.Dataset:
+    """``data`` with each state of ``model`` by its name: (point, sample) and (point, section)."""
+    count = sections.shape[-1]
     names = [str(name) for name in getattr(model, "states", ())]
-    if len(names) != start.size:
-        names = [f"y{place + 1}" for place in range(start.size)]
+    if len(names) != count:
+        names = [f"y{place + 1}" for place in range(count)]
     for place, name in enumerate(names):
         words = {"long_name": f"state {name} of the model"}
         data[name] = (("point", "sample"), path[None, :, place], words)
         data[f"section_{name}"] = (("point", "section"), sections[None, :, place], words)
     good = bool(np.isfinite(sections).all())
     data["status"] = ("point", np.array([0 if good else DIVERGED], np.int8), data["status"].attrs)
-    return data if relative is not None else data.drop_vars(["x", "v", "section_x", "section_v"])
+    return data
 
 
 def _first_two(_t: ArrayLike, y: Floats) -> tuple[Floats, Floats]:

@@ -11,7 +11,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.gears.contact import mirror_position
 from thermogear.gears.corner import ContactPoint, contact_point
 from thermogear.gears.deviations import Contacts
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
 

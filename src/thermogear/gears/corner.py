@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]

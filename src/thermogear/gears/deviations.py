@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
 from thermogear.base.errors import GeometryError, InputError, nearest
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

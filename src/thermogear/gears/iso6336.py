@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import ValidityWarning
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
 

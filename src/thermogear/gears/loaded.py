@@ -18,8 +18,8 @@ from thermogear.base.vocabulary import STATUS, edge_attributes, status_attribute
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.contact import hertz_pressure
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import GearPair
 from thermogear.gears.mesh_system import BODIES, LoadedModel, MeshSystem, flat
+from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
 
 if TYPE_CHECKING:

@@ -17,7 +17,8 @@ from thermogear.gears.contact_compliance import (
     yang_sun_stiffness,
 )
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import body_matrices, foot_load
 from thermogear.gears.stiffness import Moduli
 from thermogear.gears.tooth import STARTS, flank_point, unit_compliance

@@ -11,8 +11,8 @@ from scipy.optimize import minimize
 
 from thermogear.base.errors import InputError
 from thermogear.gears.deviations import Deviation, Relief
-from thermogear.gears.geometry import GearPair
 from thermogear.gears.loaded import LoadedModel, solve_mesh
+from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli
 
 Floats = NDArray[np.float64]

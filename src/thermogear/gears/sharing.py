@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.gears.stiffness import Moduli, pair_stiffness
 
 Floats = NDArray[np.float64]

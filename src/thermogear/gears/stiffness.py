@@ -18,7 +18,8 @@ from thermogear.base.bounds import YOUNGS_MODULUS
 from thermogear.gears.body import sainsot_compliance
 from thermogear.gears.contact import curvature_radii, pair_positions, reduced_modulus
 from thermogear.gears.contact_compliance import yang_sun_stiffness
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.gears.tooth import ToothCompliances, tooth_compliances
 
 Floats = NDArray[np.float64]

@@ -19,7 +19,7 @@ from thermogear.base.errors import InputError
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import contact_point, flank_ends, off_path, pinion_point, wheel_point
 from thermogear.gears.deviations import Deviation, FlankShape, FlankTable
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
 Shape = Callable[[Floats], Floats]

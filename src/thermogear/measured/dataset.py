@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import label
-from thermogear.measured.reduction import MeasuredLine, Measurement
+from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.reduction import Measurement
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 

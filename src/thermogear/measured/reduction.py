@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,16 +11,13 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
-from thermogear.base.units import STANDARD_GRAVITY
-from thermogear.measured.chain import METHODS, Chain, Turning, reduced
+from thermogear.measured.chain import METHODS, Chain, Turning
 from thermogear.measured.gearing import Gearing, find_gearing, mesh_angle
+from thermogear.measured.lines import MeasuredLine, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
-from thermogear.measured.units import kind_of
-from thermogear.signals.lines import LineSpectrum, line_spectrum
 from thermogear.signals.orders import tacho_angle, tacho_times
-from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
@@ -44,37 +41,6 @@ _FACTORS = {
     60.0: "sixty times too high (turns per minute and per second exchanged?)",
     1 / 60.0: "sixty times too low (turns per minute and per second exchanged?)",
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class MeasuredLine:
-    """One line of one channel. What the record does not allow is nan, never guessed.
-
-    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "second mesh" or "line". ``order``
-    of the first shaft, ``position`` [cycles/sample], ``frequency`` [Hz]; ``reading`` peak
-    amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m];
-    ``uncertainty``: relative standard uncertainty u_D (noise, scatter between quarters of the
-    record, sensor); ``bin_offset`` [bins]; ``prominence`` over the floor beside.
-    """
-
-    channel: str
-    kind: str
-    name: str
-    order: float
-    position: float
-    frequency: float
-    reading: float
-    acceleration: float
-    displacement: float
-    uncertainty: float
-    bin_offset: float
-    prominence: float
-    shaft_speed: float
-
-    @property
-    def acceleration_g(self) -> float:
-        """The acceleration in standard gravities."""
-        return self.acceleration / STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -162,39 +128,19 @@ def measure(
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
     lines: list[MeasuredLine] = []
     for channel, values in zip(chosen, table, strict=True):
-        lines += _lines(
+        lines += channel_lines(
             record,
             channel,
             values,
             gearing,
             teeth,
             wanted,
-            _wanted(gearing, harmonics, sidebands, values),
+            wanted_lines(gearing, harmonics, sidebands, values),
             sensor_tolerance,
             turning[0] if turning else None,
         )
-    if record.rate is None:
-        notices.append(
-            Notice("important", "no rate is known: lines are in orders and cycles per sample")
-        )
-    if any(c.unit is None for c in chosen):
-        notices.append(
-            Notice("important", "no unit is known: amplitudes are the file's own numbers")
-        )
-    if sensor_tolerance is None:
-        notices.append(
-            Notice("info", "no sensor tolerance is stated: u_D holds noise and scatter alone")
-        )
-    band = wanted.filter(rate)
-    if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
-        kept = "not divided out" if wanted.method == "trapezoid" else "divided out"
-        notices.append(
-            Notice(
-                "warning",
-                f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
-                f"line ({kept})",
-            )
-        )
+    notices += _untold(record, chosen, sensor_tolerance)
+    notices += _filtered(wanted, rate, mesh, gearing)
     return Measurement(
         record,
         tuple(c.name for c in chosen),
@@ -206,6 +152,30 @@ def measure(
         tuple(notices),
         start,
     )
+
+
+def _untold(
+    record: Record, channels: list[Channel], sensor_tolerance: float | None
+) -> Iterator[Notice]:
+    """What neither the record nor the user says, and what it means for the lines."""
+    if record.rate is None:
+        yield Notice("important", "no rate is known: lines are in orders and cycles per sample")
+    if any(c.unit is None for c in channels):
+        yield Notice("important", "no unit is known: amplitudes are the file's own numbers")
+    if sensor_tolerance is None:
+        yield Notice("info", "no sensor tolerance is stated: u_D holds noise and scatter alone")
+
+
+def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -> Iterator[Notice]:
+    """Whether the band's filter weakens the line at ``mesh`` [Hz] by more than 1 %."""
+    band = chain.filter(rate)
+    if band is not None and gearing is not None and abs(float(band.gain(mesh)) - 1) > 0.01:
+        kept = "not divided out" if chain.method == "trapezoid" else "divided out"
+        yield Notice(
+            "warning",
+            f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
+            f"line ({kept})",
+        )
 
 
 def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]) -> list[Channel]:
@@ -399,119 +369,3 @@ def _turning(
         f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by that "
         "phase",
     )
-
-
-@dataclass(frozen=True)
-class _Wanted:
-    kind: str
-    name: str
-    position: float  # cycles/sample
-    half_width: float
-
-
-def _wanted(
-    gearing: Gearing | None, harmonics: int, sidebands: int, values: Floats
-) -> list[_Wanted]:
-    count = values.size
-    bins = 3.0 / count
-    if gearing is None:
-        spectrum = amplitude_spectrum(values - values.mean(), 1.0, "hann")
-        tops = np.argsort(-spectrum.amplitudes[3:-3])[: 8 * harmonics] + 3
-        found: list[_Wanted] = []
-        for top in tops:
-            place = float(top) / count
-            if all(abs(place - other.position) > 2 * bins for other in found):
-                found.append(_Wanted("line", f"line {len(found) + 1}", place, bins))
-        return found[:harmonics]
-    mesh = gearing.mesh_frequency
-    found = []
-    for rank in range(1, harmonics + 1):
-        if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
-            break
-        # speed wander spreads a harmonic in proportion to its rank
-        reach = max(bins, 2e-4 * rank * mesh)
-        found.append(_Wanted("mesh", f"mesh x {rank}", rank * mesh, reach))
-        for shaft in gearing.shafts:
-            for n in range(1, sidebands + 1):
-                for sign in (-1, 1):
-                    place = rank * mesh + sign * n * mesh / shaft.teeth
-                    label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{shaft.teeth}"
-                    found.append(_Wanted("sideband", label, place, reach))
-    for number, other in enumerate(gearing.meshes, start=2):
-        place = other.order * mesh / gearing.shafts[0].teeth
-        label = f"mesh {number} (weak)" if other.weak else f"mesh {number}"
-        found.append(_Wanted("second mesh", label, place, max(bins, 2e-4 * place)))
-    if not found:
-        found.append(_Wanted("mesh", "mesh x 1", mesh, max(bins, 2e-4 * mesh)))
-    return [w for w in found if bins < w.position < 0.5 - bins]
-
-
-def _lines(
-    record: Record,
-    channel: Channel,
-    values: Floats,
-    gearing: Gearing | None,
-    teeth: int | None,
-    chain: Chain,
-    wanted: list[_Wanted],
-    sensor_tolerance: float | None,
-    turning: Turning | None,
-) -> list[MeasuredLine]:
-    rate = record.rate or 1.0
-    known = channel.unit is not None and not channel.needs_scale
-    factor = channel.si_factor if known else 1.0
-    accelerates = known and channel.unit is not None and kind_of(channel.unit) == "acceleration"
-    moves = known and channel.unit is not None and kind_of(channel.unit) == "displacement"
-    through = reduced(
-        values * factor, rate, chain, accelerates and record.rate is not None, turning
-    )
-    quarters = [
-        line_spectrum(part, through.spectrum.rate)
-        for part in np.array_split(through.acceleration, 4)
-    ]
-    found = []
-    for want in wanted:
-        line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
-        scatter = _scatter(quarters, through.axis, line.frequency, want.half_width * rate)
-        parts = [line.amplitude_error / line.amplitude, scatter, sensor_tolerance or 0.0]
-        position = line.frequency / rate
-        shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
-        speed = 2 * np.pi * rate * shaft if record.rate is not None else float("nan")
-        in_hertz = record.rate is not None
-        found.append(
-            MeasuredLine(
-                channel=channel.name,
-                kind=want.kind,
-                name=want.name,
-                order=position / shaft,
-                position=position,
-                frequency=line.frequency if in_hertz else float("nan"),
-                reading=line.amplitude / factor,
-                acceleration=line.amplitude if accelerates else float("nan"),
-                displacement=line.amplitude
-                if moves
-                else displacement
-                if accelerates and in_hertz
-                else float("nan"),
-                uncertainty=float(np.sqrt(sum(p**2 for p in parts))),
-                bin_offset=line.bin_offset,
-                prominence=line.prominence,
-                shaft_speed=speed,
-            )
-        )
-    return found
-
-
-def _scatter(quarters: list[LineSpectrum], axis: float, frequency: float, reach: float) -> float:
-    """Relative standard error of the mean amplitude over four quarters of the record."""
-    amplitudes = []
-    for quarter in quarters:
-        width = max(reach / axis, quarter.bin_width)
-        low = max(1, int((frequency / axis - width) / quarter.bin_width))
-        high = min(quarter.hann.size, int((frequency / axis + width) / quarter.bin_width) + 2)
-        if low < high:
-            amplitudes.append(float(np.sqrt(np.sum(quarter.hann[low:high] ** 2))))
-    mean = float(np.mean(amplitudes)) if amplitudes else 0.0
-    if mean <= 0.0 or len(amplitudes) < 2:
-        return 0.0
-    return float(np.std(amplitudes, ddof=1) / mean / np.sqrt(len(amplitudes)))

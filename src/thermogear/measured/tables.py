@@ -84,79 +84,100 @@ def record_of(
     named time gives the rate (if it states its unit), a number named fs, rate, ... likewise. A
     rate told twice in two ways is used by neither.
     """
-    notes: list[Notice] = []
-    rates: list[tuple[float, str]] = []
-    unit_of_all: str | None = None
+    told = _Told()
     for place in (common, *(a.attributes for a in arrays)):
         for key, value in place.items():
-            number = number_of(value)
-            if number is not None and number > 0 and is_rate_name(str(key)):
-                rates.append((number, f"attribute {key}"))
-            if str(key).lower() in ("unit", "units") and place is common:
-                unit_of_all = unit(text_of(value) or "")
-    channels: list[Channel] = []
-    times: list[tuple[str, str | None, Named]] = []
+            told.number(str(key), value, f"attribute {key}")
     for array in arrays:
+        told.array(array)
+    if not told.channels:
+        raise refused(path, kind, "it holds no array of numbers as long as a record")
+    notes = told.notes
+    channels = _of_one_length(told.channels, notes)
+    if len(channels) > MOST_IN_ALL:
+        raise refused(path, kind, f"{len(channels)} channels; allowed 1..{MOST_IN_ALL}")
+    longest = len(channels[0])
+    channels, doubled = without_doubles(channels, path.name)
+    if options.keep:
+        channels = _kept(channels, options.keep)
+    start = told.start(longest)
+    units = [v for k, v in common.items() if str(k).lower() in ("unit", "units")]
+    of_all = unit(text_of(units[-1]) or "") if units else None
+    if of_all is not None:
+        channels = [c if c.unit else Channel(c.name, c.samples, of_all) for c in channels]
+    rate, origin = agreed(told.rates, notes)
+    tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
+    return Record(tuple(channels), path.name, rate, origin, start, tacho, (*notes, *doubled))
+
+
+@dataclass
+class _Told:
+    """What a file's arrays and attributes turn out to be; ``rates`` [1/s] with their origins."""
+
+    channels: list[Channel] = field(default_factory=list)
+    times: list[Channel] = field(default_factory=list)
+    rates: list[tuple[float, str]] = field(default_factory=list)
+    notes: list[Notice] = field(default_factory=list)
+
+    def number(self, name: str, value: Any, origin: str, factor: float = 1.0) -> None:
+        """A rate, where ``name`` says so and ``value`` is a number of ``factor`` [1/s]."""
+        number = number_of(value)
+        if number is not None and number > 0 and is_rate_name(name):
+            self.rates.append((number * factor, origin))
+
+    def array(self, array: Named) -> None:
+        """A number, a time, one channel or several, by its shape and name."""
         bare, said = split_unit(array.name)
         leaf = bare.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
         for key in ("units", "unit", "Unit", "Units", "unit_string"):
             said = said or unit(text_of(array.attributes.get(key)) or "")
         sizes = [n for n in array.shape if n != 1]
         if not sizes:
-            number = number_of(array.data[()] if hasattr(array.data, "shape") else array.data)
-            if number is not None and number > 0 and is_rate_name(leaf):
-                factor = factor_of(said) if said and kind_of(said) == "frequency" else 1.0
-                rates.append((number * factor, f"variable {array.name}"))
-            continue
-        if len(sizes) > 2 or max(sizes) < SHORTEST:
-            continue
-        if len(sizes) == 1:
-            flat = _flat(array)
-            if is_time_name(leaf):
-                times.append((bare, said, Named(bare, flat, (sizes[0],))))
-            else:
-                channels.append(Channel(bare, flat, said))
-            continue
-        axis = 0 if sizes[0] >= sizes[1] else 1
-        if min(sizes) > MOST_CHANNELS or len(array.shape) != 2:
-            notes.append(Notice("warning", f"{array.name!r} of shape {array.shape} is left aside"))
-            continue
-        for index in range(min(sizes)):
-            name = f"{bare}[{index + 1}]"
-            channels.append(Channel(name, Column(array.data, index, axis=axis), said))
-    if not channels:
-        raise refused(path, kind, "it holds no array of numbers as long as a record")
+            factor = factor_of(said) if said and kind_of(said) == "frequency" else 1.0
+            value = array.data[()] if hasattr(array.data, "shape") else array.data
+            self.number(leaf, value, f"variable {array.name}", factor)
+        elif len(sizes) > 2 or max(sizes) < SHORTEST:
+            return
+        elif len(sizes) == 1:
+            kind = self.times if is_time_name(leaf) else self.channels
+            kind.append(Channel(bare, _flat(array), said))
+        elif min(sizes) > MOST_CHANNELS or len(array.shape) != 2:
+            text = f"{array.name!r} of shape {array.shape} is left aside"
+            self.notes.append(Notice("warning", text))
+        else:
+            axis = 0 if sizes[0] >= sizes[1] else 1
+            self.channels += [
+                Channel(f"{bare}[{index + 1}]", Column(array.data, index, axis=axis), said)
+                for index in range(min(sizes))
+            ]
+
+    def start(self, longest: int) -> float:
+        """The time [s] at which the record starts, of the first time as long as the channels.
+
+        What it says of the rate goes to the others.
+        """
+        time = next((one for one in self.times if len(one) == longest), None)
+        if time is None:
+            return 0.0
+        t = np.asarray(time.samples[0 : min(longest, MOST_STAMPS)], dtype=float)
+        if t.size < longest:
+            text = f"the rate is taken from the first {t.size} samples of {time.name!r}"
+            self.notes.append(Notice("info", text))
+        base = read_time(time.name, time.unit, t)
+        self.notes += base.notices
+        if base.rate is not None:
+            self.rates.append((base.rate, base.origin))
+        return base.start
+
+
+def _of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]:
+    """The longest of the channels; those left aside are named in ``notes``."""
     longest = max(len(c) for c in channels)
     aside = [c.name for c in channels if len(c) != longest]
     if aside:
         shown = ", ".join(aside[:5]) + (", ..." if len(aside) > 5 else "")
         notes.append(Notice("warning", f"shorter than {longest} samples, left aside: {shown}"))
-    channels = [c for c in channels if len(c) == longest]
-    if len(channels) > MOST_IN_ALL:
-        raise refused(path, kind, f"{len(channels)} channels; allowed 1..{MOST_IN_ALL}")
-    channels, doubled = without_doubles(channels, path.name)
-    if options.keep:
-        channels = _kept(channels, options.keep)
-    start = 0.0
-    for name, said, time in times:
-        if time.shape[0] != longest:
-            continue
-        t = np.asarray(time.data[0 : min(longest, MOST_STAMPS)], dtype=float)
-        if t.size < longest:
-            notes.append(
-                Notice("info", f"the rate is taken from the first {t.size} samples of {name!r}")
-            )
-        base = read_time(name, said, t)
-        notes += base.notices
-        start = base.start
-        if base.rate is not None:
-            rates.append((base.rate, base.origin))
-        break
-    if unit_of_all is not None:
-        channels = [c if c.unit else Channel(c.name, c.samples, unit_of_all) for c in channels]
-    rate, origin = agreed(rates, notes)
-    tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
-    return Record(tuple(channels), path.name, rate, origin, start, tacho, (*notes, *doubled))
+    return [c for c in channels if len(c) == longest]
 
 
 def agreed(rates: list[tuple[float, str]], notes: list[Notice]) -> tuple[float | None, str]:

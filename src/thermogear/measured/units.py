@@ -70,7 +70,6 @@ _SPELLINGS = {
     "min-1": "rpm",
     "min^-1": "rpm",
     "n m": "N m",
-    "nm(torque)": "N m",
     "n*m": "N m",
     "n·m": "N m",
     "°c": "degC",

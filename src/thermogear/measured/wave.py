@@ -36,9 +36,37 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
     Integer samples become fractions of full scale (so ``scale`` must say what full scale is);
     float samples keep their values.
     """
+    form, offset, length = _chunks(path)
+    code, channels, rate, _, block, bits = struct.unpack("<HHIIHH", form[:16])
+    if code == _EXTENSIBLE and len(form) >= 26:
+        code = struct.unpack("<H", form[24:26])[0]
+    if channels > MOST_CHANNELS:
+        raise refused(path, "WAV", f"{channels} channels; allowed 1..{MOST_CHANNELS}")
+    if channels == 0 or rate == 0 or block == 0 or block != channels * ((bits + 7) // 8):
+        raise refused(
+            path, "WAV", f"{channels} channels, {rate} samples/s, {bits} bits, blocks of {block}"
+        )
+    notes: list[Notice] = []
     size = path.stat().st_size
+    if offset + length > size:
+        notes.append(Notice("warning", "the file ends before its data: the cut end is dropped"))
+        length = size - offset
+    frames = length // block
+    if frames < 1:
+        raise refused(path, "WAV", "it holds no samples")
+    data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
+    names = [f"channel {i + 1}" for i in range(channels)]
+    found = tuple(
+        Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
+        for i, name in enumerate(names)
+        if not options.keep or name in options.keep or str(i + 1) in options.keep
+    )
+    return Record(found, path.name, float(rate), "WAV header", 0.0, None, tuple(notes))
+
+
+def _chunks(path: Path) -> tuple[bytes, int, int]:
+    """The format chunk, where the data begin [bytes], and how long they claim to be [bytes]."""
     form: bytes | None = None
-    place: tuple[int, int] | None = None
     long_data: int | None = None
     with path.open("rb") as file:
         head = file.read(12)
@@ -57,38 +85,13 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
             elif name == b"fmt ":
                 form = file.read(min(length, 64))
             elif name == b"data":
+                if form is None or len(form) < 16:
+                    break
                 if length == 0xFFFFFFFF and long_data is not None:
                     length = long_data
-                place = (here, length)
-                break
+                return form, here, length
             file.seek(here + length + length % 2)
-    if form is None or len(form) < 16 or place is None:
-        raise refused(path, "WAV", "no format or no data chunk")
-    code, channels, rate, _, block, bits = struct.unpack("<HHIIHH", form[:16])
-    if code == _EXTENSIBLE and len(form) >= 26:
-        code = struct.unpack("<H", form[24:26])[0]
-    if channels > MOST_CHANNELS:
-        raise refused(path, "WAV", f"{channels} channels; allowed 1..{MOST_CHANNELS}")
-    if channels == 0 or rate == 0 or block == 0 or block != channels * ((bits + 7) // 8):
-        raise refused(
-            path, "WAV", f"{channels} channels, {rate} samples/s, {bits} bits, blocks of {block}"
-        )
-    offset, length = place
-    notes: list[Notice] = []
-    if offset + length > size:
-        notes.append(Notice("warning", "the file ends before its data: the cut end is dropped"))
-        length = size - offset
-    frames = length // block
-    if frames < 1:
-        raise refused(path, "WAV", "it holds no samples")
-    data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
-    names = [f"channel {i + 1}" for i in range(channels)]
-    found = tuple(
-        Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
-        for i, name in enumerate(names)
-        if not options.keep or name in options.keep or str(i + 1) in options.keep
-    )
-    return Record(found, path.name, float(rate), "WAV header", 0.0, None, tuple(notes))
+    raise refused(path, "WAV", "no format or no data chunk")
 
 
 def _samples(

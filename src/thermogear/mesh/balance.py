@@ -18,7 +18,7 @@ from thermogear.base.bounds import BODY
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
 from thermogear.heat.losses import bearing_loss, churning_loss
 from thermogear.heat.lubrication import density, kinematic_viscosity

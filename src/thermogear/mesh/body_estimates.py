@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.gears.contact import curvature_radii, reduced_modulus, reduced_radius
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.laws import ISO_LUBRICANT_FACTOR, iso_13989_2
 from thermogear.heat.losses import gear_loss_factor, mesh_loss
 from thermogear.heat.lubrication import dynamic_viscosity

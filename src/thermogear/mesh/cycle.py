@@ -19,7 +19,7 @@ from thermogear.gears.contact import (
     sliding_velocity,
 )
 from thermogear.gears.deviations import Deviation, PitchError
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency

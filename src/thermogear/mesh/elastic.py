@@ -15,8 +15,8 @@ from thermogear.gears.contact import curvature_radii, hertz_half_width, reduced_
 from thermogear.gears.contact import reduced_modulus as _reduced_modulus
 from thermogear.gears.contact_compliance import weber_approach
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import GearPair
 from thermogear.gears.loaded import LEAST_LINE_LOAD, LoadedMesh, LoadedModel, solve_mesh
+from thermogear.gears.pair import GearPair
 from thermogear.gears.ring import ring_compliance
 from thermogear.gears.sharing import equal_share, stiffness_share
 from thermogear.gears.stiffness import Moduli, mesh_stiffness, pair_compliances

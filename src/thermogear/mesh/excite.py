@@ -10,7 +10,8 @@ import xarray as xr
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.vocabulary import STATUS
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 
 NO_ERROR = Periodic(0.0)
 

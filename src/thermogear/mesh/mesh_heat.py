@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.mesh.elastic import ElasticPair, LoadedPair, PathShare
 from thermogear.mesh.friction_path import FrictionPath
 

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.gears.contact import flank_radii, pair_positions
 from thermogear.gears.deviations import Contacts
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import RadialField, centre_distance_growth, flank_growth
 from thermogear.heat.gearbox import body_places
 from thermogear.heat.thesis_profile import thesis_flank_growth

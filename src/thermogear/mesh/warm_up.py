@@ -18,7 +18,7 @@ from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.progress import Progress, silent
 from thermogear.gears.deviations import Deviation
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.free_convection import with_free_convection
 from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
 from thermogear.heat.network import ThermalNetwork

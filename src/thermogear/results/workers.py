@@ -21,7 +21,7 @@ from typing import Any
 
 from thermogear import __version__
 from thermogear.base.errors import InputError, WorkerWarning
-from thermogear.base.plan import Arrays, Key, Plan, checked, keep_going
+from thermogear.base.plan import Arrays, Key, Plan, Queue, checked, keep_going
 from thermogear.base.progress import duration
 from thermogear.results.fingerprint import code_version, environment
 from thermogear.results.store import first_difference
@@ -225,6 +225,88 @@ class Crew:
             )
 
 
+class _Errands:
+    """Chunks on their way to the workers of ``crew`` and back; ``load`` gives those needed."""
+
+    def __init__(
+        self, crew: Crew, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
+    ) -> None:
+        self.crew = crew
+        self.waiting = Queue(plan, wanted)
+        self.running: dict[Any, tuple[Key, frozenset[str]]] = {}
+        self._plan, self._load = pickle.dumps(plan), load
+        self._ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._sent = 0
+
+    def send(self) -> None:
+        """A few chunks ahead of the workers: enough to keep them busy, few enough to hold."""
+        crew, client = self.crew, self.crew.client
+        room = 3 * sum(crew.good.values()) - len(self.running)
+        for key, need in self.waiting.take(room):
+            allowed = frozenset(crew.good)
+            self._sent += 1
+            future = crew.ask(
+                client.submit,
+                compute_chunk,
+                self._plan,
+                key,
+                None if need is None else self._load(need),
+                workers=sorted(allowed),
+                allow_other_workers=False,
+                pure=False,
+                retries=5,
+                key=f"chunk-{key}-{self._sent}-{id(self)}",
+            )
+            self.running[future] = key, allowed
+            future.add_done_callback(self._ready.put)
+
+    def look(self) -> None:
+        """Learn who is there; what was given to those who are gone waits again."""
+        self.crew.look()
+        for future, (key, allowed) in list(self.running.items()):
+            if not allowed & self.crew.good.keys():
+                del self.running[future]
+                self.crew.ask(future.cancel)
+                self.waiting.back(key)
+
+    def answer(self) -> tuple[Key, Arrays] | None:
+        """The next chunk that is computed and counts; None where none has come in a while."""
+        future = self._next()
+        if future is None:
+            return None
+        try:
+            answer = self.crew.ask(future.result, timeout=PAUSE)
+        except TimeoutError:
+            self._ready.put(future)
+            if self.crew.due():
+                self.look()
+            return None
+        except Exception as error:
+            if type(error).__name__ != "KilledWorker":
+                raise
+            key = self.running[future][0]
+            text = f"several workers died of the chunk {key}; what is done is stored"
+            raise InputError("scheduler", self.crew.address, why=text) from None
+        key, _ = self.running.pop(future)
+        why = self.crew.difference(answer.get("by") if isinstance(answer, dict) else answer)
+        if why is None:
+            return key, answer["arrays"]
+        for addresses in self.crew.ask(self.crew.client.who_has, [future]).values():
+            for one in addresses:
+                self.crew.refuse(one, why)
+        self.waiting.back(key)
+        return None
+
+    def _next(self) -> Any:
+        """The next future that has ended and was not taken back, else None."""
+        try:
+            future = self._ready.get(timeout=min(PAUSE, 1.0 if self.running else 0.2))
+        except queue.Empty:
+            self.crew.ask(str)
+            return None
+        return future if future in self.running else None
+
+
 def computed_on(
     client: Any, plan: Plan, wanted: list[Key], load: Callable[[Key], Arrays]
 ) -> Generator[tuple[Key, Arrays], None, None]:
@@ -232,86 +314,14 @@ def computed_on(
 
     Chunks of a worker that dies, or whose answer does not count, are computed by another one.
     """
-    crew = Crew(client)
-    packed = pickle.dumps(plan)
-    running: dict[Any, tuple[Key, frozenset[str]]] = {}
-    waiting = list(wanted)
-    missing = set(wanted)
-    ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    sent = 0
-
-    def send() -> None:
-        nonlocal sent
-        # a few chunks ahead of the workers: enough to keep them busy, few enough to hold
-        room = 3 * sum(crew.good.values())
-        for key in list(waiting):
-            if len(running) >= room:
-                return
-            need = plan.needs(key)
-            if need is not None and need in missing:
-                continue
-            before = None if need is None else load(need)
-            allowed = frozenset(crew.good)
-            sent += 1
-            name = f"chunk-{key}-{sent}-{id(running)}"
-            future = crew.ask(
-                client.submit,
-                compute_chunk,
-                packed,
-                key,
-                before,
-                workers=sorted(allowed),
-                allow_other_workers=False,
-                pure=False,
-                retries=5,
-                key=name,
-            )
-            running[future] = key, allowed
-            waiting.remove(key)
-            future.add_done_callback(ready.put)
-
-    def look() -> None:
-        crew.look()
-        for future, (key, allowed) in list(running.items()):
-            if not allowed & crew.good.keys():  # whoever had it is gone
-                del running[future]
-                crew.ask(future.cancel)
-                waiting.insert(0, key)
-
-    while running or waiting:
-        if crew.due():
-            look()
-        send()
-        crew.require()
-        try:
-            future = ready.get(timeout=min(PAUSE, 0.2) if not running else min(PAUSE, 1.0))
-        except queue.Empty:
-            crew.ask(str)
-            continue
-        if future not in running:
-            continue
-        key, _ = running[future]
-        try:
-            answer = crew.ask(future.result, timeout=PAUSE)
-        except TimeoutError:
-            ready.put(future)
-            if crew.due():
-                look()
-            continue
-        except Exception as error:
-            if type(error).__name__ != "KilledWorker":
-                raise
-            text = f"several workers died of the chunk {key}; what is done is stored"
-            raise InputError("scheduler", crew.address, why=text) from None
-        del running[future]
-        by = answer.get("by") if isinstance(answer, dict) else answer
-        why = crew.difference(by)
-        if why is not None:
-            for address in crew.ask(client.who_has, [future]).values():
-                for one in address:
-                    crew.refuse(one, why)
-            waiting.insert(0, key)
-            continue
-        # whoever takes the chunk stores it before a chunk that needs it is sent
-        yield key, answer["arrays"]
-        missing.discard(key)
+    errands = _Errands(Crew(client), plan, wanted, load)
+    while errands.running or errands.waiting:
+        if errands.crew.due():
+            errands.look()
+        errands.send()
+        errands.crew.require()
+        found = errands.answer()
+        if found is not None:
+            # whoever takes the chunk stores it before a chunk that needs it is sent
+            yield found
+            errands.waiting.there(found[0])

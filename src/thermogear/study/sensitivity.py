@@ -29,7 +29,7 @@ from thermogear.case.points import excitations, points_of
 from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
-from thermogear.gears.geometry import GearPair
+from thermogear.gears.pair import GearPair
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.mesh.excite import NO_ERROR, disc_inertia
 from thermogear.mesh.model import MeshModel

@@ -239,7 +239,7 @@ def _entries() -> list[Claim]:
 
 _ROWS = (
     ("5.1.1", "5.1", "statement", "A rig with a pair of module 5 mm, 25:75, 20° was built.",
-     _platform, ("thermogear.gears.geometry.GearPair",), ""),
+     _platform, ("thermogear.gears.pair.GearPair",), ""),
     ("5.1.2", "5.1", "statement", "It was measured at 1000, 2000 and 3000 rpm.", _tested_speeds,
      (PUBLISHED,), "experiment"),
     ("5.1.3", "5.1", "statement",

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermogear.base.errors import InputError
-from thermogear.gears.geometry import Gear, GearPair
+from thermogear.gears.geometry import Gear
 from thermogear.gears.loaded import LoadedModel, loaded_contact
+from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import RadialField, flank_growth
 from thermogear.verify.elements import Floats
 from thermogear.verify.growth import finite_flank_growth, flank_radii

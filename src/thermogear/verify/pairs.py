@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from thermogear.gears.geometry import Gear, GearPair, Rack
+from thermogear.gears.geometry import Gear, Rack
+from thermogear.gears.pair import GearPair
 
 _MM = 1e-3
 

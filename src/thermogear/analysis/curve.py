@@ -1,0 +1,269 @@
+"""The curve of periodic orbits over a parameter, and Newton's method onto it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from thermogear.analysis.orbits import Orbit, closed
+from thermogear.analysis.section import ReturnMap, Visit, lanes_of, scales
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics import exact
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+Family = Callable[[float], object]
+
+NEWTON_TOLERANCE = 1e-14
+ROUNDING = 1e-10
+"""A residual that no longer falls is rounding below this (scaled); a long orbit carries its own."""
+SMALL = 1e-5
+"""Step of the parameter (of its range) in which the coefficients are differentiated.
+
+Rounding, 1/SMALL times enlarged, and the curvature, SMALL^2, are alike in size. It turns the
+tangent a little: points slip along the branch, by 1e-13, and not off it.
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Point:
+    """A converged point of a branch in scaled coordinates, with its tangent.
+
+    ``visit`` runs over the whole orbit, ``determinant`` is that of its Jacobian. ``trace`` and
+    ``closing`` are trace and determinant of the map whose fixed point it is: the orbit's own, or
+    of a symmetric orbit half of it with the sign reversed. ``margin``: how near an extreme of x
+    comes to an edge of the backlash, in half backlashes (inf: not computed).
+    """
+
+    scaled: Floats
+    tangent: Floats
+    visit: Visit
+    determinant: float
+    trace: float
+    closing: float
+    margin: float = np.inf
+
+    @property
+    def fold(self) -> float:
+        """(1 - mu_1)(1 - mu_2)."""
+        return 1.0 - self.trace + self.closing
+
+    @property
+    def flip(self) -> float:
+        """(1 + mu_1)(1 + mu_2)."""
+        return 1.0 + self.trace + self.closing
+
+    @property
+    def contacts(self) -> tuple[int, int]:
+        return self.visit.contact_losses, self.visit.back_impacts
+
+    @property
+    def floats(self) -> bool:
+        """Whether the orbit never touches a tooth."""
+        return self.contacts == (0, 0) and float(self.visit.shares[1]) > 0.5
+
+
+def mirrored(lanes: Lanes, period: int) -> bool:
+    """Whether x(t) -> -x(t + n T/2) takes solutions to solutions, n = ``period``.
+
+    Of odd n a force of odd orders and a stiffness of even ones do it, of even n no force at all.
+    """
+    tables = (*lanes.stiffness_pieces, *lanes.force_pieces)
+    if any(piece is not None for piece in tables):
+        return False
+    if period % 2 == 0:
+        return not np.any(lanes.force)
+    return not (np.any(lanes.force[:, ::2]) or np.any(lanes.stiffness[:, 1::2]))
+
+
+class Curve:
+    """G(z, p) = P^n(z; p) - z in coordinates scaled by b, 2 pi b/T and the parameter's range.
+
+    ``mirrors``: :func:`mirrored` holds all along. On a ``symmetric`` branch, of orbits with
+    x(t + n T/2) = -x(t), P^n is the square of the map H = -(half an orbit), and G = H(z; p) - z:
+    where its symmetry breaks the orbit has a multiplier +1 of P^n, but -1 of H, so that the
+    branch runs through the pitchfork as any branch runs through a flip.
+    """
+
+    def __init__(
+        self,
+        family: Family,
+        parameter: str,
+        period: int,
+        *,
+        start: float,
+        span: float,
+        mirrors: bool = False,
+        symmetric: bool = False,
+    ) -> None:
+        self.family = family
+        self.mirrors = mirrors
+        self.parameter = parameter
+        self.period = period
+        self.span = span
+        self.symmetric = symmetric
+        self.unit = np.append(scales(lanes_of(family(start))), span)
+
+    def map_at(self, value: float) -> ReturnMap:
+        return ReturnMap(lanes_of(self.family(value)))
+
+    def residual(self, scaled: Floats) -> tuple[Floats, Floats, ReturnMap]:
+        """G (2,), the Jacobian (2, 2) of the closing map in units of the model, its maps."""
+        value = scaled * self.unit
+        section = self.map_at(float(value[2]))
+        if self.symmetric:
+            end, jacobian = section.flow(value[:2], self.period)
+            end, jacobian = -end, -jacobian
+        else:
+            end, jacobian = section.flow(value[:2], 2 * self.period)
+        return (end - value[:2]) / self.unit[:2], jacobian, section
+
+    def in_parameter(self, scaled: Floats, section: ReturnMap) -> tuple[Floats, float]:
+        """dG/dp (2,) along the path of this orbit, and its margin in half backlashes.
+
+        The coefficients are differentiated, not the trajectory: crossings stay at their phases,
+        so that no grazing lies between the ends of a difference.
+        """
+        value = scaled * self.unit
+        maps = section.maps
+        count = maps.half.shape[0]
+        if self.symmetric:
+            middle = int(np.searchsorted(maps.borders, 0.5))
+            steps = (self.period // 2) * count + (middle if self.period % 2 else 0)
+        else:
+            steps = self.period * count
+        rates = self._rates(float(value[2]), section)
+        moved, margin = exact.moved_by(maps, rates=rates, start=value[:2], steps=steps)
+        sign = -1.0 if self.symmetric else 1.0
+        return sign * moved * self.span / self.unit[:2], margin / section.backlash
+
+    def _rates(self, value: float, section: ReturnMap) -> tuple[Floats, Floats, float]:
+        """Derivatives of the affine maps by the parameter: central, one-sided at its border."""
+        small = SMALL * self.span
+        for weights in (
+            {-1: -0.5, 1: 0.5},
+            {0: -1.5, 1: 2.0, 2: -0.5},
+            {0: 1.5, -1: -2.0, -2: 0.5},
+        ):
+            try:
+                around = {k: lanes_of(self.family(value + k * small)) for k in weights}
+            except InputError:
+                continue
+            break
+        else:
+            raise InputError(self.parameter, value, allowed="values with neighbours")
+        polys, half, backlash = np.zeros(1), np.zeros(1), 0.0
+        for k, weight in weights.items():
+            one = exact.prepare_maps(around[k], section.maps.borders, section.maps.marks)
+            polys = polys + weight * one.polys[:, 0]
+            half = half + weight * one.half[:, 0]
+            backlash += weight * float(one.backlash[0])
+        return polys / small, half / small, backlash / small
+
+    def correct(
+        self,
+        guess: Floats,
+        *,
+        normal: Floats,
+        old: Floats | None = None,
+        reach: float = np.inf,
+        tangent: bool = True,
+    ) -> Point | None:
+        """Newton onto the curve inside the plane through ``guess`` normal to ``normal``.
+
+        Done when the residual is below 1e-14, or no longer falls and is what rounding leaves. The
+        point's tangent and margin are known with ``tangent``, else good for nothing.
+        """
+        scaled = guess.copy()
+        matrix = np.empty((3, 3))
+        matrix[2] = normal
+        two = self.unit[:2]
+        best: tuple[float, Floats, Floats, ReturnMap] | None = None
+        last = np.inf
+        stalled = 0
+        for count in range(20):
+            gap, jacobian, section = self.residual(scaled)
+            size = float(np.max(np.abs(gap)))
+            if not (np.isfinite(size) and np.all(np.isfinite(jacobian))):
+                return None
+            if best is None or size < best[0]:
+                best, stalled = (size, scaled, jacobian, section), 0
+            else:
+                stalled += 1
+            if (
+                size <= NEWTON_TOLERANCE
+                or (stalled >= 1 and best[0] < 1e-2 * ROUNDING)
+                or (stalled >= 2 and best[0] < ROUNDING)
+            ):
+                break
+            matrix[:2, :2] = jacobian / two[:, None] * two - np.eye(2)
+            if count == 0 or (size > 0.01 * last and size > 1e-11):
+                # dear, and near enough from the last time while Newton falls fast
+                matrix[:2, 2] = self.in_parameter(scaled, section)[0]
+            last = size
+            try:
+                step = np.linalg.solve(matrix, [-gap[0], -gap[1], -normal @ (scaled - guess)])
+            except np.linalg.LinAlgError:
+                return None
+            scaled = scaled + step
+            if not float(np.linalg.norm(scaled - guess)) <= reach:
+                return None
+        if best is None or not best[0] < ROUNDING:
+            return None
+        _, scaled, jacobian, section = best
+        matrix[:2, :2] = jacobian / two[:, None] * two - np.eye(2)
+        margin = np.inf
+        if tangent:
+            matrix[:2, 2], margin = self.in_parameter(scaled, section)
+        if not np.all(np.isfinite(matrix)):
+            return None
+        null = np.linalg.svd(matrix[:2])[2][2]
+        direction = normal if old is None else old
+        if null @ direction < 0.0:
+            null = -null
+        whole = section.determinant(self.period)
+        return Point(
+            scaled=scaled,
+            tangent=null,
+            visit=section.visit(scaled[:2] * two, self.period),
+            determinant=whole,
+            trace=float(jacobian[0, 0] + jacobian[1, 1]),
+            closing=float(np.sqrt(whole)) if self.symmetric else whole,
+            margin=margin,
+        )
+
+    def orbit(self, point: Point) -> Orbit:
+        value = point.scaled * self.unit
+        model = self.family(float(value[2]))
+        return closed(ReturnMap(lanes_of(model)), value[:2], self.period, model=model)
+
+    def zero(self, a: Point, name: str, *, low: float, high: float) -> float:
+        """Where the test function ``name`` vanishes between two distances from ``a``."""
+        return float(
+            brentq(
+                lambda step: getattr(self.between(a, step), name),
+                low,
+                high,
+                xtol=1e-14,
+                rtol=8.9e-16,
+            )
+        )
+
+    def between(self, a: Point, step: float, *, tangent: bool = False) -> Point:
+        """The point a distance ``step`` along the tangent of ``a``."""
+        if step == 0.0:
+            return a
+        point = self.correct(
+            a.scaled + step * a.tangent, normal=a.tangent, old=a.tangent, tangent=tangent
+        )
+        if point is None:
+            raise ConvergenceError(
+                f"no orbit found near {self.parameter} = "
+                f"{float((a.scaled[2] + step * a.tangent[2]) * self.span)!r}, "
+                "between two orbits of the branch"
+            )
+        return point

@@ -1,0 +1,199 @@
+"""A driving pinion and a driven wheel: their path of contact, and pairs that cannot mesh.
+
+Lengths are metres, angles radians.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+from thermogear.base import bounds
+from thermogear.base.errors import GeometryError, ValidityWarning
+from thermogear.gears.geometry import LEFT_OUT, Gear, inverse_involute, involute, millimetres
+
+
+class PathPoints(NamedTuple):
+    """Distances [m] from the pinion's tangent point N1 along the line of action.
+
+    a: contact starts (wheel tip); b: the leading pair leaves as this one stands here;
+    c: pitch point; d: the following pair enters; e: contact ends (pinion tip).
+    """
+
+    a: float
+    b: float
+    c: float
+    d: float
+    e: float
+
+
+@dataclass(frozen=True)
+class GearPair:
+    """A driving pinion and a driven wheel; ``centre_distance`` a [m] left out is free of backlash.
+
+    A centre distance above that opens a normal backlash; one below it jams and is refused.
+    One gear given twice means two equal ones.
+    """
+
+    pinion: Gear
+    wheel: Gear
+    centre_distance: float = LEFT_OUT
+
+    def __post_init__(self) -> None:
+        if self.wheel is self.pinion:
+            # each has temperatures of its own
+            object.__setattr__(self, "wheel", replace(self.pinion))
+        for name in ("module", "pressure_angle"):
+            mine, other = getattr(self.pinion, name), getattr(self.wheel, name)
+            if not math.isclose(mine, other, rel_tol=1e-12):
+                shown = (
+                    (millimetres(other), millimetres(mine))
+                    if name == "module"
+                    else (f"{math.degrees(other):.6g} deg", f"{math.degrees(mine):.6g} deg")
+                )
+                raise GeometryError(
+                    f"wheel.{name}",
+                    shown[0],
+                    allowed=f"{shown[1]}, the pinion's",
+                    why="both gears come from one rack",
+                )
+        tightest = self._zero_backlash_distance()
+        if self.centre_distance is LEFT_OUT:
+            object.__setattr__(self, "centre_distance", tightest)
+        bounds.CENTRE_DISTANCE.require_number("centre_distance", self.centre_distance)
+        if not self.centre_distance >= tightest * (1.0 - 1e-12):
+            raise GeometryError(
+                "centre_distance",
+                millimetres(self.centre_distance),
+                allowed=f">= {millimetres(tightest)}",
+                why="the teeth would wedge (no backlash left)",
+            )
+        self._check_tips()
+        ratio = self.contact_ratio
+        if not ratio >= 1.0:
+            raise GeometryError(
+                "contact_ratio",
+                f"{ratio:.4f}",
+                allowed=">= 1",
+                why="the next pair enters after the last one has left",
+                fix="lengthen the teeth, take more teeth or a smaller centre distance",
+            )
+        if ratio < 1.2:
+            warnings.warn(
+                f"contact_ratio: got {ratio:.4f}; recommended >= 1.2; little is left for "
+                "tolerances and tip relief",
+                ValidityWarning,
+                stacklevel=3,
+            )
+
+    def _zero_backlash_distance(self) -> float:
+        """a_w of the mesh without backlash: inv(a_w) = inv(a) + 2 tan(a)(x1 + x2)/(z1 + z2)."""
+        p, w = self.pinion, self.wheel
+        shift = p.profile_shift + w.profile_shift
+        value = float(involute(p.pressure_angle)) + 2.0 * math.tan(p.pressure_angle) * shift / (
+            p.teeth + w.teeth
+        )
+        if not value > 0.0:
+            raise GeometryError(
+                "wheel.profile_shift",
+                f"{w.profile_shift:g}",
+                why=f"the sum of the shifts {shift:g} leaves no meshing position",
+                fix="raise a profile shift",
+            )
+        if shift == 0.0:
+            return p.pitch_radius + w.pitch_radius
+        return (p.base_radius + w.base_radius) / math.cos(float(inverse_involute(value)))
+
+    def _check_tips(self) -> None:
+        length = self.line_of_action
+        for name, mine, other, other_name in (
+            ("wheel", self.wheel, self.pinion, "pinion"),
+            ("pinion", self.pinion, self.wheel, "wheel"),
+        ):
+            reach = float(mine.curvature_radius(mine.tip_radius))
+            lowest = other.base_radius * other.junction[1]
+            # the tip may come down to the other's form circle, and never past its tangent point
+            longest = length - lowest
+            if not reach <= longest * (1.0 + 1e-9):
+                where = "tangent point" if reach > length else "form circle"
+                raise GeometryError(
+                    f"{name}.tip_radius",
+                    millimetres(mine.tip_radius),
+                    allowed=f"<= {millimetres(math.hypot(mine.base_radius, longest))}",
+                    why=f"interference: the tip reaches below the {other_name}'s {where}",
+                    fix=f"lower the tip radius or raise {other_name}.profile_shift",
+                )
+            gap = self.centre_distance - mine.tip_radius - other.root_radius
+            if not gap > 0.0:
+                raise GeometryError(
+                    f"{name}.tip_radius",
+                    millimetres(mine.tip_radius),
+                    allowed=f"< {millimetres(self.centre_distance - other.root_radius)}",
+                    why=f"the tip hits the {other_name}'s root (clearance {millimetres(gap)})",
+                )
+
+    @property
+    def ratio(self) -> float:
+        """u = z2/z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def face_width(self) -> float:
+        """The common face width [m]: the smaller of the two."""
+        return min(self.pinion.face_width, self.wheel.face_width)
+
+    @property
+    def base_pitch(self) -> float:
+        """p_b = pi m cos(alpha) [m]."""
+        return self.pinion.base_pitch
+
+    @property
+    def operating_pressure_angle(self) -> float:
+        """alpha_w = arccos((r_b1 + r_b2)/a_w) [rad]."""
+        both = self.pinion.base_radius + self.wheel.base_radius
+        return math.atan2(self.line_of_action, both)
+
+    @property
+    def line_of_action(self) -> float:
+        """Length N1 N2 = sqrt(a_w^2 - (r_b1 + r_b2)^2) [m] between the two tangent points."""
+        both = self.pinion.base_radius + self.wheel.base_radius
+        return math.sqrt((self.centre_distance - both) * (self.centre_distance + both))
+
+    @cached_property
+    def path(self) -> PathPoints:
+        """The points A..E of the path of contact."""
+        start = self.line_of_action - float(self.wheel.curvature_radius(self.wheel.tip_radius))
+        end = float(self.pinion.curvature_radius(self.pinion.tip_radius))
+        pitch = self.pinion.base_radius * math.tan(self.operating_pressure_angle)
+        return PathPoints(start, end - self.base_pitch, pitch, start + self.base_pitch, end)
+
+    @property
+    def contact_ratio(self) -> float:
+        """Length of the path of contact over the base pitch."""
+        return (self.path.e - self.path.a) / self.base_pitch
+
+    @property
+    def operating_radii(self) -> tuple[float, float]:
+        """Pitch radii [m] of the rolling circles at this centre distance."""
+        first = self.centre_distance / (1.0 + self.ratio)
+        return first, self.centre_distance - first
+
+    @property
+    def normal_backlash(self) -> float:
+        """Total backlash [m] along the line of action that the centre distance opens.
+
+        j_n = (p_w - s_w1 - s_w2) cos(alpha_w) = p_b - 2 r_b1 psi_1(r_w1) - 2 r_b2 psi_2(r_w2);
+        0 for the zero-backlash mesh.
+        """
+        filled = sum(
+            2.0 * gear.base_radius * float(gear.half_thickness_angle(radius))
+            for gear, radius in zip((self.pinion, self.wheel), self.operating_radii, strict=True)
+        )
+        return self.base_pitch - filled
+
+    def swapped(self) -> GearPair:
+        """The same two gears with the wheel driving."""
+        return GearPair(self.wheel, self.pinion, self.centre_distance)
