@@ -11,7 +11,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     claims,
-    engine,
+    one_motion,
     laws,
     loaded,
     relief,
@@ -105,10 +105,10 @@ def of_orbits() -> dict[str, Picture]:
         speed=rising("speed"), part=rising("part")
     )
     return {
-        "orbit": engine.orbit_picture(orbit),
-        "lyapunov": engine.lyapunov_picture(made("batch", "lyapunov_batch")),
-        "branch": engine.branch_picture([branch], "a branch"),
-        "cascade": engine.cascade_picture([branch]),
+        "orbit": one_motion.orbit_picture(orbit),
+        "lyapunov": one_motion.lyapunov_picture(made("batch", "lyapunov_batch")),
+        "branch": one_motion.branch_picture([branch], "a branch"),
+        "cascade": one_motion.cascade_picture([branch]),
         "shared": shared_picture(rest, motion),
     }
 

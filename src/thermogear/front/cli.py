@@ -20,9 +20,9 @@ from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.parameters import long_name
 from thermogear.front import (
     delivery,
-    engine_commands,
     gear_commands,
     measure_commands,
+    motion_commands,
     sweep_commands,
     thesis_commands,
     verify_commands,
@@ -198,7 +198,7 @@ def _put(text: str, output: str | None) -> None:
 
 for _list in (
     gear_commands,
-    engine_commands,
+    motion_commands,
     sweep_commands,
     measure_commands,
     thesis_commands,

@@ -150,8 +150,8 @@ def warmup(
         raise InputError("--at", "an operating point beside --duty", fix="leave one out")
 
     from thermogear.case.duty import point_duty, read_duty
+    from thermogear.mesh.warm_up_fit import require_factors
     from thermogear.study.warm_up import read_measured, warm_up_survey
-    from thermogear.study.warm_up_fit import require_factors
 
     work = None if duty is None else read_duty(duty, read)
     if at is not None:

@@ -28,9 +28,9 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
+from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Result
 from thermogear.study.balances import LOSSES, dressed
-from thermogear.study.warm_up_fit import Fit, fit_factors, require_factors, until
 
 Floats = NDArray[np.float64]
 KIND = "warmup"

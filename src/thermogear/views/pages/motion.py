@@ -14,7 +14,7 @@ from thermogear.views.csv_files import quoted
 from thermogear.views.page import Block, Gallery, Page, Section, Shown, Table, Text, notice_lines
 from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.picture import Picture
-from thermogear.views.plots import engine as plots
+from thermogear.views.plots import one_motion as plots
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
 from thermogear.views.typesetting import prose

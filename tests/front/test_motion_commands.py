@@ -18,7 +18,7 @@ NUMBERS = ["--zeta", "0.1535", "--w", "1.245", "--eps", "0.335", "--fm", "0.017"
 def test_the_commands_import_nothing_heavy() -> None:
     heavy = ["numpy", "scipy", "numba", "xarray", "matplotlib", "pydantic", "pint", "jinja2"]
     code = (
-        "import sys, thermogear.front.engine_commands; "
+        "import sys, thermogear.front.motion_commands; "
         f"print([m for m in {heavy} if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
