@@ -390,3 +390,17 @@ def test_progress_counts_both_runs_of_every_lane():
     assert told[-1] == (6, 6)
     assert (3, 6) in told
     assert [done for done, _ in told] == sorted(done for done, _ in told)
+
+
+def test_a_model_without_an_event_exact_map_is_refused_in_one_line():
+    class Duffing:
+        period = 2.0 * np.pi
+
+        def derivative(self, t, y):
+            return np.array([y[1], -y[0] - y[0] ** 3 + 0.1 * np.cos(t)])
+
+    with pytest.raises(
+        InputError, match=r"^model: got Duffing; allowed TorsionalModel, DeadZ"
+    ) as e:
+        label(Duffing())
+    assert "\n" not in str(e.value)

@@ -87,6 +87,9 @@ def label(
 ) -> Label:
     """Label of the motion a model of one lane settles on from ``initial_state``.
 
+    ``model``: a clearance oscillator (:class:`TorsionalModel`, :class:`DeadZoneModel`,
+    :class:`PairModel`): the proof rests on its event-exact return map. A model of a derivative and
+    a period alone can be simulated and is refused here.
     ``initial_state`` (x, x') is in the units of the model: pure numbers for
     :class:`TorsionalModel`, SI for a model in SI.
     The transient runs in rounds, ``discard`` periods first, then doubling to at most ``cap``.

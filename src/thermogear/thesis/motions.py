@@ -15,17 +15,14 @@ from thermogear.analysis.labels import label as settle_label
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import InputError
+from thermogear.base.parameters import long_name
 from thermogear.case.case import DimensionlessCase, Point
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 
 Floats = NDArray[np.float64]
 
-SWEPT = {
-    "zeta": "damping_ratio",
-    "omega": "frequency",
-    "epsilon": "stiffness_amplitude",
-}
+SWEPT = {row: long_name(row) for row in ("zeta", "omega", "epsilon")}
 """Row of the table -> the parameter it sweeps."""
 HEATS = ("none", "thesis", "consistent", "backlash")
 """Without heat; with the thesis's signs; with E(T); with the closing gap alone."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.analysis.labels import label as settle
+from thermogear.base.parameters import PARAMETERS
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import UNDEFORMED, told_labels
 from thermogear.thesis import motions
@@ -15,7 +16,7 @@ LABEL, CASCADE = "thermogear.analysis.labels.label", "thermogear.analysis.contin
 DIAGRAM = "thermogear.analysis.diagram.orbit_diagram"
 RUN, WARMING = "thermogear.study.run.run", "thermogear.thesis.motions.warming"
 SET = "It holds for a set of numbers of ours, found by search; none is given."
-SYMBOLS = {"zeta": "ζ", "omega": "ω_h", "epsilon": "ε"}
+SYMBOLS = {row: PARAMETERS[name].symbol for row, name in motions.SWEPT.items()}
 
 
 def _no_torus(e: Evidence) -> str:
