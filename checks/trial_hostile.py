@@ -81,36 +81,41 @@ def mutated_bytes(data: bytes, rng: Random) -> bytes:
         elif rng.random() < 0.2:
             place = len(raw) - 1 - int(rng.integers(0, min(len(raw), 300)))
         size = int(rng.integers(1, 1 + max(1, min(64, len(raw) - place))))
-        match int(rng.integers(0, 11)):
-            case 0:
-                raw[place] ^= 1 << int(rng.integers(0, 8))
-            case 1:
-                raw[place : place + size] = rng.bytes(size)
-            case 2:
-                del raw[place : place + size]
-            case 3:
-                del raw[place:]
-            case 4:
-                raw[place:place] = raw[place : place + size]
-            case 5:
-                raw[place : place + size] = bytes(size)
-            case 6:
-                wide = int(rng.choice([2, 4, 8]))
-                order = "little" if rng.random() < 0.8 else "big"
-                number = int(rng.choice(NUMBERS)) % (1 << 8 * wide)
-                place -= place % wide
-                raw[place : place + wide] = number.to_bytes(wide, order)  # type: ignore[arg-type]
-            case 7:
-                raw[place:place] = CELLS[int(rng.integers(len(CELLS)))]
-            case 8:
-                other = int(rng.integers(0, len(raw)))
-                piece = bytes(raw[other : other + size])
-                raw[place : place + len(piece)] = piece
-            case 9:
-                raw[place:place] = bytes(raw[place : place + 4096]) * int(rng.integers(1, 20))
-            case _:
-                raw[place] = int(rng.integers(0, 256))
+        _damage(raw, place, size, rng)
     return bytes(raw)
+
+
+def _damage(raw: bytearray, place: int, size: int, rng: Random) -> None:
+    """One change of ``raw`` in place, of about ``size`` bytes from ``place`` on."""
+    match int(rng.integers(0, 11)):
+        case 0:
+            raw[place] ^= 1 << int(rng.integers(0, 8))
+        case 1:
+            raw[place : place + size] = rng.bytes(size)
+        case 2:
+            del raw[place : place + size]
+        case 3:
+            del raw[place:]
+        case 4:
+            raw[place:place] = raw[place : place + size]
+        case 5:
+            raw[place : place + size] = bytes(size)
+        case 6:
+            wide = int(rng.choice([2, 4, 8]))
+            order = "little" if rng.random() < 0.8 else "big"
+            number = int(rng.choice(NUMBERS)) % (1 << 8 * wide)
+            place -= place % wide
+            raw[place : place + wide] = number.to_bytes(wide, order)  # type: ignore[arg-type]
+        case 7:
+            raw[place:place] = CELLS[int(rng.integers(len(CELLS)))]
+        case 8:
+            other = int(rng.integers(0, len(raw)))
+            piece = bytes(raw[other : other + size])
+            raw[place : place + len(piece)] = piece
+        case 9:
+            raw[place:place] = bytes(raw[place : place + 4096]) * int(rng.integers(1, 20))
+        case _:
+            raw[place] = int(rng.integers(0, 256))
 
 
 def mutated_record(name: str, data: bytes, rng: Random) -> bytes:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import Ensemble, ReturnMap, lanes_of, scales, starts_of
+from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import label_words
 from thermogear.dynamics.blocks import Progress
@@ -149,8 +150,7 @@ def labels(
         ("max_period", max_period, 1), ("discard", discard, 1), ("starts", starts, 2),
         ("follow", follow, 1),
     ):  # fmt: skip
-        if not (least <= value < np.inf and int(value) == value):
-            raise InputError(name, value, allowed=f"a whole number >= {least}")
+        whole(name, value, least=least)
     lanes = lanes_of(model)
     start = starts_of(initial_state, len(lanes))
     search = _Search(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.section import lanes_of, starts_of
+from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
@@ -90,8 +91,7 @@ def lyapunov_exponents(
         ("batches", batches, 2),
         ("batch_periods", batch_periods, 1),
     ):
-        if not (least <= value < np.inf and int(value) == value):
-            raise InputError(name, value, allowed=f"a whole number >= {least}")
+        whole(name, value, least=least)
     lanes = lanes_of(model)
     start = starts_of(initial_state, len(lanes))
     means = np.full((len(lanes), batches), np.nan)

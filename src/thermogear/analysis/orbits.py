@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.section import ReturnMap, lanes_of, scales
+from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.tables import Lanes
 
@@ -225,13 +226,12 @@ def periodic_orbit(
     Raises InputError for a period that is no whole number >= 1 or a model of several lanes, and
     ConvergenceError when Newton does not settle from this guess.
     """
-    if not (1 <= period < np.inf and int(period) == period):
-        raise InputError("period", period, allowed="a whole number >= 1")
+    period = whole("period", period, least=1)
     start = np.asarray(guess, dtype=float)
     if start.shape != (2,) or not np.all(np.isfinite(start)):
         raise InputError("guess", start.tolist(), allowed="two finite numbers (x, x')")
     section = ReturnMap(lanes_of(model))
-    orbit = shoot(section, start, int(period), tolerance=tolerance, model=model)
+    orbit = shoot(section, start, period, tolerance=tolerance, model=model)
     if orbit is None:
         raise ConvergenceError(
             f"no orbit of period {period} reached from {start.tolist()}: Newton did not settle "

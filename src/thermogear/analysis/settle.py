@@ -16,6 +16,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics import exact
 from thermogear.dynamics.tables import Lanes
@@ -56,13 +57,9 @@ class Rule:
         for name, least in (
             ("max_period", 1), ("first", 8), ("cap", 8), ("chaos_periods", 40), ("batches", 4)
         ):  # fmt: skip
-            value = getattr(self, name)
-            if not (least <= value < np.inf and int(value) == value):
-                raise InputError(f"rule.{name}", value, allowed=f"a whole number >= {least}")
+            whole(f"rule.{name}", getattr(self, name), least=least)
         for name in ("near_border", "close", "settled"):
-            value = getattr(self, name)
-            if not 0.0 < value <= 1.0:
-                raise InputError(f"rule.{name}", value, allowed="0 < value <= 1")
+            require_share(f"rule.{name}", getattr(self, name))
         if self.cap < self.first:
             raise InputError("rule.cap", self.cap, allowed=f">= first = {self.first}")
 

@@ -85,6 +85,19 @@ class Bounds:
         return f"did you mean {' or '.join(meant)}?" if meant else None
 
 
+def whole(name: str, value: float, *, least: int) -> int:
+    """``value`` as the whole number that it is; refused below ``least`` or where it is none."""
+    if not (least <= value < np.inf and int(value) == value):
+        raise InputError(name, value, allowed=f"a whole number >= {least}")
+    return int(value)
+
+
+def require_share(name: str, value: float) -> None:
+    """Refuse a share that is not above 0 and at most 1."""
+    if not 0.0 < value <= 1.0:
+        raise InputError(name, value, allowed="0 < value <= 1")
+
+
 def _plain(number: float) -> str:
     return f"{number:g}".replace("e+0", "e").replace("e-0", "e-")
 

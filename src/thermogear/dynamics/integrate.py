@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear import __version__
+from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError, nearest
 from thermogear.dynamics import adaptive, exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
@@ -176,12 +177,6 @@ def _velocity(_t: float, y: Floats) -> float:
     return float(y[1])
 
 
-def _count(name: str, value: int, least: int) -> int:
-    if not (least <= value < np.inf and int(value) == value):
-        raise InputError(name, value, allowed=f"a whole number >= {least}")
-    return int(value)
-
-
 def simulate(
     model: object,
     *,
@@ -221,10 +216,10 @@ def simulate(
     run = _Run.of(
         model,
         method,
-        periods=_count("periods", periods, 1),
-        discard=_count("discard", discard, 0),
-        steps=_count("steps_per_period", steps_per_period, 4),
-        samples=_count("samples_per_period", samples_per_period, 0),
+        periods=whole("periods", periods, least=1),
+        discard=whole("discard", discard, least=0),
+        steps=whole("steps_per_period", steps_per_period, least=4),
+        samples=whole("samples_per_period", samples_per_period, least=0),
         precision=precision,
         tolerances=(rtol, atol),
     )

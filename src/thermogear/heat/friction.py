@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
-from thermogear.heat.contact_state import ContactState
+from thermogear.heat.contact_state import ContactState, PitchPoint
 from thermogear.heat.laws import (
     CEILING,
     FZG_LUBRICANT_FACTOR,
@@ -321,6 +321,13 @@ class LambdaBlend:
         return _spread(mu, state)
 
 
+def _of_mesh(
+    at: PitchPoint, state: ContactState
+) -> tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike]:
+    """What every mean of the mesh takes first: load, speed, radius, oil, roughness (SI)."""
+    return at.line_load, at.sum_speed, at.reduced_radius, state.oil_viscosity, state.roughness
+
+
 @dataclass(frozen=True, kw_only=True)
 class Schlenk:
     """Mean friction of ISO/TR 14179-2; ``factor`` None takes X_L by the base oil."""
@@ -336,15 +343,7 @@ class Schlenk:
         at = state.pitch(self.name)
         kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
         factor = kind if self.factor is None else self.factor
-        mu = schlenk(
-            at.line_load,
-            at.sum_speed,
-            at.reduced_radius,
-            state.oil_viscosity,
-            state.roughness,
-            factor=factor,
-            ceiling=self.ceiling,
-        )
+        mu = schlenk(*_of_mesh(at, state), factor=factor, ceiling=self.ceiling)
         return _spread(mu, state)
 
 
@@ -363,15 +362,7 @@ class Iso13989Flash:
         at = state.pitch(self.name)
         kind = ISO_LUBRICANT_FACTOR.get(state.lubricant_kind, 1.0)
         factor = kind if self.factor is None else self.factor
-        mu = iso_13989_1(
-            at.line_load,
-            at.sum_speed,
-            at.reduced_radius,
-            state.oil_viscosity,
-            state.roughness,
-            factor=factor,
-            ceiling=self.ceiling,
-        )
+        mu = iso_13989_1(*_of_mesh(at, state), factor=factor, ceiling=self.ceiling)
         return _spread(mu, state)
 
 
@@ -388,15 +379,7 @@ class Iso13989Integral:
 
     def __call__(self, state: ContactState) -> Floats:
         at = state.pitch(self.name)
-        mu = iso_13989_2(
-            at.line_load,
-            at.sum_speed,
-            at.reduced_radius,
-            state.oil_viscosity,
-            state.roughness,
-            factor=self.factor,
-            ceiling=self.ceiling,
-        )
+        mu = iso_13989_2(*_of_mesh(at, state), factor=self.factor, ceiling=self.ceiling)
         return _spread(mu, state)
 
 
@@ -416,11 +399,7 @@ class Fernandes:
         kind = lubricant_factor(state.lubricant_kind, FZG_LUBRICANT_FACTOR)
         factor = kind if self.factor is None else self.factor
         mu = fernandes(
-            at.line_load,
-            at.sum_speed,
-            at.reduced_radius,
-            state.oil_viscosity,
-            state.roughness,
+            *_of_mesh(at, state),
             state.needed("pressure_viscosity", self.name),
             at.face_width,
             factor=factor,

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.constants import Boltzmann, Planck, speed_of_light
 from scipy.optimize import brentq
 
-from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH
+from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH, require_share
 from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -117,8 +117,7 @@ def infrared_temperature(
         ("transmission", transmission),
         ("indicated emissivity", indicated_emissivity),
     ):
-        if not 0.0 < value <= 1.0:
-            raise InputError(name, value, allowed="0 < value <= 1")
+        require_share(name, value)
     reading = np.asarray(indicated, dtype=float)
     flat = [
         _corrected(
@@ -152,8 +151,7 @@ def infrared_indication(
         ("transmission", transmission),
         ("indicated emissivity", indicated_emissivity),
     ):
-        if not 0.0 < value <= 1.0:
-            raise InputError(name, value, allowed="0 < value <= 1")
+        require_share(name, value)
     signal = infrared_signal(
         temperature,
         emissivity=emissivity,
@@ -251,8 +249,7 @@ class InfraredReading:
 
     def __post_init__(self) -> None:
         for name in ("emissivity", "transmission"):
-            if not 0.0 < getattr(self, name) <= 1.0:
-                raise InputError(name, getattr(self, name), allowed="0 < value <= 1")
+            require_share(name, getattr(self, name))
         for name in ("indicated", "surroundings", "path"):
             BODY.require(f"infrared.{name}", getattr(self, name))
         self.temperature()

@@ -192,14 +192,14 @@ def _families(raw: Prominence, near: float | None) -> list[_Family]:
 
 
 def _family(raw: Prominence, near: float) -> _Family:
-    start, _ = raw.peak(near, 0)
+    start, _ = raw.peak(near, reach=0)
     found: list[tuple[float, float]] = []
     fundamental = start
     for rank in range(1, _HARMONICS + 1):
         if rank * start > 0.49:
             break
         # speed wander spreads a harmonic in proportion to its rank
-        place, height = raw.peak(rank * fundamental, 1 + rank)
+        place, height = raw.peak(rank * fundamental, reach=1 + rank)
         found.append((place / rank, min(height, 5.0)))
         if height > 1.5 and rank > 1:
             fundamental = float(np.mean([f for f, _ in found]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,16 +51,17 @@ class MeasuredLine:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A line to look for: its kind and name, and how far [cycles/sample] from its position."""
+    """A line to look for, at ``position`` +- ``half_width`` [cycles/sample]."""
 
     kind: str
     name: str
-    position: float  # cycles/sample
+    _: KW_ONLY
+    position: float
     half_width: float
 
 
 def wanted_lines(
-    gearing: Gearing | None, harmonics: int, sidebands: int, values: Floats
+    gearing: Gearing | None, values: Floats, *, harmonics: int, sidebands: int
 ) -> list[Wanted]:
     """Harmonics of the mesh line with their sidebands and further meshes, below rate/2.56.
 
@@ -75,7 +76,9 @@ def wanted_lines(
         for top in tops:
             place = float(top) / count
             if all(abs(place - other.position) > 2 * bins for other in found):
-                found.append(Wanted("line", f"line {len(found) + 1}", place, bins))
+                found.append(
+                    Wanted("line", f"line {len(found) + 1}", position=place, half_width=bins)
+                )
         return found[:harmonics]
     mesh = gearing.mesh_frequency
     found = []
@@ -84,19 +87,21 @@ def wanted_lines(
             break
         # speed wander spreads a harmonic in proportion to its rank
         reach = max(bins, 2e-4 * rank * mesh)
-        found.append(Wanted("mesh", f"mesh x {rank}", rank * mesh, reach))
+        found.append(Wanted("mesh", f"mesh x {rank}", position=rank * mesh, half_width=reach))
         for shaft in gearing.shafts:
             for n in range(1, sidebands + 1):
                 for sign in (-1, 1):
                     place = rank * mesh + sign * n * mesh / shaft.teeth
                     label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{shaft.teeth}"
-                    found.append(Wanted("sideband", label, place, reach))
+                    found.append(Wanted("sideband", label, position=place, half_width=reach))
     for number, other in enumerate(gearing.meshes, start=2):
         place = other.order * mesh / gearing.shafts[0].teeth
         label = f"mesh {number} (weak)" if other.weak else f"mesh {number}"
-        found.append(Wanted("second mesh", label, place, max(bins, 2e-4 * place)))
+        found.append(
+            Wanted("second mesh", label, position=place, half_width=max(bins, 2e-4 * place))
+        )
     if not found:
-        found.append(Wanted("mesh", "mesh x 1", mesh, max(bins, 2e-4 * mesh)))
+        found.append(Wanted("mesh", "mesh x 1", position=mesh, half_width=max(bins, 2e-4 * mesh)))
     return [w for w in found if bins < w.position < 0.5 - bins]
 
 

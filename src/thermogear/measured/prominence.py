@@ -13,7 +13,7 @@ from thermogear.signals.spectra import amplitude_spectrum
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Prominence:
     """Mean over channels of log(amplitude/floor), its median taken away, per bin."""
 
@@ -30,7 +30,7 @@ class Prominence:
         low = np.where(inside, low, 1)
         return np.where(inside, np.maximum(self.level[low], self.level[low + 1]), 0.0)
 
-    def peak(self, place: float, reach: int = 2) -> tuple[float, float]:
+    def peak(self, place: float, *, reach: int) -> tuple[float, float]:
         """Interpolated position of the highest bin within ``reach`` bins, and its level."""
         centre = int(np.rint(place * self.per_unit))
         low, high = max(1, centre - reach), min(self.level.size - 1, centre + reach + 1)
@@ -54,7 +54,10 @@ def prominence(channels: Floats, rate: float) -> Prominence:
     spread = float(np.diff(np.percentile(pairs, [15.87, 50.0]))[0])
     level = level - float(np.median(pairs))
     return Prominence(
-        level, np.exp(logs.mean(axis=0)), 1.0 / spectrum.bin_width, max(spread, 1e-12)
+        level=level,
+        amplitude=np.exp(logs.mean(axis=0)),
+        per_unit=1.0 / spectrum.bin_width,
+        spread=max(spread, 1e-12),
     )
 
 

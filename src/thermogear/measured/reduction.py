@@ -135,7 +135,7 @@ def measure(
             gearing,
             teeth,
             wanted,
-            wanted_lines(gearing, harmonics, sidebands, values),
+            wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
             sensor_tolerance,
             turning[0] if turning else None,
         )

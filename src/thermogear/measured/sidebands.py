@@ -162,7 +162,7 @@ def _refined(
         ranks, offsets = [], []
         for h in harmonics:
             for rank in (*range(-reach, 0), *range(1, reach + 1)):
-                place, height = sharp.peak(h + rank * spacing, 1)
+                place, height = sharp.peak(h + rank * spacing, reach=1)
                 if height > np.log(3.0):
                     ranks.append(rank)
                     offsets.append(place - h)
@@ -204,7 +204,7 @@ def second_mesh(
     if high - low < 8:
         return ()
     top_bin = low + int(np.argmax(sharp.level[low:high]))
-    place, height = sharp.peak(top_bin / sharp.per_unit, 1)
+    place, height = sharp.peak(top_bin / sharp.per_unit, reach=1)
     if height < max(_SIGNIFICANT * sharp.spread / 2.0, np.log(3.0)):
         return ()
     ratio = place * second  # slow shaft over second shaft
