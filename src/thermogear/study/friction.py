@@ -33,9 +33,12 @@ def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionP
     return FrictionPath(elastic_pair(hot, case.deviations), s).checked()
 
 
-def law_of(name: str, model: MeshModel) -> FrictionLaw:
-    """The named law, the dry one with the model's coefficient."""
-    return ConstantDry(model.dry_coefficient) if name == ConstantDry.name else LAWS[name]
+def laws_beside(model: MeshModel) -> dict[str, FrictionLaw]:
+    """Every law by its name, the model's own in its place and in words; dry as the model has it."""
+    dry, own = ConstantDry(model.dry_coefficient), model.law
+    laws = LAWS | {dry.name: dry, own.name: own}
+    words = str(model.choices()["friction"])
+    return {words if name == own.name else name: law for name, law in laws.items()}
 
 
 def friction_survey(case: GearCase) -> Result:
@@ -52,19 +55,19 @@ def friction_survey(case: GearCase) -> Result:
     path = friction_path(case, model, case.path_positions)
     state = path.state
     shape = (case.stated.speed.size, path.s.size)
-    laws = tuple(law_of(name, model) for name in LAWS)
-    together = laws_together(state, laws)
+    laws = laws_beside(model)
+    together = laws_together(state, tuple(laws.values()))
     mu = np.broadcast_to(together.coefficient, (len(laws), *shape))
     outside = np.broadcast_to(together.outside, mu.shape).astype(np.int8)
     words = [
         {
-            "law": law.name,
+            "law": name,
             "regime": law.regime,
             "source": law.source,
             "range": range_in_words(law),
             "missing": reason,
         }
-        for law, reason in zip(laws, together.missing, strict=True)
+        for (name, law), reason in zip(laws.items(), together.missing, strict=True)
     ]
     along = ("operating", "path_position")
     weight = path.line_load * np.abs(np.subtract(*path.velocities))
@@ -95,7 +98,7 @@ def friction_survey(case: GearCase) -> Result:
             ),
         },
         {
-            "law": list(LAWS),
+            "law": list(laws),
             "regime_name": list(REGIMES),
             "path_position": ("path_position", path.s, attributes("path_position")),
             "pinion_speed": ("operating", case.stated.speed, attributes("pinion_speed")),
@@ -103,7 +106,7 @@ def friction_survey(case: GearCase) -> Result:
         },
         {
             "path_points": json.dumps({k.upper(): v for k, v in case.pair.path._asdict().items()}),
-            "chosen": model.friction,
+            "chosen": model.choices()["friction"],
             "bundle": model.name,
         },
     )

@@ -97,7 +97,7 @@ def thermal_map(
         **case.provenance,
         bundle=model.name,
         choices=model.choices(),
-        laws={name: one.friction for name, one in models.items()},
+        laws={name: one.choices()["friction"] for name, one in models.items()},
         held={name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()},
         scuffing_load_stage=case.scuffing_load_stage,
         cold_half_backlash=case.cold_backlash.half,
