@@ -31,7 +31,7 @@ class Bounds:
     si: str
     scale: float = 1.0
     zero: float = 0.0
-    slips: dict[str, float] = field(default_factory=dict)
+    slips: dict[str, float] = field(default_factory=dict, hash=False)
 
     @property
     def least(self) -> float:
@@ -56,7 +56,7 @@ class Bounds:
         good = (found >= self.least - below) & (found <= self.most + slack)
         if not np.all(good):
             value = float(found[~good].flat[0])
-            allowed = f"{_plain(self.low)}..{_plain(self.high)} {self.unit}"
+            allowed = f"{_plain(self.low)}..{_plain(self.high)} {self.unit}".rstrip()
             raise InputError(name, self._shown(value), allowed=allowed, fix=self._meant(value))
 
     def require_number(self, name: str, value: object) -> None:
@@ -66,7 +66,7 @@ class Bounds:
         self.require(name, value)
 
     def _shown(self, value: float) -> str:
-        number = f"{value:.6g} {self.si}"
+        number = f"{value:.6g} {self.si}".rstrip()
         if self.unit == self.si or not math.isfinite(value):
             return number
         return f"{number} ({(value - self.zero) / self.scale:.6g} {self.unit})"

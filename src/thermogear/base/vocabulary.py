@@ -38,6 +38,9 @@ STATUS = ("ok", "jammed", "not_converged", "diverged")
 EDGE_CONTACT = ("no_edge_contact", "wheel_tip_corner", "pinion_tip_corner", "both_tip_corners")
 """Meaning of the values 0, 1, 2, 3 of every ``edge_contact``: the tip corner that carries load."""
 
+REGIMES = ("boundary", "mixed", "elastohydrodynamic", "unloaded")
+"""Meaning of the values 0 to 3 of every lubrication ``regime``."""
+
 DIMENSIONLESS = (
     "damping_ratio",
     "frequency_ratio",
@@ -308,25 +311,69 @@ def told_operating(data: xr.Dataset) -> int:
     return int(places[0]) if places.size else 0
 
 
-FLAGS = {"status": status_attributes, "edge_contact": edge_attributes}
+def regime_attributes() -> dict[str, Any]:
+    """CF flag attributes of a lubrication ``regime``."""
+    return {
+        "units": "1",
+        "long_name": "lubrication regime by the film parameter",
+        "flag_values": np.arange(len(REGIMES), dtype=np.int8),
+        "flag_meanings": " ".join(REGIMES),
+    }
+
+
+FLAGS = {
+    "status": status_attributes,
+    "edge_contact": edge_attributes,
+    "regime": regime_attributes,
+}
 """Variables whose values are places in a list of words."""
 
 
-def label(
-    variables: Mapping[str, tuple[tuple[str, ...], ArrayLike]],
-    coordinates: Mapping[str, tuple[tuple[str, ...], ArrayLike]] | None = None,
-    attributes_of_all: Mapping[str, Any] | None = None,
-) -> xr.Dataset:
-    """A Dataset whose every name stands in :data:`QUANTITIES`; names map to (dims, values)."""
+def dressed(
+    dims: str | tuple[str, ...], values: ArrayLike, unit: str = "", words: str = ""
+) -> xr.Variable:
+    """A variable that is no part of the vocabulary, with its unit and long name where given."""
     import xarray as xr
 
-    def dressed(name: str, dims: tuple[str, ...], values: ArrayLike) -> xr.Variable:
-        if name in FLAGS:
-            return xr.Variable(dims, np.asarray(values, np.int8), FLAGS[name]())
-        return xr.Variable(dims, np.asarray(values), attributes(name))
+    told = {"units": unit, "long_name": words}
+    return xr.Variable(dims, np.asarray(values), {k: v for k, v in told.items() if v})
 
-    return xr.Dataset(
-        {name: dressed(name, *entry) for name, entry in variables.items()},
-        {name: dressed(name, *entry) for name, entry in (coordinates or {}).items()},
-        dict(attributes_of_all or {}),
-    )
+
+def labelled(name: str, entry: Any) -> xr.Variable:
+    """One variable of :func:`label`."""
+    import xarray as xr
+
+    if isinstance(entry, xr.Variable):
+        return entry
+    dims, values, *told = entry if isinstance(entry, tuple) else (name, entry)
+    if told:
+        return dressed(dims, values, *told)
+    if name in FLAGS:
+        return xr.Variable(dims, np.asarray(values, np.int8), FLAGS[name]())
+    values = np.asarray(values)
+    text = name not in QUANTITIES and values.dtype.kind in "UO"
+    return xr.Variable(dims, values, {} if text else attributes(name))
+
+
+def label(
+    variables: Mapping[str, Any],
+    coordinates: Mapping[str, Any] | None = None,
+    attributes_of_all: Mapping[str, Any] | None = None,
+) -> xr.Dataset:
+    """The Dataset of ``variables`` and ``coordinates`` by name, with units and long names.
+
+    An entry is (dims, values) of a name in :data:`QUANTITIES` or :data:`FLAGS`, or of texts, which
+    have no unit; (dims, values, unit, words) of what is described on the spot; a variable with
+    labels already; or the values alone of a dimension's own coordinate. Raises InputError for a
+    number without a unit, which says the nearest name.
+    """
+    import xarray as xr
+
+    def made(entries: Mapping[str, Any]) -> dict[str, Any]:
+        # an array out of a Dataset brings its own coordinates
+        return {
+            name: one if isinstance(one, xr.DataArray) else labelled(name, one)
+            for name, one in entries.items()
+        }
+
+    return xr.Dataset(made(variables), made(coordinates or {}), dict(attributes_of_all or {}))

@@ -22,7 +22,8 @@ from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import short, shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
 from thermogear.gears.pair import GearPair
-from thermogear.heat.friction import ROUGHNESS_LIMIT
+from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT
+from thermogear.heat.law_parameters import parameters, with_parameters
 from thermogear.mesh.excite import disc_inertia
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
@@ -252,11 +253,20 @@ def models(file: GearFile, pair: GearPair) -> tuple[MeshModel, ...]:
     """The bundles to compute with, single choices put in their place."""
     choices = file.model.model_dump(exclude_none=True)
     bundle = choices.pop("bundle")
-    bundles = {"consistent": MeshModel.consistent, "thesis": MeshModel.thesis}
-    names = tuple(bundles) if bundle == "both" else (bundle,)
-    chosen = tuple(bundles[name]().override(**choices) for name in names)
+    friction = choices.pop("friction", {})
+    law = friction.pop("law", None)
+    bundles = {"consistent": MeshModel.consistent(), "thesis": MeshModel.thesis()}
+    whole = tuple(bundles.values()) if bundle == "both" else (bundles[bundle],)
+    laws = [LAWS[law] if law else model.law for model in whole]
+    known = {name for one in laws for name in parameters(one)}
+    chosen = []
+    for model, one in zip(whole, laws, strict=True):
+        # a parameter without a law goes to the bundles whose law has it
+        mine = {k: v for k, v in friction.items() if k in parameters(one) or k not in known}
+        made = _under("model.friction", partial(with_parameters, one, mine))
+        chosen.append(model.override(friction=made, **choices))
     roughness = 0.5 * (pair.pinion.roughness + pair.wheel.roughness)
-    if roughness >= ROUGHNESS_LIMIT and any(m.friction == "benedict-kelley" for m in chosen):
+    if roughness >= ROUGHNESS_LIMIT and any(m.law.name == "benedict-kelley" for m in chosen):
         raise InputError(
             "gears.pinion.roughness",
             f"{1e6 * roughness:.4g} um, the mean of both flanks",
@@ -264,4 +274,4 @@ def models(file: GearFile, pair: GearPair) -> tuple[MeshModel, ...]:
             why="the friction law of Benedict and Kelley ends there",
             fix='use smoother flanks, or model.friction = "lambda-blend"',
         )
-    return chosen
+    return tuple(chosen)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from thermogear.case.case import Case, GearCase
 from thermogear.case.thesis_cases import of_the_thesis
-from thermogear.heat.friction import LAWS, ConstantDry, LambdaBlend
+from thermogear.heat.friction import ConstantDry, LambdaBlend
 from thermogear.mesh.model import MeshModel
 
 Source = tuple[str, str, str]
@@ -70,10 +70,11 @@ def citations(case: Case) -> list[dict[str, str]]:
 def _of_choices(model: MeshModel) -> Iterator[Source]:
     """Sources of the laws that a bundle chose."""
     yield from FLASH[model.flash]
-    if model.friction != ConstantDry.name:
-        yield model.friction, LAWS[model.friction].source, f"friction, {model.friction}"
+    law = model.law
+    if law.name != ConstantDry.name:
+        yield law.name, law.source, f"friction, {law.name}"
     yield FILM
-    if model.friction == LambdaBlend.name:
+    if law.name == LambdaBlend.name:
         yield GRUBIN
     yield HERTZ
     loaded = model.stiffness == "loaded"

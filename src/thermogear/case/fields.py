@@ -8,10 +8,11 @@ with an :class:`InputError` whose field is still empty: where it stood is filled
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from thermogear.base import bounds
@@ -220,6 +221,38 @@ class Choice(Reader):
 
     def schema(self) -> dict[str, Any]:
         return {"type": "string", "enum": list(self.names)}
+
+
+class NameOrTable(Choice):
+    """A name, or a table that holds it as ``key`` beside fields of its own.
+
+    The name alone is read as a table of it; ``check`` sees every table that names it.
+    """
+
+    def __init__(
+        self, key: str, *names: str, check: Callable[[str, Mapping[str, object]], None]
+    ) -> None:
+        super().__init__(*names)
+        self.key, self.check = key, check
+
+    def read(self, raw: object) -> Any:
+        if raw is None or isinstance(raw, BaseModel):
+            return raw
+        if not isinstance(raw, dict):
+            return {self.key: super().read(raw)}
+        if raw.get(self.key) in self.names:
+            self.check(raw[self.key], {k: v for k, v in raw.items() if k != self.key})
+        return raw
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.read, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {"anyOf": [self.schema(), handler(core)]}
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from thermogear.case.fields import (
     measure,
 )
 from thermogear.case.flank_schema import ProfileTable, ReliefTable
+from thermogear.case.friction_schema import FRICTION, FrictionTable
 from thermogear.case.gearbox_schema import GearboxTable
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
@@ -356,10 +357,10 @@ def _model_table() -> type[Table]:
         ),
     }
     for name, known in CHOICES.items():
-        fields[name] = (
-            Annotated[str | None, Choice(*known)],
-            Field(default=None, title="as the bundle has it"),
-        )
+        kind: Any = Annotated[str | None, Choice(*known)]
+        if name == "friction":
+            kind = Annotated[FrictionTable | None, FRICTION]
+        fields[name] = (kind, Field(default=None, title="as the bundle has it"))
     words = "The model: one bundle of choices or both, then single choices in place of theirs."
     return create_model("ModelTable", __base__=Table, __doc__=words, **fields)
 

@@ -16,6 +16,9 @@ from thermogear.case.units import short
 LARGEST = 1_000_000
 """A case file is text written by hand: one larger than this [bytes] is something else."""
 
+NAMED = {"model.friction": "law"}
+"""A name that may stand for a table, and the field of the table that holds it."""
+
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 
 
@@ -124,7 +127,9 @@ def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> di
         *way, last = path.split(".")
         table: Any = data
         for depth, key in enumerate(way):
-            table = table.setdefault(key, {})
+            above, table = table, table.setdefault(key, {})
+            if isinstance(table, str) and ".".join(way[: depth + 1]) in NAMED:
+                table = above[key] = {NAMED[".".join(way[: depth + 1])]: table}
             if not isinstance(table, dict):
                 raise InputError(
                     path,

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.materials import Lubricant
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import REGIMES
 from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity
 
 Floats = NDArray[np.float64]
@@ -314,9 +315,6 @@ def mean_roughness_film_parameter(
     if not np.all(mean > 0.0):
         raise InputError("roughness", mean.min(), allowed="> 0 m on one flank at least")
     return np.asarray(np.asarray(thickness) / mean)
-
-
-REGIMES = ("boundary", "mixed", "elastohydrodynamic", "unloaded")
 
 
 def regime(

@@ -16,6 +16,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.heat.contact_state import ContactState, PitchPoint
+from thermogear.heat.law_parameters import (
+    Bounded,
+    Coefficient,
+    Factor,
+    PitchFloor,
+    law_words,
+    with_parameters,
+)
 from thermogear.heat.laws import (
     CEILING,
     FZG_LUBRICANT_FACTOR,
@@ -35,6 +43,7 @@ Floats = NDArray[np.float64]
 __all__ = [
     "LAWS",
     "LUBRICATED",
+    "MEANINGS",
     "BenedictKelley",
     "Boundary",
     "ConstantDry",
@@ -51,6 +60,7 @@ __all__ = [
     "beyond",
     "constant_dry",
     "friction_law",
+    "friction_words",
     "laws_together",
     "outside_range",
 ]
@@ -191,14 +201,14 @@ def constant_dry(sliding_speed: ArrayLike, coefficient: float = 0.2) -> Floats:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BenedictKelley:
+class BenedictKelley(Bounded):
     """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`.
 
     Its viscosity is that of the oil supply, as the thesis and gear codes read eta_0.
     """
 
-    pitch_floor: float = 0.01
-    ceiling: float = CEILING
+    pitch_floor: PitchFloor = 0.01
+    ceiling: Coefficient = CEILING
     name: ClassVar[str] = "benedict-kelley"
     regime: ClassVar[str] = "mixed"
     source: ClassVar[str] = "Benedict and Kelley, ASLE Trans. 4 (1961) 59-70"
@@ -237,10 +247,10 @@ class ConstantDry:
 
 
 @dataclass(frozen=True)
-class Boundary:
+class Boundary(Bounded):
     """Boundary lubrication, one constant."""
 
-    coefficient: float = 0.10
+    coefficient: Coefficient = 0.10
     name: ClassVar[str] = "boundary"
     regime: ClassVar[str] = "boundary"
     source: ClassVar[str] = "0.10 in public gear code for doped oils, 0.12 in bearing practice"
@@ -249,15 +259,12 @@ class Boundary:
         {"film_parameter": (0.0, 1.0)}
     )
 
-    def __post_init__(self) -> None:
-        constant_dry(0.0, self.coefficient)
-
     def __call__(self, state: ContactState) -> Floats:
         return _spread(constant_dry(state.sliding, self.coefficient), state)
 
 
 @dataclass(frozen=True, kw_only=True)
-class XuKahraman:
+class XuKahraman(Bounded):
     """Xu and Kahraman 2007, local; see :func:`laws.xu_kahraman`.
 
     The fit's roughness is rms: the contact's Ra is converted. ``smooth`` leaves it out, as a
@@ -265,8 +272,8 @@ class XuKahraman:
     """
 
     smooth: bool = False
-    pitch_floor: float = 0.01
-    ceiling: float = CEILING
+    pitch_floor: PitchFloor = 0.01
+    ceiling: Coefficient = CEILING
     name: ClassVar[str] = "xu-kahraman"
     regime: ClassVar[str] = "elastohydrodynamic"
     source: ClassVar[str] = "Xu and Kahraman, J. Mech. Des. 129 (2007) 58-68"
@@ -290,7 +297,7 @@ class XuKahraman:
 
 
 @dataclass(frozen=True)
-class LambdaBlend:
+class LambdaBlend(Bounded):
     """Mixed lubrication: boundary and smooth film friction by Doleschel's share.
 
     mu = xi mu_boundary + (1 - xi) mu_film, xi = (1 - lambda/2)^2 below 2, lambda the central film
@@ -300,7 +307,7 @@ class LambdaBlend:
     measured at 0.5 m/s on FZG gears, 0.065; other codes take 0.09 to 0.10.
     """
 
-    boundary: float = 0.07
+    boundary: Coefficient = 0.07
     film: XuKahraman = XuKahraman(smooth=True)
     name: ClassVar[str] = "lambda-blend"
     regime: ClassVar[str] = "boundary to elastohydrodynamic"
@@ -311,9 +318,6 @@ class LambdaBlend:
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
         {"viscosity": (1e-3, np.inf)}
     )
-
-    def __post_init__(self) -> None:
-        constant_dry(0.0, self.boundary)
 
     def __call__(self, state: ContactState) -> Floats:
         share = doleschel_share(state.needed("central_film_parameter", self.name))
@@ -329,11 +333,11 @@ def _of_mesh(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Schlenk:
+class Schlenk(Bounded):
     """Mean friction of ISO/TR 14179-2; ``factor`` None takes X_L by the base oil."""
 
-    factor: float | None = None
-    ceiling: float = CEILING
+    factor: Factor | None = None
+    ceiling: Coefficient = CEILING
     name: ClassVar[str] = "schlenk"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "Schlenk, ISO/TR 14179-2; X_L of FZG tests (Fernandes, Seabra)"
@@ -348,11 +352,11 @@ class Schlenk:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Iso13989Flash:
+class Iso13989Flash(Bounded):
     """Mean friction of ISO/TR 13989-1; ``factor`` None takes c by the base oil."""
 
-    factor: float | None = None
-    ceiling: float = CEILING
+    factor: Factor | None = None
+    ceiling: Coefficient = CEILING
     name: ClassVar[str] = "iso-13989-1"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "ISO/TR 13989-1 eq. 25-28"
@@ -367,11 +371,11 @@ class Iso13989Flash:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Iso13989Integral:
+class Iso13989Integral(Bounded):
     """Mean friction of ISO/TR 13989-2 and 15144-1 (Michaelis); ``factor`` X_L."""
 
-    factor: float = 1.0
-    ceiling: float = CEILING
+    factor: Factor = 1.0
+    ceiling: Coefficient = CEILING
     name: ClassVar[str] = "iso-13989-2"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "ISO/TR 13989-2 eq. 1-7 = ISO/TR 15144-1 eq. 86"
@@ -384,11 +388,11 @@ class Iso13989Integral:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fernandes:
+class Fernandes(Bounded):
     """Mean friction by Fernandes 2016; ``factor`` None takes X_L by the base oil."""
 
-    factor: float | None = None
-    ceiling: float = CEILING
+    factor: Factor | None = None
+    ceiling: Coefficient = CEILING
     name: ClassVar[str] = "fernandes"
     regime: ClassVar[str] = "mixed, mean of the mesh"
     source: ClassVar[str] = "Fernandes et al., Tribology International 101 (2016) 204"
@@ -408,28 +412,39 @@ class Fernandes:
         return _spread(mu, state)
 
 
-LAWS: dict[str, FrictionLaw] = {
-    law.name: law
-    for law in (
-        BenedictKelley(),
-        ConstantDry(),
-        Boundary(),
-        XuKahraman(),
-        LambdaBlend(),
-        Schlenk(),
-        Iso13989Flash(),
-        Iso13989Integral(),
-        Fernandes(),
-    )
+_TABLE: dict[FrictionLaw, str] = {
+    BenedictKelley(): "law for mixed lubrication, Benedict and Kelley 1961",
+    ConstantDry(): "constant coefficient, `dry_coefficient`",
+    Boundary(): "boundary lubrication, one constant",
+    XuKahraman(): "elastohydrodynamic, local, Xu and Kahraman 2007",
+    LambdaBlend(): "boundary and smooth film, weighted by the film (Doleschel)",
+    Schlenk(): "mean of the mesh, ISO/TR 14179-2",
+    Iso13989Flash(): "mean of the mesh, ISO/TR 13989-1",
+    Iso13989Integral(): "mean of the mesh, ISO/TR 13989-2 = ISO/TR 15144-1",
+    Fernandes(): "mean of the mesh, Fernandes 2016",
 }
+
+LAWS = {law.name: law for law in _TABLE}
 """Every law by its name, with the parameters of its source."""
 
+MEANINGS = {law.name: words for law, words in _TABLE.items()}
+"""What every law is, in words."""
 
-def friction_law(name: str) -> FrictionLaw:
-    """The named law with its default parameters, or an error that says the nearest name."""
+
+def friction_law(name: str, **parameters: object) -> FrictionLaw:
+    """The named law with its default parameters, or with other ``parameters``, by their names.
+
+    Raises InputError for an unknown law or parameter, which says the nearest, and for a value out
+    of range.
+    """
     if name not in LAWS:
         raise InputError("friction", repr(name), fix=nearest(name, LAWS))
-    return LAWS[name]
+    return with_parameters(LAWS[name], parameters)
+
+
+def friction_words(law: FrictionLaw) -> str:
+    """The law's name, and in brackets the parameters that are not its defaults."""
+    return law_words(law, LAWS.get(law.name))
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,7 +34,6 @@ from thermogear.heat.friction import (
     ROUGHNESS_LIMIT,
     BenedictKelley,
     ConstantDry,
-    friction_law,
     laws_together,
     outside_range,
 )
@@ -293,8 +292,8 @@ class FrictionPath:
     @cached_property
     def friction(self) -> Floats:
         """|mu| by the model's law."""
-        name = self.hot.model.friction
-        return self.dry if name == "dry" else friction_law(name)(self.state)
+        law = self.hot.model.law
+        return self.dry if isinstance(law, ConstantDry) else law(self.state)
 
     @cached_property
     def band(self) -> tuple[Floats, Floats]:
@@ -304,9 +303,7 @@ class FrictionPath:
     @cached_property
     def outside(self) -> NDArray[np.bool_]:
         """Where the contact leaves the range of the model's friction law."""
-        name = self.hot.model.friction
-        law = ConstantDry() if name == ConstantDry.name else friction_law(name)
-        return outside_range(law, self.state)
+        return outside_range(self.hot.model.law, self.state)
 
     @cached_property
     def flash_of_unit_friction(self) -> Floats:

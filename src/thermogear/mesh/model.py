@@ -1,7 +1,8 @@
 """The named choices of a mesh model and its two bundles.
 
-A choice is a name out of :data:`CHOICES` or a number; a bundle is a full set of them. No
-function asks which bundle it is in: it is handed the choice it needs.
+A choice is a name out of :data:`CHOICES` or a number, friction also a law with parameters of its
+own; a bundle is a full set of them. No function asks which bundle it is in: it is handed the
+choice it needs.
 """
 
 from __future__ import annotations
@@ -9,19 +10,17 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 from thermogear.base.errors import InputError, nearest
+from thermogear.heat.friction import (
+    LAWS,
+    MEANINGS,
+    ConstantDry,
+    FrictionLaw,
+    friction_law,
+    friction_words,
+)
 
 CHOICES: dict[str, dict[str, str]] = {
-    "friction": {
-        "benedict-kelley": "law for mixed lubrication, Benedict and Kelley 1961",
-        "dry": "constant coefficient, `dry_coefficient`",
-        "boundary": "boundary lubrication, one constant",
-        "xu-kahraman": "elastohydrodynamic, local, Xu and Kahraman 2007",
-        "lambda-blend": "boundary and smooth film, weighted by the film (Doleschel)",
-        "schlenk": "mean of the mesh, ISO/TR 14179-2",
-        "iso-13989-1": "mean of the mesh, ISO/TR 13989-1",
-        "iso-13989-2": "mean of the mesh, ISO/TR 13989-2 = ISO/TR 15144-1",
-        "fernandes": "mean of the mesh, Fernandes 2016",
-    },
+    "friction": MEANINGS,
     "inlet": {
         "oil": "the film forms at the temperature of the oil supply",
         "body": "the film forms at the flanks' temperature, the mean of both addenda",
@@ -80,10 +79,14 @@ CHOICES: dict[str, dict[str, str]] = {
 
 @dataclass(frozen=True)
 class MeshModel:
-    """Every choice of the quasi-static mesh cycle; see :data:`CHOICES` for the names."""
+    """Every choice of the quasi-static mesh cycle; see :data:`CHOICES` for the names.
+
+    ``friction`` is the name of a law with its default parameters, or a law object; one with its
+    defaults is kept by its name. Dry friction's coefficient is ``dry_coefficient``.
+    """
 
     name: str
-    friction: str = "lambda-blend"
+    friction: str | FrictionLaw = "lambda-blend"
     dry_coefficient: float = 0.2
     inlet: str = "body"
     flash: str = "peclet"
@@ -99,9 +102,19 @@ class MeshModel:
     sharing: str = "loaded"
 
     def __post_init__(self) -> None:
+        law = self.friction
+        if isinstance(law, ConstantDry) and law != LAWS[law.name]:
+            raise InputError(
+                "model.friction.coefficient",
+                f"{law.coefficient:g}",
+                why="dry friction's coefficient is a choice of its own",
+                fix=f"write model.dry_coefficient = {law.coefficient:g}",
+            )
+        if not isinstance(law, str) and callable(law) and LAWS.get(law.name) == law:
+            object.__setattr__(self, "friction", law.name)
         for field, known in CHOICES.items():
             value = getattr(self, field)
-            if value not in known:
+            if value not in known and not callable(value):
                 raise InputError(
                     f"model.{field}",
                     repr(value),
@@ -110,6 +123,13 @@ class MeshModel:
                 )
         if not 0.0 < self.dry_coefficient <= 1.0:
             raise InputError("model.dry_coefficient", self.dry_coefficient, allowed="0 < mu <= 1")
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law of friction with its parameters."""
+        if self.friction == ConstantDry.name:
+            return ConstantDry(self.dry_coefficient)
+        return friction_law(self.friction) if isinstance(self.friction, str) else self.friction
 
     @classmethod
     def consistent(cls) -> MeshModel:
@@ -144,9 +164,13 @@ class MeshModel:
         changed = {k: v for k, v in choices.items() if getattr(self, k) != v}
         if not changed:
             return self
-        name = self.name + " + " + ", ".join(f"{k}={v}" for k, v in sorted(changed.items()))
-        return replace(self, name=name, **changed)  # type: ignore[arg-type]
+        made = replace(self, **changed)  # type: ignore[arg-type]
+        told = made.choices()
+        words = ", ".join(f"{k}={told[k]}" for k in sorted(changed) if told[k] != self.choices()[k])
+        return replace(made, name=f"{self.name} + {words}") if words else self
 
     def choices(self) -> dict[str, str | float]:
-        """Field -> value, in order, without the name."""
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "name"}
+        """Field -> value, in order, without the name; a law with what is not its default."""
+        values = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "name"}
+        law = self.friction
+        return values | {"friction": law if isinstance(law, str) else friction_words(law)}

@@ -5,15 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.vocabulary import STATUS, attributes, status_attributes
+from thermogear.base.vocabulary import STATUS, dressed, label, labelled
 from thermogear.case.case import GearCase
-from thermogear.heat.film import REGIMES
 from thermogear.mesh.balance import HeatBalance, heat_balance
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.thermal import HotPair
@@ -36,25 +34,10 @@ _MEANING = {
 }
 
 
-def dressed(dims: tuple[str, ...], values: ArrayLike, unit: str, words: str) -> xr.Variable:
-    """A variable with its unit and long name."""
-    return xr.Variable(dims, np.asarray(values), {"units": unit, "long_name": words})
-
-
-def regime_attributes() -> dict[str, Any]:
-    """CF flag attributes of a lubrication regime."""
-    return {
-        "units": "1",
-        "long_name": "lubrication regime by the film parameter",
-        "flag_values": np.arange(len(REGIMES), dtype=np.int8),
-        "flag_meanings": " ".join(REGIMES),
-    }
-
-
 def status_of(balance: HeatBalance) -> xr.Variable:
     """ok, or not_converged where the loop did not settle, (operating,)."""
     values = np.where(balance.settled, STATUS.index("ok"), STATUS.index("not_converged"))
-    return xr.Variable(("operating",), values.astype(np.int8), status_attributes())
+    return labelled("status", (("operating",), values))
 
 
 def balance_dataset(balance: HeatBalance) -> xr.Dataset:
@@ -78,16 +61,16 @@ def balance_dataset(balance: HeatBalance) -> xr.Dataset:
         ),
         "several": (("operating",), balance.several.astype(np.int8)),
     }
-    data = xr.Dataset({name: dressed(*entry, *_MEANING[name]) for name, entry in values.items()})
-    data["status"] = status_of(balance)
-    data.attrs["lost"] = json.dumps({str(place): why for place, why in balance.lost.items()})
-    return data.assign_coords(
+    described = {name: (*entry, *_MEANING[name]) for name, entry in values.items()}
+    return label(
+        described | {"status": status_of(balance)},
         {
             "node": list(nodes),
             "loss_kind": list(LOSSES),
-            "pinion_speed": ("operating", balance.operating.speed, attributes("pinion_speed")),
-            "pinion_torque": ("operating", balance.operating.torque, attributes("pinion_torque")),
-        }
+            "pinion_speed": ("operating", balance.operating.speed),
+            "pinion_torque": ("operating", balance.operating.torque),
+        },
+        {"lost": json.dumps({str(place): why for place, why in balance.lost.items()})},
     )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import dressed, label
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.deviations import Contacts
@@ -24,7 +25,6 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Result
-from thermogear.study.balances import dressed
 from thermogear.study.relief import EDGE_WORDS, one_point
 
 Floats = NDArray[np.float64]
@@ -93,12 +93,12 @@ def loaded_survey(
     heated = _solve(case, model, stacked(unequal), light, body)
     progress("loaded contact", 2, 2)
     error = heated["transmission_error"]
-    base_pitch = xr.Dataset(
+    base_pitch = label(
         {
             "double_contact_length": heated["double_contact_length"],
             "mean_stiffness": heated["mean_stiffness"],
             "edge_contact_share": heated["edge_contact_share"],
-            "peak_to_peak_error": dressed(
+            "peak_to_peak_error": (
                 ("temperature", "load"),
                 np.ptp(error.values, axis=-1),
                 "m",
@@ -118,19 +118,22 @@ def loaded_survey(
     width = case.pair.face_width
     line = moments / case.pair.pinion.pitch_radius / width
     iso = iso6336_stiffness(case.pair, line)
-    compared = xr.Dataset(
+    compared = label(
         {
-            "iso_stiffness": dressed(
-                ("load",), iso.mesh * width, "N/m", "mesh stiffness c_gamma b, method B"
+            "iso_stiffness": (
+                ("load",),
+                iso.mesh * width,
+                "N/m",
+                "mesh stiffness c_gamma b, method B",
             ),
-            "loaded_stiffness": dressed(
+            "loaded_stiffness": (
                 ("load",),
                 contact["mean_stiffness"].sel(temperature=UNDEFORMED.kind).values,
                 "N/m",
                 "mean tangent stiffness of the loaded contact, undeformed",
             ),
         },
-        {"load": dressed(("load",), moments, "N m", "pinion torque")},
+        {"load": (("load",), moments, "N m", "pinion torque")},
     )
     lost = int((contact["status"].values != 0).sum() + (heated["status"].values != 0).sum())
     return Result.of(

@@ -5,21 +5,19 @@ from __future__ import annotations
 import json
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.base.vocabulary import attributes
+from thermogear.base.vocabulary import REGIMES, label
 from thermogear.case.case import GearCase
 from thermogear.gears.contact import path_of_contact
 from thermogear.heat.contact_state import ContactState
-from thermogear.heat.film import FILM_UNCERTAINTY, REGIMES, regime, regime_shares
+from thermogear.heat.film import FILM_UNCERTAINTY, regime, regime_shares
 from thermogear.heat.friction import LAWS, ConstantDry, FrictionLaw, laws_together
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
-from thermogear.study.balances import dressed, regime_attributes
 
 Floats = NDArray[np.float64]
 
@@ -33,9 +31,12 @@ def friction_path(case: GearCase, model: MeshModel, positions: int) -> FrictionP
     return FrictionPath(elastic_pair(hot, case.deviations), s).checked()
 
 
-def law_of(name: str, model: MeshModel) -> FrictionLaw:
-    """The named law, the dry one with the model's coefficient."""
-    return ConstantDry(model.dry_coefficient) if name == ConstantDry.name else LAWS[name]
+def laws_beside(model: MeshModel) -> dict[str, FrictionLaw]:
+    """Every law by its name, the model's own in its place and in words; dry as the model has it."""
+    dry, own = ConstantDry(model.dry_coefficient), model.law
+    laws = LAWS | {dry.name: dry, own.name: own}
+    words = str(model.choices()["friction"])
+    return {words if name == own.name else name: law for name, law in laws.items()}
 
 
 def friction_survey(case: GearCase) -> Result:
@@ -52,19 +53,19 @@ def friction_survey(case: GearCase) -> Result:
     path = friction_path(case, model, case.path_positions)
     state = path.state
     shape = (case.stated.speed.size, path.s.size)
-    laws = tuple(law_of(name, model) for name in LAWS)
-    together = laws_together(state, laws)
+    laws = laws_beside(model)
+    together = laws_together(state, tuple(laws.values()))
     mu = np.broadcast_to(together.coefficient, (len(laws), *shape))
     outside = np.broadcast_to(together.outside, mu.shape).astype(np.int8)
     words = [
         {
-            "law": law.name,
+            "law": name,
             "regime": law.regime,
             "source": law.source,
             "range": range_in_words(law),
             "missing": reason,
         }
-        for law, reason in zip(laws, together.missing, strict=True)
+        for (name, law), reason in zip(laws.items(), together.missing, strict=True)
     ]
     along = ("operating", "path_position")
     weight = path.line_load * np.abs(np.subtract(*path.velocities))
@@ -72,38 +73,41 @@ def friction_survey(case: GearCase) -> Result:
     mean = np.trapezoid(mu * weight, path.s, axis=-1)
     mean = np.divide(mean, total, out=np.full_like(mean, np.nan), where=total > 0.0)
     film = np.broadcast_to(path.film_parameter, shape)
-    data = xr.Dataset(
+    data = label(
         {
-            "friction_coefficient": dressed(
-                ("law", *along), mu, "1", "friction coefficient by the law"
+            "friction_coefficient": (("law", *along), mu, "1", "friction coefficient by the law"),
+            "outside_range": (
+                ("law", *along),
+                outside,
+                "1",
+                "1 where the contact leaves the law's range",
             ),
-            "outside_range": dressed(
-                ("law", *along), outside, "1", "1 where the contact leaves the law's range"
+            "mean_friction": (
+                ("law", "operating"),
+                mean,
+                "1",
+                "friction coefficient, mean by sliding power",
             ),
-            "mean_friction": dressed(
-                ("law", "operating"), mean, "1", "friction coefficient, mean by sliding power"
-            ),
-            "film_parameter": (along, film, attributes("film_parameter")),
-            "film_thickness": (
-                along,
-                np.broadcast_to(path.film, shape),
-                attributes("film_thickness"),
-            ),
-            "regime": (along, regime(film).astype(np.int8), regime_attributes()),
-            "regime_share": dressed(
-                ("operating", "regime_name"), regime_shares(film), "1", "share of the path"
+            "film_parameter": (along, film),
+            "film_thickness": (along, np.broadcast_to(path.film, shape)),
+            "regime": (along, regime(film)),
+            "regime_share": (
+                ("operating", "regime_name"),
+                regime_shares(film),
+                "1",
+                "share of the path",
             ),
         },
         {
-            "law": list(LAWS),
+            "law": list(laws),
             "regime_name": list(REGIMES),
-            "path_position": ("path_position", path.s, attributes("path_position")),
-            "pinion_speed": ("operating", case.stated.speed, attributes("pinion_speed")),
-            "pinion_torque": ("operating", case.stated.torque, attributes("pinion_torque")),
+            "path_position": path.s,
+            "pinion_speed": ("operating", case.stated.speed),
+            "pinion_torque": ("operating", case.stated.torque),
         },
         {
             "path_points": json.dumps({k.upper(): v for k, v in case.pair.path._asdict().items()}),
-            "chosen": model.friction,
+            "chosen": model.choices()["friction"],
             "bundle": model.name,
         },
     )

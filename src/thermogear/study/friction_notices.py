@@ -40,7 +40,7 @@ def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[N
             found.append(
                 _notice(
                     "important",
-                    f"{model.name}: the friction law {model.friction} is outside its range on "
+                    f"{model.name}: the friction law {model.law.name} is outside its range on "
                     f"{100.0 * share:.0f} % of the path (hot, all operating points).",
                 )
             )

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
@@ -42,12 +43,13 @@ def profiles(case: GearCase) -> xr.Dataset:
         "printed": "hot profile as printed",
         "consistent": "hot profile",
     }
-    data = xr.Dataset(
+    data = label(
         {
             name: (
                 ("gear", "profile_point"),
                 np.stack(rows),
-                {"units": "m", "long_name": f"{words[name[:-2]]}, {name[-1]}"},
+                "m",
+                f"{words[name[:-2]]}, {name[-1]}",
             )
             for name, rows in columns.items()
         },

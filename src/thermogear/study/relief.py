@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import edge_attributes
+from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.flanks import relief_text
 from thermogear.case.thermal_state import HOT, ThermalState
@@ -23,7 +22,6 @@ from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Result
-from thermogear.study.balances import dressed
 
 Floats = NDArray[np.float64]
 KIND = "relief"
@@ -102,46 +100,51 @@ def relief_survey(
     curves = [mesh(reliefs, np.array([force])) for reliefs in pairs.values()]
     laddered = [mesh(reliefs, loads) for reliefs in pairs.values()]
     by = ("pair_kind", "mesh_phase")
-    error = xr.Dataset(
+    error = label(
         {
-            "transmission_error": dressed(
+            "transmission_error": (
                 by,
                 np.stack([c.deflection[0] for c in curves]),
                 "m",
                 "static transmission error under load",
             ),
-            "tangent_stiffness": dressed(
-                by, np.stack([c.tangent[0] for c in curves]), "N/m", "tangent mesh stiffness"
+            "tangent_stiffness": (
+                by,
+                np.stack([c.tangent[0] for c in curves]),
+                "N/m",
+                "tangent mesh stiffness",
             ),
-            "greatest_pressure": dressed(
+            "greatest_pressure": (
                 by,
                 np.stack([c.pressure[0].max(axis=-1) for c in curves]),
                 "Pa",
                 "greatest Hertzian pressure of any pair; not valid (nan) in edge contact",
             ),
-            "edge_contact": xr.Variable(
+            "edge_contact": (
                 by,
                 np.stack([np.bitwise_or.reduce(c.edge[0], axis=-1) for c in curves]),
-                edge_attributes(),
             ),
-            "edge_contact_share": dressed(
-                ("pair_kind",), [float(c.edge_share[0]) for c in curves], "1", EDGE_SHARE
+            "edge_contact_share": (
+                ("pair_kind",),
+                [float(c.edge_share[0]) for c in curves],
+                "1",
+                EDGE_SHARE,
             ),
         },
         {
             "pair_kind": list(pairs),
-            "mesh_phase": dressed(("mesh_phase",), phase, "1", "mesh phase"),
+            "mesh_phase": (("mesh_phase",), phase, "1", "mesh phase"),
         },
     )
-    over = xr.Dataset(
+    over = label(
         {
-            "peak_to_peak_error": dressed(
+            "peak_to_peak_error": (
                 ("pair_kind", "load"),
                 np.stack([np.ptp(c.deflection, axis=-1) for c in laddered]),
                 "m",
                 "transmission error, peak to peak",
             ),
-            "edge_contact_share": dressed(
+            "edge_contact_share": (
                 ("pair_kind", "load"),
                 np.stack([c.edge_share for c in laddered]),
                 "1",
@@ -150,9 +153,7 @@ def relief_survey(
         },
         {
             "pair_kind": list(pairs),
-            "load": dressed(
-                ("load",), loads * case.pair.pinion.base_radius, "N m", "pinion torque"
-            ),
+            "load": (("load",), loads * case.pair.pinion.base_radius, "N m", "pinion torque"),
         },
     )
     lines = "\n\n".join(relief_text(r.gear, r) for r in (design.pinion, design.wheel))

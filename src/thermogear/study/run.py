@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import STATES, STATUS, attributes, label
+from thermogear.base.vocabulary import STATES, STATUS, attributes, label, labelled
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.case.citations import citations
 from thermogear.case.points import excitations, points_of
@@ -29,7 +29,7 @@ from thermogear.heat.film import regime
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Result, now
 from thermogear.study import run_notices
-from thermogear.study.balances import OF_OIL, balances, blanked, regime_attributes
+from thermogear.study.balances import OF_OIL, balances, blanked
 from thermogear.study.motion import Motion, follow, follow_gears
 from thermogear.study.profile import profiles
 
@@ -163,7 +163,7 @@ def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
         "half_backlash_ratio": cycle["half_backlash"].values / length,
     }
     dims = cycle["mean_stiffness"].dims
-    return cycle.assign({name: (dims, v, attributes(name)) for name, v in numbers.items()})
+    return cycle.assign({name: labelled(name, (dims, v)) for name, v in numbers.items()})
 
 
 def _cold_mean(cycle: xr.Dataset) -> NDArray[np.float64]:
@@ -193,7 +193,7 @@ def _split(whole: xr.Dataset) -> dict[str, xr.Dataset]:
     # a point without a film has no regime: a place that is no flag's
     known = ~np.isnan(film.values)
     acting = np.where(known, regime(np.where(known, film.values, 0.0)), -1)
-    path["regime"] = (film.dims, acting.astype(np.int8), regime_attributes())
+    path["regime"] = labelled("regime", (film.dims, acting))
     return {"path": path, "mesh": whole[rest]}
 
 
@@ -214,10 +214,12 @@ def _motion(
     }
     if found is None:
         jammed = np.full(shape, STATUS.index("jammed"), np.int8)
-        data = label({"status": (dims, jammed)}, coordinates)
-        data["label"] = (dims, np.full(shape, "jammed"))
-        data["label_reason"] = (dims, np.full(shape, "no clearance is left to move in"))
-        data = _unsettled(data, cycles)
+        lost = {
+            "status": (dims, jammed),
+            "label": (dims, np.full(shape, "jammed")),
+            "label_reason": (dims, np.full(shape, "no clearance is left to move in")),
+        }
+        data = _unsettled(label(lost, coordinates), cycles)
         return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
     mesh_frequency = case.pair.pinion.teeth * first["pinion_speed"].values / (2.0 * np.pi)
     motion = found.motion
@@ -226,15 +228,10 @@ def _motion(
         "order": (("order",), motion.order),
         "line_frequency": (("operating", "order"), motion.order * mesh_frequency[:, None]),
     }
-    texts = {}
     for name, values in found.values.items():
-        shaped = values.reshape(*shape, *values.shape[1:])
-        if name.startswith("label"):
-            texts[name] = (dims, shaped)
-        else:
-            variables[name] = (dims + _last_axis(name), shaped)
+        variables[name] = (dims + _last_axis(name), values.reshape(*shape, *values.shape[1:]))
     data = label(variables, coordinates, _motion_attributes(motion, case))
-    data = _unsettled(data.assign(texts), cycles)
+    data = _unsettled(data, cycles)
     return data.assign_coords({"bundle": list(cycles), axis: first[axis].values})
 
 

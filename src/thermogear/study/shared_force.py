@@ -12,6 +12,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
 from thermogear.base.pair_springs import PairSprings
 from thermogear.base.progress import Progress, silent
+from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
@@ -29,8 +30,6 @@ FACTORS = np.geomspace(0.01, 4.0, 25)
 LIGHT = 0.05
 """Part of the mean load that counts as light."""
 STEPS, SAMPLES, PERIODS, DISCARD = 1024, 128, 64, 192
-METRES = {"units": "m"}
-SPRING = {"units": "N/m"}
 
 
 def shared_results(
@@ -86,14 +85,14 @@ def shared_results(
     except KeyboardInterrupt:
         cut = True
     swing = {
-        name: (("speed", "part"), np.array(values).reshape(-1, 2), METRES)
+        name: (("speed", "part"), np.array(values).reshape(-1, 2), "m")
         for name, values in rows.items()
     }
-    moving = xr.Dataset(
+    moving = label(
         swing,
-        coords={
-            "speed": ("speed", np.array(done), {"units": "rad/s", "long_name": "pinion speed"}),
-            "part": ("part", [1.0, LIGHT], {"units": "1", "long_name": "load over the mean load"}),
+        {
+            "speed": ("speed", np.array(done), "rad/s", "pinion speed"),
+            "part": ("part", [1.0, LIGHT], "1", "load over the mean load"),
         },
     )
     summary = {"title": point.title, **_summary(data, moving), "interrupted": cut, "notices": []}
@@ -118,14 +117,14 @@ def at_rest(case: GearCase, hot: HotPair, here: Excitation, drive: PairSprings) 
         "shared_swing": np.ptp(shared, axis=1),
         "one_spring_swing": np.ptp(one, axis=1),
     }
-    return xr.Dataset(
+    return label(
         {
-            name: ("load", v, SPRING if name.endswith("stiffness") else METRES)
+            name: ("load", v, "N/m" if name.endswith("stiffness") else "m")
             for name, v in values.items()
         },
-        coords={
-            "load": ("load", loads, {"units": "N", "long_name": "normal force"}),
-            "factor": ("load", FACTORS, {"units": "1", "long_name": "load over the mean load"}),
+        {
+            "load": ("load", loads, "N", "normal force"),
+            "factor": ("load", FACTORS, "1", "load over the mean load"),
         },
     )
 
@@ -141,9 +140,9 @@ def free_play(
     shared = LoadSharedModel.from_excitation(here, drive, back)
     one = clearance(hot, phase, case.deviations).half_backlash[0]
     values = {"shared_clearance": shared.clearance(phase), "one_spring_clearance": 2.0 * one}
-    return xr.Dataset(
-        {name: ("mesh_phase", play, METRES) for name, play in values.items()},
-        {"mesh_phase": ("mesh_phase", phase, {"units": "1", "long_name": "mesh phase"})},
+    return label(
+        {name: ("mesh_phase", play, "m") for name, play in values.items()},
+        {"mesh_phase": ("mesh_phase", phase, "1", "mesh phase")},
     )
 
 

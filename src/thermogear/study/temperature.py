@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS, attributes, status_attributes
+from thermogear.base.vocabulary import REGIMES, STATUS, dressed, label, labelled
 from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
-from thermogear.heat.film import REGIMES, regime_shares
+from thermogear.heat.film import regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
 from thermogear.mesh.balance import HeatBalance, heat_balance
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
@@ -26,7 +26,7 @@ from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.results.result import Result
-from thermogear.study.balances import balance_dataset, blanked, dressed, several_words
+from thermogear.study.balances import balance_dataset, blanked, several_words
 from thermogear.study.trends import QUANTITIES, conclusion, verdicts
 
 Floats = NDArray[np.float64]
@@ -97,7 +97,7 @@ def thermal_map(
         **case.provenance,
         bundle=model.name,
         choices=model.choices(),
-        laws={name: one.friction for name, one in models.items()},
+        laws={name: one.choices()["friction"] for name, one in models.items()},
         held={name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()},
         scuffing_load_stage=case.scuffing_load_stage,
         cold_half_backlash=case.cold_backlash.half,
@@ -216,15 +216,12 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     )
     friction_path = cycle["friction_coefficient"].variable
     flash_path = flash.variable
-    variables["friction_along"] = xr.Variable(
-        ("operating", "path_position"), friction_path.values, attributes("friction_coefficient")
-    )
-    variables["flash_along"] = xr.Variable(
-        ("operating", "path_position"), flash_path.values, attributes("flash_temperature")
-    )
+    by = ("operating", "path_position")
+    variables["friction_along"] = labelled("friction_coefficient", (by, friction_path.values))
+    variables["flash_along"] = labelled("flash_temperature", (by, flash_path.values))
     merged = data.assign(variables)
     status = np.where(settled.settled, cycle["status"].values, STATUS.index("not_converged"))
-    merged["status"] = (along, status.astype(np.int8), status_attributes())
+    merged["status"] = labelled("status", (along, status))
     low, high = operating.lubricant.temperature_range
     oil = np.asarray(operating.oil_temperature)
     hottest = case.pair.pinion.material.tempering_temperature
@@ -241,7 +238,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     return blanked(merged, lost).assign_coords(
         regime_name=list(REGIMES),
         estimate=list(ESTIMATES),
-        path_position=("path_position", cycle["path_position"].values, attributes("path_position")),
+        path_position=labelled("path_position", cycle["path_position"].values),
     )
 
 
@@ -259,14 +256,8 @@ def _on_grid(
             (*GRID, *front.dims[1:]), front.values.reshape(*shape, *front.shape[1:]), front.attrs
         )
     kept = {str(n): flat[n] for n in flat.coords}
-    return xr.Dataset(
-        variables,
-        {
-            **kept,
-            "pinion_speed": ("pinion_speed", np.asarray(speeds), attributes("pinion_speed")),
-            "pinion_torque": ("pinion_torque", np.asarray(torques), attributes("pinion_torque")),
-        },
-    )
+    axes = {"pinion_speed": list(speeds), "pinion_torque": list(torques)}
+    return label(variables, kept | axes)
 
 
 def _notices(

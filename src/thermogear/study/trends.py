@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from thermogear.study.balances import dressed
+from thermogear.base.vocabulary import label
 
 Floats = NDArray[np.float64]
 
@@ -72,38 +72,50 @@ def conclusion(grids: Mapping[str, xr.Dataset]) -> xr.Dataset:
             by_torque[i, j] = [_rises(mine[:, t], 0) for t in range(torque.size)]
             by_speed[i, j] = [_rises(mine[s], 0) for s in range(speed.size)]
     below, along = _below(grids)
-    return xr.Dataset(
+    return label(
         {
-            "rank_correlation": dressed(
-                ("lubrication", "quantity", "with_what"), rank, "1", "Spearman's rank correlation"
+            "rank_correlation": (
+                ("lubrication", "quantity", "with_what"),
+                rank,
+                "1",
+                "Spearman's rank correlation",
             ),
-            "rising_share": dressed(
+            "rising_share": (
                 ("lubrication", "quantity", "axis"),
                 rising,
                 "1",
                 "share of neighbouring points between which it rises",
             ),
-            "rises_at_torque": dressed(
+            "rises_at_torque": (
                 ("lubrication", "quantity", "pinion_torque"),
                 by_torque,
                 "1",
                 "share of steps in speed with which it rises, at one torque",
             ),
-            "rises_at_speed": dressed(
+            "rises_at_speed": (
                 ("lubrication", "quantity", "pinion_speed"),
                 by_speed,
                 "1",
                 "share of steps in torque with which it rises, at one speed",
             ),
-            "valid_points": dressed(("lubrication",), points, "1", "points that are compared"),
-            "changes": dressed(
-                ("lubrication", "quantity"), changes, "1", "1 where the quantity varies at all"
+            "valid_points": (("lubrication",), points, "1", "points that are compared"),
+            "changes": (
+                ("lubrication", "quantity"),
+                changes,
+                "1",
+                "1 where the quantity varies at all",
             ),
-            "mixed_below_dry": dressed(
-                ("quantity",), below, "1", "share of points where mixed lies below dry"
+            "mixed_below_dry": (
+                ("quantity",),
+                below,
+                "1",
+                "share of points where mixed lies below dry",
             ),
-            "mixed_below_dry_along": dressed(
-                ("quantity",), along, "1", "the same over every position of the path"
+            "mixed_below_dry_along": (
+                ("quantity",),
+                along,
+                "1",
+                "the same over every position of the path",
             ),
         },
         {

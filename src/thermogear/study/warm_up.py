@@ -17,6 +17,7 @@ from thermogear.base import bounds
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.columns import read_columns, require_times
 from thermogear.case.duty import point_duty
@@ -30,7 +31,7 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Result
-from thermogear.study.balances import LOSSES, dressed
+from thermogear.study.balances import LOSSES
 
 Floats = NDArray[np.float64]
 KIND = "warmup"
@@ -262,7 +263,7 @@ def _course_dataset(
     nodes = [n for n in (*NODES, "ambient") if n in course.temperatures]
     nodes += [n for n in course.temperatures if n not in nodes]
     losses = [np.broadcast_to(getattr(course.losses, name), (count,)) for name in LOSSES]
-    each: Mapping[str, tuple[tuple[str, ...], Any, str, str]] = {
+    each: dict[str, tuple[Any, ...]] = {
         "node_temperature": (
             (*ALONG, "node"),
             np.stack([course.temperatures[n] for n in nodes], axis=-1),
@@ -304,16 +305,14 @@ def _course_dataset(
             ALONG, course.course.imbalance, "1", "|kept - in + out| over the heat turned over"
         ),
     }  # fmt: skip
-    variables = {name: dressed(*entry) for name, entry in each.items()}
-    for name, values in _mesh(case, course.operating, progress).items():
-        variables[name] = dressed(ALONG, values, *_WORDS[name])
-    return xr.Dataset(
-        variables,
+    meshing = _mesh(case, course.operating, progress)
+    return label(
+        each | {name: (ALONG, values, *_WORDS[name]) for name, values in meshing.items()},
         {
             "node": nodes,
             "loss_kind": list(LOSSES),
             "sensor": [one.name for one in shown],
-            "time": dressed(ALONG, course.time, "s", "time from the start"),
+            "time": (ALONG, course.time, "s", "time from the start"),
         },
     )
 
@@ -371,21 +370,21 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
     left, settled = values[back], fine[back]
     nodes = {name: t[back] for name, t in temperatures.items()}
     along = ("piece",)
-    return xr.Dataset(
+    return label(
         {
-            "half_backlash": dressed(along, left, "m", "least half backlash if held for good"),
-            "settled": dressed(along, settled, "1", "1 where there is a steady state"),
-            "several": dressed(along, twice[back], "1", "1 where from hot another one is reached"),
-            "node_temperature": dressed(
+            "half_backlash": (along, left, "m", "least half backlash if held for good"),
+            "settled": (along, settled, "1", "1 where there is a steady state"),
+            "several": (along, twice[back], "1", "1 where from hot another one is reached"),
+            "node_temperature": (
                 ("piece", "node"),
                 np.stack(list(nodes.values()), axis=-1),
                 "K",
                 "steady temperature",
             ),
-            "begin": dressed(along, duty.time[:-1], "s", "time at which the piece begins"),
-            "pinion_speed": dressed(along, duty.speed, "rad/s", "pinion speed"),
-            "pinion_torque": dressed(along, duty.torque, "N m", "pinion torque"),
-            "ambient": dressed(along, duty.ambient, "K", "ambient temperature"),
+            "begin": (along, duty.time[:-1], "s", "time at which the piece begins"),
+            "pinion_speed": (along, duty.speed, "rad/s", "pinion speed"),
+            "pinion_torque": (along, duty.torque, "N m", "pinion torque"),
+            "ambient": (along, duty.ambient, "K", "ambient temperature"),
         },
         {"node": list(nodes)},
     )
@@ -458,26 +457,26 @@ def _record(measured: Measured, course: WarmUp, shown: Sequence[Shown]) -> xr.Da
     when, values = measured.time[inside], measured.values[inside]
     computed = _computed(measured.names, when, course, shown)
     by = ("row", "channel")
-    return xr.Dataset(
+    return label(
         {
-            "measured": dressed(by, values, "K", "measured temperature"),
-            "computed": dressed(by, computed, "K", "computed temperature of the same name"),
-            "difference": dressed(by, computed - values, "K", "computed less measured"),
+            "measured": (by, values, "K", "measured temperature"),
+            "computed": (by, computed, "K", "computed temperature of the same name"),
+            "difference": (by, computed - values, "K", "computed less measured"),
         },
         {
             "channel": list(measured.names),
-            "time": dressed(("row",), when, "s", "time from the start"),
+            "time": (("row",), when, "s", "time from the start"),
         },
     )
 
 
 def _fit_dataset(found: Fit) -> xr.Dataset:
     along = ("factor",)
-    return xr.Dataset(
+    return label(
         {
-            "value": dressed(along, [f.value for f in found.factors], "1", "factor"),
-            "low": dressed(along, [f.low for f in found.factors], "1", "lower end, 95 %"),
-            "high": dressed(along, [f.high for f in found.factors], "1", "upper end, 95 %"),
+            "value": (along, [f.value for f in found.factors], "1", "factor"),
+            "low": (along, [f.low for f in found.factors], "1", "lower end, 95 %"),
+            "high": (along, [f.high for f in found.factors], "1", "upper end, 95 %"),
         },
         {"factor": [f.name for f in found.factors]},
     )

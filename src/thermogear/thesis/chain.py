@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.one_point import of_case
 from thermogear.dynamics.integrate import simulate
@@ -78,19 +79,15 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
         "gear_temperature": "pinion addendum temperature",
     }
     dims = ("thermal", "speed", "torque")
-    data = xr.Dataset(
+    data = label(
         {
-            name: (
-                dims,
-                np.stack(values),
-                {"units": units.get(name, "1"), "long_name": words[name]},
-            )
+            name: (dims, np.stack(values), units.get(name, "1"), words[name])
             for name, values in rows.items()
         },
         {
             "thermal": list(states),
-            "speed": ("speed", omega, {"units": "rad/s"}),
-            "torque": ("torque", moment, {"units": "N m"}),
+            "speed": ("speed", omega, "rad/s"),
+            "torque": ("torque", moment, "N m"),
         },
     )
     settled = np.reshape(closed.settled, (speeds, torques))

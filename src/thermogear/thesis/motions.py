@@ -16,6 +16,7 @@ from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import long_name
+from thermogear.base.vocabulary import label
 from thermogear.case.case import DimensionlessCase, Point
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
@@ -108,27 +109,27 @@ def flips(base: Rows, most: int = 4) -> xr.Dataset:
     for r, (name, parameter) in enumerate(SWEPT.items()):
         first, last = base.ends[name]
         for h, heat in enumerate(HEATS):
-            start, label = _enter(base, heat, parameter, first, last)
-            if label is None or label.orbit is None:
+            start, begun = _enter(base, heat, parameter, first, last)
+            if begun is None or begun.orbit is None:
                 note[r, h] = "no period-1 orbit to start from"
                 continue
             entered[r, h] = start
             model = base.model(heat, **{parameter: start})
-            orbit = periodic_orbit(model, 1, label.orbit.state)
+            orbit = periodic_orbit(model, 1, begun.orbit.state)
             found = cascade(orbit, parameter, last, flips=most)
             for k, flip in enumerate(found.flips):
                 value[r, h, k], before[r, h, k] = flip.value, flip.orbit.period
             if len(found.flips) < most:
                 note[r, h] = found.branches[-1].ended
     dims = ("row", "heat", "flip")
-    return xr.Dataset(
+    return label(
         {
-            "value": (dims, value, {"long_name": "parameter at the period doubling", "units": "1"}),
-            "before": (dims, before, {"long_name": "period that doubles", "units": "1"}),
-            "entered": (dims[:2], entered, {"long_name": "where the branch was entered"}),
+            "value": (dims, value, "1", "parameter at the period doubling"),
+            "before": (dims, before, "1", "period that doubles"),
+            "entered": (dims[:2], entered, "", "where the branch was entered"),
             "note": (dims[:2], note.astype(str)),
         },
-        {"row": list(SWEPT), "heat": list(HEATS), "flip": np.arange(1, most + 1)},
+        {"row": list(SWEPT), "heat": list(HEATS), "flip": ("flip", np.arange(1, most + 1), "")},
         {"temperature": base.temperature},
     )
 
@@ -174,14 +175,14 @@ def warming(section: DimensionlessCase) -> xr.Dataset:
                 points[r, k] = one.orbit.minimal_period
         flip[r] = _flip_over_temperature(temperatures, columns, found[0])
     dims = ("row", "temperature")
-    return xr.Dataset(
+    return label(
         {
             "label": (dims, text.astype(str)),
-            "multiplier": (dims, modulus, {"long_name": "largest Floquet multiplier, modulus"}),
-            "section_points": (dims, points, {"long_name": "distinct points of the section"}),
-            "flip": (("row",), flip, {"units": "K", "long_name": "temperature of the flip"}),
+            "multiplier": (dims, modulus, "", "largest Floquet multiplier, modulus"),
+            "section_points": (dims, points, "", "distinct points of the section"),
+            "flip": (("row",), flip, "K", "temperature of the flip"),
         },
-        {"row": names, "temperature": ("temperature", temperatures, {"units": "K"})},
+        {"row": names, "temperature": ("temperature", temperatures, "K")},
     )
 
 

@@ -6,11 +6,11 @@ import time
 from collections import Counter
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
+from thermogear.base.vocabulary import label
 from thermogear.results.result import Result, now
 from thermogear.study.sensitivity import plain_words
 from thermogear.thesis import section2, section3, section4, section5, section6
@@ -124,7 +124,7 @@ def _claims(findings: list[Finding]) -> xr.Dataset:
         )
         for name, text in zip(TEXTS, row, strict=True):
             columns[name].append(text)
-    return xr.Dataset({name: (("claim",), texts) for name, texts in columns.items()})
+    return label({name: (("claim",), texts) for name, texts in columns.items()})
 
 
 def _sentences() -> dict[str, int]:
@@ -166,4 +166,5 @@ def _experiment(evidence: Evidence) -> xr.Dataset:
             }
         for name, entry in line.items():
             columns.setdefault(name, []).append(entry)
-    return xr.Dataset({name: (("entry",), np.asarray(values)) for name, values in columns.items()})
+    # as printed, in units of the table's own
+    return label({name: (("entry",), values, "") for name, values in columns.items()})

@@ -235,11 +235,13 @@ def choices(bundles: Mapping[str, Any], meanings: Mapping[str, Any]) -> Table:
         if len(set(values)) > 1:
             marked.add(len(rows))
         known = meanings.get(field, {})
+        meant = known if isinstance(known, Mapping) else {}
+        names_of = [value.partition("(")[0] for value in values]  # a law may show its parameters
         cells: list[Cell] = [
-            Markup("<b>{}</b><br/><small>{}</small>").format(value, prose(known[value]))
-            if isinstance(known, Mapping) and value in known
+            Markup("<b>{}</b><br/><small>{}</small>").format(value, prose(meant[name]))
+            if name in meant
             else value
-            for value in values
+            for value, name in zip(values, names_of, strict=True)
         ]
         rows.append([field.replace("_", " "), *cells])
     caption = "The choices of each bundle; marked rows differ."

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from thermogear.base.display import display
-from thermogear.base.vocabulary import UNDEFORMED
+from thermogear.base.vocabulary import UNDEFORMED, label
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.plots.motion import HALF_ORDERS
@@ -131,10 +131,8 @@ def _path(data: xr.Dataset, y: Axis) -> Panel:
     if not alike:
         return Panel(x, y)
     values = data["path_position"].values
-    one = xr.Dataset(
-        coords={"path_position": np.sort(values[np.isfinite(values)])},
-        attrs={"path_points": json.dumps(points[0])},
-    )
+    told = {"path_points": json.dumps(points[0])}
+    one = label({}, {"path_position": np.sort(values[np.isfinite(values)])}, told)
     panel = along_path(one, y)
     panel.x.words = x.words
     return panel
