@@ -234,9 +234,11 @@ COMMANDS = [
     *("measure", "compare", "thesis", "sensitivity", "verify", "versus"),
 ]
 SMALL_THESIS = (
-    "-c 'from pathlib import Path; from thermogear.thesis.evidence import Size; "
-    "from thermogear.thesis.report import build_to_directory; "
-    'build_to_directory(Path("out"), Size(speeds=2, torques=2, diagram=21, flips=2, samples=8))\''
+    "-c 'from pathlib import Path; from thermogear.thesis import report; "
+    "from thermogear.thesis.evidence import Size; "
+    "size = Size(speeds=2, torques=2, diagram=21, flips=2, samples=8); "
+    'old = getattr(report, "build_to_directory", None); '
+    'old(Path("out"), size) if old else report.build(size).write("out")\''
 )
 PITCH = str([f"{3 * (n * n % 7) - 9} um" for n in range(TEETH)]).replace("'", '"')
 MINE = {"own.toml": OWN}

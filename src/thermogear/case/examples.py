@@ -20,4 +20,4 @@ def example_text(name: str) -> str:
         raise InputError(
             "example", repr(name), allowed=" | ".join(EXAMPLES), fix=nearest(stem, EXAMPLES)
         )
-    return (files("thermogear.study") / "examples" / f"{stem}.toml").read_text(encoding="utf-8")
+    return (files("thermogear.case") / "ready_made" / f"{stem}.toml").read_text(encoding="utf-8")
