@@ -11,9 +11,9 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     claims,
-    one_motion,
     laws,
     loaded,
+    one_motion,
     relief,
     sweeps,
     thermal_map,
