@@ -19,14 +19,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING, PITCHFORK, Bifurcation
-from thermogear.analysis.continuation import (
-    BIRTH,
-    GAP,
-    Branch,
-    continuation,
-    family_of,
-)
+from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFORK, Bifurcation
+from thermogear.analysis.continuation import GAP, Branch, continuation, family_of
 from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import Orbit
 from thermogear.analysis.section import ReturnMap, Visit, lanes_of, scales

@@ -6,21 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermogear.analysis.bifurcations import LONGEST_STEP
-from thermogear.analysis.continuation import (
+from thermogear.analysis.bifurcations import (
     BIRTH,
     FLIP,
     FOLD,
     GRAZING,
+    LONGEST_STEP,
     PITCHFORK,
     SUBCRITICAL,
     SUPERCRITICAL,
     VERTICAL,
-    cascade,
-    continuation,
-    family_of,
-    switch_branch,
 )
+from thermogear.analysis.continuation import cascade, continuation, family_of, switch_branch
 from thermogear.analysis.curve import Curve
 from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import periodic_orbit

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from thermogear.analysis.continuation import FLIP, continuation, family_of
+from thermogear.analysis.bifurcations import FLIP
+from thermogear.analysis.continuation import continuation, family_of
 from thermogear.analysis.follow import LONGEST_PERIOD, follow
 from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import periodic_orbit

@@ -237,7 +237,6 @@ NUMBERS = {
 }
 IMPOSSIBLE = {"blok_as_printed", "benedict_kelley_as_printed", "flank_growth_as_printed"}
 NOT_FORMULAS = {
-    "State",
     "beyond",
     "field_uncertainty",
     "flash_factor",
@@ -246,6 +245,7 @@ NOT_FORMULAS = {
     "jam_temperature",
     "laws_together",
     "outside_range",
+    "transition_pieces",
 }
 
 
@@ -254,10 +254,9 @@ def public() -> dict[str, object]:
     found = {}
     for entry in pkgutil.iter_modules(thermogear.heat.__path__):
         module = importlib.import_module(f"thermogear.heat.{entry.name}")
-        for name in getattr(module, "__all__", ()):
-            thing = getattr(module, name)
-            if callable(thing) and not isinstance(thing, type):
-                found[name] = thing
+        for name, member in inspect.getmembers(module, inspect.isroutine):
+            if member.__module__ == module.__name__ and not name.startswith("_"):
+                found[name] = member
     return found
 
 

@@ -14,13 +14,8 @@ from numpy.typing import NDArray
 from thermogear.analysis.bifurcations import (
     BIRTH,
     FLIP,
-    FOLD,
-    GRAZING,
     LONGEST_STEP,
     PITCHFORK,
-    SUBCRITICAL,
-    SUPERCRITICAL,
-    VERTICAL,
     Bifurcation,
     birth_of,
     doubled_beside,
@@ -32,25 +27,6 @@ from thermogear.analysis.curve import Curve, Family, Point, mirrored
 from thermogear.analysis.orbits import Orbit, closed, multipliers
 from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.base.errors import ConvergenceError, InputError, nearest
-
-__all__ = [
-    "BIRTH",
-    "FLIP",
-    "FOLD",
-    "GRAZING",
-    "PITCHFORK",
-    "SUBCRITICAL",
-    "SUPERCRITICAL",
-    "VERTICAL",
-    "Bifurcation",
-    "Branch",
-    "Cascade",
-    "Doubled",
-    "cascade",
-    "continuation",
-    "family_of",
-    "switch_branch",
-]
 
 Floats = NDArray[np.float64]
 

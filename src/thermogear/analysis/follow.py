@@ -14,14 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import (
-    FLIP,
-    FOLD,
-    SUBCRITICAL,
-    Bifurcation,
-)
+from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, SUBCRITICAL, Bifurcation
 from thermogear.analysis.continuation import (
-    BIRTH,
     REACHED,
     SHRUNK,
     Branch,

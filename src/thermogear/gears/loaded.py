@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.base.vocabulary import STATUS, edge_attributes, status_attributes
+from thermogear.base.vocabulary import STATUS, edge_attributes, label, status_attributes
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.contact import hertz_pressure
 from thermogear.gears.deviations import Deviation
@@ -313,7 +313,7 @@ def loaded_contact(
         "status": xr.Variable(along, status.astype(np.int8), status_attributes()),
         "edge_contact": xr.Variable(by_pair, mesh.edge, edge_attributes()),
     }
-    return xr.Dataset(
+    return label(
         {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in values.items()} | flags,
         {k: xr.Variable(d, v, dressed(k)) for k, (d, v) in coordinates.items()},
         {

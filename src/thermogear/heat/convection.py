@@ -17,16 +17,6 @@ from thermogear.base.errors import ConvergenceError, InputError
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "disc_nusselt",
-    "disc_torque",
-    "rotating_disc_flow",
-    "rotating_disc_gradient",
-    "rotating_face_convection",
-    "turbulent_nusselt",
-    "turbulent_share",
-]
-
 TRANSITION = (1.8e5, 3.0e5)
 """Local Reynolds numbers omega r^2/nu between which the layer on a rotating face turns turbulent.
 

@@ -27,20 +27,6 @@ from thermogear.heat.temperature import radial_temperature
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "BORES",
-    "GearLike",
-    "RadialField",
-    "annulus_displacement",
-    "base_circle_growth",
-    "centre_distance_growth",
-    "flank_growth",
-    "flank_normal_growth",
-    "hot_half_backlash",
-    "jam_temperature",
-    "radial_displacement",
-]
-
 BORES: dict[str, str] = {
     "free": "free bore",
     "rigid": "bore held by a rigid cold shaft, u_a = 0",

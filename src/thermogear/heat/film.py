@@ -24,25 +24,6 @@ from thermogear.heat.lubrication import dynamic_viscosity, kinematic_viscosity
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "FILM_LAWS",
-    "REGIMES",
-    "barus",
-    "dowson_higginson_minimum",
-    "film_parameter",
-    "film_thickness",
-    "grubin_central",
-    "iso_15144_film",
-    "mean_roughness_film_parameter",
-    "pressure_viscosity",
-    "pressure_viscosity_gold",
-    "pressure_viscosity_iso",
-    "regime",
-    "regime_shares",
-    "roelands",
-    "thermal_reduction",
-]
-
 FILM_UNCERTAINTY = 0.15
 """Relative uncertainty of a film thickness from its pressure-viscosity coefficient."""
 

@@ -16,8 +16,6 @@ from thermogear.heat.network import ThermalNetwork
 
 Floats = NDArray[np.float64]
 
-__all__ = ["free_face_convection", "oil_expansion", "with_free_convection"]
-
 
 def oil_expansion(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     """Volume expansion of an oil, beta = -(d rho/dT)/rho [1/K]; ``temperature`` [K], any shape."""

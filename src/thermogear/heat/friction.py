@@ -40,31 +40,6 @@ from thermogear.heat.roughness import RMS_OF_MEAN_ROUGHNESS, rms_roughness
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "LAWS",
-    "LUBRICATED",
-    "MEANINGS",
-    "BenedictKelley",
-    "Boundary",
-    "ConstantDry",
-    "Fernandes",
-    "FrictionLaw",
-    "Iso13989Flash",
-    "Iso13989Integral",
-    "LambdaBlend",
-    "LawsTogether",
-    "Schlenk",
-    "XuKahraman",
-    "benedict_kelley",
-    "benedict_kelley_as_printed",
-    "beyond",
-    "constant_dry",
-    "friction_law",
-    "friction_words",
-    "laws_together",
-    "outside_range",
-]
-
 ROUGHNESS_LIMIT = 1.13e-6
 """Roughness [m] at which Benedict and Kelley's factor 1.13/(1.13 - S) diverges."""
 

@@ -25,19 +25,6 @@ from thermogear.heat.network import Link, ThermalNetwork
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "BodyLike",
-    "Losses",
-    "Surroundings",
-    "body_conductances",
-    "body_places",
-    "body_radius",
-    "face_conductance",
-    "oil_prandtl",
-    "thermal_network",
-    "tooth_radius",
-]
-
 
 class BodyLike(GearLike, Protocol):
     """What the heat path through a gear needs besides its profile (SI)."""

@@ -14,20 +14,6 @@ from thermogear.base.errors import InputError, nearest
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "DRY_COEFFICIENTS",
-    "FZG_LUBRICANT_FACTOR",
-    "ISO_LUBRICANT_FACTOR",
-    "doleschel_share",
-    "fernandes",
-    "iso_13989_1",
-    "iso_13989_2",
-    "lubricant_factor",
-    "matsumoto_share",
-    "schlenk",
-    "xu_kahraman",
-]
-
 CEILING = 0.5
 """Greatest value any law returns: the upper end of dry friction, met only near rest."""
 

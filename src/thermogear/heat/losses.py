@@ -10,16 +10,6 @@ from thermogear.heat.convection import disc_torque
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "bearing_loss",
-    "churning_loss",
-    "efficiency",
-    "gear_loss_factor",
-    "jet_loss",
-    "mesh_loss",
-    "seal_loss",
-]
-
 
 def gear_loss_factor(
     *, teeth_1: ArrayLike, ratio: ArrayLike, approach: ArrayLike, recess: ArrayLike

@@ -18,8 +18,6 @@ from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
 
-__all__ = ["density", "dynamic_viscosity", "kinematic_viscosity", "walther_slope"]
-
 THINNEST = 2e-6
 """Kinematic viscosity [m^2/s] below which ASTM D341 adds correction terms to the shift 0.7."""
 

@@ -19,18 +19,6 @@ from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "InfraredReading",
-    "ThermocoupleReading",
-    "band_radiance",
-    "buried_temperature",
-    "field_uncertainty",
-    "infrared_indication",
-    "infrared_signal",
-    "infrared_temperature",
-    "surface_temperature",
-]
-
 Band = tuple[float, float] | None
 _C2 = Planck * speed_of_light / Boltzmann  # m K
 _LEAST, _GREATEST = 150.0, 3000.0  # K, where the inversion looks

@@ -30,15 +30,6 @@ from thermogear.heat.temperature import (
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "exact_two_body",
-    "flash_temperature",
-    "moving_source_rise",
-    "peclet_factor",
-    "peclet_flash",
-    "peclet_partition",
-]
-
 METHODS: dict[str, str] = {
     "blok": "high-speed limit, share of heat by B sqrt(v)",
     "peclet": "the same with the exact single-body maximum C(Pe) on each flank",

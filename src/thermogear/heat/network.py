@@ -17,8 +17,6 @@ from thermogear.base.errors import InputError, nearest
 
 Floats = NDArray[np.float64]
 
-__all__ = ["Link", "SteadyState", "ThermalNetwork"]
-
 
 @dataclass(frozen=True, eq=False)
 class Link:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["RMS_OF_MEAN_ROUGHNESS", "rms_roughness"]
-
 RMS_OF_MEAN_ROUGHNESS = 1.25
 """Rq over Ra. A Gaussian surface has sqrt(pi/2) = 1.2533, a sine 1.1107."""
 

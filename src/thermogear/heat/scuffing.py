@@ -14,26 +14,6 @@ from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "angle_factor",
-    "body_temperature_13989_1",
-    "body_temperature_13989_2",
-    "body_temperature_15144",
-    "contact_ratio_factor",
-    "flash_13989_1",
-    "flash_at_tip_13989_2",
-    "fzg_torque",
-    "geometry_factor",
-    "integral_temperature",
-    "load_sharing_13989",
-    "rotation_factor",
-    "scuffing_integral_temperature",
-    "scuffing_margin",
-    "scuffing_safety",
-    "scuffing_temperature",
-    "thermo_elastic_factor",
-]
-
 
 def thermo_elastic_factor(reduced_modulus: ArrayLike, contact_coefficient: ArrayLike) -> Floats:
     """X_M = 1000 E_r^0.25/B_M [K N^-0.75 s^0.5 m^-0.5 mm].

@@ -12,20 +12,6 @@ from thermogear.base.errors import InputError, nearest
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "FLASH_FACTORS",
-    "blok_as_printed",
-    "blok_flash",
-    "conduction_power",
-    "contact_temperature",
-    "flank_exchange",
-    "flank_flash",
-    "flash_factor",
-    "frictional_heat",
-    "heat_partition",
-    "radial_temperature",
-]
-
 FLASH_FACTORS: dict[str, float] = {
     "ellipse": 0.785983396,
     "uniform": float(np.sqrt(2.0 / np.pi)),

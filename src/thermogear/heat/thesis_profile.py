@@ -14,14 +14,6 @@ from thermogear.heat.expansion import radial_displacement as _radial_displacemen
 
 Floats = NDArray[np.float64]
 
-__all__ = [
-    "deformed_profile",
-    "flank_growth_as_printed",
-    "profile_as_printed",
-    "thesis_flank_growth",
-    "thesis_half_backlash",
-]
-
 
 def _stretch(gear: GearLike, field: RadialField, radius: Floats) -> Floats:
     """lambda int_{r_b}^{r} tau dr [m]: free radial stretch from the base circle."""

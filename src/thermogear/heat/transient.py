@@ -18,8 +18,6 @@ Floats = NDArray[np.float64]
 State = Mapping[str, Floats]
 """Temperatures [K] of the free nodes by name, arrays of one shape."""
 
-__all__ = ["Course", "State", "Stretch", "follow"]
-
 HOTTEST = 700.0
 """A node [K] that gets there ends the course: no gear lives there, and no law was made for it."""
 _RELATIVE = 0.1

@@ -9,14 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from thermogear.analysis.continuation import (
-    FLIP,
-    PITCHFORK,
-    Bifurcation,
-    Branch,
-    continuation,
-    switch_branch,
-)
+from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
+from thermogear.analysis.continuation import Branch, continuation, switch_branch
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.parameters import NUMBERS, Parameter

@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.analysis.continuation import FLIP, cascade, continuation
+from thermogear.analysis.bifurcations import FLIP
+from thermogear.analysis.continuation import cascade, continuation
 from thermogear.analysis.diagram import orbit_diagram
 from thermogear.analysis.labels import Label, labels
 from thermogear.analysis.labels import label as settle_label
