@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
-from thermogear.base.vocabulary import attributes, status_attributes, told_labels
+from thermogear.base.vocabulary import attributes, label, told_labels
 from thermogear.case.source import overridden, pairs, tables
 from thermogear.results.result import Result
 
@@ -42,6 +42,11 @@ GROUPS = {"gear": ("mesh", "path", "motion"), "dimensionless": ("points",)}
 PLACE = {"path_position": "path_place", "mesh_phase": "phase_place", "order": "line"}
 """The axis of a curve whose positions differ from case to case."""
 LEAD = ("bundle", "state", "operating")
+
+ALONG = dict.fromkeys(FIGURES, "") | {name: c for c, names in CURVES.items() for name in names}
+"""Every figure and curve that is compared, and what it runs along."""
+ABSENT = {"status": -1, "label": "", "present": 0}
+"""What stands for texts and whole numbers where a case has no such point."""
 
 Floats = NDArray[np.float64]
 
@@ -334,105 +339,75 @@ def _notices(
 # --- joining ------------------------------------------------------------------------------
 
 
-def _told(data: xr.Dataset) -> xr.Dataset:
-    """The group with its labels in words."""
-    if "label" not in data:
-        return data
-    return data.assign(label=(data["label"].dims, told_labels(data)))
-
-
 def _joined(
     cases: Sequence[Stored], bundles: Sequence[Sequence[str]], axes: Mapping[str, list[Any]]
 ) -> xr.Dataset:
-    sizes = tuple(len(axes[name]) for name in ("case", *LEAD))
-    variables: dict[str, Any] = {}
-    present = np.zeros((sizes[0], sizes[1], sizes[3]), dtype=np.int8)
-    status = np.full(sizes, -1, dtype=np.int8)
-    label = np.full(sizes, "", dtype=object)
-    places = []
-    for c, case in enumerate(cases):
-        where = np.ix_(
-            [c],
-            [axes["bundle"].index(b) for b in bundles[c]],
-            [axes["state"].index(s) for s in case.states],
-            [axes["operating"].index(p) for p in case.points()],
-        )
-        places.append(where)
-        present[np.ix_(np.array([c]), where[1].ravel(), where[3].ravel())] = 1
-        for name, whole in (("status", status), ("label", label)):
-            for data in _groups(case):
-                if name in data:
-                    whole[where] = _laid(_told(data), name)[None]
-    widest = {curve: max(_positions(case, curve).size for case in cases) for curve in CURVES}
-    for name in FIGURES:
-        _fill(variables, name, cases, places, sizes)
-    for curve, names in CURVES.items():
-        if not widest[curve]:
-            continue
-        position = np.full((sizes[0], widest[curve]), np.nan)
-        for c, case in enumerate(cases):
-            own = _positions(case, curve)
-            position[c, : own.size] = own
-        described = attributes(curve)
-        variables[curve] = (("case", PLACE[curve]), position, described)
-        for name in names:
-            _fill(variables, name, cases, places, sizes, curve, widest[curve])
-    if "flash_temperature" in variables:
-        dims, values, described = variables["flash_temperature"]
-        variables["greatest_flash_temperature"] = (
-            dims[:-1], np.fmax.reduce(values, axis=-1),
-            {**described, "long_name": "greatest flash temperature rise along the path"},
+    """Every case on the axes of all; what a case lacks is nan, -1 or an empty text."""
+    whole = xr.concat(
+        [_alone(case, names, axes) for case, names in zip(cases, bundles, strict=True)],
+        "case",
+        data_vars="all",
+        join="outer",
+        fill_value=ABSENT,
+        combine_attrs="override",
+    )
+    found: dict[str, Any] = {
+        str(name): variable.variable for name, variable in whole.data_vars.items()
+    }
+    order = (*FIGURES, *(name for curve, names in CURVES.items() for name in (curve, *names)))
+    variables = {name: found[name] for name in order if name in found}
+    if "flash_temperature" in found:
+        flash = found["flash_temperature"]
+        variables["greatest_flash_temperature"] = xr.Variable(
+            flash.dims[:-1], np.fmax.reduce(flash.values, axis=-1),
+            {**flash.attrs, "long_name": "greatest flash temperature rise along the path"},
         )  # fmt: skip
-    flags = {**status_attributes(), "comment": "-1: the case has no such point"}
-    variables["status"] = (("case", *LEAD), status, flags)
-    variables["label"] = (("case", *LEAD), label.astype(str), {"long_name": "kind of motion"})
-    variables["present"] = (
-        ("case", "bundle", "operating"), present, {"long_name": "1 where the case has the point"}
-    )  # fmt: skip
+    variables |= {name: found[name] for name in ("status", "label", "present")}
+    variables["status"].attrs["comment"] = "-1: the case has no such point"
+    variables["label"] = variables["label"].astype(str)
     coordinates: dict[str, Any] = {name: axes[name] for name in ("case", "bundle", "state")}
     keys = axes["operating"]
     if cases[0].kind == "gear":
         for place, name in enumerate(("pinion_speed", "pinion_torque")):
-            values = np.array([key[place] for key in keys])
-            coordinates[name] = (("operating",), values, attributes(name))
-    coordinates["point"] = (("operating",), [_point_name(cases[0].kind, key) for key in keys])
-    return xr.Dataset(variables, coordinates)
+            coordinates[name] = ("operating", np.array([key[place] for key in keys]))
+    coordinates["point"] = ("operating", [_point_name(cases[0].kind, key) for key in keys])
+    return label(variables, coordinates)
 
 
-def _fill(
-    variables: dict[str, Any],
-    name: str,
-    cases: Sequence[Stored],
-    places: Sequence[tuple[NDArray[np.intp], ...]],
-    sizes: tuple[int, ...],
-    curve: str | None = None,
-    wide: int = 0,
-) -> None:
-    """Put ``name`` of every case that has it into ``variables``; nothing where none has."""
-    tail = () if curve is None else (wide,)
-    whole = np.full((*sizes, *tail), np.nan)
-    described: dict[str, Any] | None = None
-    for case, where in zip(cases, places, strict=True):
-        for data in _groups(case):
+def _alone(case: Stored, bundles: Sequence[str], axes: Mapping[str, list[Any]]) -> xr.Dataset:
+    """One case, its axes numbered by their places on those of all."""
+    own: tuple[Sequence[Any], ...] = (bundles, case.states, case.points())
+    places = {a: [axes[a].index(one) for one in names] for a, names in zip(LEAD, own, strict=True)}
+    sizes = tuple(map(len, places.values()))
+    variables: dict[str, Any] = {
+        "status": (LEAD, np.full(sizes, -1, np.int8)),
+        "label": (LEAD, np.full(sizes, "", dtype=object), "", "kind of motion"),
+        "present": (LEAD[::2], np.ones(sizes[::2], np.int8), "", "1 where the case has the point"),
+    }
+    for curve, place in PLACE.items():
+        positions = _positions(case, curve)
+        if positions.size:
+            variables[curve] = xr.Variable(place, positions, attributes(curve))
+            places[place] = list(range(positions.size))
+    for data in _groups(case):
+        for name in ("status", "label"):
             if name in data:
-                values = _laid(data, name, curve)
-                if curve is None:
-                    whole[where] = values[None]
-                else:
-                    kept = values[..., : _positions(case, curve).size]
-                    padded = np.full((*kept.shape[:-1], wide), np.nan)
-                    padded[..., : kept.shape[-1]] = kept
-                    whole[where] = padded[None]
-                if described is None:
-                    known = attributes(name)
-                    described = known | {"units": str(data[name].attrs.get("units", "1"))}
-                break
-    if described is not None:
-        dims = ("case", *LEAD, *(() if curve is None else (PLACE[curve],)))
-        variables[name] = (dims, whole, described)
+                values = told_labels(data) if name == "label" else data[name].values
+                told = data.assign({name: (data[name].dims, values)})
+                variables[name] = (LEAD, _laid(told, name), *variables[name][2:])
+        for name, curve in ALONG.items():
+            if name not in data or name in variables or (curve and curve not in variables):
+                continue
+            values = np.asarray(_laid(data, name, curve), dtype=float)
+            dims: tuple[str, ...] = LEAD
+            if curve:
+                dims, values = (*LEAD, PLACE[curve]), values[..., : len(places[PLACE[curve]])]
+            units = str(data[name].attrs.get("units", "1"))
+            variables[name] = xr.Variable(dims, values, attributes(name) | {"units": units})
+    return label(variables, {axis: (axis, numbers, "") for axis, numbers in places.items()})
 
 
-def _laid(data: xr.Dataset, name: str, curve: str | None = None) -> NDArray[Any]:
+def _laid(data: xr.Dataset, name: str, curve: str = "") -> NDArray[Any]:
     """``data[name]`` with the axes (bundle, state, operating[, curve]), whatever it lacks."""
     variable = data[name].variable
     if "point" in variable.dims:
@@ -441,7 +416,7 @@ def _laid(data: xr.Dataset, name: str, curve: str | None = None) -> NDArray[Any]
         )
     lengths = {d: data.sizes.get(d, 1) for d in LEAD}
     lengths["operating"] = data.sizes.get("operating", data.sizes.get("point", 1))
-    if curve is not None:
+    if curve:
         lengths[curve] = data.sizes[curve]
     missing = [d for d in lengths if d not in variable.dims]
     values = variable.transpose(*[d for d in lengths if d in variable.dims]).values
