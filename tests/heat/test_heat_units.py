@@ -237,6 +237,12 @@ NUMBERS = {
 }
 IMPOSSIBLE = {"blok_as_printed", "benedict_kelley_as_printed", "flank_growth_as_printed"}
 NOT_FORMULAS = {
+    "friction_words",
+    "law_words",
+    "parameters",
+    "ranges",
+    "require_known",
+    "with_parameters",
     "beyond",
     "field_uncertainty",
     "flash_factor",

@@ -35,7 +35,7 @@ from thermogear.base.plan import (
     keep_going,
     ranges_of,
 )
-from thermogear.base.vocabulary import STATUS, status_attributes
+from thermogear.base.vocabulary import STATUS, label, status_attributes
 
 Floats = NDArray[np.float64]
 
@@ -461,26 +461,26 @@ def _along(
         for n, (share, n_period, point, away) in row.items():
             fraction[i, n], period[i, n], section[i, n], safe[i, n] = share, n_period, point, away
     dims = (parameter, "attractor_number")
-    return xr.Dataset(
+    return label(
         {
-            "fraction": (dims, fraction, {"long_name": "share of the starts", "units": "1"}),
+            "fraction": (dims, fraction, "1", "share of the starts"),
             "attractor_period": (
-                dims, period, {"long_name": "mesh periods, 0: chaotic, -1: absent", "units": "1"}
+                dims, period, "1", "mesh periods, 0: chaotic, -1: absent"
             ),
-            "attractor_x": (dims, section[..., 0], {"long_name": "section point", "units": "1"}),
-            "attractor_v": (dims, section[..., 1], {"long_name": "section point", "units": "1"}),
+            "attractor_x": (dims, section[..., 0], "1", "section point"),
+            "attractor_v": (dims, section[..., 1], "1", "section point"),
             "border_distance": (
-                dims, safe, {"long_name": "least distance to another basin", "units": "1"}
+                dims, safe, "1", "least distance to another basin"
             ),
             "basin_entropy": (
                 (parameter,), np.array([e[0] for e in entropies]),
-                {"long_name": "basin entropy", "units": "1"},
+                "1", "basin entropy",
             ),
             "boundary_basin_entropy": (
                 (parameter,), np.array([e[1] for e in entropies]),
-                {"long_name": "boundary basin entropy", "units": "1"},
+                "1", "boundary basin entropy",
             ),
         },
-        {parameter: points},
+        {parameter: xr.Variable((parameter,), points)},
         {"kind": "basins-along"},
     )  # fmt: skip
