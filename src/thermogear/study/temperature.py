@@ -20,7 +20,7 @@ from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.film import regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
-from thermogear.mesh.balance import HeatBalance, heat_balance
+from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
@@ -125,19 +125,7 @@ def _solved(
     case: GearCase, model: MeshModel, speed: Floats, torque: Floats
 ) -> tuple[HeatBalance, xr.Dataset]:
     """The heat balance of the points, and the mesh cycle at its temperatures."""
-    at = case.stated
-    settled = heat_balance(
-        case.pair,
-        speed,
-        torque,
-        at.lubricant,
-        at.half_backlash,
-        model,
-        gearbox=case.gearbox,
-        reference=at.temperatures.reference,
-        housing=at.housing,
-        deviations=case.deviations,
-    )
+    settled = case.balance_of(model, speed, torque)
     cycle = mesh_cycle(
         case.pair,
         settled.operating,

@@ -23,7 +23,6 @@ from thermogear.case.columns import read_columns, require_times
 from thermogear.case.duty import point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import SENSORS, Shown, shown_by
-from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.operating import Operating
@@ -330,7 +329,7 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         surroundings = with_factors(surroundings, factors)
     except InputError:
         known = False
-    at, model = case.stated, case.models[0]
+    model = case.models[0]
     left = np.full(duty.pieces, np.nan)
     settled = np.zeros(duty.pieces, np.int8)
     nodes: dict[str, Floats] = {}
@@ -343,18 +342,8 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
     for ambient in np.unique(unique[:, 0]):
         here = np.flatnonzero(unique[:, 0] == ambient)
         around = replace(surroundings, ambient=float(ambient))
-        balance = heat_balance(
-            case.pair,
-            unique[here, 1],
-            unique[here, 2],
-            at.lubricant,
-            at.half_backlash,
-            model,
-            gearbox=replace(case.gearbox, surroundings=around),
-            reference=at.temperatures.reference,
-            housing=at.housing,
-            deviations=case.deviations,
-        )
+        box = replace(case.gearbox, surroundings=around)
+        balance = case.balance_of(model, unique[here, 1], unique[here, 2], gearbox=box)
         hot = HotPair(case.pair, balance.operating, model)
         gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
         # at rest the balance knows no free convection: it matters where anything but the ambient
