@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from thermogear.base.errors import InputError
@@ -183,19 +184,36 @@ class GearCase(Case):
             if gear_temperature is not None:
                 teeth = dict.fromkeys(("pinion_tooth", "wheel_tooth"), gear_temperature)
                 box = replace(box, measured={**box.measured, **teeth})
-            self._balances[key] = heat_balance(
-                self.pair,
-                at.speed,
-                at.torque,
-                at.lubricant,
-                at.half_backlash,
-                model,
-                gearbox=box,
-                reference=at.temperatures.reference,
-                housing=at.housing,
-                deviations=self.deviations,
-            )
+            self._balances[key] = self.balance_of(model, at.speed, at.torque, gearbox=box)
         return self._balances[key]
+
+    def balance_of(
+        self,
+        model: MeshModel,
+        speed: ArrayLike,
+        torque: ArrayLike,
+        *,
+        gearbox: Gearbox | None = None,
+        from_hot: bool = True,
+    ) -> HeatBalance:
+        """The heat balance at other points: ``speed`` [rad/s] and ``torque`` [N m], (operating,).
+
+        ``gearbox`` in place of the case's own; ``from_hot`` seeks a second steady state too.
+        """
+        at = self.stated
+        return heat_balance(
+            self.pair,
+            speed,
+            torque,
+            at.lubricant,
+            at.half_backlash,
+            model,
+            gearbox=gearbox or self.gearbox,
+            reference=at.temperatures.reference,
+            housing=at.housing,
+            deviations=self.deviations,
+            from_hot=from_hot,
+        )
 
     @property
     def equivalent_mass(self) -> float:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.vocabulary import STATUS, dressed, label, labelled
 from thermogear.case.case import GearCase
-from thermogear.mesh.balance import HeatBalance, heat_balance
+from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.thermal import HotPair
 
@@ -175,19 +175,8 @@ def carried_uncertainty(case: GearCase) -> Floats:
         ends = []
         for sign in (1.0, -1.0):
             held = {**case.gearbox.measured, one.node: one.temperature + sign * one.uncertainty}
-            moved = heat_balance(
-                case.pair,
-                at.speed,
-                at.torque,
-                at.lubricant,
-                at.half_backlash,
-                model,
-                gearbox=replace(case.gearbox, measured=held),
-                reference=at.temperatures.reference,
-                housing=at.housing,
-                deviations=case.deviations,
-                from_hot=False,
-            )
+            box = replace(case.gearbox, measured=held)
+            moved = case.balance_of(model, at.speed, at.torque, gearbox=box, from_hot=False)
             hot = HotPair(case.pair, moved.operating, model)
             gap = clearance(hot, phase, case.deviations)
             ends.append(gap.half_backlash.mean(axis=1))

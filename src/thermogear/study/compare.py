@@ -84,7 +84,7 @@ class Comparison:
     models: tuple[str, ...]
     rows: tuple[Row, ...]
     implied: tuple[Implied, ...]
-    notices: tuple[tuple[str, str], ...]
+    notices: tuple[Notice, ...]
 
     @property
     def conclusion(self) -> str:
@@ -272,26 +272,26 @@ def _compared(
     u_data: float | None,
     u_num: float,
     u_input: Mapping[float, float],
-    said: Sequence[tuple[str, str]] = (),
+    said: Sequence[Notice] = (),
 ) -> Comparison:
     table = printed.measured
     names = tuple(models)
     if not names:
         raise InputError("simulated", "nothing", allowed="at least one model")
     rows: list[Row] = []
-    notices: list[tuple[str, str]] = list(said)
+    notices: list[Notice] = list(said)
     highest = max(line.frequency for line in table.lines)
     for number, line in enumerate(table.lines):
         found = [models[name].near(line.speed) for name in names]
         if any(item is None for item in found):
             notices.append(
-                ("warning", f"{line.speed / RPM:.0f} rpm: no simulated line at this speed")
+                Notice("warning", f"{line.speed / RPM:.0f} rpm: no simulated line at this speed")
             )
             continue
         simulated = [item for item in found if item is not None]
         u_d, why = _data_uncertainty(line, table, highest, u_data)
         if why and why not in [text for _, text in notices]:
-            notices.append(("important", why))
+            notices.append(Notice("important", why))
         entered = next((u for s, u in u_input.items() if abs(s - line.speed) < 0.05 * s), 0.0)
         displacement = tuple(s.displacement / line.displacement - 1.0 for s in simulated)
         u_val = float(np.sqrt(u_num**2 + entered**2 + u_d**2))
@@ -382,7 +382,7 @@ def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int)
     return found if any(found) else ()
 
 
-def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[tuple[str, str]]:
+def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
     notices = []
     for row in rows:
         for name, error, text in zip(names, row.errors, row.printed or (), strict=False):
@@ -392,7 +392,7 @@ def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[tuple[str, str
             percent = 100.0 * abs(error)
             if f"{percent:.{digits}f}" != text:
                 notices.append(
-                    (
+                    Notice(
                         "important",
                         f"{row.speed / RPM:.0f} rpm, {row.quantity}, {name}: printed {text} %, "
                         f"recomputed {percent:.2f} %",
@@ -401,7 +401,7 @@ def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[tuple[str, str
     wrong = [row for row in rows if row.verdict.startswith("impossible")]
     if wrong:
         notices.append(
-            (
+            Notice(
                 "important",
                 "the frequency column carries no thermal information: at "
                 + ", ".join(f"{row.speed / RPM:.0f}" for row in wrong)
@@ -432,12 +432,12 @@ def _implied(line: SpeedLine, table: LineTable) -> Implied:
     )
 
 
-def _doubts(implied: Sequence[Implied]) -> list[tuple[str, str]]:
+def _doubts(implied: Sequence[Implied]) -> list[Notice]:
     notices = []
     large = [item for item in implied if item.acceleration_g > _IMPLAUSIBLE_G]
     if large:
         notices.append(
-            (
+            Notice(
                 "important",
                 "implausible on a housing: "
                 + ", ".join(
@@ -446,7 +446,7 @@ def _doubts(implied: Sequence[Implied]) -> list[tuple[str, str]]:
             )
         )
     notices.append(
-        (
+        Notice(
             "info",
             "a housing's acceleration integrated twice is the housing's motion, not the relative "
             "displacement of the teeth: equal figures prove nothing without the path between",
@@ -502,7 +502,7 @@ def result_of(found: Comparison) -> Result:
         "comparison",
         f"Models {' and '.join(found.models)} against {found.measured}",
         {"comparison": table, "implied": implied},
-        [Notice(level, text) for level, text in found.notices],
+        found.notices,
         conclusion=found.conclusion[:1].upper() + found.conclusion[1:] + ".",
         figures=figures(found),
         created=now(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,7 +24,7 @@ from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 from thermogear.study.relief import EDGE_WORDS, one_point
 
 Floats = NDArray[np.float64]
@@ -200,42 +200,32 @@ def apart(point: Operating, difference: float) -> Operating:
 
 def _notices(
     case: GearCase, body: str, lost: int, edges: xr.DataArray, compared: xr.Dataset
-) -> list[dict[str, str]]:
+) -> Iterator[Notice]:
     apart_by = 100.0 * (compared["iso_stiffness"] / compared["loaded_stiffness"] - 1.0).values
     low, high = (f"{value:+.0f}" for value in (apart_by.min(), apart_by.max()))
     standard = f"{low} %" if low == high else f"{low} to {high} %"
     words = "clamped at the bore: statics" if body == "bore_clamped" else "without hub wind-up"
-    found = [
-        {
-            "level": "info",
-            "text": f"Body: {words}, plane stress. Contact on tip corners and relief stand without "
-            "a finite-element check; `thermogear verify stiffness` holds the rest against one.",
-        },
-        {
-            "level": "info",
-            "text": "ISO 6336-1 knows neither bore nor course over the mesh; here it stands "
-            f"{standard} from the loaded contact. Below 100 N/mm its stiffness falls fast.",
-        },
-    ]
+    yield Notice(
+        "info",
+        f"Body: {words}, plane stress. Contact on tip corners and relief stand without "
+        "a finite-element check; `thermogear verify stiffness` holds the rest against one.",
+    )
+    yield Notice(
+        "info",
+        "ISO 6336-1 knows neither bore nor course over the mesh; here it stands "
+        f"{standard} from the loaded contact. Below 100 N/mm its stiffness falls fast.",
+    )
     if bool((edges > 0.0).any()):
         most = edges.isel(edges.argmax(...))
         at = f"{most['temperature'].values!s}, {float(most['load']):.4g} N m"
-        found.append(
-            {
-                "level": "important",
-                "text": f"Tip corners carry load during up to {100 * float(most):.3g} % of the "
-                f"mesh period ({at}). {EDGE_WORDS}",
-            }
+        yield Notice(
+            "important",
+            f"Tip corners carry load during up to {100 * float(most):.3g} % of the "
+            f"mesh period ({at}). {EDGE_WORDS}",
         )
     if lost:
-        found.append(
-            {
-                "level": "important",
-                "text": f"{lost} positions did not settle; they are not_converged and not drawn.",
-            }
+        yield Notice(
+            "important", f"{lost} positions did not settle; they are not_converged and not drawn."
         )
     if any(m.stiffness != "loaded" for m in case.models):
-        found.append(
-            {"level": "info", "text": "The loaded contact stands for every bundle of the case."}
-        )
-    return found
+        yield Notice("info", "The loaded contact stands for every bundle of the case.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 
 Floats = NDArray[np.float64]
 
@@ -138,23 +139,20 @@ def range_in_words(law: FrictionLaw) -> str:
     return "; ".join(parts)
 
 
-def _notices(state: ContactState, words: list[dict[str, str]]) -> list[dict[str, str]]:
-    found = [
-        {
-            "level": "info",
-            "text": f"The film is known to about {100 * FILM_UNCERTAINTY:.0f} % "
-            "(pressure-viscosity) and the thickness formulas spread by 14 %: so does the border "
-            "between the regimes.",
-        },
-        {
-            "level": "info",
-            "text": "Near the pitch point nothing slides: Benedict and Kelley's logarithm is held "
-            "at 1 % of the entrainment speed, Xu and Kahraman's law falls to 0.",
-        },
-    ]
+def _notices(state: ContactState, words: list[dict[str, str]]) -> Iterator[Notice]:
+    yield Notice(
+        "info",
+        f"The film is known to about {100 * FILM_UNCERTAINTY:.0f} % "
+        "(pressure-viscosity) and the thickness formulas spread by 14 %: so does the border "
+        "between the regimes.",
+    )
+    yield Notice(
+        "info",
+        "Near the pitch point nothing slides: Benedict and Kelley's logarithm is held "
+        "at 1 % of the entrainment speed, Xu and Kahraman's law falls to 0.",
+    )
     for one in words:
         if one["missing"]:
-            found.append({"level": "warning", "text": f"{one['law']}: {one['missing']}"})
+            yield Notice("warning", f"{one['law']}: {one['missing']}")
     if float(np.max(np.asarray(state.sum_speed))) == 0.0:
-        found.append({"level": "important", "text": "The pair is at rest: no film forms."})
-    return found
+        yield Notice("important", "The pair is at rest: no film forms.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
@@ -11,57 +11,45 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.display import CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
+from thermogear.results.result import Notice
 
 Floats = NDArray[np.float64]
-Notice = dict[str, str]
 
 
-def _notice(level: str, text: str) -> Notice:
-    return {"level": level, "text": text}
-
-
-def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
     """What the friction laws say of themselves: pitch point, ranges, the oil's range."""
-    found: list[Notice] = []
     if np.isfinite(groups["path"]["friction_coefficient_mixed"].values).any():
-        found.append(
-            _notice(
-                "info",
-                "Benedict and Kelley's friction diverges where nothing slides; near the pitch "
-                "point the sliding speed is held above 1 % of the entrainment speed, and the "
-                "coefficient is 0 where the logarithm's argument falls below 1.",
-            )
+        yield Notice(
+            "info",
+            "Benedict and Kelley's friction diverges where nothing slides; near the pitch "
+            "point the sliding speed is held above 1 % of the entrainment speed, and the "
+            "coefficient is 0 where the logarithm's argument falls below 1.",
         )
     path = groups["path"]
     for place, model in enumerate(case.models):
         here = path.isel(bundle=place)
         share = float((here["friction_outside_range"].isel(state=-1).values == 1).mean())
         if share > 0.0:
-            found.append(
-                _notice(
-                    "important",
-                    f"{model.name}: the friction law {model.law.name} is outside its range on "
-                    f"{100.0 * share:.0f} % of the path (hot, all operating points).",
-                )
+            yield Notice(
+                "important",
+                f"{model.name}: the friction law {model.law.name} is outside its range on "
+                f"{100.0 * share:.0f} % of the path (hot, all operating points).",
             )
         eta = groups["mesh"].isel(bundle=place, state=-1)["dynamic_viscosity"].values
         left = _left_out(case, here.isel(state=-1), eta)
         if left:
-            found.append(
-                _notice(
-                    "info",
-                    f"{model.name}: the band of friction laws leaves out, where they are outside "
-                    f"their range: {'; '.join(left)}.",
-                )
+            yield Notice(
+                "info",
+                f"{model.name}: the band of friction laws leaves out, where they are outside "
+                f"their range: {'; '.join(left)}.",
             )
-    return found + _film_beyond_oil(case, groups)
+    yield from _film_beyond_oil(case, groups)
 
 
-def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
     """Where the film forms at flanks that leave the range of the oil's viscosity line."""
     oil = case.stated.lubricant
     low, high = (CELSIUS.text(t, 1) for t in oil.temperature_range)
-    found = []
     for place, model in enumerate(case.models):
         hot = groups["mesh"].isel(bundle=place, state=-1)["film_outside_range"].values == 1
         where = ["the hot state"] if hot.any() else []
@@ -72,15 +60,12 @@ def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[N
             at = row["gear_temperature"].values[beyond_oil.any(axes).values]
             where += [CELSIUS.text(float(t), 1) for t in at]
         if where:
-            found.append(
-                _notice(
-                    "info",
-                    f"{model.name}: the film forms at flanks that leave the range of {oil.name}'s "
-                    f"viscosity line ({low} to {high}, from 2 mm²/s on): {', '.join(where)}. The "
-                    "viscosity there is drawn out.",
-                )
+            yield Notice(
+                "info",
+                f"{model.name}: the film forms at flanks that leave the range of {oil.name}'s "
+                f"viscosity line ({low} to {high}, from 2 mm²/s on): {', '.join(where)}. The "
+                "viscosity there is drawn out.",
             )
-    return found
 
 
 def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:

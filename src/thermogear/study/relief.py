@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +21,7 @@ from thermogear.gears.stiffness import Moduli
 from thermogear.mesh.elastic import LoadedPair
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 
 Floats = NDArray[np.float64]
 KIND = "relief"
@@ -195,28 +195,23 @@ class FirstPoint:
         return np.asarray(self.deviation.gap(at)[0])
 
 
-def _notices(case: GearCase, edges: Sequence[float]) -> list[dict[str, str]]:
-    found = [
-        {
-            "level": "info",
-            "text": "Bodies clamped at their bores (statics), plane stress; contact on tip corners "
-            "and relief stand without a finite-element check.",
-        },
-        {
-            "level": "info",
-            "text": "The relief is best at the load and temperature it is made for; the picture "
-            "over the load says what it costs at other loads.",
-        },
-    ]
+def _notices(case: GearCase, edges: Sequence[float]) -> Iterator[Notice]:
+    yield Notice(
+        "info",
+        "Bodies clamped at their bores (statics), plane stress; contact on tip corners "
+        "and relief stand without a finite-element check.",
+    )
+    yield Notice(
+        "info",
+        "The relief is best at the load and temperature it is made for; the picture "
+        "over the load says what it costs at other loads.",
+    )
     if any(edges):
-        found.append(
-            {
-                "level": "important",
-                "text": "At the design load tip corners carry during "
-                f"{100 * edges[0]:.3g} % of the mesh period without the relief and "
-                f"{100 * edges[1]:.3g} % with it. {EDGE_WORDS}",
-            }
+        yield Notice(
+            "important",
+            "At the design load tip corners carry during "
+            f"{100 * edges[0]:.3g} % of the mesh period without the relief and "
+            f"{100 * edges[1]:.3g} % with it. {EDGE_WORDS}",
         )
     if any(isinstance(d, Relief) and d.end == "tip" for d in case.deviations):
-        found.append({"level": "warning", "text": "The case's own tip relief is replaced."})
-    return found
+        yield Notice("warning", "The case's own tip relief is replaced.")

@@ -6,7 +6,7 @@ import importlib.metadata
 import json
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 
 import numpy as np
@@ -24,11 +24,11 @@ from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
+from thermogear.results.result import Notice
 from thermogear.study.balances import reasons, several_words
 from thermogear.study.friction_notices import friction_notices
 
 Floats = NDArray[np.float64]
-Notice = dict[str, str]
 
 STUDIED_FREQUENCIES = (1.1, 1.3)
 """Frequency ratios of the thesis's bifurcation study."""
@@ -39,10 +39,6 @@ MOST_POINTS = 12
 LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
-def _notice(level: str, text: str) -> Notice:
-    return {"level": level, "text": text}
-
-
 def _rpm(speed: float) -> float:
     return speed / RPM
 
@@ -50,49 +46,44 @@ def _rpm(speed: float) -> float:
 # --- notices ------------------------------------------------------------------------------
 
 
-def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
     """What a reader should know before the pictures, most important first."""
     mesh = groups["mesh"]
-    found = _computed(case, groups) + _jammed(case, mesh) + _deviations(case)
+    yield from _computed(case, groups)
+    yield from _jammed(case, mesh)
+    yield from _deviations(case)
     if of_the_thesis(case):
-        found += _regime(case, mesh)
+        yield from _regime(case, mesh)
     if "motion" in groups:
-        found += _motion(groups["motion"])
+        yield from _motion(groups["motion"])
     if "temperature" in groups:
-        found += _row_jams(groups["temperature"])
-    found += _stiffness(case, mesh) + _edges(mesh)
+        yield from _row_jams(groups["temperature"])
+    yield from _stiffness(case, mesh)
+    yield from _edges(mesh)
     if any(model.thermal_stiffness == "thesis" for model in case.models):
-        found.append(
-            _notice(
-                "info",
-                "The thesis's thermal stiffness k_T has no cold limit (it tends to infinity as "
-                "the growth vanishes); it is set to 0 where nothing has grown.",
-            )
-        )
-    found.append(
-        _notice(
+        yield Notice(
             "info",
-            "Undeformed and hot differ in the temperatures of gears and housing alone; oil and "
-            "film are equally warm in both: friction and flash can be compared.",
+            "The thesis's thermal stiffness k_T has no cold limit (it tends to infinity as "
+            "the growth vanishes); it is set to 0 where nothing has grown.",
         )
+    yield Notice(
+        "info",
+        "Undeformed and hot differ in the temperatures of gears and housing alone; oil and "
+        "film are equally warm in both: friction and flash can be compared.",
     )
-    found += friction_notices(case, groups)
+    yield from friction_notices(case, groups)
     if case.base_sets and not of_the_thesis(case):
-        found.append(
-            _notice(
-                "info",
-                "draw.base_sets: left out. These sets belong to the ready-made case, and this "
-                "case has other values.",
-            )
+        yield Notice(
+            "info",
+            "draw.base_sets: left out. These sets belong to the ready-made case, and this "
+            "case has other values.",
         )
     if mesh.sizes["bundle"] > 1:
-        found.append(_difference(mesh))
-    return found
+        yield _difference(mesh)
 
 
-def _stiffness(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+def _stiffness(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     """How the models of the mesh stiffness stand to each other, in this case."""
-    found = []
     for place, model in enumerate(case.models):
         if not model.stiffness.startswith("textbook"):
             continue
@@ -101,44 +92,37 @@ def _stiffness(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
             float(cold["mean_stiffness"]) / float(cold[f"{body}_stiffness"]) - 1.0
             for body in ("rim", "bore_clamped")
         ]
-        found.append(
-            _notice(
-                "warning",
-                f"{model.name}: the mesh stiffness is the textbook sum of tooth pairs that do not "
-                f"feel each other. For this pair its mean without heat lies {_above(over[0])} "
-                f"that of the loaded contact, {_above(over[1])} it with the bodies clamped at "
-                "their bores.",
-            )
+        yield Notice(
+            "warning",
+            f"{model.name}: the mesh stiffness is the textbook sum of tooth pairs that do not "
+            f"feel each other. For this pair its mean without heat lies {_above(over[0])} "
+            f"that of the loaded contact, {_above(over[1])} it with the bodies clamped at "
+            "their bores.",
         )
     if any(model.stiffness == "loaded" for model in case.models):
-        found.append(
-            _notice(
-                "info",
-                "The loaded contact takes plane-stress bodies. Contact on tip corners and relief "
-                "stand without a finite-element check; `thermogear verify stiffness` holds the "
-                "rest of this pair's contact against finite elements. For the vibration the "
-                "body's wind-up against its bore is left to the inertia (the reading named "
-                "rim); both readings are among the figures.",
-            )
+        yield Notice(
+            "info",
+            "The loaded contact takes plane-stress bodies. Contact on tip corners and relief "
+            "stand without a finite-element check; `thermogear verify stiffness` holds the "
+            "rest of this pair's contact against finite elements. For the vibration the "
+            "body's wind-up against its bore is left to the inertia (the reading named "
+            "rim); both readings are among the figures.",
         )
-    return found
 
 
-def _edges(mesh: xr.Dataset) -> list[Notice]:
+def _edges(mesh: xr.Dataset) -> Iterator[Notice]:
     """Where a tip corner carries, and what that leaves unknown."""
     shares = 100.0 * mesh["edge_contact_share"].values
     if not np.any(shares > 0.0):
-        return []
+        return
     least, most = f"{np.nanmin(shares):.1f}", f"{np.nanmax(shares):.1f}"
     span = most if least == most else f"{least} to {most}"
-    return [
-        _notice(
-            "info",
-            f"Edge contact: under load the corner of a tip carries for {span} % "
-            "of the mesh period in the loaded contact. Hertz's pressure is not valid there and is "
-            "left out; stiffness, shares, friction and flash take the corner for a flank.",
-        )
-    ]
+    yield Notice(
+        "info",
+        f"Edge contact: under load the corner of a tip carries for {span} % "
+        "of the mesh period in the loaded contact. Hertz's pressure is not valid there and is "
+        "left out; stiffness, shares, friction and flash take the corner for a flank.",
+    )
 
 
 def _above(part: float) -> str:
@@ -146,11 +130,11 @@ def _above(part: float) -> str:
     return f"{100.0 * abs(part):.0f} % {'above' if part > 0.0 else 'below'}"
 
 
-def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
+def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
     """What the heat balance found, where it decides the temperatures."""
     if "balance" not in groups:
-        return []
-    balance, found = groups["balance"], []
+        return
+    balance = groups["balance"]
     ours = sum(one.field.startswith("gearbox.") for one in case.assumptions)
     limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
     for place, bundle in enumerate(balance["bundle"].values):
@@ -158,13 +142,11 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
         settled = here["status"].values == STATUS.index("ok")
         lost = int(np.sum(~settled))
         if lost:
-            found.append(
-                _notice(
-                    "important",
-                    f"{bundle}: {lost} of {settled.size} operating points have no steady "
-                    "temperature; their status is not_converged and they have no motion."
-                    + reasons(balance, str(bundle)),
-                )
+            yield Notice(
+                "important",
+                f"{bundle}: {lost} of {settled.size} operating points have no steady "
+                "temperature; their status is not_converged and they have no motion."
+                + reasons(balance, str(bundle)),
             )
         if not settled.any():
             continue
@@ -173,7 +155,7 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
             oil = here["hot_node_temperature"] - here["node_temperature"]
             far = float(oil.sel(node="oil").values[several].max())
             text = several_words(several=int(several.sum()), count=settled.size, hotter=far)
-            found.append(_notice("important", f"{bundle}: {text}"))
+            yield Notice("important", f"{bundle}: {text}")
         steady = here.isel(operating=np.flatnonzero(settled))
         teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])
         oil = steady["node_temperature"].sel(node="oil")
@@ -189,14 +171,13 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[Notice]:
         hot = float(teeth.max()) > limit
         if hot:
             text += f" The teeth pass {CELSIUS.text(limit, 1)}, where their material is tempered."
-        found.append(_notice("important" if hot else "info", text))
-    return found
+        yield Notice("important" if hot else "info", text)
 
 
-def _deviations(case: GearCase) -> list[Notice]:
+def _deviations(case: GearCase) -> Iterator[Notice]:
     """What a reader must know where flanks deviate from the involute."""
     if not case.deviations:
-        return []
+        return
     deaf = [m.name for m in case.models if m.stiffness != "loaded"]
     count = len(case.deviations)
     text = (
@@ -206,48 +187,39 @@ def _deviations(case: GearCase) -> list[Notice]:
     )
     if deaf:
         text += f" The textbook sum of {', '.join(deaf)} does not feel them."
-    found = [_notice("warning" if deaf else "info", text)]
+    yield Notice("warning" if deaf else "info", text)
     if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in case.deviations):
-        found.append(
-            _notice(
-                "warning",
-                "Pitch errors: a run holds the teeth of one mesh period. Other teeth may leave "
-                "less clearance and jam earlier; `loaded_contact` takes phases of whole "
-                "revolutions.",
-            )
+        yield Notice(
+            "warning",
+            "Pitch errors: a run holds the teeth of one mesh period. Other teeth may leave "
+            "less clearance and jam earlier; `loaded_contact` takes phases of whole "
+            "revolutions.",
         )
-    return found
 
 
-def _jammed(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+def _jammed(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     hot = mesh.isel(state=-1)
-    found = []
     for place, bundle in enumerate(mesh["bundle"].values):
         here = hot.isel(bundle=place)
         bare = mesh.isel(state=0, bundle=place)["status"] == STATUS.index("jammed")
         if bool(bare.any()):
-            found.append(
-                _notice(
-                    "important",
-                    f"{bundle}: {int(bare.sum())} of {here.sizes['operating']} operating points "
-                    "are jammed without heat: the deviations of the flanks take more than the "
-                    "cold backlash. Jammed points have no motion.",
-                )
+            yield Notice(
+                "important",
+                f"{bundle}: {int(bare.sum())} of {here.sizes['operating']} operating points "
+                "are jammed without heat: the deviations of the flanks take more than the "
+                "cold backlash. Jammed points have no motion.",
             )
             continue
         jammed = int((here["status"] == STATUS.index("jammed")).sum())
         alone, words = _jams(here, case.stated.temperatures.reference)
         if jammed:
-            found.append(
-                _notice(
-                    "important",
-                    f"{bundle}: {jammed} of {here.sizes['operating']} operating points are jammed "
-                    f"when hot. The backlash is used up {words}. Jammed points have no motion.",
-                )
+            yield Notice(
+                "important",
+                f"{bundle}: {jammed} of {here.sizes['operating']} operating points are jammed "
+                f"when hot. The backlash is used up {words}. Jammed points have no motion.",
             )
         elif math.isfinite(alone) and alone < ZERO_CELSIUS + 400.0:
-            found.append(_notice("info", f"{bundle}: the pair would jam {words}."))
-    return found
+            yield Notice("info", f"{bundle}: the pair would jam {words}.")
 
 
 def _jams(here: xr.Dataset, reference: float) -> tuple[float, str]:
@@ -286,7 +258,7 @@ def _degrees(kelvin: Floats, order: NDArray[np.int64], here: xr.Dataset) -> str:
     return f"{text} ({speed:.5g} rpm, {torque:.5g} N m)"
 
 
-def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
+def _regime(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
     ratios = mesh["frequency_ratio"].isel(bundle=0, state=0).values
     low, high = STUDIED_FREQUENCIES
     f_n = float(mesh["natural_frequency"].isel(bundle=0, state=0, operating=0))
@@ -294,66 +266,52 @@ def _regime(case: GearCase, mesh: xr.Dataset) -> list[Notice]:
     studied = [f_n * ratio / per_rpm for ratio in (low, high)]
     inside = (ratios >= low) & (ratios <= high)
     if np.any(inside):
-        return []
-    return [
-        _notice(
-            "important",
-            f"Two regimes: the speeds of this case lie at frequency ratios "
-            f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
-            f"of the undeformed mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation "
-            f"study at {low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
-            "Nothing found in one speaks for the other.",
-        )
-    ]
+        return
+    yield Notice(
+        "important",
+        f"Two regimes: the speeds of this case lie at frequency ratios "
+        f"{ratios.min():.2f} to {ratios.max():.2f} of the natural frequency "
+        f"of the undeformed mean stiffness ({f_n:.0f} Hz), while the thesis's bifurcation "
+        f"study at {low} to {high} would mean {studied[0]:.0f} to {studied[1]:.0f} rpm. "
+        "Nothing found in one speaks for the other.",
+    )
 
 
-def _motion(motion: xr.Dataset) -> list[Notice]:
-    found = []
+def _motion(motion: xr.Dataset) -> Iterator[Notice]:
     names = Counter(str(name) for name in motion["label"].values.ravel())
     if names["undecided"]:
-        found.append(
-            _notice(
-                "warning",
-                f"{names['undecided']} motions are undecided: they neither close nor are they "
-                "chaotic to the end; the reason stands with each.",
-            )
+        yield Notice(
+            "warning",
+            f"{names['undecided']} motions are undecided: they neither close nor are they "
+            "chaotic to the end; the reason stands with each.",
         )
     if "back_impacts" in motion:
         impacts = motion["back_impacts"].values
         moving = np.isfinite(impacts)
         if moving.any() and not np.any(impacts[moving] > 0.0):
-            found.append(
-                _notice(
-                    "info",
-                    "b' has no effect here: no tooth ever hits the back side, so the backlash "
-                    "can be moved out of the equation; heat acts through stiffness and error "
-                    "alone.",
-                )
+            yield Notice(
+                "info",
+                "b' has no effect here: no tooth ever hits the back side, so the backlash "
+                "can be moved out of the equation; heat acts through stiffness and error "
+                "alone.",
             )
         elif moving.any():
             free = int(np.sum(impacts[moving] == 0.0))
-            found.append(
-                _notice(
-                    "info",
-                    f"b' has no effect on {free} of {int(moving.sum())} motions, whose teeth "
-                    "never hit the back side.",
-                )
+            yield Notice(
+                "info",
+                f"b' has no effect on {free} of {int(moving.sum())} motions, whose teeth "
+                "never hit the back side.",
             )
-    return found
 
 
-def _row_jams(row: xr.Dataset) -> list[Notice]:
+def _row_jams(row: xr.Dataset) -> Iterator[Notice]:
     jammed = row["status"] == STATUS.index("jammed")
-    found = []
     for place, bundle in enumerate(row["bundle"].values):
         here = jammed.isel(bundle=place).any("operating")
         temperatures = row["gear_temperature"].values[here.values]
         if temperatures.size:
             text = ", ".join(f"{t - ZERO_CELSIUS:.0f}" for t in temperatures)
-            found.append(
-                _notice("important", f"{bundle}: jammed at gear temperatures of {text} °C.")
-            )
-    return found
+            yield Notice("important", f"{bundle}: jammed at gear temperatures of {text} °C.")
 
 
 def _difference(mesh: xr.Dataset) -> Notice:
@@ -366,19 +324,17 @@ def _difference(mesh: xr.Dataset) -> Notice:
             continue
         parts.append(f"{bundle}: stiffness {100 * (hot / cold - 1):+.1f} %, b' = {b:.1f} um")
     told = "; ".join(parts) or "no point has a hot state"
-    return _notice("important", f"What heat does depends on the bundle. {told}.")
+    return Notice("important", f"What heat does depends on the bundle. {told}.")
 
 
-def dimensionless_notices(points: xr.Dataset) -> list[Notice]:
+def dimensionless_notices(points: xr.Dataset) -> Iterator[Notice]:
     """The notices of a dimensionless case."""
-    found = [
-        _notice(
-            "info",
-            "These are parameter sets of the dimensionless equation; they are not derived from "
-            "any gear pair.",
-        )
-    ]
-    return found + _motion(points)
+    yield Notice(
+        "info",
+        "These are parameter sets of the dimensionless equation; they are not derived from "
+        "any gear pair.",
+    )
+    yield from _motion(points)
 
 
 # --- facts --------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -162,13 +163,12 @@ def _swings(
 def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:
     """How far apart the two forms are, at the mean load and where they part."""
 
-    def apart(data: xr.Dataset, quantity: str, middle: bool = False, **at: Any) -> float:
+    def apart(data: xr.Dataset, quantity: str, of: Callable[..., Any] = np.max, **at: Any) -> float:
         here = data.sel(at, method="nearest")
         ratio = here[f"shared_{quantity}"] / here[f"one_spring_{quantity}"]
         if not ratio.size:
             return float("nan")
-        gap = np.abs(ratio.values - 1.0)
-        return float(np.median(gap) if middle else gap.max())
+        return float(of(np.abs(ratio.values - 1.0)))
 
     rested = rest.swap_dims(load="factor")
     play = rest["one_spring_clearance"].values
@@ -181,7 +181,7 @@ def _summary(rest: xr.Dataset, moving: xr.Dataset) -> dict[str, Any]:
         found_here |= {
             f"stiffness_at_{where}_load": apart(rested, "stiffness", factor=part),
             f"swing_at_rest_{where}_load": apart(rested, "swing", factor=part),
-            f"median_swing_in_motion_{where}_load": apart(moving, "swing", True, part=part),
+            f"median_swing_in_motion_{where}_load": apart(moving, "swing", np.median, part=part),
             f"swing_in_motion_{where}_load": apart(moving, "swing", part=part),
         }
     return {name: value for name, value in found_here.items() if np.isfinite(value)}

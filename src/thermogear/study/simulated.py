@@ -17,7 +17,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.allowed import gear_parameter
 from thermogear.measured.published import LineTable, SpeedLine
 from thermogear.measured.record import Channel, Record
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 
 if TYPE_CHECKING:
     from thermogear.case.case import Case
@@ -32,7 +32,7 @@ class CaseLines:
     tables: Mapping[str, LineTable]
     u_num: float
     u_input: Mapping[float, float]
-    notices: tuple[tuple[str, str], ...]
+    notices: tuple[Notice, ...]
 
 
 def tree_lines(result: Result) -> dict[str, LineTable]:
@@ -84,7 +84,7 @@ def case_lines(
     else:
         text, kept = load_case(case).text, {}
     kept["draw.pictures"] = '["motion"]'
-    notices: list[tuple[str, str]] = []
+    notices: list[Notice] = []
 
     def tables(changes: Mapping[str, str]) -> dict[str, LineTable]:
         return tree_lines(run(load_case(text, {**kept, **changes})))
@@ -96,7 +96,9 @@ def case_lines(
         # fourth order: the coarse run's error is 16/15 of the difference, the fine one's 1/15
         u_num = max(_differences(base, coarse).values(), default=0.0) / 15.0
         notices.append(
-            ("info", f"u_num {100 * u_num:.3g} % from {steps} and {steps // 2} steps a period")
+            Notice(
+                "info", f"u_num {100 * u_num:.3g} % from {steps} and {steps // 2} steps a period"
+            )
         )
     u_input: dict[float, float] = {}
     if tolerances:
@@ -111,7 +113,7 @@ def case_lines(
                 spread.setdefault(speed, []).append(value)
         u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
     else:
-        notices.append(("warning", "no tolerances of the case are stated: u_input is 0"))
+        notices.append(Notice("warning", "no tolerances of the case are stated: u_input is 0"))
     return CaseLines(base, u_num, u_input, tuple(notices))
 
 

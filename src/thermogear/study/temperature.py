@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,12 +20,12 @@ from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.film import regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
-from thermogear.mesh.balance import HeatBalance, heat_balance
+from thermogear.mesh.balance import HeatBalance
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 from thermogear.study.balances import balance_dataset, blanked, several_words
 from thermogear.study.trends import QUANTITIES, conclusion, verdicts
 
@@ -125,19 +125,7 @@ def _solved(
     case: GearCase, model: MeshModel, speed: Floats, torque: Floats
 ) -> tuple[HeatBalance, xr.Dataset]:
     """The heat balance of the points, and the mesh cycle at its temperatures."""
-    at = case.stated
-    settled = heat_balance(
-        case.pair,
-        speed,
-        torque,
-        at.lubricant,
-        at.half_backlash,
-        model,
-        gearbox=case.gearbox,
-        reference=at.temperatures.reference,
-        housing=at.housing,
-        deviations=case.deviations,
-    )
+    settled = case.balance_of(model, speed, torque)
     cycle = mesh_cycle(
         case.pair,
         settled.operating,
@@ -262,18 +250,13 @@ def _on_grid(
 
 def _notices(
     case: GearCase, grid: xr.Dataset, seconds: float, why: Sequence[str]
-) -> list[dict[str, str]]:
+) -> Iterator[Notice]:
     status = grid["status"].values
     settled = status != STATUS.index("not_converged")
     count = status.size
     told = f"{count} points have" if count > 1 else "1 point has"
-    found = []
-
-    def say(level: str, text: str) -> None:
-        found.append({"level": level, "text": text})
-
     if not settled.all():
-        say(
+        yield Notice(
             "important",
             f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
             "picture." + (f" No value: {'; '.join(dict.fromkeys(why))}." if why else ""),
@@ -284,11 +267,13 @@ def _notices(
             node="oil"
         )
         far = float(np.max(hotter.values[several]))
-        say("important", several_words(several=int(several.sum()), count=count, hotter=far))
+        yield Notice(
+            "important", several_words(several=int(several.sum()), count=count, hotter=far)
+        )
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
     if outside.any():
-        say(
+        yield Notice(
             "important",
             f"At {int(outside.sum())} of {count} points the oil leaves the "
             f"{low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C of its viscosity line: such "
@@ -298,7 +283,7 @@ def _notices(
     teeth = grid["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"]).mean("node").values
     beyond = settled & (teeth > high)
     if beyond.any():
-        say(
+        yield Notice(
             "warning",
             f"At {int(beyond.sum())} of {count} points the flanks are hotter than the "
             f"{high - ZERO_CELSIUS:.0f} °C up to which the oil's viscosity line is trusted: the "
@@ -307,25 +292,28 @@ def _notices(
     jam, together = (grid[n].values for n in ("jam_temperature", "proportional_jam_temperature"))
     least = grid["least_half_backlash"].values
     if (status == STATUS.index("jammed")).any():
-        say("important", f"{int((status == STATUS.index('jammed')).sum())} points are jammed.")
+        yield Notice(
+            "important", f"{int((status == STATUS.index('jammed')).sum())} points are jammed."
+        )
     elif settled.any():
-        say(
+        yield Notice(
             "info",
             f"No point jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
             "backlash are left. Held against its housing as it is, the pair would jam from "
             f"{_least(jam[settled])} of the pinion's teeth"
             + _in_proportion(together[settled], case.stated.temperatures.reference),
         )
-    say("info", "The way there, and the least backlash on it: thermogear warmup CASE -o DIR.")
+    yield Notice(
+        "info", "The way there, and the least backlash on it: thermogear warmup CASE -o DIR."
+    )
     if case.scuffing_load_stage is None:
-        say("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
-    say(
+        yield Notice("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
+    yield Notice(
         "info",
         f"{count} point{'s' * (count > 1)}, lubricated and dry, in {seconds:.2f} s; at most "
         f"{int(grid['iterations'].max())} iterations, greatest residual of a settled point "
         f"{float(np.max(grid['residual'].values[settled], initial=0.0)):.1e} K.",
     )
-    return found
 
 
 __all__ = ["GRID", "KIND", "LUBRICATIONS", "QUANTITIES", "SPEEDS", "TORQUES", "thermal_map"]

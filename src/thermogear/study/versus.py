@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import attributes, label, told_labels
 from thermogear.case.source import overridden, pairs, tables
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 
 MOST_CASES = 6
 """As many as colours that a reader tells apart."""
@@ -306,16 +306,13 @@ def _path_points(case: Stored) -> dict[str, float]:
 
 def _notices(
     cases: Sequence[Stored], data: xr.Dataset, own: Sequence[Sequence[str]] | None
-) -> list[dict[str, str]]:
-    found: list[dict[str, str]] = []
-
-    def note(level: str, text: str) -> None:
-        found.append({"level": level, "text": text})
-
+) -> Iterator[Notice]:
     titles = [str(title) for title in data["case"].values]
     if own is not None:
         pairs_ = ", ".join(f"{name[0]} of {t}" for t, name in zip(titles, own, strict=True))
-        note("info", f"No bundle is in all cases; each case's only one is compared: {pairs_}.")
+        yield Notice(
+            "info", f"No bundle is in all cases; each case's only one is compared: {pairs_}."
+        )
     has = data["present"].values.astype(bool)
     for axis, dims, word in (("bundle", (2,), "bundle"), ("operating", (1,), "operating point")):
         there = np.asarray(has.any(axis=dims))
@@ -326,14 +323,18 @@ def _notices(
             if alone:
                 shown = "; ".join(alone[:12]) + ("; and more" if len(alone) > 12 else "")
                 plural = "s" if len(alone) > 1 else ""
-                note("warning", f"In {title} only: {word}{plural} {shown}.")
+                yield Notice("warning", f"In {title} only: {word}{plural} {shown}.")
     if not (has.sum(axis=0) > 1).any():
-        note("important", "No operating point is in two of the cases: nothing stands side by side.")
+        yield Notice(
+            "important",
+            "No operating point is in two of the cases: nothing stands side by side.",
+        )
     versions = [str(case.texts.get("thermogear", "")) for case in cases]
     if len(set(versions)) > 1:
         each = ", ".join(f"{t}: {v}" for t, v in zip(titles, versions, strict=True))
-        note("warning", f"The results were written by different versions of thermogear ({each}).")
-    return found
+        yield Notice(
+            "warning", f"The results were written by different versions of thermogear ({each})."
+        )
 
 
 # --- joining ------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,14 +23,13 @@ from thermogear.case.columns import read_columns, require_times
 from thermogear.case.duty import point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import SENSORS, Shown, shown_by
-from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
-from thermogear.results.result import Result
+from thermogear.results.result import Notice, Result
 from thermogear.study.balances import LOSSES
 
 Floats = NDArray[np.float64]
@@ -330,7 +329,7 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         surroundings = with_factors(surroundings, factors)
     except InputError:
         known = False
-    at, model = case.stated, case.models[0]
+    model = case.models[0]
     left = np.full(duty.pieces, np.nan)
     settled = np.zeros(duty.pieces, np.int8)
     nodes: dict[str, Floats] = {}
@@ -343,18 +342,8 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
     for ambient in np.unique(unique[:, 0]):
         here = np.flatnonzero(unique[:, 0] == ambient)
         around = replace(surroundings, ambient=float(ambient))
-        balance = heat_balance(
-            case.pair,
-            unique[here, 1],
-            unique[here, 2],
-            at.lubricant,
-            at.half_backlash,
-            model,
-            gearbox=replace(case.gearbox, surroundings=around),
-            reference=at.temperatures.reference,
-            housing=at.housing,
-            deviations=case.deviations,
-        )
+        box = replace(case.gearbox, surroundings=around)
+        balance = case.balance_of(model, unique[here, 1], unique[here, 2], gearbox=box)
         hot = HotPair(case.pair, balance.operating, model)
         gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
         # at rest the balance knows no free convection: it matters where anything but the ambient
@@ -515,17 +504,12 @@ def _notices(
     found: Fit | None,
     worst: Mapping[str, Any],
     seconds: float,
-) -> list[dict[str, str]]:
-    told: list[dict[str, str]] = []
-
-    def say(level: str, text: str) -> None:
-        told.append({"level": level, "text": text})
-
+) -> Iterator[Notice]:
     if worst["half_backlash_m"] is not None and worst["half_backlash_m"] <= 0.0:
         first = f"{course.jams[0] / 60.0:.2f} min" if course.jams.size else "the start"
-        say("important", f"The pair jams: the backlash is used up at {first}.")
+        yield Notice("important", f"The pair jams: the backlash is used up at {first}.")
     if course.course.too_hot:
-        say(
+        yield Notice(
             "important",
             f"A node reaches 427 C after {course.time[-1] / 60.0:.1f} min: the course ends there.",
         )
@@ -534,19 +518,19 @@ def _notices(
     outside = (oil < low) | (oil > high)
     if outside.any():
         spent = float(np.diff(course.time)[outside[1:]].sum()) / 60.0
-        say(
+        yield Notice(
             "important",
             f"For {spent:.1f} min the oil is outside the {low - ZERO_CELSIUS:.0f} to "
             f"{high - ZERO_CELSIUS:.0f} C of its viscosity line.",
         )
     unknown = (steady["settled"].values == 0) & (course.duty.speed > 0.0)
     if unknown.any():
-        say(
+        yield Notice(
             "important",
             f"Of {int(unknown.sum())} of {unknown.size} pieces no steady state is known.",
         )
     if steady["several"].values.any():
-        say(
+        yield Notice(
             "important",
             "More than one thermal state is steady at "
             f"{int(steady['several'].values.sum())} of {unknown.size} pieces: the one reached from "
@@ -554,27 +538,26 @@ def _notices(
         )
     endless = not np.isfinite(course.duty.time[-1])
     if endless and not (course.course.settled or course.course.too_hot):
-        say("important", "The pair does not come to rest in 40 time constants.")
+        yield Notice("important", "The pair does not come to rest in 40 time constants.")
     if measured is not None and np.any(measured.time > course.time[-1]):
         left = int((measured.time > course.time[-1]).sum())
-        say("warning", f"{left} rows of the record lie after the end and are left out.")
+        yield Notice("warning", f"{left} rows of the record lie after the end and are left out.")
     if found is not None:
-        say(
+        yield Notice(
             "info",
             f"Fitted to {found.count} readings, worth {found.effective:.1f} independent ones "
             f"(neighbours correlate with {found.autocorrelation:.2f}). The intervals hold scatter "
             "alone, not what the model leaves out.",
         )
     if np.any(course.duty.speed == 0.0):
-        say(
+        yield Notice(
             "info",
             "At rest gears give heat to the oil by free convection over their wetted share "
             "(Churchill and Chu); the walls keep gearbox.oil_housing_coefficient as it is given.",
         )
-    say(
+    yield Notice(
         "info",
         f"Losses by the whole chain at every step, {course.course.evaluations} times, in "
         f"{seconds:.1f} s; the heat balance closes to "
         f"{float(course.course.imbalance.max()):.1e} of the heat turned over.",
     )
-    return told

@@ -117,11 +117,15 @@ def scale(name: str) -> list[str]:
     return [f"#{colour}" for colour in SCALES[name].split()]
 
 
-def ramp(count: int, warm: bool = False) -> list[str]:
-    """``count`` colours in order: dark to light, or a warm ramp for temperatures."""
-    colours = scale("YlOrRd" if warm else "viridis")
-    low, high = (0.42, 0.95) if warm else (0.12, 0.72)
-    places = np.linspace(low, high, count) if count > 1 else np.array([high if warm else 0.3])
+RAMPS = {"cool": ("viridis", 0.12, 0.72, 0.3), "warm": ("YlOrRd", 0.42, 0.95, 0.95)}
+"""Scale, its part from low to high, and the place of a single colour; warm is for temperatures."""
+
+
+def ramp(count: int, kind: str = "cool") -> list[str]:
+    """``count`` colours in order, by one of :data:`RAMPS`."""
+    name, low, high, single = RAMPS[kind]
+    colours = scale(name)
+    places = np.linspace(low, high, count) if count > 1 else np.array([single])
     parts = np.array([[int(c[i : i + 2], 16) for c in colours] for i in (1, 3, 5)])
     evenly = np.linspace(0.0, 1.0, len(colours))
     found = np.round([np.interp(places, evenly, part) for part in parts]).astype(int)

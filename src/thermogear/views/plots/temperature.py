@@ -26,7 +26,7 @@ def grid(row: xr.Dataset, bundle: int, operating: list[int]) -> Picture:
     columns = chosen(temperatures.size, most=MOST_COLUMNS)
     names = operating_names(row)
     width = max(WIDE, 2.4 * len(columns)) if len(columns) > 2 else 4.9
-    colours = ramp(len(columns), warm=True)
+    colours = ramp(len(columns), "warm")
     panels: list[list[Panel]] = []
     for point in operating:
         panels.append([])
