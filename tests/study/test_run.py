@@ -17,7 +17,7 @@ from thermogear.results.files import RESULTS, SUMMARY
 from thermogear.results.result import Result
 from thermogear.study.run_notices import _jams
 from thermogear.thesis.errata import with_errata
-from thermogear.views.pages.run_numbers import numbers as summary
+from thermogear.views.pages.run import page
 from thermogear.views.write import save_results
 
 SMALL = [
@@ -101,7 +101,7 @@ def test_results_are_read_back_as_they_were(written: Path, small: Result) -> Non
             np.testing.assert_array_equal(values.values, other.values)
             assert other.attrs.get("units") == values.attrs.get("units")
     told = json.loads((written / SUMMARY).read_text(encoding="utf-8"))
-    fresh = summary(small)
+    fresh = page(small).figures
     assert told["operating"] == json.loads(json.dumps(fresh["operating"]))
     stored.close()
 

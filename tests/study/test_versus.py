@@ -19,7 +19,7 @@ from thermogear.study.versus import (
     unique_titles,
     versus,
 )
-from thermogear.views.pages.versus import _numbers as summary
+from thermogear.views.pages.versus import page
 
 SMALL = [
     "grid.path_positions=41",
@@ -113,7 +113,7 @@ def test_a_case_against_itself_differs_in_nothing(first: Stored) -> None:
     data = found.data
     one, other = data.isel(case=0, drop=True), data.isel(case=1, drop=True)
     assert one.identical(other)
-    told = summary(found)
+    told = page(found).figures
     assert len(told["figures"]) == 2 * 2 * 2 * 2
     json.dumps(told, allow_nan=False)
 
