@@ -21,8 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear import TorsionalModel, simulate
-from thermogear.analysis.labels import Label, labels
+from thermogear.analysis.labels import labels
 from thermogear.analysis.maps import MAP_RULE
+from thermogear.analysis.proof import Label
 from thermogear.analysis.section import Ensemble
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, settle
 from thermogear.dynamics.adaptive import Gap, follow

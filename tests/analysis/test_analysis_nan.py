@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermogear.analysis import labels, settle
+from thermogear.analysis import proof as proofs
+from thermogear.analysis import settle
 from thermogear.analysis.attractors import (
     Field,
     attractors_from,
@@ -133,10 +134,10 @@ def test_no_label_without_numbers(orbit: Orbit, lost: str, monkeypatch: pytest.M
         "jacobian": {"jacobian": np.full((2, 2), NAN)},
     }.get(lost)
     if changes is not None:
-        monkeypatch.setattr(labels, "shoot", lambda *_: replace(orbit, **changes))
-    border = NAN if lost == "border" else labels.NEAR_BORDER
+        monkeypatch.setattr(proofs, "shoot", lambda *_: replace(orbit, **changes))
+    border = NAN if lost == "border" else proofs.NEAR_BORDER
     if lost == "residual":
-        monkeypatch.setattr(labels, "shoot", lambda *_: None)
+        monkeypatch.setattr(proofs, "shoot", lambda *_: None)
     got = label(CALM, initial_state=(1.08, -0.25), cap=4000, near_border=border)
     assert got.name == "undecided"
 
@@ -144,7 +145,7 @@ def test_no_label_without_numbers(orbit: Orbit, lost: str, monkeypatch: pytest.M
 def test_an_exponent_of_no_number_is_not_chaos() -> None:
     batches = np.array([0.1, NAN, 0.1, 0.1])
     proof = Lyapunov(value=NAN, error=NAN, sum=-0.3, batches=batches, state=np.zeros(2))
-    assert not labels._positive(proof)
+    assert not proofs.proves_chaos(proof)
     assert np.isnan(proof.kaplan_yorke)
     assert replace(proof, value=-0.1).kaplan_yorke == 0.0
     lanes = lanes_of(CHAOS)

@@ -7,20 +7,18 @@ import pytest
 
 from thermogear.analysis.continuation import continuation
 from thermogear.analysis.labels import (
-    Label,
     _End,
     _judged,
-    _periodic,
-    _positive,
     counts,
     label,
-    label_words,
     labels,
 )
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import periodic_orbit
+from thermogear.analysis.proof import Label, periodic, proves_chaos
 from thermogear.analysis.section import ReturnMap, scales
 from thermogear.base.errors import InputError
+from thermogear.base.vocabulary import label_words
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
 
@@ -311,7 +309,7 @@ def test_chaos_wants_a_finite_record_positive_in_both_halves(batches, positive):
     with np.errstate(invalid="ignore"):
         error = float(values.std(ddof=1) / np.sqrt(values.size))
     assert (
-        _positive(
+        proves_chaos(
             Lyapunov(
                 value=float(values.mean()), error=error, sum=-0.1, batches=values, state=np.zeros(2)
             )
@@ -319,7 +317,7 @@ def test_chaos_wants_a_finite_record_positive_in_both_halves(batches, positive):
         == positive
     )
     # both halves count even where the mean stands far above its error
-    assert _positive(
+    assert proves_chaos(
         Lyapunov(
             value=float(values.mean()), error=1e-9, sum=-0.1, batches=values, state=np.zeros(2)
         )
@@ -343,7 +341,7 @@ def test_a_window_is_on_the_orbit_when_it_is_near_and_comes_nearer():
     def verdict(size, most=16, border=0.998):
         """Sections that far away: ``size`` of every period, the last 0."""
         window = on + size[:, None] * unit
-        return _periodic(lane, window, most, 500, border)
+        return periodic(lane, window, max_period=most, elapsed=500, near_border=border)
 
     near = 1e-9 * 0.8 ** (steps + 31)
     found, silent = verdict(near)
@@ -365,7 +363,7 @@ def test_a_window_is_on_the_orbit_when_it_is_near_and_comes_nearer():
     assert "of a bifurcation" in inside.reason
     lost = on.copy()
     lost[3, 0] = np.inf
-    assert _periodic(lane, lost, 16, 500, 0.998)[0].name == "diverged"
+    assert periodic(lane, lost, max_period=16, elapsed=500, near_border=0.998)[0].name == "diverged"
 
 
 def test_the_transient_told_is_the_one_that_ran():

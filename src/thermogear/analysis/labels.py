@@ -8,68 +8,28 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
-from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.section import Ensemble, ReturnMap, lanes_of, scales, starts_of
+from thermogear.analysis.lyapunov import lyapunov_exponents
+from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
+from thermogear.analysis.section import Ensemble, lanes_of, scales, starts_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
-from thermogear.base.vocabulary import label_words
 from thermogear.dynamics.blocks import Progress
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-NEAR_BORDER = 0.998
-SETTLED = 1e-7
-CLOSE = 1e-5
 APART = 1e-13
 """Starts that differ by rounding: in half backlashes, or of the start where that is larger."""
 PARTED = float(np.log(1e6))
 """Growth of a small difference on the way above which rounding may decide where a motion ends."""
 STARTS = 16
 FOLLOW = 32_000
-
-
-@dataclass(frozen=True)
-class Label:
-    """What a trajectory settles on.
-
-    ``name`` is "period-n", "chaotic", "diverged" or "undecided"; ``period`` n (0: none found;
-    also given for an undecided motion that seems to close). What stands behind it: ``orbit`` with
-    its Floquet multipliers, or ``lyapunov`` with its error. ``reason`` says it in words,
-    ``discarded`` how many periods went by before. ``starts`` that differ by rounding share the
-    label; of a chaotic motion all of them were ``followed`` so many periods and none closed: an
-    estimate, for chaos may end later.
-    """
-
-    name: str
-    period: int
-    reason: str
-    discarded: int
-    orbit: Orbit | None = None
-    lyapunov: Lyapunov | None = None
-    _: KW_ONLY
-    followed: int = 0
-    starts: int = 1
-
-    @property
-    def multipliers(self) -> NDArray[np.complex128] | None:
-        """Floquet multipliers of the orbit, when there is one."""
-        return None if self.orbit is None else self.orbit.multipliers
-
-    @property
-    def words(self) -> str:
-        """The name, and for chaos how long and from how many starts it was seen."""
-        return label_words(self.name, followed=self.followed, starts=self.starts)
-
-    def __str__(self) -> str:
-        return self.words
 
 
 def label(
@@ -172,6 +132,16 @@ class _Search:
     follow: int
     threads: int | None
 
+    def judge(self, lane: Lanes, window: Floats, elapsed: int) -> tuple[Label | None, bool]:
+        """:func:`periodic` within the bounds of this search."""
+        return periodic(
+            lane,
+            window,
+            max_period=self.max_period,
+            elapsed=elapsed,
+            near_border=self.near_border,
+        )
+
     def rounds(self, most: int) -> Iterator[int]:
         """Lengths of the rounds: ``discard`` periods and a window, then doubling."""
         elapsed, length = 0, self.discard
@@ -199,9 +169,7 @@ def _settle(
         level[waiting] += group.level
         silent: list[int] = []
         for row, lane in enumerate(waiting.tolist()):
-            verdict, quiet = _periodic(
-                lanes.take(lane), window[row], search.max_period, elapsed, search.near_border
-            )
+            verdict, quiet = search.judge(lanes.take(lane), window[row], elapsed)
             found[lane] = verdict
             if quiet:
                 silent.append(lane)
@@ -218,7 +186,7 @@ def _settle(
             )
             for lane, proof in zip(asked, proofs, strict=True):
                 state[lane] = proof.state
-                if _positive(proof):
+                if proves_chaos(proof):
                     found[lane] = Label(
                         "chaotic",
                         0,
@@ -326,14 +294,12 @@ def _follow(
         open_ = []
         for row, lane in enumerate(mine.tolist()):
             one = lanes.take(lane)
-            verdict = _returned(one, window[row], found[lane], elapsed)
+            verdict = returned(one, window[row], found[lane], elapsed)
             if verdict is None:
-                verdict, _ = _periodic(
-                    one, window[row], search.max_period, elapsed, search.near_border
-                )
+                verdict, _ = search.judge(one, window[row], elapsed)
             if verdict is None:
                 open_.append(waiting[row])
-                lively[waiting[row]] = group.level[row] > 0.0 and not _closing(
+                lively[waiting[row]] = group.level[row] > 0.0 and not closing(
                     window[row] / scales(one), search.max_period
                 )
             else:
@@ -349,25 +315,6 @@ def _follow(
         yield mine.size - waiting.size
     for row in waiting.tolist():
         ends[owner[row]].append(_End(None, elapsed, bool(lively[row])))
-
-
-def _returned(lane: Lanes, window: Floats, first: Label, elapsed: int) -> Label | None:
-    """The label ``first`` where the last sections lie on its orbit, in any of its phases."""
-    if first.orbit is None:
-        return None
-    unit = scales(lane)
-    scaled, points = window / unit, first.orbit.points / unit
-    place = int(np.argmin(np.max(np.abs(points - scaled[-1]), axis=1)))
-    turned = np.roll(points, -place, axis=0)
-    return replace(first, discarded=elapsed) if _on(turned, scaled) else None
-
-
-def _on(points: Floats, scaled: Floats) -> bool:
-    """Whether sections lie on an orbit and come nearer; the last is beside its first point."""
-    turned = points[(np.arange(len(scaled)) - (len(scaled) - 1)) % len(points)]
-    away = np.max(np.abs(scaled - turned), axis=1)
-    early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())
-    return late <= SETTLED and (late <= 1e-10 or late < early)
 
 
 def _same(one: Label, other: Label) -> bool:
@@ -395,14 +342,6 @@ def _kinds(first: Label, ends: Sequence[_End]) -> list[Label]:
     """The labels of all starts that have ended, the first one's too unless it is chaotic."""
     own = [] if first.name == "chaotic" else [first]
     return own + [end.label for end in ends if end.label is not None]
-
-
-def _closing(scaled: Floats, max_period: int) -> bool:
-    """Whether the whole window nearly repeats after some lag: one chance return does not."""
-    return any(
-        np.max(np.abs(scaled[lag:] - scaled[:-lag])) < 10.0 * CLOSE
-        for lag in range(1, max_period + 1)
-    )
 
 
 def _judged(first: Label, ends: Sequence[_End]) -> Label:
@@ -433,65 +372,6 @@ def _judged(first: Label, ends: Sequence[_End]) -> Label:
         )
         return Label("undecided", kinds[0].period, reason, most, kinds[0].orbit)
     return replace(kinds[0], discarded=most, starts=of)
-
-
-def _positive(proof: Lyapunov) -> bool:
-    half = proof.batches.size // 2
-    return (
-        bool(np.all(np.isfinite(proof.batches)))
-        and proof.value > 4.0 * proof.error
-        and bool(proof.batches[:half].mean() > 0.0)
-        and bool(proof.batches[half:].mean() > 0.0)
-    )
-
-
-def _periodic(
-    lane: Lanes, window: Floats, max_period: int, elapsed: int, near_border: float
-) -> tuple[Label | None, bool]:
-    """The label the last sections support, and whether no lag comes near closing."""
-    if not np.all(np.isfinite(window)):
-        return Label("diverged", 0, "|x| > 1e6 half backlashes or not finite", elapsed), False
-    unit = scales(lane)
-    scaled = window / unit
-    gaps = [
-        float(np.max(np.abs(scaled[-lag:] - scaled[-2 * lag : len(scaled) - lag])))
-        for lag in range(1, max_period + 1)
-    ]
-    close = np.flatnonzero(np.array(gaps) < CLOSE)
-    if close.size == 0:
-        return None, min(gaps) > 10.0 * CLOSE
-    lag = int(close[0]) + 1
-    section = ReturnMap(lane)
-    orbit = shoot(section, window[-1], lag)
-    if orbit is None or not orbit.stable:
-        return None, False
-    period = orbit.minimal_period
-    if period != lag:
-        # a spiral returns close after several of its periods
-        shorter = shoot(section, orbit.state, period)
-        if shorter is None:
-            return None, False
-        orbit = shorter
-    points = orbit.points / unit
-    largest = float(np.max(np.abs(orbit.multipliers)))
-    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} period{'s' * (period > 1)}"
-    # the window against the orbit, in step: its last state is the orbit's first point
-    if not _on(points, scaled):
-        return None, False
-    if period > 1:
-        others = [np.max(np.abs(points[k] - points[0])) for k in range(1, period)]
-        closure = max(orbit.residual, 1e-12)
-        if not np.min(others) > 1e3 * closure:
-            return Label("undecided", period, "shorter lags nearly close", elapsed, orbit), False
-    if not largest <= near_border:
-        reason = f"{shown}: within {1.0 - near_border:.2g} of a bifurcation"
-        return Label("undecided", period, reason, elapsed, orbit), False
-    return Label(f"period-{period}", period, shown, elapsed, orbit), False
-
-
-def _shown(orbit: Orbit) -> str:
-    mu = orbit.multipliers[0]
-    return f"{mu.real:.6f}" if mu.imag == 0.0 else f"|{abs(mu):.6f}|"
 
 
 def counts(found: Sequence[Label]) -> dict[str, int]:

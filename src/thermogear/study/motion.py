@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.labels import Label, labels
+from thermogear.analysis.labels import labels
+from thermogear.analysis.proof import Label
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import Simulation
 from thermogear.case.points import Points

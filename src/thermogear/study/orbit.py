@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from thermogear.analysis.labels import Label, label
+from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.orbits import Orbit, periodic_orbit
+from thermogear.analysis.proof import Label
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label as labelled

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from thermogear.analysis.bifurcations import FLIP
 from thermogear.analysis.continuation import cascade, continuation
 from thermogear.analysis.diagram import orbit_diagram
-from thermogear.analysis.labels import Label, labels
 from thermogear.analysis.labels import label as settle_label
+from thermogear.analysis.labels import labels
 from thermogear.analysis.orbits import periodic_orbit
+from thermogear.analysis.proof import Label
 from thermogear.analysis.settle import PERIODIC
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import long_name

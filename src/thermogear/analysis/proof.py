@@ -1,0 +1,143 @@
+"""What the last sections of one trajectory prove: a label, or that nothing closes."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.lyapunov import Lyapunov
+from thermogear.analysis.orbits import Orbit, shoot
+from thermogear.analysis.section import ReturnMap, scales
+from thermogear.base.vocabulary import label_words
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+
+NEAR_BORDER = 0.998
+SETTLED = 1e-7
+CLOSE = 1e-5
+
+
+@dataclass(frozen=True)
+class Label:
+    """What a trajectory settles on.
+
+    ``name`` is "period-n", "chaotic", "diverged" or "undecided"; ``period`` n (0: none found;
+    also given for an undecided motion that seems to close). What stands behind it: ``orbit`` with
+    its Floquet multipliers, or ``lyapunov`` with its error. ``reason`` says it in words,
+    ``discarded`` how many periods went by before. ``starts`` that differ by rounding share the
+    label; of a chaotic motion all of them were ``followed`` so many periods and none closed: an
+    estimate, for chaos may end later.
+    """
+
+    name: str
+    period: int
+    reason: str
+    discarded: int
+    orbit: Orbit | None = None
+    lyapunov: Lyapunov | None = None
+    _: KW_ONLY
+    followed: int = 0
+    starts: int = 1
+
+    @property
+    def multipliers(self) -> NDArray[np.complex128] | None:
+        """Floquet multipliers of the orbit, when there is one."""
+        return None if self.orbit is None else self.orbit.multipliers
+
+    @property
+    def words(self) -> str:
+        """The name, and for chaos how long and from how many starts it was seen."""
+        return label_words(self.name, followed=self.followed, starts=self.starts)
+
+    def __str__(self) -> str:
+        return self.words
+
+
+def proves_chaos(proof: Lyapunov) -> bool:
+    """Whether an exponent is above 0 by four standard errors, and in both halves of its record."""
+    half = proof.batches.size // 2
+    return (
+        bool(np.all(np.isfinite(proof.batches)))
+        and proof.value > 4.0 * proof.error
+        and bool(proof.batches[:half].mean() > 0.0)
+        and bool(proof.batches[half:].mean() > 0.0)
+    )
+
+
+def periodic(
+    lane: Lanes, window: Floats, *, max_period: int, elapsed: int, near_border: float
+) -> tuple[Label | None, bool]:
+    """The label the last sections support, and whether no lag comes near closing."""
+    if not np.all(np.isfinite(window)):
+        return Label("diverged", 0, "|x| > 1e6 half backlashes or not finite", elapsed), False
+    unit = scales(lane)
+    scaled = window / unit
+    gaps = [
+        float(np.max(np.abs(scaled[-lag:] - scaled[-2 * lag : len(scaled) - lag])))
+        for lag in range(1, max_period + 1)
+    ]
+    close = np.flatnonzero(np.array(gaps) < CLOSE)
+    if close.size == 0:
+        return None, min(gaps) > 10.0 * CLOSE
+    lag = int(close[0]) + 1
+    section = ReturnMap(lane)
+    orbit = shoot(section, window[-1], lag)
+    if orbit is None or not orbit.stable:
+        return None, False
+    period = orbit.minimal_period
+    if period != lag:
+        # a spiral returns close after several of its periods
+        shorter = shoot(section, orbit.state, period)
+        if shorter is None:
+            return None, False
+        orbit = shorter
+    points = orbit.points / unit
+    largest = float(np.max(np.abs(orbit.multipliers)))
+    shown = f"largest Floquet multiplier {_shown(orbit)} over {period} period{'s' * (period > 1)}"
+    # the window against the orbit, in step: its last state is the orbit's first point
+    if not _on(points, scaled):
+        return None, False
+    if period > 1:
+        others = [np.max(np.abs(points[k] - points[0])) for k in range(1, period)]
+        closure = max(orbit.residual, 1e-12)
+        if not np.min(others) > 1e3 * closure:
+            return Label("undecided", period, "shorter lags nearly close", elapsed, orbit), False
+    if not largest <= near_border:
+        reason = f"{shown}: within {1.0 - near_border:.2g} of a bifurcation"
+        return Label("undecided", period, reason, elapsed, orbit), False
+    return Label(f"period-{period}", period, shown, elapsed, orbit), False
+
+
+def _shown(orbit: Orbit) -> str:
+    mu = orbit.multipliers[0]
+    return f"{mu.real:.6f}" if mu.imag == 0.0 else f"|{abs(mu):.6f}|"
+
+
+def closing(scaled: Floats, max_period: int) -> bool:
+    """Whether the whole window nearly repeats after some lag: one chance return does not."""
+    return any(
+        np.max(np.abs(scaled[lag:] - scaled[:-lag])) < 10.0 * CLOSE
+        for lag in range(1, max_period + 1)
+    )
+
+
+def returned(lane: Lanes, window: Floats, first: Label, elapsed: int) -> Label | None:
+    """The label ``first`` where the last sections lie on its orbit, in any of its phases."""
+    if first.orbit is None:
+        return None
+    unit = scales(lane)
+    scaled, points = window / unit, first.orbit.points / unit
+    place = int(np.argmin(np.max(np.abs(points - scaled[-1]), axis=1)))
+    turned = np.roll(points, -place, axis=0)
+    return replace(first, discarded=elapsed) if _on(turned, scaled) else None
+
+
+def _on(points: Floats, scaled: Floats) -> bool:
+    """Whether sections lie on an orbit and come nearer; the last is beside its first point."""
+    turned = points[(np.arange(len(scaled)) - (len(scaled) - 1)) % len(points)]
+    away = np.max(np.abs(scaled - turned), axis=1)
+    early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())
+    return late <= SETTLED and (late <= 1e-10 or late < early)
