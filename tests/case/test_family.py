@@ -163,3 +163,13 @@ def test_one_door_for_gears_and_numbers(rig):
         family(table, ("zeta",), state="undeformed")
     with pytest.raises(InputError, match="half_backlash: got a number beside a gear case"):
         family(rig, ("rpm",), numbers={"half_backlash": 0.9})
+
+
+def test_a_choice_of_the_bundle_can_be_varied(rig):
+    """The bundle was looked up by its name, which changes with its choices: a traceback."""
+    family = GearFamily(rig, ("model.friction.boundary",))
+    points = family(np.array([[0.06], [0.08]]))
+    assert points.status.tolist() == [0, 0]
+    own = GearFamily(rig, ())(np.empty((1, 0)))
+    # temperatures are given: friction moves neither springs nor backlash
+    assert points.stiffness == pytest.approx([own.stiffness[0]] * 2, rel=1e-12)

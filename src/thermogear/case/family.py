@@ -311,7 +311,8 @@ class GearFamily:
         half_backlash: float,
     ) -> list[Excitation | None]:
         """The excitations of one mesh cycle."""
-        model = next(m for m in case.models if m.name == self.bundle)
+        # by its place: a choice that varies changes the name
+        model = case.models[[m.name for m in self.case.models].index(self.bundle)]
         stated = replace(case.stated, speed=speed, torque=torque, half_backlash=half_backlash)
         here = replace(case, stated=stated)
         return excitations(case, case.cycle(state.moving(here, model), model, FEW))
