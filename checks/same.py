@@ -129,6 +129,8 @@ class Side:
         process.stdin.write(json.dumps(order) + "\n")
         process.stdin.flush()
         line = process.stdout.readline()
+        if not line:
+            raise SystemExit(f"{order['folder']}: the process that carries its steps out has ended")
         self._idle.put(process)
         return [(int(code), float(spent)) for code, spent in json.loads(line)]
 

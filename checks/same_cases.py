@@ -313,15 +313,15 @@ CASES = (
     Case(
         "orbit-numbers",
         (
-            f"orbit {NUMBERS} --period 2 --json",
-            f"orbit {NUMBERS} --b 0.9 --eps-t 0.01 --period 1 --direct --start 0.2,0.1",
+            f"orbit {NUMBERS} --period 2 -o out --json",
+            f"orbit {NUMBERS} --b 0.9 --eps-t 0.01 --period 1 --direct --start 0.2,0.1 -o direct",
         ),
     ),
     Case(
         "orbit-gear",
         (
             "orbit rig --operating 2 -o out --json",
-            "orbit own.toml --operating 3 --state undeformed --json",
+            "orbit own.toml --operating 3 --state undeformed -o own --json",
         ),
         MINE,
     ),
@@ -330,7 +330,7 @@ CASES = (
         (
             "lyapunov table-4.2 --row zeta --point 4 --discard 200 --batches 4 --batch-periods 50"
             " -o out --json",
-            "lyapunov rig --discard 50 --batches 4 --batch-periods 20 --json",
+            "lyapunov rig --discard 50 --batches 4 --batch-periods 20 -o gear --json",
         ),
     ),
     Case("continue-speed", ("continue rig --parameter speed --to '4000 rpm' -o out --json",)),
@@ -451,8 +451,9 @@ CASES = (
         "measure",
         (
             "measure record.csv --json -o out",
-            "measure record.csv --teeth 25 --speed 1000 --method trapezoid",
-            "measure bare.csv --decimal , --rate 12000 --unit m/s^2 --sensor-tolerance 0.03 --json",
+            "measure record.csv --teeth 25 --speed 1000 --method trapezoid -o trapezoid",
+            "measure bare.csv --decimal , --rate 12000 --unit m/s^2 --sensor-tolerance 0.03 --json"
+            " -o bare",
             "measure record.wav --unit m/s^2 --scale 200 --method line --json -o sound",
         ),
         {"record.csv": _table(), "bare.csv": _bare(), "record.wav": _sound()},

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
@@ -11,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from scripts import script
+from scripts import ROOT, script
 
 digests = script("same_digest")
 cases = script("same_cases")
@@ -139,6 +142,24 @@ def test_cases_have_names_of_their_own_and_reach_every_command() -> None:
     }
     assert set(cli.commands) - {"thesis"} <= carried_out
     assert set(cases.COMMANDS) == set(cli.commands)
+
+
+def test_steps_run_apart_and_their_ends_are_known(tmp_path: Path) -> None:
+    steps = [["-c", "import sys; sys.one = 1; print('said')"], ["-c", "import sys; sys.one"]]
+    steps += [["--version"], ["run", "nowhere.toml", "-o", "out"]]
+    done = subprocess.run(
+        [sys.executable, "-P", ROOT / "checks" / "same_run.py"],
+        input=json.dumps({"folder": str(tmp_path), "steps": steps}) + "\n",
+        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert [code for code, _ in json.loads(done.stdout)] == [0, 1, 0, 2]
+    assert (tmp_path / "said-1.txt").read_text("utf-8") == "said\n"
+    assert "AttributeError" in (tmp_path / "complained-2.txt").read_text("utf-8")
+    assert (tmp_path / "said-3.txt").read_text("utf-8").startswith("thermogear")
+    assert (tmp_path / "complained-4.txt").read_text("utf-8").startswith("error: nowhere.toml")
 
 
 def test_compiled_sources_are_known_with_what_they_import(tmp_path: Path) -> None:
