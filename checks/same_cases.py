@@ -223,8 +223,9 @@ NUMBERS = "--zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16"
 CHOICES = (
     "friction=dry inlet=oil flash=exact heat_distribution=uniform bore=rigid spring=secant "
     "body=bore-clamped sharing=stiffness",
-    "friction=xu-kahraman heat_distribution=parabola flank=thesis bore=shaft modulus=constant "
+    "friction=xu-kahraman flash=blok flank=thesis bore=shaft modulus=constant "
     "stiffness=textbook-30-degree thermal_stiffness=thesis housing=rigid",
+    "friction=fernandes flash=exact heat_distribution=parabola inlet=oil sharing=equal",
 )
 COMMANDS = [
     *("run", "report", "check", "example", "schema"),
