@@ -6,6 +6,7 @@ import io
 import wave
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from shlex import quote
 
 import numpy as np
 from numpy.typing import NDArray
@@ -205,6 +206,57 @@ def _sound() -> bytes:
         file.writeframes(np.round(_record()[1] / 200.0 * 32767.0).astype("<i2").tobytes())
     return stream.getvalue()
 
+
+RECORDS = """
+import h5py, numpy as np, scipy.io
+time, acc = np.loadtxt("record.csv", delimiter=",", skiprows=1, unpack=True)
+tacho = 5.0 * (np.mod(1000.0 / 60.0 * time, 1.0) < 0.5)
+np.savez("record.npz", acc=acc)
+scipy.io.savemat("record.mat", {"acc": acc, "fs": 12000.0})
+with h5py.File("record.h5", "w") as file:
+    file["acc"] = acc
+rows = np.column_stack([time, acc, tacho])
+heads = "time [s],acc [m/s^2],tacho [V]"
+np.savetxt("record-tacho.csv", rows, "%.9g", ",", header=heads, comments="")
+"""
+"""The record in other formats; some of them carry a date."""
+
+LIBRARY = """
+import numpy as np, xarray as xr
+from thermogear import (
+    Gear, GearPair, PairModel, Periodic, TorsionalModel, excitation, heat_balance, lubricant,
+    mesh_cycle, simulate,
+)
+from thermogear.analysis.basins import basins_along
+numbers = dict(damping_ratio=0.12, stiffness_amplitude=0.335, mean_force=0.017,
+               force_amplitude=-1.16)
+one = TorsionalModel(frequency=1.245, **numbers)
+lanes = TorsionalModel(frequency=np.linspace(1.1, 1.3, 9), **numbers)
+pair = GearPair(
+    Gear(28, 2.5e-3, profile_shift=0.2, face_width=22e-3, bore_radius=15e-3),
+    Gear(57, 2.5e-3, profile_shift=0.1, face_width=22e-3, bore_radius=25e-3),
+    centre_distance=107.1e-3,
+)
+balance = heat_balance(
+    pair, np.array([100.0, 500.0]), 60.0, lubricant("M100"), half_backlash=pair.normal_backlash / 2
+)
+cycle = mesh_cycle(pair, balance.operating, mesh_positions=48)
+inputs = excitation(cycle, pair, damping_ratio=0.05, transmission_error=Periodic(0.0, (4e-6,)))
+few = dict(periods=8, samples_per_period=16)
+found = {
+    "exact": simulate(lanes, method="exact", **few),
+    "rk4": simulate(lanes, method="rk4", steps_per_period=64, **few),
+    "single": simulate(lanes, method="rk4", steps_per_period=64, precision="float32", **few),
+    "adaptive": simulate(one, method="adaptive", **few),
+    "gears": simulate(PairModel.from_excitation(inputs[1]), **few),
+    "cycle": cycle,
+    "basins": basins_along(
+        one, "damping_ratio", values=[0.12, 0.125], x=np.linspace(-2, 2, 9), v=np.linspace(-2, 2, 9)
+    ),
+}
+xr.DataTree.from_dict(found).to_netcdf("found.nc", engine="h5netcdf")
+"""
+"""What no command reaches: other ways to integrate, both gears' angles, basins over a number."""
 
 # --- the cases -----------------------------------------------------------------------------------
 
@@ -460,6 +512,17 @@ CASES = (
         {"record.csv": _table(), "bare.csv": _bare(), "record.wav": _sound()},
     ),
     Case(
+        "measure-formats",
+        (
+            f"-c {quote(RECORDS)}",
+            "measure record.npz --rate 12000 --unit m/s^2 --json -o npz",
+            "measure record.mat --rate 12000 --unit m/s^2 --json -o mat",
+            "measure record.h5 --rate 12000 --unit m/s^2 --json -o hdf",
+            "measure record-tacho.csv --tacho tacho --pulses 1 --json -o tacho",
+        ),
+        {"record.csv": _table()},
+    ),
+    Case(
         "compare",
         (
             "compare thesis-5.2 -o out --json",
@@ -483,4 +546,5 @@ CASES = (
     ),
     Case("sensitivity", ("sensitivity rig --samples 8 -o out --json",)),
     Case("thesis", (SMALL_THESIS,)),
+    Case("library", (f"-c {quote(LIBRARY)}",)),
 )

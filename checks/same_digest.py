@@ -35,8 +35,11 @@ BLANKED = {
 _DRAWN = re.compile(r"<svg\b.*?</svg>", re.DOTALL)
 _NAMES = re.compile(r"(?<=[a-z_])[0-9a-f]{10}\b")
 """The ends of names inside a picture, which matplotlib draws at random."""
-FILES_LEFT_OUT = ("lock", "journal.jsonl", "manifest*.json", "*.sha256", ".thermogear")
-"""Files that hold hashes of others, versions, or nothing."""
+FILES_LEFT_OUT = (
+    *("lock", "journal.jsonl", "manifest*.json", "*.sha256", ".thermogear"),
+    "record*.*",
+)
+"""Files that hold hashes of others, versions, or nothing; records, which are inputs."""
 TEXTS = (".txt", ".toml", ".html", ".svg")
 LONGEST = 200
 """Longer texts are told by their hash."""
