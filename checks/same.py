@@ -30,6 +30,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, field
+from difflib import SequenceMatcher
 from functools import partial
 from importlib.metadata import version
 from itertools import chain, zip_longest
@@ -63,7 +64,7 @@ SETTINGS = {
 }
 """Environment of every command, beside this process's own."""
 SHOWN = 20
-"""So many of a case's texts that are told differently are shown."""
+"""So many places of a case where something is told differently are shown."""
 
 
 # --- one side -------------------------------------------------------------------------------
@@ -318,8 +319,9 @@ def _otherwise(one: Stored, dims: tuple[str, ...], other: Stored, how: Callable[
 def apart(old: Array, new: Array) -> str:
     """By how much two arrays of one shape differ."""
     if old.dtype.kind not in "biuf" or new.dtype.kind not in "biuf":
-        count = int(np.sum(old.astype(str) != new.astype(str)))
-        return f"{count} of {old.size} texts differ"
+        texts = zip(old.astype(str).ravel(), new.astype(str).ravel(), strict=True)
+        other = [f"{str(a)!r} is {str(b)!r} now" for a, b in texts if a != b]
+        return f"{len(other)} of {old.size} texts differ, first {other[0]}"
     a, b = old.astype(float), new.astype(float)
     same = (a == b) & (np.signbit(a) == np.signbit(b)) | np.isnan(a) & np.isnan(b)
     words = [f"{int(np.sum(~same))} of {a.size} numbers differ"]
@@ -339,16 +341,24 @@ def _compare_told(found: Verdict, old: Digest, new: Digest, renamed: Mapping[str
     for path, texts in old.told.items():
         place, sign, rest = path.partition("@")
         now = new_path(place, renamed) + sign + rest
-        others = left.pop(now, [])
-        for one, other in zip_longest(texts, others):
-            found.told += 1
-            if one == other:
-                found.told_equal += 1
-            else:
-                found.otherwise.append(f"{now}: {_told(one)} is {_told(other)} now")
+        _compare_texts(found, now, texts, left.pop(now, []))
     for path, texts in left.items():
-        found.told += len(texts)
-        found.otherwise += [f"{path}: {_told(None)} is {_told(text)} now" for text in texts]
+        _compare_texts(found, path, [], texts)
+
+
+def _compare_texts(found: Verdict, path: str, old: list[str], new: list[str]) -> None:
+    """Place by place; where some are missing or new, as they follow each other."""
+    pairs: list[tuple[str | None, str | None]] = list(zip_longest(old, new))
+    if len(old) != len(new):
+        pairs = []
+        for _, i, j, k, m in SequenceMatcher(None, old, new).get_opcodes():
+            pairs += zip_longest(old[i:j], new[k:m])
+    other = [f"{_told(a)} is {_told(b)} now" for a, b in pairs if a != b]
+    found.told += len(pairs)
+    found.told_equal += len(pairs) - len(other)
+    if other:
+        count = "" if len(pairs) == 1 else f"{len(other)} of {len(pairs)}, first "
+        found.otherwise.append(f"{path}: {count}{other[0]}")
 
 
 def _told(text: str | None) -> str:
@@ -432,7 +442,7 @@ def main(words: Sequence[str]) -> int:
         count = sum(new_path(p, {old: new}) == q for f in all_found for p, q in f.renamed.items())
         print(f"renamed {old} -> {new}: {count} variables")
     different = sum(len(f.differences) for f in all_found)
-    otherwise = sum(len(f.otherwise) for f in all_found)
+    otherwise = sum(f.told - f.told_equal for f in all_found)
     print(
         f"{len(all_found)} cases beside {name}: {sum(f.equal for f in all_found)} of "
         f"{sum(f.variables for f in all_found)} variables equal, {different} differences, "

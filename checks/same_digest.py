@@ -40,6 +40,8 @@ FILES_LEFT_OUT = (
     "record*.*",
 )
 """Files that hold hashes of others, versions, or nothing; records, which are inputs."""
+NAMES_OF_CODE = ("*:claims/code",)
+"""Stored texts that name functions: they are told, and do not count as variables."""
 TEXTS = (".txt", ".toml", ".html", ".svg")
 LONGEST = 200
 """Longer texts are told by their hash."""
@@ -89,7 +91,10 @@ def digest(folder: Path, name: str, without: Iterable[str] = ()) -> Digest:
         place = f"{name}/{inside}"
         if path.suffix in (".nc", ".zarr"):
             for one in _variables(path):
-                found.variables[f"{place}:{one.path}"] = _stored(one, place)
+                if any(fnmatch.fnmatch(f"{place}:{one.path}", p) for p in NAMES_OF_CODE):
+                    found.told[f"{place}:{one.path}"] = list(map(blank, _texts(one.values)))
+                else:
+                    found.variables[f"{place}:{one.path}"] = _stored(one, place)
                 found.told |= _attributes(f"{place}:{one.path}", one.attributes)
             for group, attributes in _groups(path):
                 found.told |= _attributes(f"{place}:{group}", attributes)
@@ -174,10 +179,13 @@ def _stored(one: _Variable, place: str) -> Stored:
 def _bytes(array: Array) -> tuple[str, bytes]:
     """The kind of an array, and its bytes; texts are one kind, however they are stored."""
     if array.dtype.kind in "OUST":
-        texts = [v.decode() if isinstance(v, bytes) else str(v) for v in array.ravel().tolist()]
-        return "text", json.dumps(texts).encode()
+        return "text", json.dumps(_texts(array)).encode()
     little = np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<"), copy=False)
     return little.dtype.str, little.tobytes()
+
+
+def _texts(array: Array) -> list[str]:
+    return [v.decode() if isinstance(v, bytes) else str(v) for v in array.ravel().tolist()]
 
 
 # --- texts ----------------------------------------------------------------------------------
@@ -237,9 +245,12 @@ def _columns(path: Path, place: str) -> dict[str, list[str]]:
         rows = list(csv.reader(file))
     heads = rows[0] if rows else []
     wide = max(map(len, rows), default=0)
-    names = [heads[i] if i < len(heads) else "" for i in range(wide)]
+    names: list[str] = []
+    for name in (heads[i] if i < len(heads) else "" for i in range(wide)):
+        count = sum(name == other.partition(" #")[0] for other in names)
+        names.append(f"{name} #{count + 1}" if count else name)
     return {
-        f"{place}:{i + 1} {name}": [row[i] if i < len(row) else "" for row in rows[1:]]
+        f"{place}:{name}": [row[i] if i < len(row) else "" for row in rows[1:]]
         for i, name in enumerate(names)
     }
 
