@@ -32,3 +32,9 @@ def test_points_are_matched_by_the_least_way_not_by_their_rank() -> None:
 def test_a_diagram_against_itself_moves_nothing() -> None:
     rows = moved_points(diagram(1.0, 2.0, 3.0), diagram(3.0, 1.0, 2.0))
     assert [row["moved"] for row in rows] == [0.0, 0.0, 0.0]
+
+
+def test_diagrams_without_branches_have_no_points_that_moved():
+    """A KeyError ended the command line with --against and --branch-period 0."""
+    bare = xr.Dataset({"label": ("value", [1])})
+    assert moved_points(bare, bare) == []

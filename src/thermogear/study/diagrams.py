@@ -96,8 +96,10 @@ def moved_points(one: xr.Dataset, other: xr.Dataset) -> list[dict[str, Any]]:
     """Bifurcations of two diagrams side by side: kind, period, both values, what moved.
 
     Within each kind and period the pairs are those that move the least in all; one that the
-    other diagram lacks has None there.
+    other diagram lacks has None there. Without branches nothing is located: no rows.
     """
+    if any("bifurcation_kind" not in data for data in (one, other)):
+        return []
 
     def sorted_values(data: xr.Dataset, kind: int, period: int) -> list[float]:
         chosen = (data["bifurcation_kind"].values == kind) & (
