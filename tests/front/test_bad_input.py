@@ -258,11 +258,6 @@ BAD_VALUES: list[tuple[str, str]] = [
         "backlash.direction: got 'radial'; allowed normal | circumferential; "
         "did you mean 'normal'?",
     ),
-    (
-        "backlash.tolerances={}",
-        "backlash.tolerances.pinion_tooth_thickness: got nothing; needed; "
-        'write pinion_tooth_thickness = ["-0.08 mm"] (2 more after this)',
-    ),
     # dynamics, model, numbers of the simulation
     (
         "dynamics.damping_ratio=-0.1",
@@ -281,7 +276,7 @@ BAD_VALUES: list[tuple[str, str]] = [
         "transmission_error.harmonics=[{order=1, amplitud='5 um'}]",
         "transmission_error.harmonics[0].amplitud: got an unknown key; "
         "[transmission_error.harmonics[0]] does not have it; "
-        "did you mean 'amplitude'? (1 more after this)",
+        "did you mean 'amplitude'?",
     ),
     (
         "transmission_error.harmonics=3",
@@ -434,19 +429,102 @@ BAD_FILES: dict[str, tuple[bytes, str]] = {
         b"a = " + b"9" * 5000,
         "case.toml: got a number or a nesting beyond reason; allowed TOML",
     ),
+}
+
+SEVERAL = {
     "no tables": (
-        b"title = 'x'\n",
-        "gears: got nothing; needed; add the table [gears] (9 more after this)",
+        "title = 'x'\n",
+        [
+            "gears: got nothing; needed; add the table [gears]",
+            "operating: got nothing; needed; add the table [operating]",
+        ],
     ),
     "no rows": (
-        b"title = 'x'\nkind = 'dimensionless'\n",
-        "base: got nothing; needed; add the table [base] (1 more after this)",
+        "title = 'x'\nkind = 'dimensionless'\n",
+        [
+            "base: got nothing; needed; add the table [base]",
+            "rows: got nothing; needed; add the table [rows]",
+        ],
     ),
     "a key with a line break": (
-        b"title = 'x'\n\"a\\nb\" = 3\n",
-        "'a\\nb': got an unknown key; the case file does not have it; ",
+        "title = 'x'\n\"a\\nb\" = 3\n",
+        [
+            "line 2: 'a\\nb': got an unknown key; the case file does not have it; known: backlash, "
+            "draw, dynamics, flanks, gearbox, gears, grid, housing, inertia, kind, materials, model, "
+            "oil, operating, ours, sensors, simulation, temperatures, title, transmission_error",
+            "gears: got nothing; needed; add the table [gears]",
+            "operating: got nothing; needed; add the table [operating]",
+        ],
+    ),
+    "a bad start": (
+        """[gears]
+modul = "3 mm"
+helix = "10 deg"
+[gears.pinion]
+teeth = 20.5
+face_width = "30,5 mm"
+material = "steeel"
+[gears.wheel]
+[operating]
+speed = "3000"
+torque = "80 N m"
+""",
+        [
+            "line 3: gears.helix: got a helix angle; thermogear treats spur gears only; "
+            "leave it out",
+            "line 2: gears.modul: got an unknown key; [gears] does not have it; "
+            "did you mean 'module'?",
+            "line 5: gears.pinion.teeth: got 20.5; allowed 5..2000, whole; "
+            "a value where a whole number is needed; write for instance 25",
+            "line 6: gears.pinion.face_width: got '30,5 mm'; allowed 0.01..10000 mm; "
+            'decimals follow a point, not a comma; did you mean "30.5 mm"?',
+            "line 10: operating.speed: got '3000'; allowed 0.1..500000 rpm; the unit is missing; "
+            'write for instance "3000 rpm"',
+            "line 8: gears.wheel.teeth: got nothing; needed; write teeth = 25",
+            "line 7: gears.pinion.material: got 'steeel'; allowed steel; did you mean 'steel'? "
+            "Or describe it in [materials.steeel]",
+        ],
+    ),
+    "two gears that cannot be": (
+        """[gears]
+module = "3 mm"
+[gears.pinion]
+teeth = 8
+face_width = "30 mm"
+[gears.wheel]
+teeth = 9
+[oil]
+name = "ISO VG 101"
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+""",
+        [
+            "line 3: gears.pinion.profile_shift: got 0 for 8 teeth; needs x >= 0.532; "
+            "use x >= 0.54 or >= 18 teeth",
+            "line 6: gears.wheel.profile_shift: got 0 for 9 teeth; needs x >= 0.474; "
+            "use x >= 0.48 or >= 18 teeth",
+            "line 9: oil.name: got 'ISO VG 101'; ",
+        ],
     ),
 }
+"""Text -> every line that is told, the last one's beginning alone where it ends so."""
+
+
+@pytest.mark.parametrize("name", SEVERAL)
+def test_everything_wrong_in_a_file_is_told_at_once(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, lines = SEVERAL[name]
+    path = tmp_path / "case.toml"
+    path.write_text(text)
+    assert main(["check", str(path)]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == len(lines)
+    for mine, expected in zip(said, lines, strict=True):
+        assert mine == f"error: {expected}" or (
+            expected.endswith("; ") and mine.startswith(f"error: {expected}")
+        )
 
 
 @pytest.mark.parametrize("name", BAD_FILES)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 
 class ThermogearError(Exception):
@@ -28,6 +28,7 @@ class InputError(ThermogearError, ValueError):
     ) -> None:
         self.field = field
         self.got = got
+        self.line: int | None = None
         self.allowed = allowed
         self.why = why
         self.fix = fix
@@ -40,6 +41,11 @@ class InputError(ThermogearError, ValueError):
             parts.append(fix)
         super().__init__("; ".join(parts).replace("\n", " "))
 
+    @property
+    def told(self) -> str:
+        """The message, with the line of the file before it where that is known."""
+        return str(self) if self.line is None else f"line {self.line}: {self}"
+
     def named(self, field: str) -> InputError:
         """The same error about ``field``, which whoever asked knows it by."""
         return type(self)(field, self.got, allowed=self.allowed, why=self.why, fix=self.fix)
@@ -47,6 +53,16 @@ class InputError(ThermogearError, ValueError):
     def under(self, prefix: str) -> InputError:
         """The same error with ``prefix.`` before its field: a part speaks for its whole."""
         return self.named(f"{prefix}.{self.field}")
+
+
+class InputErrors(InputError):
+    """Several impossible values of one file: ``errors``, one line each."""
+
+    def __init__(self, errors: Sequence[InputError]) -> None:
+        first = errors[0]
+        super().__init__(first.field, first.got)
+        self.errors = tuple(errors)
+        self.args = ("\n".join(one.told for one in errors),)
 
 
 class GeometryError(InputError):

@@ -8,16 +8,20 @@ value, as older files have them, is left out with a warning.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
 
 from thermogear.base.errors import InputError, ValidityWarning, nearest
 from thermogear.case.alike import same
+from thermogear.case.fields import Measure
 from thermogear.case.refusals import dotted, table_at
-from thermogear.case.units import short
+from thermogear.case.units import short, shown
 
 
 @dataclass(frozen=True)
@@ -29,13 +33,18 @@ class Assumption:
     reason: str
 
 
-def assumptions(data: dict[str, Any], file: BaseModel) -> tuple[Assumption, ...]:
-    """Declared assumptions that hold, in the file's order, then the defaults left to act."""
+def assumptions(
+    data: dict[str, Any], file: BaseModel, decided: Mapping[str, str] = MappingProxyType({})
+) -> tuple[Assumption, ...]:
+    """Declared assumptions that hold, in the file's order, then the defaults left to act.
+
+    ``decided``: what a value left out amounts to in this case, by its field.
+    """
     declared = _declared(data.get("ours", {}), data, file)
     covered = {a.field for a in declared}
     silent = [
         a
-        for a in _defaults(file, ())
+        for a in _defaults(file, (), decided)
         if not any(a.field == c or a.field.startswith(f"{c}.") for c in covered)
     ]
     return (*declared, *silent)
@@ -173,21 +182,32 @@ def in_words(entry: Any) -> str:
     return entry if isinstance(entry, str) else short(entry)
 
 
-def _defaults(table: BaseModel, above: tuple[str, ...]) -> list[Assumption]:
+def _defaults(
+    table: BaseModel, above: tuple[str, ...], decided: Mapping[str, str]
+) -> list[Assumption]:
     found = []
     for name, field in type(table).model_fields.items():
         value = getattr(table, name)
         if isinstance(value, BaseModel):
-            found += _defaults(value, (*above, name))
+            found += _defaults(value, (*above, name), decided)
         elif isinstance(value, dict) and value:
             for key, entry in value.items():
                 if isinstance(entry, BaseModel):
-                    found += _defaults(entry, (*above, name, key))
+                    found += _defaults(entry, (*above, name, key), decided)
         elif name not in table.model_fields_set and field.description and name not in _SILENT:
-            text = "left out" if value is None else in_words(value)
+            path = dotted((*above, name))
+            text = decided.get(path) or _shown(value, field)
             reason = f"not in the file; the default: {field.description}"
-            found.append(Assumption(dotted((*above, name)), text, reason))
+            found.append(Assumption(path, text, reason))
     return found
+
+
+def _shown(value: Any, field: FieldInfo) -> str:
+    """A default as a file would hold it: with its unit."""
+    if value is None:
+        return "left out"
+    readers = [m for m in field.metadata if isinstance(m, Measure)]
+    return shown(value, readers[0].kind) if readers else in_words(value)
 
 
 _SILENT = ("materials", "ours", "row", "pictures", "base_sets", "expected")

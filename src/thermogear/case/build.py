@@ -6,17 +6,18 @@ What the floors below find impossible comes back under the field of the file it 
 from __future__ import annotations
 
 import cmath
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from thermogear.base import materials
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, ValidityWarning, nearest
 from thermogear.base.excitation import Periodic
-from thermogear.base.materials import Lubricant, Material
+from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.case.backlash import Backlash, from_tolerances, from_value
+from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.case.units import short, shown
@@ -29,6 +30,9 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 
 _Made = TypeVar("_Made")
+
+BORE = 0.3
+"""A bore that is not given, over the root circle (usual, unconfirmed)."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ def own_materials(file: GearFile) -> dict[str, Material]:
     return own
 
 
-def named_material(name: str, at: str, known: Mapping[str, Material]) -> Material:
+def named_material(name: str, at: str, known: Mapping[str, _Made]) -> _Made:
     """The material of the field ``at``, or an error that says the nearest name."""
     if name not in known:
         raise InputError(
@@ -107,6 +111,27 @@ def named_material(name: str, at: str, known: Mapping[str, Material]) -> Materia
             else nearest(name, known),
         )
     return known[name]
+
+
+def unknown_names(data: Mapping[str, Any]) -> list[InputError]:
+    """Materials and oils of a file's bare tables that nobody knows."""
+    own = data.get("materials")
+    known = {**MATERIALS, **(own if isinstance(own, dict) else {})}
+    found = []
+    for path in ("gears.pinion.material", "gears.wheel.material", "housing.material", "oil.name"):
+        entry: Any = data
+        for part in path.split("."):
+            entry = entry.get(part) if isinstance(entry, dict) else None
+        if not isinstance(entry, str):
+            continue
+        try:
+            if path != "oil.name":
+                named_material(entry, path, known)
+            elif "viscosity_40" not in data["oil"]:
+                named_oil(entry)
+        except InputError as error:
+            found.append(error)
+    return found
 
 
 def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
@@ -131,25 +156,48 @@ def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
 def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Material]) -> Gear:
     gears = file.gears
     tip = LEFT_OUT if table.tip_diameter is None else 0.5 * table.tip_diameter
+    other = gears.wheel if table is gears.pinion else gears.pinion
+    width = table.face_width if table.face_width is not None else other.face_width
     material = named_material(table.material, f"{prefix}.material", known)
     # a rack left out is the gear's own to choose, with a fillet that fits its pressure angle
-    rack = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
-    return _under(
-        prefix,
-        lambda: Gear(
-            teeth=table.teeth,
-            module=gears.module,
-            pressure_angle=gears.pressure_angle,
-            profile_shift=table.profile_shift,
-            face_width=table.face_width,
-            bore_radius=table.bore_radius,
-            tip_radius=tip,
-            material=material,
-            roughness=table.roughness,
-            allow_undercut=table.allow_undercut,
-            **rack,
-        ),
+    rack: dict[str, Any] = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
+    drawn = partial(
+        Gear,
+        teeth=table.teeth,
+        module=gears.module,
+        pressure_angle=gears.pressure_angle,
+        profile_shift=table.profile_shift,
+        face_width=LEFT_OUT if width is None else width,
+        tip_radius=tip,
+        material=material,
+        roughness=table.roughness,
+        allow_undercut=table.allow_undercut,
+        **rack,
     )
+    bore = table.bore_radius
+    if bore is None:
+        bore = BORE * _under(prefix, drawn).root_radius
+    return _under(prefix, partial(drawn, bore_radius=bore))
+
+
+def faults(file: GearFile) -> list[InputError]:
+    """What is impossible in parts of the file that do not rest on each other."""
+    known = MATERIALS | own_materials(file)
+    checks: tuple[Callable[[], object], ...] = (
+        partial(_gear, file.gears.pinion, file, "gears.pinion", known),
+        partial(_gear, file.gears.wheel, file, "gears.wheel", known),
+        partial(named_material, file.housing.material, "housing.material", known),
+        partial(lubricant, file),
+    )
+    found = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        for check in checks:
+            try:
+                check()
+            except InputError as error:
+                found.append(error)
+    return found
 
 
 def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
@@ -180,20 +228,25 @@ def temperature_rule(file: GearFile) -> TemperatureRule | None:
     )
 
 
+def named_oil(name: str) -> Lubricant:
+    """The oil of that name, or an error that says the nearest."""
+    try:
+        return materials.lubricant(name)
+    except InputError as error:
+        own = "give viscosity_40, viscosity_100 and density_15"
+        raise InputError(
+            "oil.name",
+            short(name),
+            allowed=" | ".join(materials.LUBRICANTS),
+            fix=f"{error.fix}, or {own}",
+        ) from error
+
+
 def lubricant(file: GearFile) -> Lubricant:
     """The named oil, or the one through the two viscosities."""
     oil = file.oil
     if oil.viscosity_40 is None or oil.viscosity_100 is None:
-        try:
-            return materials.lubricant(oil.name)
-        except InputError as error:
-            own = "give viscosity_40, viscosity_100 and density_15"
-            raise InputError(
-                "oil.name",
-                short(oil.name),
-                allowed=" | ".join(materials.LUBRICANTS),
-                fix=f"{error.fix}, or {own}",
-            ) from error
+        return named_oil(oil.name)
     cold, hot = (
         (ZERO_CELSIUS + 40.0, oil.viscosity_40),
         (ZERO_CELSIUS + 100.0, oil.viscosity_100),
@@ -216,7 +269,8 @@ def cold_backlash(file: GearFile, pair: GearPair, housing: Material) -> Backlash
             pair=pair,
         )
     rise = 0.0 if table.temperature is None else table.temperature - file.temperatures.reference
-    assert table.value is not None  # the schema holds exactly one of the two
+    if table.value is None:
+        return recommended(pair)
     return from_value(
         table.value,
         str(table.direction),
@@ -245,7 +299,12 @@ def inertias(file: GearFile, pair: GearPair) -> tuple[tuple[float, float], str]:
 
 def transmission_error(file: GearFile) -> Periodic:
     """The kinematic error e [m] over the mesh phase."""
-    parts = {h.order: cmath.rect(h.amplitude, h.phase) for h in file.transmission_error.harmonics}
+    given = file.transmission_error
+    parts = (
+        {}
+        if given is None
+        else {h.order: cmath.rect(h.amplitude, h.phase) for h in given.harmonics}
+    )
     return Periodic(0.0, tuple(parts.get(q, 0j) for q in range(1, max(parts, default=0) + 1)))
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, InputErrors
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
@@ -23,12 +23,14 @@ from thermogear.case import build as parts
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.build import TemperatureRule
+from thermogear.case.decided import decided
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import deviations
 from thermogear.case.gearbox import Reading, gearbox
+from thermogear.case.lines import line_of
 from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
-from thermogear.case.refusals import first_complaint
+from thermogear.case.refusals import complaints
 from thermogear.case.schema import PICTURES, DimensionlessFile, GearFile
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.source import case_text, overridden, pairs, tables
@@ -289,18 +291,47 @@ def load_case(
     try:
         read: GearFile | DimensionlessFile = file.model_validate(data)
     except ValidationError as error:
-        raise first_complaint(error, file) from error
+        raise _together(
+            [*complaints(error, file), *parts.unknown_names(data)], text, changes
+        ) from error
     common: dict[str, Any] = {
-        "title": read.title,
+        "title": read.title or _named(read),
         "text": text,
         "simulation": Simulation(**read.simulation.model_dump()),
-        "assumptions": assumptions(data, read),
         "overrides": changes,
     }
     if isinstance(read, DimensionlessFile):
         base = {name: tuple(getattr(read.base, name)) for name in NUMBERS}
-        return DimensionlessCase(points=points_of(read), base=base, **common)
-    return _gear_case(read, common)
+        found = assumptions(data, read)
+        return DimensionlessCase(points=points_of(read), base=base, assumptions=found, **common)
+    try:
+        case = _gear_case(read, common)
+    except InputError as error:
+        others = [one for one in parts.faults(read) if str(one) != str(error)]
+        raise _together([error, *others], text, changes) from error
+    return replace(case, assumptions=assumptions(data, read, decided(case)))
+
+
+def _together(
+    errors: list[InputError], text: str, changes: tuple[tuple[str, str], ...]
+) -> InputError:
+    """Errors of one file as one, each with its line where the file's own text is at fault."""
+    changed = {path.partition(".")[0] for path, _ in changes}
+    for error in errors:
+        if error.field.partition(".")[0] not in changed:
+            error.line = line_of(text, error.field)
+    return errors[0] if len(errors) == 1 else InputErrors(errors)
+
+
+def _named(file: GearFile | DimensionlessFile) -> str:
+    """A title for a case without one."""
+    if isinstance(file, DimensionlessFile):
+        return "Dimensionless case"
+    gears = file.gears
+    return (
+        f"Gear pair {gears.pinion.teeth}:{gears.wheel.teeth}, "
+        f"module {shown(gears.module, 'length')}"
+    )
 
 
 def gear_case(case: object) -> GearCase:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
@@ -23,6 +24,39 @@ STATED = {
 
 ROOM = 293.15
 """Window temperature [K] of an infrared reading that gives none."""
+
+
+CLEAR = 0.02
+"""From the gears' tips to the walls of a housing that is not given [m]; ours."""
+WALL = 0.008
+"""The thickness of those walls [m]; ours."""
+STEEL = 7850.0
+"""Their density [kg/m^3]."""
+OIL = 870.0
+"""The density of the oil in it [kg/m^3]."""
+
+
+class Box(NamedTuple):
+    """A housing as a box: its outer area [m^2], its mass and that of the oil in it [kg]."""
+
+    area: float
+    mass: float
+    oil_mass: float
+
+
+def housing_box(pair: GearPair, shaft_length: float, immersion: float) -> Box:
+    """A box around ``pair``, as wide as the face and two shafts of ``shaft_length`` [m] each.
+
+    Length a + r_a1 + r_a2 + 2 c, height 2 max(r_a) + 2 c, with c of 20 mm; the oil stands
+    ``immersion`` (over the wheel's tip radius) above the wheel's lowest point, gears not counted.
+    """
+    first, second = pair.pinion.tip_radius, pair.wheel.tip_radius
+    length = pair.centre_distance + first + second + 2.0 * CLEAR
+    height = 2.0 * max(first, second) + 2.0 * CLEAR
+    width = pair.face_width + 2.0 * shaft_length
+    area = 2.0 * (length * height + length * width + height * width)
+    level = CLEAR + immersion * second
+    return Box(area, area * WALL * STEEL, OIL * length * width * level)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,16 +80,17 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
     if file.temperatures.computed:
         held |= _stated(file, held)
     wetted = table.wetted_share
+    box = housing_box(pair, table.shaft_length, table.immersion)
     around = Surroundings(
         ambient=table.ambient,
-        housing_area=table.housing_area,
+        housing_area=box.area if table.housing_area is None else table.housing_area,
         housing_coefficient=table.housing_coefficient,
         oil_housing_coefficient=table.oil_housing_coefficient,
         wetted_share=(wetted[0], wetted[-1]),
         shaft_length=table.shaft_length,
         bearing_conductance=table.bearing_conductance,
-        oil_mass=table.oil_mass,
-        housing_mass=table.housing_mass,
+        oil_mass=box.oil_mass if table.oil_mass is None else table.oil_mass,
+        housing_mass=box.mass if table.housing_mass is None else table.housing_mass,
         housing_specific_heat=table.housing_specific_heat,
         oil_flow=table.oil_flow,
         supply_temperature=table.supply_temperature,

@@ -107,8 +107,10 @@ class GearboxTable(Table):
     """What surrounds the pair, for temperatures computed from the heat balance."""
 
     ambient: Body = Field(default=_AROUND.ambient, description="a room at 20 degC")
-    housing_area: Annotated[float, Measure("area", "0.0001 m^2", "1000 m^2")] = Field(
-        default=_AROUND.housing_area, description="0.6 m^2, a housing some 0.3 m wide"
+    housing_area: Annotated[float, Measure("area", "0.0001 m^2", "1000 m^2")] | None = Field(
+        default=None,
+        description="that of a box around the gears, 20 mm from their tips and as "
+        "wide as face and shafts. Decides, with its coefficient, how warm all becomes",
     )
     housing_coefficient: Annotated[
         float, Measure("heat transfer coefficient", "0.1 W/(m^2 K)", "10000 W/(m^2 K)")
@@ -134,11 +136,16 @@ class GearboxTable(Table):
     bearing_conductance: Annotated[
         float, Measure("thermal conductance", "0.01 W/K", "10000 W/K")
     ] = Field(default=_AROUND.bearing_conductance, description="10 W/K of one bearing")
-    oil_mass: Annotated[float, Measure("mass", "0.001 kg", "100000 kg")] = Field(
-        default=_AROUND.oil_mass, description="3 kg; decides the warm-up time alone"
+    oil_mass: Annotated[float, Measure("mass", "0.001 kg", "100000 kg")] | None = Field(
+        default=None,
+        description="that box filled up to the immersion of the wheel; decides the "
+        "warm-up time alone",
     )
-    housing_mass: Annotated[float, Measure("mass", "0.01 kg", "1e6 kg", example="40 kg")] = Field(
-        default=_AROUND.housing_mass, description="40 kg; decides the warm-up time alone"
+    housing_mass: Annotated[float, Measure("mass", "0.01 kg", "1e6 kg", example="40 kg")] | None = (
+        Field(
+            default=None,
+            description="walls of that box of 8 mm steel; decides the warm-up time alone",
+        )
     )
     housing_specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)] = Field(
         default=_AROUND.housing_specific_heat, description="steel, 470 J/(kg K)"

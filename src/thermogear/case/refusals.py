@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from typing import Any, get_args
 
@@ -23,19 +24,25 @@ _SHAPES = {
 }
 
 
-def first_complaint(error: ValidationError, file: type[BaseModel]) -> InputError:
-    """The gravest of pydantic's complaints; the message says how many more there are."""
+def complaints(error: ValidationError, file: type[BaseModel]) -> list[InputError]:
+    """Every one of pydantic's complaints, the gravest first: what explains others leads."""
     found = sorted(error.errors(include_url=False), key=lambda e: _RANK.get(e["type"], 1))
     if any("helix" in str(e["loc"][-1]) for e in found if e["loc"]):
         found.sort(key=lambda e: "helix" not in str(e["loc"][-1:]))
-    complaint = _said(dict(found[0]), file)
-    if len(found) == 1:
-        return complaint
-    more = f"{len(found) - 1} more after this"
-    fix = f"{complaint.fix} ({more})" if complaint.fix else f"({more})"
-    return InputError(
-        complaint.field, complaint.got, allowed=complaint.allowed, why=complaint.why, fix=fix
-    )
+    unknown = [one for one in found if one["type"] == "extra_forbidden"]
+    meant = {
+        (*one["loc"][:-1], name)
+        for one in unknown
+        if (name := _meant(str(one["loc"][-1]), table_at(file, one["loc"][:-1])))
+    }
+    # a misspelt key says by itself what is missing
+    return [_said(dict(one), file) for one in found if one["loc"] not in meant]
+
+
+def _meant(key: str, table: type[BaseModel] | None) -> str | None:
+    """The field that a misspelt key most likely stands for."""
+    close = difflib.get_close_matches(key, table.model_fields if table else (), n=1, cutoff=0.5)
+    return close[0] if close else None
 
 
 def dotted(location: tuple[int | str, ...]) -> str:

@@ -6,6 +6,7 @@ whoever leaves it out finds it among the assumptions of the case, the descriptio
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, StrictBool, create_model, model_validator
@@ -14,6 +15,7 @@ from pydantic.json_schema import models_json_schema
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import NUMBERS
+from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.fields import (
     BODY,
     FOLLOW,
@@ -26,7 +28,7 @@ from thermogear.case.fields import (
     Words,
     measure,
 )
-from thermogear.case.flank_schema import ProfileTable, ReliefTable
+from thermogear.case.flank_schema import FlanksTable, ProfileTable, ReliefTable
 from thermogear.case.friction_schema import FRICTION, FrictionTable
 from thermogear.case.gearbox_schema import GearboxTable
 from thermogear.case.sensor_schema import SensorsTable
@@ -58,8 +60,16 @@ class GearTable(Table):
     """One gear."""
 
     teeth: Annotated[int, Count(low=bounds.LEAST_TEETH, high=bounds.MOST_TEETH)]
-    face_width: Length
-    bore_radius: Length
+    face_width: Length | None = Field(
+        default=None,
+        description="as wide as the gear it meshes with. Stiffness, line load, "
+        "inertia and heat flow scale with the narrower of both",
+    )
+    bore_radius: Length | None = Field(
+        default=None,
+        description="0.3 of the root circle, a usual share. Decides body stiffness "
+        "and how far the annulus grows; the inertia changes by less than 1 %",
+    )
     profile_shift: Annotated[
         float,
         Number(low=bounds.PROFILE_SHIFT.low, high=bounds.PROFILE_SHIFT.high, example="0.2"),
@@ -67,8 +77,16 @@ class GearTable(Table):
     tip_diameter: Annotated[
         float | None, Measure("length", "0.1 mm", "20000 mm", example="135 mm")
     ] = Field(default=None, description="pitch diameter + 2 (addendum + profile shift) modules")
-    material: Annotated[str, Words('"steel"')]
-    roughness: Annotated[float, measure("length", bounds.ROUGHNESS, example="0.4 um")]
+    material: Annotated[str, Words('"steel"')] = Field(
+        default="steel",
+        description="case-hardening gear steel. Decides stiffness, expansion and "
+        "what heat the teeth stand",
+    )
+    roughness: Annotated[float, measure("length", bounds.ROUGHNESS, example="0.4 um")] = Field(
+        default=0.4e-6,
+        description="Ra of ground flanks (0.3 to 0.5 um are usual). Decides the "
+        "film, the friction and with it the flash temperature",
+    )
     tip_relief: ReliefTable | None = Field(default=None, title="no tip relief")
     root_relief: ReliefTable | None = Field(default=None, title="no root relief")
     pitch_errors: Annotated[
@@ -88,7 +106,9 @@ class GearsTable(Table):
     """What both gears share, and the two of them."""
 
     module: Annotated[float, measure("length", bounds.MODULE)]
-    pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)]
+    pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)] = Field(
+        default=math.radians(20.0), description="20 deg, the basic rack of ISO 53"
+    )
     centre_distance: Annotated[
         float | None, measure("length", bounds.CENTRE_DISTANCE, example="250 mm")
     ] = Field(default=None, title="left out: the mesh of the profile shifts without backlash")
@@ -119,13 +139,21 @@ class MaterialTable(Table):
 class HousingTable(Table):
     """The housing, which carries the axes."""
 
-    material: Annotated[str, Words('"steel"')]
+    material: Annotated[str, Words('"steel"')] = Field(
+        default="steel",
+        description="expands like the gears. Decides how far the axes move "
+        "apart, and so how much of the backlash heat takes",
+    )
 
 
 class OilTable(Table):
     """The oil: a named set, or two viscosities."""
 
-    name: Annotated[str, Words('"M100"')]
+    name: Annotated[str, Words('"ISO VG 100"')] = Field(
+        default="ISO VG 100",
+        description="a usual mineral gear oil. Its viscosity decides film, "
+        "friction and flash temperature",
+    )
     viscosity_40: Annotated[
         float | None, Measure("kinematic viscosity", "1 mm^2/s", "100000 mm^2/s")
     ] = Field(default=None, title="from the named set")
@@ -165,7 +193,11 @@ class OilTable(Table):
 class InertiaTable(Table):
     """Moments of inertia: given, or those of steel discs made of the gears."""
 
-    model: Annotated[str, Choice("solid disc", "given")]
+    model: Annotated[str, Choice("solid disc", "given")] = Field(
+        default="solid disc",
+        description="gears as discs, without shafts and what hangs on them. "
+        "Decides the equivalent mass and so where the pair resonates",
+    )
     radius: Annotated[str | None, Choice("pitch", "tip")] = Field(
         default=None, description="radius of the disc; pitch"
     )
@@ -217,7 +249,10 @@ class TemperaturesTable(Table):
     then holds its node.
     """
 
-    reference: Body
+    reference: Body = Field(
+        default=ZERO_CELSIUS + 20.0,
+        description="drawing temperature of ISO 1. Every thermal growth counts from it",
+    )
     pinion_addendum: Body | None = Field(default=None, title="computed from the heat balance")
     wheel_addendum: Body | None = Field(default=None, title="computed from the heat balance")
     pinion_bore: Body | None = None
@@ -293,7 +328,11 @@ class BacklashTable(Table):
             "a pair without backlash jams as soon as it warms up",
             example="0.25 mm",
         ),
-    ] = None
+    ] = Field(
+        default=None,
+        description="the least normal backlash that ISO/TR 10064-2 recommends, 2/3 (0.06 mm + "
+        "0.0005 a + 0.03 m). The unit of length of the vibration; decides when the pair jams",
+    )
     direction: Annotated[str | None, Choice("normal", "circumferential")] = None
     extent: Annotated[str | None, Choice("total", "half")] = None
     temperature: Body | None = Field(default=None, description="holds at temperatures.reference")
@@ -301,7 +340,7 @@ class BacklashTable(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> BacklashTable:
-        one_of(self, "value", "tolerances")
+        not_both(self, "value", "tolerances")
         kinds = {"direction": '"normal" or "circumferential"', "extent": '"total" or "half"'}
         for name, allowed in kinds.items():
             given = getattr(self, name) is not None
@@ -321,7 +360,11 @@ class BacklashTable(Table):
 class DynamicsTable(Table):
     """What vibration needs beside the mesh."""
 
-    damping_ratio: Annotated[float, Number(low=0.0, high=2.0, example="0.07")]
+    damping_ratio: Annotated[float, Number(low=0.0, high=2.0, example="0.07")] = Field(
+        default=0.07,
+        description="usual for steel gears, where 0.03 to 0.17 are measured. "
+        "Decides the height of resonances and which motions are periodic",
+    )
 
 
 class HarmonicTable(Table):
@@ -350,7 +393,10 @@ class TransmissionErrorTable(Table):
 
 def _model_table() -> type[Table]:
     fields: dict[str, Any] = {
-        "bundle": (Annotated[str, Choice("both", "consistent", "thesis")], ...),
+        "bundle": (
+            Annotated[str, Choice("both", "consistent", "thesis")],
+            Field(default="consistent", title="consistent: units, energy and limits close"),
+        ),
         "dry_coefficient": (
             Annotated[float | None, Number(low=0.001, high=1.0, example="0.2")],
             Field(default=None, title="as the bundle has it"),
@@ -456,23 +502,28 @@ class DrawTable(Table):
 class GearFile(Table):
     """A gear pair from friction to vibration."""
 
-    title: Annotated[str, Words('"my gear pair"')]
+    title: Annotated[str, Words('"my gear pair"')] = Field(
+        default="", title="left out: teeth and module"
+    )
     kind: Annotated[str, Choice("gear", "dimensionless")] = "gear"
     gears: GearsTable
     materials: dict[str, MaterialTable] = Field(
         default={}, description="no materials of the user's own"
     )
-    housing: HousingTable
-    oil: OilTable
-    inertia: InertiaTable
+    housing: HousingTable = HousingTable()
+    oil: OilTable = OilTable()
+    inertia: InertiaTable = InertiaTable()
     operating: OperatingTable
-    temperatures: TemperaturesTable
+    temperatures: TemperaturesTable = TemperaturesTable()
     gearbox: GearboxTable | None = Field(default=None, title="every value ours")
     sensors: SensorsTable | None = Field(default=None, title="every thermometer ours")
-    backlash: BacklashTable
-    dynamics: DynamicsTable
-    transmission_error: TransmissionErrorTable
-    model: ModelTable
+    backlash: BacklashTable = BacklashTable()
+    dynamics: DynamicsTable = DynamicsTable()
+    flanks: FlanksTable | None = Field(default=None, title="left out: an accuracy class")
+    transmission_error: TransmissionErrorTable | None = Field(
+        default=None, title="left out: that of the flanks alone"
+    )
+    model: ModelTable = ModelTable()
     grid: GridTable = GridTable()
     simulation: SimulationTable = SimulationTable()
     draw: DrawTable = DrawTable()
@@ -481,11 +532,17 @@ class GearFile(Table):
     @model_validator(mode="before")
     @classmethod
     def _surrounded(cls, data: Any) -> Any:
-        """Computed temperatures rest on the gearbox: its defaults are assumptions then."""
-        if isinstance(data, dict) and "gearbox" not in data:
-            given = data.get("temperatures")
-            if isinstance(given, dict) and not {"pinion_addendum", "wheel_addendum"} & set(given):
-                return {**data, "gearbox": {}}
+        """What is left out as a whole and acts: the defaults of its table are assumptions then.
+
+        Computed temperatures rest on the gearbox, an error that is not given on the flanks.
+        """
+        if not isinstance(data, dict):
+            return data
+        given = data.get("temperatures", {})
+        if isinstance(given, dict) and not {"pinion_addendum", "wheel_addendum"} & set(given):
+            data = {"gearbox": {}, **data}
+        if "transmission_error" not in data:
+            data = {"flanks": {}, **data}
         return data
 
     @model_validator(mode="after")
@@ -566,8 +623,8 @@ def json_schema() -> dict[str, Any]:
             # a default is an SI number or nothing; neither could be written in a file as it is
             if entry.get("type") == "string" and not isinstance(entry.get("default"), str):
                 entry.pop("default", None)
-            if entry.get("default", "") is None:
-                del entry["default"]
+            if entry.get("default", "") is None or "$ref" in entry:
+                entry.pop("default", None)
     kinds = {"GearFile": "gear", "DimensionlessFile": "dimensionless"}
     for name, kind in kinds.items():
         schema["$defs"][name]["properties"]["kind"]["enum"] = [kind]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import click
 
 from thermogear import __version__
-from thermogear.base.errors import InputError, ThermogearError, nearest
+from thermogear.base.errors import InputError, InputErrors, ThermogearError, nearest
 from thermogear.base.parameters import long_name
 from thermogear.front import (
     delivery,
@@ -224,7 +224,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         say("error", error.format_message())
         return USER_ERROR
     except ThermogearError as error:
-        say("error", error)
+        for one in error.errors if isinstance(error, InputErrors) else (error,):
+            say("error", one.told if isinstance(one, InputError) else one)
         return USER_ERROR
     except (KeyboardInterrupt, click.Abort) as stop:
         say("interrupted", "; ".join(["stopped on request", *map(str, stop.args)]))

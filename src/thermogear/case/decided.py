@@ -1,0 +1,35 @@
+"""What a gear case decides where its file leaves a value out, in words, by the field."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from thermogear.case.units import shown
+
+if TYPE_CHECKING:
+    from thermogear.case.case import GearCase
+
+
+def decided(case: GearCase) -> dict[str, str]:
+    """Field -> the value that stands in its place, with its unit."""
+    pair = case.pair
+    found = {
+        "gears.centre_distance": shown(pair.centre_distance, "length"),
+        "backlash.value": f"{shown(2.0 * case.cold_backlash.half, 'length')}, total, normal",
+    }
+    around = case.gearbox.surroundings
+    found |= {
+        "gearbox.housing_area": shown(around.housing_area, "area", 3),
+        "gearbox.housing_mass": shown(around.housing_mass, "mass", 3),
+        "gearbox.oil_mass": shown(around.oil_mass, "mass", 3),
+    }
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        found |= {
+            f"gears.{name}.{field}": shown(value, "length")
+            for field, value in (
+                ("face_width", gear.face_width),
+                ("bore_radius", gear.bore_radius),
+                ("tip_diameter", 2.0 * gear.tip_radius),
+            )
+        }
+    return found
