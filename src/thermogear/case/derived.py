@@ -33,7 +33,7 @@ def facts(case: Case) -> tuple[Fact, ...]:
             *_gear("pinion", case.pair.pinion),
             *_gear("wheel", case.pair.wheel),
             *_dynamics(case),
-            *_oil(case.operating.lubricant),
+            *_oil(case.stated.lubricant),
             *_operating(case),
             *_held(case),
         )

@@ -7,7 +7,14 @@ from importlib.resources import files
 from thermogear.base.errors import InputError, nearest
 
 EXAMPLES = {
-    "rig": "the gear pair of the thesis's test rig, 25:75, from friction to vibration",
+    "rig": "gears of a rig, 25:75, from friction to vibration, every value with its reason",
+    "fzg-a": "FZG type A, stage 12: scuffing, film, flash temperature of long sliding",
+    "fzg-c": "FZG type C, 200 N m: losses, micropitting, the heat balance of a known test",
+    "nasa-spur": "28:28 at 10 000 rpm: high speed, thin and hot oil film",
+    "bgu-17-38": "17:38, lightly loaded: rattle, records of a rig with public code",
+    "bgu-18-35": "18:35, lightly loaded: the same rig, wider gears",
+    "loaded-27-35": "27:35 at 80 kW: tip relief, heavy load",
+    "pom-steel": "POM on steel, 20:20: plastic that grows and softens as it warms",
     "table-4.2": "the dimensionless rows of the thesis's table 4.2",
     "section-4.1": "the dimensionless temperature row of the thesis's section 4.1",
 }

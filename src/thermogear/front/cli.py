@@ -23,6 +23,7 @@ from thermogear.front import (
     gear_commands,
     measure_commands,
     motion_commands,
+    new_command,
     sweep_commands,
     thesis_commands,
     verify_commands,
@@ -197,6 +198,7 @@ def _put(text: str, output: str | None) -> None:
 
 
 for _list in (
+    new_command,
     gear_commands,
     motion_commands,
     sweep_commands,

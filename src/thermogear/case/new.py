@@ -1,0 +1,91 @@
+"""A short case file of one's own: what a gear pair needs, the rest left to stated defaults."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from thermogear.base.errors import InputError
+from thermogear.case.case import load_case
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewCase:
+    """What a new case file states; texts as a file holds them, "3 mm", pairs pinion first.
+
+    What is None is left out of the file, so that its default acts.
+    """
+
+    teeth: tuple[int, int]
+    module: str
+    face_width: str
+    speed: str
+    torque: str
+    title: str | None = None
+    profile_shift: tuple[float, float] | None = None
+    centre_distance: str | None = None
+    material: tuple[str, str] | None = None
+    oil: str | None = None
+    oil_temperature: str | None = None
+    backlash: str | None = None
+    accuracy: int | None = None
+
+    def text(self) -> str:
+        """The file; InputError where the case it describes is impossible."""
+        text = "\n".join(self._lines()) + "\n"
+        try:
+            load_case(text)
+        except InputError as error:
+            for one in getattr(error, "errors", (error,)):
+                one.line = None
+            raise
+        return text
+
+    def _lines(self) -> list[str]:
+        gears = (
+            _line("module", self.module),
+            _line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
+        )
+        found = [
+            '# A spur gear pair. A number with a unit is a text, "3 mm"; a pure number stands alone.',
+            "# What is left out has a default: `thermogear check FILE` lists each with its reason.",
+        ]
+        found += _table("", _line("title", self.title))
+        found += _table("gears", *gears)
+        for place, name in enumerate(("pinion", "wheel")):
+            shift, material = self.profile_shift, self.material
+            found += _table(
+                f"gears.{name}",
+                _line("teeth", self.teeth[place]),
+                _line("face_width", self.face_width),
+                _line("profile_shift", shift and shift[place], "in modules"),
+                _line("material", material and material[place]),
+            )
+        oil = _line("name", self.oil or "ISO VG 100")
+        known = self.oil_temperature
+        temperature = _line("temperature", known, "left out: computed from the losses")
+        found += _table("oil", oil, temperature if known else "# temperature: from the losses")
+        if self.backlash is not None:
+            value = _line("value", self.backlash, "of the whole gap, along the line of action")
+            found += _table("backlash", value, 'direction = "normal"', 'extent = "total"')
+        found += _table("flanks", _line("accuracy", self.accuracy, "class of ISO 1328-1"))
+        return found + _table(
+            "operating",
+            _line("speed", self.speed, "of the pinion, which drives"),
+            _line("torque", self.torque, "at the pinion"),
+        )
+
+
+def _line(key: str, value: Any, comment: str = "") -> str:
+    """``key = value``, or nothing where there is no value."""
+    if value is None:
+        return ""
+    text = json.dumps(value, ensure_ascii=False)
+    return f"{key} = {text}" + (f"   # {comment}" if comment else "")
+
+
+def _table(name: str, *lines: str) -> list[str]:
+    """A table of those lines that say something; none where none does."""
+    said = [line for line in lines if line]
+    return [*([f"[{name}]"] if name else []), *said] if said else []
