@@ -13,6 +13,8 @@ from thermogear.case.backlash import (
     cold_from_soaked,
     from_tolerances,
     from_value,
+)
+from thermogear.gears.backlash import (
     normal_from_circumferential,
     normal_from_distance,
     normal_from_thickness,

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from thermogear.base.errors import InputError
-from thermogear.gears.geometry import involute
+from thermogear.gears.backlash import backlash_span, normal_from_circumferential
 from thermogear.gears.pair import GearPair
 
 
@@ -32,45 +32,6 @@ class Backlash:
                 why=f"from {self.origin}",
                 fix="thinner teeth or a larger centre distance",
             )
-
-
-def normal_from_circumferential(circumferential: float, pair: GearPair) -> float:
-    """j_n = j_t cos(alpha_w) [m]: backlash on the operating pitch circle, on the line of action.
-
-    Source: ISO 21771-1, spur gears.
-    """
-    return circumferential * math.cos(pair.operating_pressure_angle)
-
-
-def normal_from_thickness(allowance: float, pair: GearPair) -> float:
-    """j_n = -E_s cos(alpha) [m] that a tooth-thickness allowance E_s [m] (< 0 thinner) opens.
-
-    E_s is measured along the reference circle: the flank turns by E_s/r, and its normal on the
-    line of action moves by r_b E_s/r, at whatever centre distance.
-    """
-    return -allowance * math.cos(pair.pinion.pressure_angle)
-
-
-def normal_from_distance(distance: float, pair: GearPair) -> float:
-    """j_n = 2 (r_b1 + r_b2) [inv(alpha_w) - inv(alpha_0)] [m] at a centre ``distance`` [m].
-
-    alpha_0 is the operating angle of the mesh without backlash; a smaller distance gives a
-    negative value. Derivative: dj_n/da = 2 sin(alpha_w).
-    """
-    pinion, wheel = pair.pinion, pair.wheel
-    both = pinion.base_radius + wheel.base_radius
-    shift = pinion.profile_shift + wheel.profile_shift
-    teeth = pinion.teeth + wheel.teeth
-    tight = float(involute(pinion.pressure_angle)) + 2.0 * shift / teeth * math.tan(
-        pinion.pressure_angle
-    )
-    if distance <= both:
-        raise InputError(
-            "backlash.tolerances.centre_distance",
-            f"a centre distance of {1e3 * distance:.6g} mm",
-            allowed=f"> {1e3 * both:.6g} mm, the sum of the base radii",
-        )
-    return 2.0 * both * (float(involute(math.acos(both / distance))) - tight)
 
 
 def cold_from_soaked(half: float, rise: float, pair: GearPair, housing_expansion: float) -> float:
@@ -128,18 +89,13 @@ def from_tolerances(
     ``pinion`` and ``wheel``: tooth-thickness allowances [m] (one, or lower and upper, in any
     order); ``distance``: deviations of the centre distance [m].
     """
-
-    def total(thickness: float, deviation: float) -> float:
-        return normal_from_thickness(thickness, pair) + normal_from_distance(
-            pair.centre_distance + deviation, pair
-        )
-
-    def middle(ends: tuple[float, ...]) -> float:
-        return 0.5 * (min(ends) + max(ends))
-
+    try:
+        span = backlash_span(pinion=pinion, wheel=wheel, distance=distance, pair=pair)
+    except InputError as error:
+        raise error.under("backlash.tolerances") from error
     return Backlash(
-        half=0.5 * total(middle(pinion) + middle(wheel), middle(distance)),
-        least=0.5 * total(max(pinion) + max(wheel), min(distance)),
-        most=0.5 * total(min(pinion) + min(wheel), max(distance)),
+        half=0.5 * span.middle,
+        least=0.5 * span.least,
+        most=0.5 * span.most,
         origin="tooth-thickness allowances and centre-distance tolerance",
     )

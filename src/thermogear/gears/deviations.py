@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY, dataclass
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -69,7 +69,8 @@ class Deviation(Protocol):
         ...
 
 
-def _choice(field: str, value: str, known: tuple[str, ...]) -> None:
+def require_choice(field: str, value: str, known: tuple[str, ...]) -> None:
+    """Refuse a word that is none of ``known``, with the nearest."""
     if value not in known:
         raise InputError(
             field, repr(value), allowed=" | ".join(known), fix=nearest(str(value), known)
@@ -81,6 +82,9 @@ class FlankShape(ABC):
 
     gear: str
     flank: str
+
+    humped: ClassVar[bool] = False
+    """Whether it may rise and fall more than once, so that it has to be searched for valleys."""
 
     def acts_on(self, flank: str) -> bool:
         """Whether the flanks of that side, "drive" or "back", have this shape."""
@@ -119,10 +123,10 @@ class Relief(FlankShape):
     flank: str = "both"
 
     def __post_init__(self) -> None:
-        _choice("relief.gear", self.gear, GEARS)
-        _choice("relief.end", self.end, ("tip", "root"))
-        _choice("relief.shape", self.shape, ("linear", "parabolic"))
-        _choice("relief.flank", self.flank, FLANKS)
+        require_choice("relief.gear", self.gear, GEARS)
+        require_choice("relief.end", self.end, ("tip", "root"))
+        require_choice("relief.shape", self.shape, ("linear", "parabolic"))
+        require_choice("relief.flank", self.flank, FLANKS)
         bounds.RELIEF_AMOUNT.require("relief.amount", self.amount)
         bounds.RELIEF_LENGTH.require("relief.length", self.length)
 
@@ -157,7 +161,7 @@ class PitchError:
     errors: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        _choice("pitch_error.gear", self.gear, GEARS)
+        require_choice("pitch_error.gear", self.gear, GEARS)
         object.__setattr__(self, "errors", tuple(float(e) for e in self.errors))
         bounds.PITCH_ERROR.require("pitch_error.errors", self.errors)
 
@@ -188,8 +192,8 @@ class PressureAngleError(FlankShape):
     flank: str = "both"
 
     def __post_init__(self) -> None:
-        _choice("pressure_angle_error.gear", self.gear, GEARS)
-        _choice("pressure_angle_error.flank", self.flank, FLANKS)
+        require_choice("pressure_angle_error.gear", self.gear, GEARS)
+        require_choice("pressure_angle_error.flank", self.flank, FLANKS)
         bounds.ANGLE_ERROR.require("pressure_angle_error.error", self.error)
 
     def taken_off(self, pair: GearPair, rho: Floats) -> Floats:
@@ -212,9 +216,11 @@ class FlankTable(FlankShape):
     added: ArrayLike
     flank: str = "both"
 
+    humped: ClassVar[bool] = True
+
     def __post_init__(self) -> None:
-        _choice("flank_table.gear", self.gear, GEARS)
-        _choice("flank_table.flank", self.flank, FLANKS)
+        require_choice("flank_table.gear", self.gear, GEARS)
+        require_choice("flank_table.flank", self.flank, FLANKS)
         radius, added = _table("flank_table", "radius", self.radius, self.added)
         bounds.PROFILE_RADIUS.require("flank_table.radius", radius)
         object.__setattr__(self, "radius", radius)
@@ -247,7 +253,7 @@ class PathTable:
     flank: str = "both"
 
     def __post_init__(self) -> None:
-        _choice("path_table.flank", self.flank, FLANKS)
+        require_choice("path_table.flank", self.flank, FLANKS)
         s, added = _table("path_table", "s", self.s, self.added)
         object.__setattr__(self, "s", s)
         object.__setattr__(self, "added", added)

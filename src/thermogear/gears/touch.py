@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.gears.candidates import MeshPoints
 from thermogear.gears.corner import contact_point, flank_ends, off_path, pinion_point, wheel_point
-from thermogear.gears.deviations import Deviation, FlankShape, FlankTable
+from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.pair import GearPair
 
 Floats = NDArray[np.float64]
@@ -120,7 +120,7 @@ def _shaped(
     gap = np.empty((*lead, *size))
     edge = np.empty(gap.shape, dtype=np.int8)
     finest = min(d.finest(pair) for d in shapes)
-    valleys = max(_NODES) if any(isinstance(d, FlankTable) for d in shapes) else min(_NODES)
+    valleys = max(_NODES) if any(d.humped for d in shapes) else min(_NODES)
     for case in np.ndindex(*lead):
         one, two = (_taken_off(pair, shapes, name, lead, case) for name in ("pinion", "wheel"))
         first, second = (np.linspace(*ends, 129) for ends in flank_ends(pair))
