@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from thermogear.base.errors import InputError
 from thermogear.gears.backlash import backlash_span, normal_from_circumferential
+from thermogear.gears.backlash_standards import recommended_normal_backlash
 from thermogear.gears.pair import GearPair
 
 
@@ -68,11 +69,8 @@ def from_value(
 
 
 def recommended(pair: GearPair) -> Backlash:
-    """The least normal backlash of ISO/TR 10064-2, of the whole gap at the drawing temperature.
-
-    j_bn,min = 2/3 (0.06 mm + 0.0005 a + 0.03 m).
-    """
-    total = 2.0 / 3.0 * (0.06e-3 + 0.0005 * pair.centre_distance + 0.03 * pair.pinion.module)
+    """The least normal backlash of ISO/TR 10064-2, of the whole gap at the drawing temperature."""
+    total = recommended_normal_backlash(pair)
     origin = f"the least normal backlash of ISO/TR 10064-2, {1e3 * total:.4g} mm"
     return Backlash(half=0.5 * total, least=0.5 * total, most=0.5 * total, origin=origin)
 

@@ -26,7 +26,7 @@ from thermogear.case.build import TemperatureRule
 from thermogear.case.decided import decided
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.examples import example_text
-from thermogear.case.flanks import deviations
+from thermogear.case.flanks import accuracy, deviations
 from thermogear.case.gearbox import Reading, gearbox
 from thermogear.case.lines import line_of
 from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
@@ -110,9 +110,9 @@ class GearCase(Case):
     :meth:`operating_of` computes the hot state from the heat balance of ``gearbox``.
     ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
     the other temperatures go along with it (:data:`~thermogear.case.fields.FOLLOW`).
-    ``deviations`` of the flanks; ``readings`` of thermometers; ``sensors`` that watch a warm-up;
-    ``scuffing_load_stage`` of the oil
-    in the FZG test, None where unknown. ``inertias`` [kg m^2];
+    ``deviations`` of the flanks, their ``accuracy`` class where they follow from one;
+    ``readings`` of thermometers; ``sensors`` that watch a warm-up; ``scuffing_load_stage`` of the
+    oil in the FZG test, None where unknown. ``inertias`` [kg m^2];
     ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
     compute with.
     """
@@ -135,6 +135,7 @@ class GearCase(Case):
     pictures: tuple[str, ...] = PICTURES
     base_sets: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
+    accuracy: int | None = None
     gearbox: Gearbox = field(default_factory=Gearbox)
     readings: tuple[Reading, ...] = ()
     sensors: SensorsTable = field(default_factory=SensorsTable)
@@ -406,6 +407,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         pictures=file.draw.pictures,
         base_sets=file.draw.base_sets,
         deviations=deviations(file, pair),
+        accuracy=accuracy(file, pair),
         gearbox=box,
         readings=readings,
         sensors=file.sensors or SensorsTable(),

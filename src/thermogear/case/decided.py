@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from thermogear.case.units import shown
+from thermogear.gears.graded_flanks import WavyProfile
 
 if TYPE_CHECKING:
     from thermogear.case.case import GearCase
@@ -17,6 +18,9 @@ def decided(case: GearCase) -> dict[str, str]:
         "gears.centre_distance": shown(pair.centre_distance, "length"),
         "backlash.value": f"{shown(2.0 * case.cold_backlash.half, 'length')}, total, normal",
     }
+    grades = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
+    known = "" if case.accuracy is None else f"{case.accuracy}, {' and '.join(sorted(grades))}"
+    found["flanks.accuracy"] = known or "none: the tables of ISO 1328-1 end before these gears"
     around = case.gearbox.surroundings
     found |= {
         "gearbox.housing_area": shown(around.housing_area, "area", 3),

@@ -16,7 +16,14 @@ from thermogear.gears.deviations import (
     PressureAngleError,
     Relief,
 )
+from thermogear.gears.graded_flanks import graded_flanks
 from thermogear.gears.pair import GearPair
+
+OF_METAL, OF_PLASTICS = 6, 9
+"""Accuracy classes of ISO 1328-1 taken where none is given: ground steel 4 to 6, plastic cut 8 to
+9, moulded 9 to 11 (usual, unconfirmed)."""
+PLASTIC = 30e9
+"""Young's modulus [Pa] below which a gear is one of plastic."""
 
 
 def deviations(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
@@ -43,7 +50,48 @@ def deviations(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
                     fix=error.fix,
                 ) from error
             found.append(deviation)
-    return tuple(found)
+    return (*found, *_graded(file, pair))
+
+
+def accuracy(file: GearFile, pair: GearPair) -> int | None:
+    """The accuracy class of flanks that no profile describes; None where none acts.
+
+    Left out it is 6 for metal, 9 for plastics, and none where the tables of ISO 1328-1 end.
+    """
+    table = file.flanks
+    if table is None:
+        return None
+    if table.accuracy is not None:
+        return table.accuracy
+    stiff = min(gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel))
+    usual = OF_METAL if stiff > PLASTIC else OF_PLASTICS
+    try:
+        graded_flanks(pair, usual, seed=table.seed, edition=table.edition)
+    except InputError:
+        return None
+    return usual
+
+
+def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
+    """Seeded profiles of the gears whose own are not given."""
+    grade, table = accuracy(file, pair), file.flanks
+    if grade is None or table is None:
+        return ()
+    try:
+        profiles = graded_flanks(pair, grade, seed=table.seed, edition=table.edition)
+    except InputError as error:
+        inner = error.field.rpartition(".")[2]
+        field = {"grade": "flanks.accuracy", "edition": "flanks.edition"}.get(inner, "flanks")
+        got = error.got if field != "flanks" else f"{inner} {error.got}"
+        raise InputError(
+            field,
+            got,
+            allowed=error.allowed,
+            why=error.why,
+            fix="give [transmission_error] harmonics, or measured profiles, instead",
+        ) from error
+    given = {"pinion": file.gears.pinion.profile, "wheel": file.gears.wheel.profile}
+    return tuple(one for one in profiles if given[one.gear] is None)
 
 
 def _given(gear: str, table: GearTable) -> Iterator[tuple[str, Callable[[], Deviation]]]:

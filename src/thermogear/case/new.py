@@ -48,7 +48,7 @@ class NewCase:
             _line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
         )
         found = [
-            '# A spur gear pair. A number with a unit is a text, "3 mm"; a pure number stands alone.',
+            '# A spur gear pair. A number with a unit is a text: "3 mm"; a pure number is bare.',
             "# What is left out has a default: `thermogear check FILE` lists each with its reason.",
         ]
         found += _table("", _line("title", self.title))
@@ -64,7 +64,7 @@ class NewCase:
             )
         oil = _line("name", self.oil or "ISO VG 100")
         known = self.oil_temperature
-        temperature = _line("temperature", known, "left out: computed from the losses")
+        temperature = _line("temperature", known)
         found += _table("oil", oil, temperature if known else "# temperature: from the losses")
         if self.backlash is not None:
             value = _line("value", self.backlash, "of the whole gap, along the line of action")
