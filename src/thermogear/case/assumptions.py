@@ -14,10 +14,9 @@ from typing import Any
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.case.alike import same
 from thermogear.case.refusals import dotted, table_at
-from thermogear.case.units import short
 
 
 @dataclass(frozen=True)

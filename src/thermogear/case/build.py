@@ -12,14 +12,14 @@ from functools import partial
 from typing import TypeVar
 
 from thermogear.base import materials
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import Lubricant, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
-from thermogear.case.units import short, shown
+from thermogear.case.units import shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
 from thermogear.gears.pair import GearPair
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT

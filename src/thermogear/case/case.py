@@ -19,6 +19,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
+from thermogear.base.toml import overridden, pairs, tables
 from thermogear.case import build as parts
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
@@ -31,7 +32,7 @@ from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import first_complaint
 from thermogear.case.schema import PICTURES, DimensionlessFile, GearFile
 from thermogear.case.sensor_schema import SensorsTable
-from thermogear.case.source import case_text, overridden, pairs, tables
+from thermogear.case.source import case_text
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case, load_example
+from thermogear.measured.comparison import Comparison
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Result
-from thermogear.study.compare import Comparison, compare
+from thermogear.study.compare import compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import chain, motions
