@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -23,25 +23,27 @@ from thermogear.results.result import Notice, Result, now
 
 _IMPLAUSIBLE_G = 50.0
 _DEEPEST_SUBHARMONIC = 16
+UNCERTAINTIES = ("u_num", "u_input", "u_data", "u_val")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One quantity at one speed. ``errors``: (simulated - measured)/measured per model.
-
-    The four uncertainties are relative to the measured value (standard, k = 1).
-    """
+    """One quantity at one speed; uncertainties relative to ``measured`` (standard, k = 1)."""
 
     speed: float
     quantity: str
     measured: float
     simulated: tuple[float, ...]
-    errors: tuple[float, ...]
-    u_num: float
-    u_input: float
-    u_data: float
-    verdict: str
+    u_num: float = 0.0
+    u_input: float = 0.0
+    u_data: float = 0.0
+    verdict: str = ""
     printed: tuple[str, ...] = ()
+
+    @property
+    def errors(self) -> tuple[float, ...]:
+        """(simulated - measured)/measured of every model."""
+        return tuple(one / self.measured - 1.0 for one in self.simulated)
 
     @property
     def u_val(self) -> float:
@@ -158,37 +160,25 @@ def compared(
         if why and why not in [text for _, text in notices]:
             notices.append(Notice("important", why))
         entered = next((u for s, u in u_input.items() if abs(s - line.speed) < 0.05 * s), 0.0)
-        displacement = tuple(s.displacement / line.displacement - 1.0 for s in simulated)
-        u_val = float(np.sqrt(u_num**2 + entered**2 + u_d**2))
-        frequency = tuple(s.frequency / line.frequency - 1.0 for s in simulated)
-        rows.append(
+        swing, turns = (
             Row(
                 speed=line.speed,
-                quantity="frequency",
-                measured=line.frequency,
-                simulated=tuple(s.frequency for s in simulated),
-                errors=frequency,
-                u_num=0.0,
-                u_input=0.0,
+                quantity=quantity,
+                measured=getattr(line, quantity),
+                simulated=tuple(getattr(one, quantity) for one in simulated),
+                printed=_printed(printed, names, quantity, number),
+            )
+            for quantity in ("displacement", "frequency")
+        )
+        swing = replace(swing, u_num=u_num, u_input=entered, u_data=u_d)
+        rows += [
+            replace(
+                turns,
                 u_data=(table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
                 verdict=_frequency_verdict(simulated, line, table, names),
-                printed=_printed(printed, names, "frequency", number),
-            )
-        )
-        rows.append(
-            Row(
-                speed=line.speed,
-                quantity="displacement",
-                measured=line.displacement,
-                simulated=tuple(s.displacement for s in simulated),
-                errors=displacement,
-                u_num=u_num,
-                u_input=entered,
-                u_data=u_d,
-                verdict=verdict(displacement, names, u_val),
-                printed=_printed(printed, names, "displacement", number),
-            )
-        )
+            ),
+            replace(swing, verdict=verdict(swing.errors, names, swing.u_val)),
+        ]
     if not rows:
         raise InputError(
             "speeds",
@@ -279,21 +269,17 @@ def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
 
 
 def _implied(line: SpeedLine, table: LineTable) -> Implied:
-    if table.teeth is None:
-        return Implied(
-            speed=line.speed,
-            acceleration_g=line.acceleration_g,
-            shaft_speed=None,
-            offset_hertz=None,
-            offset_bins=None,
-        )
-    offset = line.frequency - table.teeth * line.speed / (2.0 * np.pi)
+    shaft, offset, bins = None, None, None
+    if table.teeth is not None:
+        shaft = line.shaft_speed(table.teeth)
+        offset = line.frequency - table.teeth * line.speed / (2.0 * np.pi)
+        bins = offset / table.bin_width if table.bin_width else None
     return Implied(
         speed=line.speed,
         acceleration_g=line.acceleration_g,
-        shaft_speed=line.shaft_speed(table.teeth),
+        shaft_speed=shaft,
         offset_hertz=offset,
-        offset_bins=offset / table.bin_width if table.bin_width else None,
+        offset_bins=bins,
     )
 
 
@@ -322,51 +308,38 @@ def _doubts(implied: Sequence[Implied]) -> list[Notice]:
 
 def result_of(found: Comparison) -> Result:
     """The comparison as labelled datasets, ready to store and to draw."""
-    rows = found.rows
+
+    def column(rows: Sequence[object], name: str) -> Any:
+        found = [getattr(row, name) for row in rows]
+        return [float("nan") if value is None else value for value in found]
+
+    rows, implied = found.rows, found.implied
     values: dict[str, tuple[tuple[str, ...], Any]] = {
-        "measured_value": (("row",), [row.measured for row in rows]),
-        "simulated_value": (("row", "model"), [row.simulated for row in rows]),
-        "comparison_error": (("row", "model"), [row.errors for row in rows]),
-        "u_num": (("row",), [row.u_num for row in rows]),
-        "u_input": (("row",), [row.u_input for row in rows]),
-        "u_data": (("row",), [row.u_data for row in rows]),
-        "u_val": (("row",), [row.u_val for row in rows]),
-        "pinion_speed": (("row",), [row.speed for row in rows]),
+        "measured_value": (("row",), column(rows, "measured")),
+        "simulated_value": (("row", "model"), column(rows, "simulated")),
+        "comparison_error": (("row", "model"), column(rows, "errors")),
+        **{name: (("row",), column(rows, name)) for name in UNCERTAINTIES},
+        "pinion_speed": (("row",), column(rows, "speed")),
     }
     table = label(values).assign_coords(
         model=list(found.models),
-        quantity=("row", [row.quantity for row in rows]),
-        verdict=("row", [row.verdict for row in rows]),
+        quantity=("row", column(rows, "quantity")),
+        verdict=("row", column(rows, "verdict")),
     )
-    empty = float("nan")
-    implied = label(
+    gravities = np.array(column(implied, "acceleration_g"))
+    said = label(
         {
-            "pinion_speed": (("speed",), [item.speed for item in found.implied]),
-            "implied_acceleration": (
-                ("speed",),
-                [item.acceleration_g * STANDARD_GRAVITY for item in found.implied],
-            ),
-            "implied_shaft_speed": (
-                ("speed",),
-                [empty if item.shaft_speed is None else item.shaft_speed for item in found.implied],
-            ),
-            "mesh_line_offset": (
-                ("speed",),
-                [
-                    empty if item.offset_hertz is None else item.offset_hertz
-                    for item in found.implied
-                ],
-            ),
-            "line_bin_offset": (
-                ("speed",),
-                [empty if item.offset_bins is None else item.offset_bins for item in found.implied],
-            ),
+            "pinion_speed": (("speed",), column(implied, "speed")),
+            "implied_acceleration": (("speed",), gravities * STANDARD_GRAVITY),
+            "implied_shaft_speed": (("speed",), column(implied, "shaft_speed")),
+            "mesh_line_offset": (("speed",), column(implied, "offset_hertz")),
+            "line_bin_offset": (("speed",), column(implied, "offset_bins")),
         }
     )
     return Result.of(
         "comparison",
         f"Models {' and '.join(found.models)} against {found.measured}",
-        {"comparison": table, "implied": implied},
+        {"comparison": table, "implied": said},
         found.notices,
         conclusion=found.conclusion[:1].upper() + found.conclusion[1:] + ".",
         figures=figures(found),
@@ -376,22 +349,17 @@ def result_of(found: Comparison) -> Result:
 
 def figures(found: Comparison) -> dict[str, Any]:
     """The comparison as plain figures, in SI units."""
-    rows = [
-        {
-            "speed": row.speed,
-            "quantity": row.quantity,
-            "measured": row.measured,
-            "simulated": list(row.simulated),
-            "errors": list(row.errors),
-            "u_num": row.u_num,
-            "u_input": row.u_input,
-            "u_data": row.u_data,
-            "u_val": row.u_val,
-            "verdict": row.verdict,
-            "printed": list(row.printed),
-        }
-        for row in found.rows
-    ]
+    told = (
+        "speed",
+        "quantity",
+        "measured",
+        "simulated",
+        "errors",
+        *UNCERTAINTIES,
+        "verdict",
+        "printed",
+    )
+    rows = [{name: getattr(row, name) for name in told} for row in found.rows]
     return {
         "measured": found.measured,
         "models": list(found.models),

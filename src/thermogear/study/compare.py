@@ -29,7 +29,6 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.results.result import Notice, Result
-from thermogear.study.run import run
 
 Floats = NDArray[np.float64]
 
@@ -201,6 +200,8 @@ class _Runs:
         return load_case(self.text, {**self.kept, **changes})
 
     def tables(self, changes: Mapping[str, str]) -> dict[str, LineTable]:
+        from thermogear.study.run import run  # stored lines and tables need none
+
         return tree_lines(run(self.case(changes)))
 
     def scaled(self, factors: Mapping[str, float]) -> dict[str, LineTable]:

@@ -23,6 +23,7 @@ from thermogear.case.columns import read_columns, require_times
 from thermogear.case.duty import point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import SENSORS, Shown, shown_by
+from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.operating import Operating
@@ -30,7 +31,6 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
-from thermogear.study.balances import LOSSES
 
 Floats = NDArray[np.float64]
 KIND = "warmup"
