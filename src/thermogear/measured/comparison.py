@@ -136,11 +136,18 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
 def compared(
     models: Mapping[str, LineTable],
     printed: Printed,
+    *,
     u_data: float | None,
     u_num: float,
-    u_input: Mapping[float, float],
+    u_input: Mapping[float, float] | None = None,
     said: Sequence[Notice] = (),
 ) -> Comparison:
+    """Models against measured lines, each within 5 % of a measured speed.
+
+    Standard uncertainties, relative: ``u_data`` of the measurement (None: as the table states it),
+    ``u_num`` of the simulation, ``u_input`` by speed [rad/s]; ``said``: notices that come first.
+    Raises InputError when no speed is common to both sides.
+    """
     table = printed.measured
     names = tuple(models)
     if not names:
@@ -159,7 +166,9 @@ def compared(
         u_d, why = _data_uncertainty(line, table, highest, u_data)
         if why and why not in [text for _, text in notices]:
             notices.append(Notice("important", why))
-        entered = next((u for s, u in u_input.items() if abs(s - line.speed) < 0.05 * s), 0.0)
+        entered = next(
+            (u for s, u in (u_input or {}).items() if abs(s - line.speed) < 0.05 * s), 0.0
+        )
         swing, turns = (
             Row(
                 speed=line.speed,

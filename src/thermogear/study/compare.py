@@ -79,13 +79,20 @@ def compare(
     if measured is None:
         if isinstance(simulated, str) and simulated in PUBLISHED:
             published = PUBLISHED[simulated]
-            return compared(published.models, published, u_data, u_num or 0.0, {})
+            return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
         raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
     printed = _measured(measured, teeth, speed)
     if isinstance(simulated, str) and simulated in PUBLISHED:
-        return compared(PUBLISHED[simulated].models, printed, u_data, u_num or 0.0, {})
+        return compared(PUBLISHED[simulated].models, printed, u_data=u_data, u_num=u_num or 0.0)
     found = _simulated(simulated, tolerances or {}, samples, seed, u_num)
-    return compared(found.tables, printed, u_data, found.u_num, found.u_input, found.notices)
+    return compared(
+        found.tables,
+        printed,
+        u_data=u_data,
+        u_num=found.u_num,
+        u_input=found.u_input,
+        said=found.notices,
+    )
 
 
 def _measured(
