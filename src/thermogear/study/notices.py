@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -102,8 +101,8 @@ def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
     return ", ".join(words)
 
 
-def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
-    """Notices as an attribute: the back side, and where the case's speeds lie."""
+def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:
+    """Contact, the back side, and where the case's speeds lie."""
     found = contact_notices(data) + back_side_notice(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)
     ratio = ratio[np.isfinite(ratio)]
@@ -124,7 +123,7 @@ def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
     jammed = int(np.count_nonzero(data["status"].values == 1))
     if jammed:
         found.append(f"{jammed} of {data['status'].size} points are jammed and have no motion")
-    return {"notices": json.dumps(found)}
+    return found
 
 
 def reasons(balance: xr.Dataset, bundle: str) -> str:

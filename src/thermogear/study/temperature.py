@@ -26,9 +26,9 @@ from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.result import Notice, Result
 from thermogear.study.notices import several_words
-from thermogear.study.trends import QUANTITIES, conclusion, verdicts
 
 Floats = NDArray[np.float64]
 KIND = "temperature"
@@ -313,9 +313,6 @@ def _notices(
         f"{int(grid['iterations'].max())} iterations, greatest residual of a settled point "
         f"{float(np.max(grid['residual'].values[settled], initial=0.0)):.1e} K.",
     )
-
-
-__all__ = ["GRID", "KIND", "LUBRICATIONS", "QUANTITIES", "SPEEDS", "TORQUES", "thermal_map"]
 
 
 def _in_proportion(kelvin: NDArray[np.float64], reference: float) -> str:
