@@ -25,12 +25,13 @@ from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.build import TemperatureRule
 from thermogear.case.dimensionless import Point, points_of
+from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import deviations
 from thermogear.case.gearbox import Reading, gearbox
 from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import first_complaint
-from thermogear.case.schema import PICTURES, DimensionlessFile, GearFile
+from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.source import case_text
 from thermogear.case.units import shown
