@@ -67,7 +67,7 @@ _HOME = {
     "relief_survey": "thermogear.study.relief",
     "warm_up_survey": "thermogear.study.warm_up",
     "read_duty": "thermogear.case.duty",
-    "read_measured": "thermogear.study.warm_up",
+    "read_measured": "thermogear.case.duty",
     "read_record": "thermogear.measured.readers",
     "Chain": "thermogear.measured.chain",
     "measure": "thermogear.measured.reduction",

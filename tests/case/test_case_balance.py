@@ -17,8 +17,7 @@ from thermogear.case.derived import facts
 from thermogear.case.examples import example_text
 from thermogear.heat.measured_temperature import InfraredReading
 from thermogear.mesh.balance import heat_balance
-from thermogear.study.balances import balances, carried_uncertainty
-from thermogear.study.run import run
+from thermogear.study.run import balances, carried_uncertainty, run
 
 GIVEN = r"^(pinion_addendum|wheel_addendum|\w+_below_addendum) = .*\n"
 SMALL = [

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thermogear.base.errors import InputError
-from thermogear.case.units import KINDS, Kind, convert, read_quantity, short, shown
+from thermogear.base.errors import InputError, short
+from thermogear.case.units import KINDS, Kind, convert, read_quantity, shown
 
 
 @pytest.mark.parametrize(

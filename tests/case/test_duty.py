@@ -9,9 +9,8 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_example
-from thermogear.case.duty import point_duty, read_duty
+from thermogear.case.duty import point_duty, read_duty, read_measured
 from thermogear.case.ranges import CRUSHING, crushing_torque
-from thermogear.study.warm_up import read_measured
 
 RPM = np.pi / 30.0
 

@@ -11,6 +11,7 @@ import pytest
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import Chain
+from thermogear.measured.comparison import as_json, verdict
 from thermogear.measured.published import (
     RPM,
     LineTable,
@@ -18,9 +19,9 @@ from thermogear.measured.published import (
     read_lines,
     unstated_processing,
 )
+from thermogear.measured.record import simulated_record
 from thermogear.measured.reduction import measure
-from thermogear.study.compare import as_json, compare, verdict
-from thermogear.study.simulated import scaled, simulated_record
+from thermogear.study.compare import compare, scaled
 
 
 def test_the_thesis_table_recomputed(compared: Compared) -> None:

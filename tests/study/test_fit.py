@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thermogear.analysis.fit import fit
 from thermogear.base.errors import InputError
 from thermogear.measured.published import RPM, LineTable, SpeedLine
-from thermogear.study.fit import fit, fit_case
-from thermogear.study.simulated import overrides_of, tree_lines
+from thermogear.study.compare import fit_case, overrides_of, tree_lines
 
 RATIOS = np.array([0.2, 0.5, 0.9, 1.0, 1.1, 1.6])
 

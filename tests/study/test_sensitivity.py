@@ -9,11 +9,11 @@ import pytest
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.case.case import GearCase, load_example
-from thermogear.heat.lubrication import kinematic_viscosity
+from thermogear.heat.lubrication import grade, kinematic_viscosity
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.study import sensitivity as study
-from thermogear.study.sensitivity import INPUTS, OUTPUTS, Plan, evaluate, grade, plain_words
+from thermogear.study.sensitivity import INPUTS, OUTPUTS, Plan, evaluate, plain_words
 
 BY_NAME = {one.name: one for one in INPUTS}
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thermogear.analysis.fit import fit
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.case.case import gear_case, load_case
 from thermogear.gears import mesh_system
-from thermogear.study.fit import fit
 from thermogear.study.relief import relief_survey
 
 NAN = float("nan")

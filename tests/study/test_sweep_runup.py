@@ -7,8 +7,8 @@ import pytest
 
 from thermogear.base.errors import InputError
 from thermogear.case.case import load_case, load_example
+from thermogear.case.response import Recording, respond
 from thermogear.study.notices import difference_notices
-from thermogear.study.response import Recording, respond
 from thermogear.study.run_up import run_up
 from thermogear.study.sweep import sweep
 

@@ -17,8 +17,8 @@ from thermogear.heat.scuffing import scuffing_temperature
 from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
+from thermogear.mesh.trends import _rank, _rank_along, _rises, _verdict
 from thermogear.study.temperature import MESH_POSITIONS, PATH_POSITIONS, thermal_map
-from thermogear.study.trends import _rank, _rank_along, _rises, _verdict
 
 RPM = np.pi / 30.0
 SPEEDS = tuple(RPM * np.array([500.0, 1500.0, 2500.0]))

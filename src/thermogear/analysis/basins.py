@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from thermogear.analysis.attractors import (
     trapped,
 )
 from thermogear.analysis.family import ModelFamily, axis_values
-from thermogear.analysis.outcome import LABEL_ATTRIBUTES, rule_inputs
+from thermogear.analysis.outcome import LABEL_ATTRIBUTES
 from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, UNDECIDED, Rule, settle
 from thermogear.base.errors import InputError
@@ -71,7 +71,7 @@ class BasinPlan:
             "x": list(self.x),
             "v": list(self.v),
             "seeds": [list(s) for s in self.seeds],
-            "rule": rule_inputs(self.rule),
+            "rule": asdict(self.rule),
         }
 
     def variables(self) -> dict[str, Variable]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,6 +60,40 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
             lost.append(str(error))
     data.attrs["branch_notes"] = "; ".join(lost)
     return _stored(data, lines)
+
+
+def with_branches_of_states(
+    data: xr.Dataset, found: Mapping[int, xr.Dataset], units: str
+) -> xr.Dataset:
+    """Add the branches of several diagrams to one, by the ``state`` each was found in.
+
+    ``found`` of :func:`with_branches`, its parameter in ``units``; ``branch_state`` and
+    ``bifurcation_state`` tell whose each is.
+    """
+    if not found:
+        return data
+    parts = [
+        part.assign({
+            f"{name}_state": ((name,), np.full(part.sizes.get(name, 0), state, np.int32))
+            for name in ("branch", "bifurcation")
+        })
+        for state, part in found.items()
+    ]  # fmt: skip
+    longest = max(part.sizes.get("branch_point", 1) for part in parts)
+    for name, first in parts[0].data_vars.items():
+        if str(name).startswith(("branch_", "bifurcation_")):
+            rows = [part[name].values for part in parts]
+            if "branch_point" in first.dims:
+                rows = [
+                    np.pad(row, ((0, 0), (0, longest - row.shape[1])), constant_values=np.nan)
+                    for row in rows
+                ]
+            data[str(name)] = (first.dims, np.concatenate(rows), first.attrs)
+    for name in ("branch_value", "bifurcation_value"):
+        data[name].attrs["units"] = units
+    notes = [str(part.attrs.get("branch_notes", "")) for part in parts]
+    data.attrs["branch_notes"] = "; ".join(n for n in notes if n)
+    return data
 
 
 def _lane(family: Family, value: float) -> Lanes:

@@ -7,7 +7,7 @@ branches behind the picture, unstable parts included, come from continuation.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,6 @@ from thermogear.analysis.family import Family, axis_values, family_for, lanes_an
 from thermogear.analysis.outcome import (
     outcome_arrays,
     outcome_variables,
-    rule_inputs,
     settle_with_status,
 )
 from thermogear.analysis.settle import Rule
@@ -89,7 +88,7 @@ class DiagramPlan:
             "parameter": self.parameter,
             "values": list(self.values),
             "starts": [list(s) for s in self.starts],
-            "rule": rule_inputs(self.rule),
+            "rule": asdict(self.rule),
             "keep": self.keep,
             "block": self.block,
             "branch_period": self.branch_period,

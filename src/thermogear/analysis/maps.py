@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from thermogear.analysis.family import Family, axis_values, family_for, lanes_an
 from thermogear.analysis.outcome import (
     outcome_arrays,
     outcome_variables,
-    rule_inputs,
     settle_with_status,
     start_of,
 )
@@ -73,7 +72,7 @@ class MapPlan:
             "model": self.family.inputs(),
             "axes": {n: list(v) for n, v in zip(self.family.names, self.axes, strict=True)},
             "initial_state": list(self.start),
-            "rule": rule_inputs(self.rule),
+            "rule": asdict(self.rule),
             "refine": self.refine,
             "tile": self.tile,
             "stride": self.stride,

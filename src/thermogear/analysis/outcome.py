@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -119,8 +118,3 @@ def start_of(initial_state: ArrayLike) -> tuple[float, float]:
     if state.shape != (2,) or not np.all(np.isfinite(state)):
         raise InputError("initial_state", state.tolist(), allowed="two finite numbers (x, x')")
     return float(state[0]), float(state[1])
-
-
-def rule_inputs(rule: Rule) -> dict[str, Any]:
-    """The rule as plain numbers."""
-    return {f.name: getattr(rule, f.name) for f in fields(rule)}

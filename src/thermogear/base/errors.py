@@ -92,3 +92,20 @@ def nearest(name: str, known: Iterable[str]) -> str:
     if close:
         return f"did you mean {close[0]!r}?"
     return "known: " + ", ".join(names)
+
+
+def short(value: object) -> str:
+    """A value as it stands in a message: one line, at most 60 characters."""
+    if isinstance(value, bool):
+        text = str(value).lower()
+    elif isinstance(value, dict):
+        text = "a table"
+    elif isinstance(value, int) and abs(value) >= 10**20:
+        text = f"a whole number of about {int(value.bit_length() * 0.30103) + 1} digits"
+    elif isinstance(value, int | float):
+        text = f"{value:.15g}" if isinstance(value, float) else str(value)
+    elif isinstance(value, str):
+        text = repr(value)
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."

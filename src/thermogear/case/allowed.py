@@ -20,9 +20,10 @@ from thermogear.base.parameters import (
     named,
 )
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.fields import BODY, Count, Measure, Number, Reader, Several
 from thermogear.case.refusals import reader_at, table_at
-from thermogear.case.schema import DimensionlessFile, GearFile
+from thermogear.case.schema import GearFile
 from thermogear.case.units import KINDS
 
 LANE = ("frequency", "half_backlash")

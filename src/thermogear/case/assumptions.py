@@ -17,11 +17,11 @@ from typing import Any
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.case.alike import same
 from thermogear.case.fields import Measure
 from thermogear.case.refusals import dotted, table_at
-from thermogear.case.units import short, shown
+from thermogear.case.units import shown
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,14 @@ from functools import partial
 from typing import Any, TypeVar
 
 from thermogear.base import materials
-from thermogear.base.errors import InputError, ValidityWarning, nearest
+from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Lubricant, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.backlash import Backlash, from_tolerances, from_value, recommended
 from thermogear.case.fields import BODY
 from thermogear.case.schema import GearFile, GearTable
-from thermogear.case.units import short, shown
+from thermogear.case.units import shown
 from thermogear.gears.geometry import LEFT_OUT, Gear, Rack
 from thermogear.gears.pair import GearPair
 from thermogear.heat.friction import LAWS, ROUGHNESS_LIMIT

@@ -19,21 +19,23 @@ from thermogear.base.errors import InputError, InputErrors
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
+from thermogear.base.toml import overridden, pairs, tables
 from thermogear.case import build as parts
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.build import TemperatureRule
 from thermogear.case.decided import decided
 from thermogear.case.dimensionless import Point, points_of
+from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import accuracy, deviations
 from thermogear.case.gearbox import Reading, gearbox
 from thermogear.case.lines import line_of
 from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints
-from thermogear.case.schema import PICTURES, DimensionlessFile, GearFile
+from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
-from thermogear.case.source import case_text, overridden, pairs, tables
+from thermogear.case.source import case_text
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair

@@ -8,7 +8,7 @@ from typing import TypeVar
 from thermogear.base.errors import InputError
 from thermogear.base.parameters import NUMBERS
 from thermogear.case.allowed import dimensionless_reader, positive_stiffness, within
-from thermogear.case.schema import DimensionlessFile, RowTable
+from thermogear.case.dimensionless_schema import DimensionlessFile, RowTable
 
 
 @dataclass(frozen=True, kw_only=True)

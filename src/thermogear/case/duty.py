@@ -1,10 +1,12 @@
-"""The duty of a pair out of a small table: time, speed, torque, ambient."""
+"""Small tables of a user: the duty of a pair, and temperatures measured over it."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base import bounds
 from thermogear.base.bounds import Bounds
@@ -12,8 +14,12 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.case.columns import Column, read_columns, require_times
+from thermogear.case.gearbox_schema import NODES
 from thermogear.case.ranges import CRUSHING, crushing_torque
+from thermogear.case.sensors import SENSORS
 from thermogear.mesh.warm_up import Duty
+
+Floats = NDArray[np.float64]
 
 KINDS = {
     "time": "time",
@@ -74,6 +80,37 @@ def point_duty(case: GearCase, speed: float, torque: float, field: str = "duty")
         raise InputError(field, f"{torque:g} N m", allowed=f"0..{most:.4g} N m")
     bounds.SPEED.require(field, speed)
     return Duty.steady(speed, torque, ambient=ambient)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Measured:
+    """A measured record: ``time`` [s], ``names`` of nodes or sensors, ``values`` [K] or nan."""
+
+    time: Floats
+    names: tuple[str, ...]
+    values: Floats
+
+
+def read_measured(path: str | Path, field: str = "measured") -> Measured:
+    """The record in a CSV file with units in its head: ``time [min],pinion_tooth [degC],...``.
+
+    Columns are named by nodes of the heat balance or by sensors; empty cells are left out. Units as
+    in a case file, times [s] from the start of the duty. Raises InputError in one line.
+    """
+    kinds = {"time": "time"} | dict.fromkeys((*NODES, *SENSORS), "temperature")
+    table = read_columns(path, field, kinds, ("time",), gaps=True)
+    when = table.pop("time")
+    require_times(when, field)
+    values = np.stack([c.values for c in table.values()], axis=1) if table else np.empty((0, 0))
+    if not np.any(np.isfinite(values)):
+        raise InputError(
+            field,
+            "no temperature",
+            allowed="time and one or more of " + ", ".join((*NODES, *SENSORS)),
+        )
+    for name, column in table.items():
+        bounds.BODY.require(f"{field}.{name}", column.values[np.isfinite(column.values)])
+    return Measured(time=when.values, names=tuple(table), values=values)
 
 
 def _require(column: Column, allowed: Bounds, field: str) -> None:

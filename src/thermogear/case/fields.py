@@ -17,9 +17,9 @@ from pydantic_core import CoreSchema, core_schema
 
 from thermogear.base import bounds
 from thermogear.base.bounds import Bounds
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, nearest, short
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.case.units import KINDS, read_quantity, short, shown
+from thermogear.case.units import KINDS, read_quantity, shown
 
 MOST = 100_000
 """No list in a case file is longer than this."""

@@ -8,9 +8,8 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, nearest, short
 from thermogear.case.fields import Reader
-from thermogear.case.units import short
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _RANK = {"extra_forbidden": 0, "missing": 2}  # a misspelt key explains the missing one

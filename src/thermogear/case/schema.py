@@ -14,8 +14,8 @@ from pydantic.json_schema import models_json_schema
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
-from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.dimensionless_schema import DimensionlessFile, SimulationTable
 from thermogear.case.fields import (
     BODY,
     FOLLOW,
@@ -23,7 +23,6 @@ from thermogear.case.fields import (
     Count,
     Measure,
     Number,
-    NumberOrTemperature,
     Several,
     Words,
     measure,
@@ -31,6 +30,7 @@ from thermogear.case.fields import (
 from thermogear.case.flank_schema import FlanksTable, ProfileTable, ReliefTable
 from thermogear.case.friction_schema import FRICTION, FrictionTable
 from thermogear.case.gearbox_schema import GearboxTable
+from thermogear.case.material_schema import HousingTable, MaterialTable, OilTable
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
 from thermogear.mesh.model import CHOICES
@@ -117,77 +117,6 @@ class GearsTable(Table):
     )
     pinion: GearTable
     wheel: GearTable
-
-
-class MaterialTable(Table):
-    """A material of the user's own."""
-
-    youngs_modulus: Annotated[float, measure("pressure", bounds.YOUNGS_MODULUS)]
-    poisson_ratio: Annotated[float, Number(low=0.0, high=0.499, example="0.3")]
-    density: Annotated[float, measure("density", bounds.DENSITY)]
-    thermal_conductivity: Annotated[float, measure("thermal conductivity", bounds.CONDUCTIVITY)]
-    specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)]
-    thermal_expansion: Annotated[float, measure("thermal expansion", bounds.EXPANSION)]
-    modulus_slope: Annotated[
-        float, measure("thermal expansion", bounds.MODULUS_SLOPE, example="3.3e-4 1/K")
-    ] = Field(default=0.0, description="Young's modulus taken as independent of temperature")
-    tempering_temperature: Annotated[
-        float | None, measure("temperature", bounds.TEMPERING, example="180 degC")
-    ] = Field(default=None, description="no limit known")
-
-
-class HousingTable(Table):
-    """The housing, which carries the axes."""
-
-    material: Annotated[str, Words('"steel"')] = Field(
-        default="steel",
-        description="expands like the gears. Decides how far the axes move "
-        "apart, and so how much of the backlash heat takes",
-    )
-
-
-class OilTable(Table):
-    """The oil: a named set, or two viscosities."""
-
-    name: Annotated[str, Words('"ISO VG 100"')] = Field(
-        default="ISO VG 100",
-        description="a usual mineral gear oil. Its viscosity decides film, "
-        "friction and flash temperature",
-    )
-    viscosity_40: Annotated[
-        float | None, Measure("kinematic viscosity", "1 mm^2/s", "100000 mm^2/s")
-    ] = Field(default=None, title="from the named set")
-    viscosity_100: Annotated[
-        float | None,
-        Measure("kinematic viscosity", "0.8 mm^2/s", "10000 mm^2/s", example="11 mm^2/s"),
-    ] = Field(default=None, title="from the named set")
-    density_15: Annotated[
-        float | None, measure("density", bounds.OIL_DENSITY, example="885 kg/m^3")
-    ] = Field(default=None, title="from the named set")
-    temperature: Body | None = None
-    temperature_below_addendum: Below | None = None
-    scuffing_load_stage: Annotated[
-        float | None,
-        Number(low=1.0, high=14.0, example="12", why="load stages of the FZG test A/8.3/90"),
-    ] = Field(default=None, title="unknown: no scuffing margin")
-
-    @model_validator(mode="after")
-    def _complete(self) -> OilTable:
-        not_both(self, "temperature", "temperature_below_addendum")
-        own = (self.viscosity_40, self.viscosity_100, self.density_15)
-        if any(v is not None for v in own) and any(v is None for v in own):
-            raise InputError(
-                "",
-                "a part of an oil",
-                allowed="viscosity_40, viscosity_100 and density_15 together, or the name alone",
-            )
-        if own[0] is not None and own[1] is not None and own[1] >= own[0]:
-            raise InputError(
-                "viscosity_100",
-                "a viscosity not below viscosity_40",
-                why="an oil grows thinner as it warms up",
-            )
-        return self
 
 
 class InertiaTable(Table):
@@ -417,50 +346,6 @@ else:
     ModelTable = _model_table()  # its fields are the choices that the mesh model knows
 
 
-class SimulationTable(Table):
-    """How long and how finely the motion is followed."""
-
-    periods: Annotated[int, Count(low=8, high=1_000_000, example="256")] = Field(
-        default=256, description="mesh periods kept for section and spectrum"
-    )
-    discard: Annotated[int, Count(low=0, high=10_000_000, example="400")] = Field(
-        default=400, description="mesh periods thrown away first, at least"
-    )
-    most_discarded: Annotated[int, Count(low=0, high=10_000_000, example="4000")] = Field(
-        default=4000, description="mesh periods thrown away at most while a transient dies out"
-    )
-    steps_per_period: Annotated[int, Count(low=16, high=65536, example="512")] = Field(
-        default=512, description="Runge-Kutta steps per mesh period"
-    )
-    samples: Annotated[int, Count(low=8, high=4096, example="128")] = Field(
-        default=128, description="stored samples per mesh period"
-    )
-    sample_periods: Annotated[int, Count(low=1, high=10_000, example="8")] = Field(
-        default=8, description="mesh periods of stored time history"
-    )
-    initial_state: Annotated[
-        tuple[float, ...], Several(Number(low=-1e6, high=1e6, example="0.0"), least=2, most=2)
-    ] = Field(default=(0.0, 0.0), description="start in the middle of the gap, at rest")
-
-    @model_validator(mode="after")
-    def _ordered(self) -> SimulationTable:
-        if self.most_discarded < self.discard:
-            raise InputError(
-                "most_discarded",
-                self.most_discarded,
-                allowed=f">= discard = {self.discard}",
-                fix=f"use {self.discard} or more",
-            )
-        if self.sample_periods > self.periods:
-            raise InputError(
-                "sample_periods",
-                self.sample_periods,
-                allowed=f"1..periods = {self.periods}",
-                fix=f"use {self.periods} or less",
-            )
-        return self
-
-
 class GridTable(Table):
     """How finely the path of contact and the mesh period are sampled."""
 
@@ -552,65 +437,6 @@ class GearFile(Table):
         elif self.oil.temperature_below_addendum is not None:
             raise _no_addendum("oil.temperature_below_addendum")
         return self
-
-
-_Plain = Annotated[tuple[float, ...], Several(Number(low=-1e6, high=1e6))]
-_Positive = Annotated[tuple[float, ...], Several(Number(low=1e-9, high=1e6))]
-_NotNegative = Annotated[tuple[float, ...], Several(Number(low=0.0, high=1e3, example="0.15"))]
-_Amplitude = Annotated[
-    tuple[float, ...],
-    Several(
-        Number(
-            low=0.0,
-            high=0.999,
-            example="0.335",
-            why="the mesh stiffness 1 + eps cos would reach zero",
-        )
-    ),
-]
-_Stiffening = Annotated[tuple[float, ...], Several(Number(low=-0.999, high=1e3, example="0.02"))]
-
-
-class BaseTable(Table):
-    """The base set that every row starts from."""
-
-    damping_ratio: _NotNegative
-    frequency: _Positive
-    stiffness_amplitude: _Amplitude
-    mean_force: _Plain
-    force_amplitude: _Plain
-    half_backlash: _Positive = Field(
-        default=(1.0,), description="the cold half backlash is the unit"
-    )
-    thermal_stiffness: _Stiffening = Field(default=(0.0,), description="no thermal term")
-
-
-class RowTable(Table):
-    """A row: one parameter runs through its values; others may be set, one for all or a list."""
-
-    parameter: Annotated[str, Choice(*NUMBERS, "temperature")]
-    values: Annotated[tuple[tuple[float, str], ...], Several(NumberOrTemperature())]
-    expected: Annotated[tuple[str, ...], Several(Words('"period-1"'), least=0)] = Field(
-        default=(), description="no label is expected"
-    )
-    damping_ratio: _NotNegative | None = None
-    frequency: _Positive | None = None
-    stiffness_amplitude: _Amplitude | None = None
-    mean_force: _Plain | None = None
-    force_amplitude: _Plain | None = None
-    half_backlash: _Positive | None = None
-    thermal_stiffness: _Stiffening | None = None
-
-
-class DimensionlessFile(Table):
-    """The dimensionless equation of motion alone, in rows of one parameter each."""
-
-    title: Annotated[str, Words('"table 4.2"')]
-    kind: Annotated[str, Choice("dimensionless", "gear")]
-    base: BaseTable
-    rows: Annotated[dict[str, RowTable], Field(min_length=1)]
-    simulation: SimulationTable = SimulationTable()
-    ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
 
 
 def json_schema() -> dict[str, Any]:

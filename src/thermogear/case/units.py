@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, short
 
 if TYPE_CHECKING:
     import pint
@@ -222,20 +222,3 @@ def shown(value: float, kind_name: str, digits: int = 6) -> str:
     kind = KINDS[kind_name]
     quantity = _registry().Quantity(value, kind.si).to(kind.shown)
     return f"{float(quantity.magnitude):.{digits}g} {kind.shown}"
-
-
-def short(value: object) -> str:
-    """A value as it stands in a message: one line, at most 60 characters."""
-    if isinstance(value, bool):
-        text = str(value).lower()
-    elif isinstance(value, dict):
-        text = "a table"
-    elif isinstance(value, int) and abs(value) >= 10**20:
-        text = f"a whole number of about {int(value.bit_length() * 0.30103) + 1} digits"
-    elif isinstance(value, int | float):
-        text = f"{value:.15g}" if isinstance(value, float) else str(value)
-    elif isinstance(value, str):
-        text = repr(value)
-    else:
-        text = str(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -149,9 +149,9 @@ def warmup(
     if duty is not None and at is not None:
         raise InputError("--at", "an operating point beside --duty", fix="leave one out")
 
-    from thermogear.case.duty import point_duty, read_duty
+    from thermogear.case.duty import point_duty, read_duty, read_measured
     from thermogear.mesh.warm_up_fit import require_factors
-    from thermogear.study.warm_up import read_measured, warm_up_survey
+    from thermogear.study.warm_up import warm_up_survey
 
     work = None if duty is None else read_duty(duty, read)
     if at is not None:

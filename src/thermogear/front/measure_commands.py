@@ -136,13 +136,14 @@ def compare(
     **options: Any,
 ) -> None:
     """Compare CASE (a case, a directory of results, or thesis-5.2) with a record or a table."""
-    from thermogear.measured.published import PUBLISHED
-    from thermogear.study import compare as comparison
+    from thermogear.measured.comparison import result_of
+    from thermogear.measured.published import PUBLISHED, is_table
+    from thermogear.study.compare import compare as study
 
     _require_gear(options)
     if samples is not None and not tolerances:
         raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
-    table = measured in PUBLISHED or (measured is not None and comparison.is_table(measured))
+    table = measured in PUBLISHED or (measured is not None and is_table(measured))
     record = measured is not None and not table
     for name, value in options.items():
         # a table of lines may count in shaft turns: its teeth are asked for
@@ -157,7 +158,7 @@ def compare(
         against: Any = measured
         if measured is not None and record:
             against = _measured(measured, options)
-        found = comparison.compare(
+        found = study(
             case,
             against,
             teeth=options["teeth"],
@@ -166,7 +167,7 @@ def compare(
             tolerances=tolerated,
             samples=12 if samples is None else samples,
         )
-        return comparison.result_of(found)
+        return result_of(found)
 
     delivery.deliver(make, output, as_json=as_json)
 

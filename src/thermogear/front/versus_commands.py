@@ -27,7 +27,7 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
     ready-made one), which is run first into a directory of its own below DIR. Writes versus.html,
     versus.nc and CSV tables.
     """
-    from thermogear.study import versus as study
+    from thermogear.results import versus as study
 
     study.require_number(len(results))
     directory = Path(output)

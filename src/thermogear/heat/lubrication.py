@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
-from thermogear.base.materials import Lubricant
+from thermogear.base.materials import LUBRICANTS, Lubricant
 from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
@@ -98,3 +98,19 @@ def walther_slope(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     values = _checked(lubricant, temperature)
     shifted = _walther(lubricant, values)
     return np.asarray(lubricant.walther_b * shifted * np.log(shifted) / ((shifted - 0.7) * values))
+
+
+def grade(viscosity_40: float) -> Lubricant:
+    """A mineral oil with the kinematic viscosity ``viscosity_40`` [m^2/s] at 40 °C.
+
+    Its viscosity at 100 °C follows the package's own mineral oils: nu_100 = c nu_40^p, fitted to
+    them.
+    """
+    known = [LUBRICANTS[name] for name in sorted(LUBRICANTS) if name.startswith("M")]
+    warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
+    low = np.log([float(kinematic_viscosity(one, warm)) for one in known])
+    high = np.log([float(kinematic_viscosity(one, hot)) for one in known])
+    slope, level = np.polyfit(low, high, 1)
+    at_100 = float(np.exp(level + slope * np.log(viscosity_40)))
+    name = f"mineral oil of {viscosity_40 * 1e6:.4g} mm2/s"
+    return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))

@@ -128,6 +128,17 @@ def unstated_processing(frequency: float, *, highest: float) -> dict[str, float]
     return {"window": float(window), "integration": float(loss / np.sqrt(12.0))}
 
 
+def is_table(path: str | Path) -> bool:
+    """Whether a file is a table of lines (its first row says so) and not a record."""
+    path = Path(path)
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        head = decoded(file.read(400), "replace").lower()
+    first = head.splitlines()[0] if head else ""
+    return all(name in first for name in ("speed", "frequency", "displacement"))
+
+
 def read_lines(path: Path, teeth: int | None = None) -> LineTable:
     """A table of lines from a CSV: speed [rpm], frequency [Hz], displacement [um], and if known
     uncertainty [%]; the first row names the columns with their units."""

@@ -120,16 +120,20 @@ class Operating:
 
     def point(self, place: int) -> Operating:
         """The operating point ``place`` alone."""
+        return self.part(slice(place, place + 1))
+
+    def part(self, places: slice) -> Operating:
+        """Some of the operating points alone."""
 
         def at(values: ArrayLike) -> ArrayLike:
             array = np.asarray(values, dtype=float)
-            return array[place : place + 1] if array.ndim and array.size > 1 else values
+            return array[places] if array.ndim and array.size > 1 else values
 
         bodies: dict[str, Any] = {n: at(body) for n, body in self.temperatures.bodies.items()}
         return replace(
             self,
-            speed=self.speed[place : place + 1],
-            torque=self.torque[place : place + 1],
+            speed=self.speed[places],
+            torque=self.torque[places],
             oil_temperature=at(self.oil_temperature),
             temperatures=replace(self.temperatures, **bodies),
             flank_temperature=None if self.flank_temperature is None else at(self.flanks),

@@ -25,6 +25,7 @@ from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
 from thermogear.mesh.balance import NODES, Gearbox, node_temperatures, pair_losses
 from thermogear.mesh.clearance import clearance
+from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
@@ -43,6 +44,8 @@ PHASES = 32
 """Mesh phases at which the least half backlash is looked for."""
 BLOCK = 200
 """Moments that are evaluated together: memory, not the result."""
+MESHED = 100
+"""Moments whose mesh is solved together."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -417,3 +420,58 @@ class _Chain:
             )
 
         return Losses(**{entry.name: whole(entry.name) for entry in fields(Losses)})
+
+
+MESHING = {
+    "greatest_flash": ("K", "greatest flash temperature along the path"),
+    "greatest_contact_temperature": ("K", "greatest contact temperature along the path"),
+    "least_film_parameter": ("1", "least film parameter along the path"),
+    "mean_friction": ("1", "friction coefficient, mean by load"),
+    "mean_stiffness": ("N/m", "mean mesh stiffness"),
+}
+"""What :func:`meshing` finds: units and words."""
+
+
+def meshing(
+    pair: GearPair,
+    operating: Operating,
+    model: MeshModel,
+    deviations: Sequence[Deviation] = (),
+    progress: Progress = silent,
+) -> dict[str, tuple[str, Floats, str, str]]:
+    """Flash, film, friction and stiffness (:data:`MESHING`) at every moment, for ``label``.
+
+    ``operating``: the moments; nan for what needs load or speed where there is none. Solved in
+    blocks: memory and progress, not the result.
+    """
+    found: dict[str, list[Floats]] = {name: [] for name in MESHING}
+    count = operating.speed.size
+    for first in range(0, count, MESHED):
+        progress("mesh", first, count)
+        part = operating.part(slice(first, first + MESHED))
+        cycle = mesh_cycle(
+            pair, part, model, deviations=deviations, path_positions=41, mesh_positions=96
+        )
+        loaded = part.torque > 0.0
+        turning = loaded & (part.speed > 0.0)
+        film = cycle["film_parameter"].min("path_position").values
+        friction = cycle["friction_coefficient"] * cycle["line_load"]
+        carried = cycle["line_load"].sum("path_position").values
+        for name, values in {
+            "greatest_flash": cycle["flash_temperature"].max("path_position").values,
+            "greatest_contact_temperature": cycle["contact_temperature"]
+            .max("path_position")
+            .values,
+            "least_film_parameter": np.where(turning, film, np.nan),
+            "mean_friction": np.where(
+                turning,
+                friction.sum("path_position").values / np.where(carried > 0.0, carried, 1.0),
+                np.nan,
+            ),
+            "mean_stiffness": np.where(loaded, cycle["mean_stiffness"].values, np.nan),
+        }.items():
+            found[name].append(values)
+    progress("mesh", count, count)
+    return {
+        name: ("moment", np.concatenate(parts), *MESHING[name]) for name, parts in found.items()
+    }

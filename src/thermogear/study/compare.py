@@ -1,118 +1,38 @@
-"""``compare``: measured lines against simulated ones, with uncertainty and a verdict.
-
-The verdict follows the validation uncertainty of ASME V&V 20: u_val^2 = u_num^2 + u_input^2 +
-u_D^2, and one model is better than another only where their errors differ by more than u_val.
-"""
+"""``compare``: a case, or its stored results, against measured lines; and fields fitted to them."""
 
 from __future__ import annotations
 
-import json
+import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from thermogear.analysis.fit import Fit, fit
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.files import decoded
-from thermogear.base.units import RPM, STANDARD_GRAVITY
-from thermogear.base.vocabulary import label
+from thermogear.case.allowed import gear_parameter
+from thermogear.case.case import Case, load_case
+from thermogear.measured.comparison import Comparison, compared, table_of
 from thermogear.measured.published import (
     PUBLISHED,
     LineTable,
     Printed,
     SpeedLine,
+    is_table,
     read_lines,
-    unstated_processing,
 )
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
-from thermogear.results.result import Notice, Result, now
-from thermogear.study.simulated import CaseLines, case_lines, tree_lines
+from thermogear.results.result import Notice, Result
 
-if TYPE_CHECKING:
-    from thermogear.case.case import Case
+Floats = NDArray[np.float64]
 
-_IMPLAUSIBLE_G = 50.0
 _MOST_RUNS = 10_000
-_DEEPEST_SUBHARMONIC = 16
-
-
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """One quantity at one speed. ``errors``: (simulated - measured)/measured per model.
-
-    The four uncertainties are relative to the measured value (standard, k = 1).
-    """
-
-    speed: float
-    quantity: str
-    measured: float
-    simulated: tuple[float, ...]
-    errors: tuple[float, ...]
-    u_num: float
-    u_input: float
-    u_data: float
-    verdict: str
-    printed: tuple[str, ...] = ()
-
-    @property
-    def u_val(self) -> float:
-        """Validation uncertainty, the root of the sum of squares."""
-        return float(np.sqrt(self.u_num**2 + self.u_input**2 + self.u_data**2))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Implied:
-    """What a measured line says if taken at its word."""
-
-    speed: float
-    acceleration_g: float
-    shaft_speed: float | None
-    offset_hertz: float | None
-    offset_bins: float | None
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Rows for every speed, what the lines imply, and what should be known before believing."""
-
-    measured: str
-    models: tuple[str, ...]
-    rows: tuple[Row, ...]
-    implied: tuple[Implied, ...]
-    notices: tuple[Notice, ...]
-
-    @property
-    def conclusion(self) -> str:
-        """One sentence on the displacement rows."""
-        verdicts = [row.verdict for row in self.rows if row.quantity == "displacement"]
-        if len(self.models) < 2:
-            return "one model: its errors stand beside u_val, no other to be better than"
-        counts = {v: verdicts.count(v) for v in dict.fromkeys(verdicts)}
-        return f"of {len(verdicts)} displacements: " + ", ".join(
-            f"{verdict} {count} times" for verdict, count in counts.items()
-        )
-
-    def row(self, speed: float, quantity: str) -> Row:
-        """The row of a quantity at the speed [rad/s] nearest to ``speed``."""
-        rows = [row for row in self.rows if row.quantity == quantity]
-        if not rows:
-            raise InputError("quantity", repr(quantity), allowed="frequency or displacement")
-        return min(rows, key=lambda row: abs(row.speed - speed))
-
-
-def verdict(errors: Sequence[float], names: Sequence[str], u_val: float) -> str:
-    """ "A better", "B better" or "not resolvable": |E_A| - |E_B| against u_val."""
-    if len(errors) < 2:
-        return "within u_val" if abs(errors[0]) <= u_val else "outside u_val"
-    order = np.argsort(np.abs(errors), kind="stable")
-    best, second = int(order[0]), int(order[1])
-    gap = abs(errors[second]) - abs(errors[best])
-    return f"{names[best]} better" if gap > u_val else "not resolvable"
 
 
 def compare(
@@ -159,13 +79,20 @@ def compare(
     if measured is None:
         if isinstance(simulated, str) and simulated in PUBLISHED:
             published = PUBLISHED[simulated]
-            return _compared(published.models, published, u_data, u_num or 0.0, {})
+            return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
         raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
     printed = _measured(measured, teeth, speed)
     if isinstance(simulated, str) and simulated in PUBLISHED:
-        return _compared(PUBLISHED[simulated].models, printed, u_data, u_num or 0.0, {})
+        return compared(PUBLISHED[simulated].models, printed, u_data=u_data, u_num=u_num or 0.0)
     found = _simulated(simulated, tolerances or {}, samples, seed, u_num)
-    return _compared(found.tables, printed, u_data, found.u_num, found.u_input, found.notices)
+    return compared(
+        found.tables,
+        printed,
+        u_data=u_data,
+        u_num=found.u_num,
+        u_input=found.u_input,
+        said=found.notices,
+    )
 
 
 def _measured(
@@ -189,49 +116,6 @@ def _measured(
     if isinstance(measured, Record):
         measured = measure(measured, teeth=teeth, speed=speed)
     return Printed(table_of(measured, speed), {})
-
-
-def is_table(path: str | Path) -> bool:
-    """Whether a file is a table of lines (its first row says so) and not a record."""
-    path = Path(path)
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        head = decoded(file.read(400), "replace").lower()
-    first = head.splitlines()[0] if head else ""
-    return all(name in first for name in ("speed", "frequency", "displacement"))
-
-
-def table_of(found: Measurement, speed: float | None = None) -> LineTable:
-    """The mesh line of a measurement (the channel where it stands out most) as a table."""
-    lines = [line for line in found.lines if line.name == "mesh x 1"]
-    lines = [line for line in lines if np.isfinite(line.displacement)]
-    if not lines:
-        raise InputError(
-            "measured",
-            found.record.source,
-            why="it gives no displacement: rate or unit is unknown, or no mesh line was found",
-            fix="--rate, --unit",
-        )
-    line = max(lines, key=lambda item: item.prominence)
-    nominal = speed if speed is not None else line.shaft_speed
-    if not np.isfinite(nominal):
-        raise InputError("speed", "none", why="no tooth number is known", fix="--teeth or --speed")
-    return LineTable(
-        f"{found.record.source}, {line.channel}",
-        (
-            SpeedLine(
-                speed=nominal,
-                frequency=line.frequency,
-                displacement=line.displacement,
-                uncertainty=line.uncertainty,
-            ),
-        ),
-        found.teeth,
-        found.record.source,
-        (found.record.rate or 1.0) / found.samples,
-        processing_stated=True,
-    )
 
 
 def _computes(simulated: object) -> bool:
@@ -266,277 +150,203 @@ def _simulated(
     return case_lines(simulated, tolerances, samples=samples, seed=seed, u_num=u_num)  # type: ignore[arg-type]
 
 
-def _compared(
-    models: Mapping[str, LineTable],
-    printed: Printed,
-    u_data: float | None,
-    u_num: float,
-    u_input: Mapping[float, float],
-    said: Sequence[Notice] = (),
-) -> Comparison:
-    table = printed.measured
-    names = tuple(models)
-    if not names:
-        raise InputError("simulated", "nothing", allowed="at least one model")
-    rows: list[Row] = []
-    notices: list[Notice] = list(said)
-    highest = max(line.frequency for line in table.lines)
-    for number, line in enumerate(table.lines):
-        found = [models[name].near(line.speed) for name in names]
-        if any(item is None for item in found):
-            notices.append(
-                Notice("warning", f"{line.speed / RPM:.0f} rpm: no simulated line at this speed")
-            )
-            continue
-        simulated = [item for item in found if item is not None]
-        u_d, why = _data_uncertainty(line, table, highest, u_data)
-        if why and why not in [text for _, text in notices]:
-            notices.append(Notice("important", why))
-        entered = next((u for s, u in u_input.items() if abs(s - line.speed) < 0.05 * s), 0.0)
-        displacement = tuple(s.displacement / line.displacement - 1.0 for s in simulated)
-        u_val = float(np.sqrt(u_num**2 + entered**2 + u_d**2))
-        frequency = tuple(s.frequency / line.frequency - 1.0 for s in simulated)
-        rows.append(
-            Row(
-                speed=line.speed,
-                quantity="frequency",
-                measured=line.frequency,
-                simulated=tuple(s.frequency for s in simulated),
-                errors=frequency,
-                u_num=0.0,
-                u_input=0.0,
-                u_data=(table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
-                verdict=_frequency_verdict(simulated, line, table, names),
-                printed=_printed(printed, names, "frequency", number),
+@dataclass(frozen=True)
+class CaseLines:
+    """Tables by model, relative u_num, u_input by speed [rad/s], notices."""
+
+    tables: Mapping[str, LineTable]
+    u_num: float
+    u_input: Mapping[float, float]
+    notices: tuple[Notice, ...]
+
+
+def tree_lines(result: Result) -> dict[str, LineTable]:
+    """The mesh line of the simulated motion, one table per bundle and state ("thesis hot").
+
+    Operating points without a motion (jammed, diverged) are left out; of several torques at one
+    speed the first stands for it.
+    """
+    motion = result.group("motion")
+    if motion is None:
+        raise InputError("simulated", "no motion", fix='draw.pictures must hold "motion"')
+    first = int(np.argmin(np.abs(motion["order"].values - 1.0)))
+    speeds = np.asarray(motion["pinion_speed"].values, dtype=float)
+    frequency = motion["line_frequency"].isel(order=first)
+    found: dict[str, LineTable] = {}
+    for bundle in motion["bundle"].values:
+        for state in motion["state"].values:
+            here = {"bundle": bundle, "state": state}
+            amplitude = motion["line_amplitude"].isel(order=first).sel(here)
+            lines: dict[float, SpeedLine] = {}
+            for place, speed in enumerate(speeds):
+                x = float(amplitude.values[place])
+                f = float(np.asarray(frequency.values)[place])
+                if np.isfinite(x) and x > 0 and float(speed) not in lines:
+                    lines[float(speed)] = SpeedLine(speed=float(speed), frequency=f, displacement=x)
+            if lines:
+                name = f"{bundle} {state}"
+                found[name] = LineTable(name, tuple(lines.values()), None, "simulation")
+    if not found:
+        raise InputError("simulated", "no line", why="no operating point has a motion")
+    return found
+
+
+@dataclass(frozen=True)
+class _Runs:
+    """A case that is run again with some of its fields changed."""
+
+    text: str
+    kept: Mapping[str, str]
+
+    @classmethod
+    def of(cls, case: Case | str | Path) -> _Runs:
+        given = load_case(case) if isinstance(case, str | Path) else case
+        return cls(given.text, {**dict(given.overrides), "draw.pictures": '["motion"]'})
+
+    def case(self, changes: Mapping[str, str]) -> Case:
+        return load_case(self.text, {**self.kept, **changes})
+
+    def tables(self, changes: Mapping[str, str]) -> dict[str, LineTable]:
+        from thermogear.study.run import run  # stored lines and tables need none
+
+        return tree_lines(run(self.case(changes)))
+
+    def scaled(self, factors: Mapping[str, float]) -> dict[str, LineTable]:
+        """The lines with every named field times its factor."""
+        changes: dict[str, str] = {}
+        for name, factor in factors.items():
+            changes |= overrides_of(self.text, self.kept, name, factor)
+        return self.tables(changes)
+
+
+def case_lines(
+    case: Case | str | Path,
+    tolerances: Mapping[str, float],
+    *,
+    samples: int,
+    seed: int,
+    u_num: float | None,
+) -> CaseLines:
+    """The case simulated, its step doubled for u_num, and sampled within its tolerances."""
+    runs = _Runs.of(case)
+    notices: list[Notice] = []
+    base = runs.tables({})
+    if u_num is None:
+        steps = runs.case({}).simulation.steps_per_period
+        coarse = runs.tables({"simulation.steps_per_period": str(steps // 2)})
+        # fourth order: the coarse run's error is 16/15 of the difference, the fine one's 1/15
+        u_num = max(map(abs, _relative(base, coarse).values()), default=0.0) / 15.0
+        notices.append(
+            Notice(
+                "info", f"u_num {100 * u_num:.3g} % from {steps} and {steps // 2} steps a period"
             )
         )
-        rows.append(
-            Row(
-                speed=line.speed,
-                quantity="displacement",
-                measured=line.displacement,
-                simulated=tuple(s.displacement for s in simulated),
-                errors=displacement,
-                u_num=u_num,
-                u_input=entered,
-                u_data=u_d,
-                verdict=verdict(displacement, names, u_val),
-                printed=_printed(printed, names, "displacement", number),
-            )
-        )
+    u_input: dict[float, float] = {}
+    if tolerances:
+        rng = np.random.default_rng(seed)
+        spread: dict[float, list[float]] = {}
+        for _ in range(max(2, samples)):
+            factors = {
+                name: float(1.0 + sigma * rng.standard_normal())
+                for name, sigma in tolerances.items()
+            }
+            for speed, value in _relative(base, runs.scaled(factors)).items():
+                spread.setdefault(speed, []).append(value)
+        u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
+    else:
+        notices.append(Notice("warning", "no tolerances of the case are stated: u_input is 0"))
+    return CaseLines(base, u_num, u_input, tuple(notices))
+
+
+def _relative(base: Mapping[str, LineTable], other: Mapping[str, LineTable]) -> dict[float, float]:
+    """Ratio of the displacements less 1 by speed, for the first model common to both."""
+    name = next((n for n in base if n in other), None)
+    if name is None:
+        return {}
+    found = {}
+    for line in base[name].lines:
+        twin = other[name].near(line.speed)
+        if twin is not None:
+            found[line.speed] = twin.displacement / line.displacement - 1.0
+    return found
+
+
+def _stated(text: str, changes: Mapping[str, str], name: str) -> str:
+    """A field as the case states it, as text."""
+    if name in changes:
+        return changes[name]
+    value: Any = tomllib.loads(text)
+    for part in name.split("."):
+        if not isinstance(value, dict) or part not in value:
+            raise InputError("tolerances", repr(name), why="the case states no such field")
+        value = value[part]
+    if not isinstance(value, (str, int, float)) or isinstance(value, bool):
+        raise InputError("tolerances", repr(name), why="it is no single number with a unit")
+    return str(value)
+
+
+def scaled(value: str, factor: float) -> str:
+    """A number with its unit times a factor: "100 N m" by 1.1 is "110 N m"."""
+    found = re.match(r"^\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s*(.*)$", value)
+    if not found:
+        raise InputError("tolerances", repr(value), why="it is no number with a unit")
+    number = float(found.group(1)) * factor
+    return f"{number!r} {found.group(2)}".strip()
+
+
+def overrides_of(text: str, changes: Mapping[str, str], name: str, factor: float) -> dict[str, str]:
+    """The overrides that multiply a parameter by a factor, in every field it stands for.
+
+    ``name``: a gear parameter by any of its names, or a dotted field;
+    "transmission_error.amplitude" means the amplitudes of all its harmonics.
+    """
+    if name != "transmission_error.amplitude":
+        fields = gear_parameter(name, "tolerances").fields
+        return {one: scaled(_stated(text, changes, one), factor) for one in fields}
+    field = "transmission_error.harmonics"
+    if field in changes:
+        table: Any = tomllib.loads(f"harmonics = {changes[field]}")
+    else:
+        table = tomllib.loads(text).get("transmission_error", {})
+    rows = table.get("harmonics", [])
     if not rows:
-        raise InputError(
-            "speeds",
-            ", ".join(f"{line.speed / RPM:.0f} rpm" for line in table.lines),
-            why="none of them is simulated",
-        )
-    implied = tuple(_implied(line, table) for line in table.lines)
-    notices += _misprints(rows, names) + _doubts(implied)
-    return Comparison(table.name, names, tuple(rows), implied, tuple(notices))
-
-
-def _data_uncertainty(
-    line: SpeedLine, table: LineTable, highest: float, given: float | None
-) -> tuple[float, str]:
-    if given is not None:
-        return float(given), ""
-    if line.uncertainty is not None:
-        return line.uncertainty, ""
-    if table.processing_stated:
-        return 0.0, "the measurement states no uncertainty: u_D is taken as 0"
-    parts = unstated_processing(line.frequency, highest=highest)
-    return (
-        float(np.sqrt(sum(part**2 for part in parts.values()))),
-        "window, rate and integration of the measurement are not stated: u_D holds a Hann "
-        "window's scalloping (0..15.1 %) and what the trapezoid loses at 2.56 times the highest "
-        "line; state u_D to replace it",
-    )
-
-
-def _frequency_verdict(
-    simulated: Sequence[SpeedLine], line: SpeedLine, table: LineTable, names: Sequence[str]
-) -> str:
-    """A model forced at the mesh frequency answers at j/n of it and nowhere else."""
-    teeth = table.teeth
-    if teeth is None:
-        return "no tooth number: nothing to tell"
-    forced = teeth * line.speed / (2.0 * np.pi)
-    impossible = []
-    for name, item in zip(names, simulated, strict=True):
-        ratio = item.frequency / forced
-        rational = Fraction(ratio).limit_denominator(_DEEPEST_SUBHARMONIC)
-        if abs(float(rational) - ratio) > 1e-4:
-            impossible.append(f"{name} ({item.frequency:g} Hz)")
-    if impossible:
-        return (
-            f"impossible: {', '.join(impossible)} is no line j/n of the {forced:.3f} Hz that "
-            "forces the model"
-        )
-    if len({item.frequency for item in simulated}) == 1:
-        return "the same by construction: the speed sets it"
-    return "set by the speed, not by the model"
-
-
-def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int) -> tuple[str, ...]:
-    found = tuple(printed.errors.get((name, quantity, number), "") for name in names)
-    return found if any(found) else ()
-
-
-def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
-    notices = []
+        raise InputError("parameters", repr(name), why="the case states no transmission error")
+    parts = []
     for row in rows:
-        for name, error, text in zip(names, row.errors, row.printed or (), strict=False):
-            if not text:
-                continue
-            digits = len(text.partition(".")[2])
-            percent = 100.0 * abs(error)
-            if f"{percent:.{digits}f}" != text:
-                notices.append(
-                    Notice(
-                        "important",
-                        f"{row.speed / RPM:.0f} rpm, {row.quantity}, {name}: printed {text} %, "
-                        f"recomputed {percent:.2f} %",
-                    )
-                )
-    wrong = [row for row in rows if row.verdict.startswith("impossible")]
-    if wrong:
-        notices.append(
-            Notice(
-                "important",
-                "the frequency column carries no thermal information: at "
-                + ", ".join(f"{row.speed / RPM:.0f}" for row in wrong)
-                + " rpm the simulated main frequency is "
-                + wrong[0].verdict.split(" is ", 1)[-1].split(" of the ")[0]
-                + " of the mesh frequency",
-            )
-        )
-    return notices
+        grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
+        pairs = (f"{k} = {v if not isinstance(v, str) else repr(v)}" for k, v in grown.items())
+        parts.append("{ " + ", ".join(pairs) + " }")
+    return {field: "[" + ", ".join(parts) + "]"}
 
 
-def _implied(line: SpeedLine, table: LineTable) -> Implied:
-    if table.teeth is None:
-        return Implied(
-            speed=line.speed,
-            acceleration_g=line.acceleration_g,
-            shaft_speed=None,
-            offset_hertz=None,
-            offset_bins=None,
-        )
-    offset = line.frequency - table.teeth * line.speed / (2.0 * np.pi)
-    return Implied(
-        speed=line.speed,
-        acceleration_g=line.acceleration_g,
-        shaft_speed=line.shaft_speed(table.teeth),
-        offset_hertz=offset,
-        offset_bins=offset / table.bin_width if table.bin_width else None,
-    )
+def fit_case(
+    case: Case | str | Path,
+    measured: LineTable,
+    names: Sequence[str] = ("dynamics.damping_ratio",),
+    model: str | None = None,
+    u_data: float = 0.05,
+) -> Fit:
+    """Fields of a case fitted to the displacements of a table of lines.
 
+    ``names``: dotted fields with one number each, or "transmission_error.amplitude" for all its
+    amplitudes together. ``model`` as "consistent hot" (default: the last of the case);
+    ``u_data`` the relative uncertainty of lines that state none.
+    """
+    runs = _Runs.of(case)
+    base = runs.tables({})
+    chosen = model or list(base)[-1]
+    if chosen not in base:
+        raise InputError("model", repr(chosen), allowed=", ".join(base))
+    lines = [line for line in measured.lines if base[chosen].near(line.speed) is not None]
+    if not lines:
+        raise InputError("speeds", measured.name, why="none of them is simulated")
+    values = np.array([line.displacement for line in lines])
+    errors = values * np.array([line.uncertainty or u_data for line in lines])
 
-def _doubts(implied: Sequence[Implied]) -> list[Notice]:
-    notices = []
-    large = [item for item in implied if item.acceleration_g > _IMPLAUSIBLE_G]
-    if large:
-        notices.append(
-            Notice(
-                "important",
-                "implausible on a housing: "
-                + ", ".join(
-                    f"{item.acceleration_g:.1f} g at {item.speed / RPM:.0f} rpm" for item in large
-                ),
-            )
-        )
-    notices.append(
-        Notice(
-            "info",
-            "a housing's acceleration integrated twice is the housing's motion, not the relative "
-            "displacement of the teeth: equal figures prove nothing without the path between",
-        )
-    )
-    return notices
+    def simulate(factors: Floats) -> Floats:
+        named = zip(names, map(float, factors), strict=True)
+        table = runs.scaled(dict(named))[chosen]
+        found = [table.near(line.speed) for line in lines]
+        return np.array([0.0 if line is None else line.displacement for line in found])
 
-
-def result_of(found: Comparison) -> Result:
-    """The comparison as labelled datasets, ready to store and to draw."""
-    rows = found.rows
-    values: dict[str, tuple[tuple[str, ...], Any]] = {
-        "measured_value": (("row",), [row.measured for row in rows]),
-        "simulated_value": (("row", "model"), [row.simulated for row in rows]),
-        "comparison_error": (("row", "model"), [row.errors for row in rows]),
-        "u_num": (("row",), [row.u_num for row in rows]),
-        "u_input": (("row",), [row.u_input for row in rows]),
-        "u_data": (("row",), [row.u_data for row in rows]),
-        "u_val": (("row",), [row.u_val for row in rows]),
-        "pinion_speed": (("row",), [row.speed for row in rows]),
-    }
-    table = label(values).assign_coords(
-        model=list(found.models),
-        quantity=("row", [row.quantity for row in rows]),
-        verdict=("row", [row.verdict for row in rows]),
-    )
-    empty = float("nan")
-    implied = label(
-        {
-            "pinion_speed": (("speed",), [item.speed for item in found.implied]),
-            "implied_acceleration": (
-                ("speed",),
-                [item.acceleration_g * STANDARD_GRAVITY for item in found.implied],
-            ),
-            "implied_shaft_speed": (
-                ("speed",),
-                [empty if item.shaft_speed is None else item.shaft_speed for item in found.implied],
-            ),
-            "mesh_line_offset": (
-                ("speed",),
-                [
-                    empty if item.offset_hertz is None else item.offset_hertz
-                    for item in found.implied
-                ],
-            ),
-            "line_bin_offset": (
-                ("speed",),
-                [empty if item.offset_bins is None else item.offset_bins for item in found.implied],
-            ),
-        }
-    )
-    return Result.of(
-        "comparison",
-        f"Models {' and '.join(found.models)} against {found.measured}",
-        {"comparison": table, "implied": implied},
-        found.notices,
-        conclusion=found.conclusion[:1].upper() + found.conclusion[1:] + ".",
-        figures=figures(found),
-        created=now(),
-    )
-
-
-def figures(found: Comparison) -> dict[str, Any]:
-    """The comparison as plain figures, in SI units."""
-    rows = [
-        {
-            "speed": row.speed,
-            "quantity": row.quantity,
-            "measured": row.measured,
-            "simulated": list(row.simulated),
-            "errors": list(row.errors),
-            "u_num": row.u_num,
-            "u_input": row.u_input,
-            "u_data": row.u_data,
-            "u_val": row.u_val,
-            "verdict": row.verdict,
-            "printed": list(row.printed),
-        }
-        for row in found.rows
-    ]
-    return {
-        "measured": found.measured,
-        "models": list(found.models),
-        "conclusion": found.conclusion,
-        "rows": rows,
-        "implied": [vars(item) for item in found.implied],
-        "notices": [list(pair) for pair in found.notices],
-    }
-
-
-def as_json(found: Comparison) -> str:
-    """:func:`figures` as a JSON text."""
-    return json.dumps(figures(found), indent=2, ensure_ascii=False)
+    return fit(simulate, names, measured=values, uncertainty=errors)

@@ -14,10 +14,10 @@ from thermogear.analysis.proof import Label
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import Simulation
 from thermogear.case.points import Points
+from thermogear.case.response import lost_share
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.signals.spectra import amplitude_spectrum, order_amplitudes
-from thermogear.study.response import lost_share
 
 Floats = NDArray[np.float64]
 Advance = Callable[[int, int], None]

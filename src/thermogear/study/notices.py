@@ -1,20 +1,23 @@
-"""What a reader of a sweep should know beside the numbers."""
+"""What a reader should know beside the numbers: of motions over a range, of friction and heat."""
 
 from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import PERIODIC
-from thermogear.base.display import reach
+from thermogear.base.display import CELSIUS, reach
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
-from thermogear.results.result import Result, stored_dataset
+from thermogear.heat.friction import LUBRICATED, beyond
+from thermogear.results.result import Notice, Result, stored_dataset
+
+Floats = NDArray[np.float64]
 
 
 def finished(data: xr.Dataset, title: str = "") -> Result:
@@ -98,8 +101,8 @@ def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
     return ", ".join(words)
 
 
-def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
-    """Notices as an attribute: the back side, and where the case's speeds lie."""
+def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:
+    """Contact, the back side, and where the case's speeds lie."""
     found = contact_notices(data) + back_side_notice(data)
     ratio = data["frequency_ratio"].values if "frequency_ratio" in data else np.empty(0)
     ratio = ratio[np.isfinite(ratio)]
@@ -120,4 +123,86 @@ def range_notices(case: GearCase, data: xr.Dataset) -> dict[str, Any]:
     jammed = int(np.count_nonzero(data["status"].values == 1))
     if jammed:
         found.append(f"{jammed} of {data['status'].size} points are jammed and have no motion")
-    return {"notices": json.dumps(found)}
+    return found
+
+
+def reasons(balance: xr.Dataset, bundle: str) -> str:
+    """Why points have no value at all, each reason once."""
+    why = json.loads(balance.attrs.get("lost", "{}")).get(bundle, {})
+    return f" No value: {'; '.join(dict.fromkeys(why.values()))}." if why else ""
+
+
+def several_words(*, several: int, count: int, hotter: float) -> str:
+    """That points have two steady states, and which one is told; ``hotter`` [K], nan: unknown."""
+    some = "1 point has" if several == 1 else f"{several} points have"
+    some = "The point has" if count == 1 else f"Of {count} points, {some}"
+    far = f", up to {hotter:.1f} K hotter" if np.isfinite(hotter) else ""
+    return (
+        f"{some} another steady state when they come from hot{far}: thinner oil lets the layer on "
+        "the gears turn turbulent, which drags more. All figures are those of the state reached "
+        "from cold."
+    ).replace("when they come", "when it comes" if several == 1 else "when they come")
+
+
+def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
+    """What the friction laws say of themselves: pitch point, ranges, the oil's range."""
+    if np.isfinite(groups["path"]["friction_coefficient_mixed"].values).any():
+        yield Notice(
+            "info",
+            "Benedict and Kelley's friction diverges where nothing slides; near the pitch "
+            "point the sliding speed is held above 1 % of the entrainment speed, and the "
+            "coefficient is 0 where the logarithm's argument falls below 1.",
+        )
+    path = groups["path"]
+    for place, model in enumerate(case.models):
+        here = path.isel(bundle=place)
+        share = float((here["friction_outside_range"].isel(state=-1).values == 1).mean())
+        if share > 0.0:
+            yield Notice(
+                "important",
+                f"{model.name}: the friction law {model.law.name} is outside its range on "
+                f"{100.0 * share:.0f} % of the path (hot, all operating points).",
+            )
+        eta = groups["mesh"].isel(bundle=place, state=-1)["dynamic_viscosity"].values
+        left = _left_out(case, here.isel(state=-1), eta)
+        if left:
+            yield Notice(
+                "info",
+                f"{model.name}: the band of friction laws leaves out, where they are outside "
+                f"their range: {'; '.join(left)}.",
+            )
+    yield from _film_beyond_oil(case, groups)
+
+
+def _film_beyond_oil(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:
+    """Where the film forms at flanks that leave the range of the oil's viscosity line."""
+    oil = case.stated.lubricant
+    low, high = (CELSIUS.text(t, 1) for t in oil.temperature_range)
+    for place, model in enumerate(case.models):
+        hot = groups["mesh"].isel(bundle=place, state=-1)["film_outside_range"].values == 1
+        where = ["the hot state"] if hot.any() else []
+        if "temperature" in groups:
+            row = groups["temperature"].isel(bundle=place)
+            beyond_oil = row["film_outside_range"] == 1
+            axes = [d for d in beyond_oil.dims if d != "gear_temperature"]
+            at = row["gear_temperature"].values[beyond_oil.any(axes).values]
+            where += [CELSIUS.text(float(t), 1) for t in at]
+        if where:
+            yield Notice(
+                "info",
+                f"{model.name}: the film forms at flanks that leave the range of {oil.name}'s "
+                f"viscosity line ({low} to {high}, from 2 mm²/s on): {', '.join(where)}. The "
+                "viscosity there is drawn out.",
+            )
+
+
+def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:
+    """Laws of oiled contacts outside their range, with the part of the path [%]."""
+    pair = case.pair
+    values: dict[str, ArrayLike | None] = {
+        "roughness": 0.5 * (pair.pinion.roughness + pair.wheel.roughness),
+        "viscosity": viscosity[:, None],
+        "film_parameter": here["film_parameter"].values,
+    }
+    parts = ((law.name, 100.0 * float(np.mean(beyond(law, values)))) for law in LUBRICATED)
+    return [f"{name} on {part:.0f} % of the path" for name, part in parts if part > 0.0]

@@ -8,8 +8,10 @@ dimensionless case has ``points`` alone.
 
 from __future__ import annotations
 
+import json
 import platform
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +20,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress, silent
-from thermogear.base.vocabulary import STATES, STATUS, attributes, label, labelled
+from thermogear.base.vocabulary import STATES, STATUS, attributes, dressed, label, labelled
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.case.citations import citations
 from thermogear.case.points import excitations, points_of
@@ -26,12 +28,14 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
+from thermogear.mesh.balance_table import OF_OIL, balance_dataset, blanked
+from thermogear.mesh.clearance import clearance
 from thermogear.mesh.model import MeshModel
+from thermogear.mesh.profile import profiles
+from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result, now
 from thermogear.study import run_notices
-from thermogear.study.balances import OF_OIL, balances, blanked
 from thermogear.study.motion import Motion, follow, follow_gears
-from thermogear.study.profile import profiles
 
 
 def run(case: Case, *, progress: Progress = silent) -> Result:
@@ -85,7 +89,7 @@ def _gear_groups(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
         groups["balance"] = balances(case)
     wanted = set(case.pictures)
     if "profile" in wanted:
-        groups["profile"] = profiles(case)
+        groups["profile"] = profiles(case.pair, case.operating, printed=of_the_thesis(case))
     if "motion" in wanted:
         groups["motion"] = _motion(case, cycles, "state", progress)
     if "temperature" in wanted and case.gear_temperatures:
@@ -125,13 +129,12 @@ def _cycle(case: GearCase, model: MeshModel, state: ThermalState) -> xr.Dataset:
     balance = state.balance(case, model)
     if balance is None:
         return cycle
-    lost = np.zeros(balance.settled.size, dtype=np.bool_)
-    lost[list(balance.lost)] = True
     if state == UNDEFORMED:
-        return blanked(cycle, lost, OF_OIL)
+        return blanked(cycle, balance, OF_OIL)
     status = cycle["status"]
     values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
-    return blanked(cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs)), lost)
+    told = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
+    return blanked(told, balance)
 
 
 def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
@@ -308,6 +311,58 @@ def _housing(case: GearCase) -> str:
     if case.temperature_rule is not None:
         return "follows" if case.temperature_rule.housing.below else "stays"
     return "stays" if "housing" in case.gearbox.measured else "computed"
+
+
+def balances(case: GearCase) -> xr.Dataset:
+    """The heat balance of every bundle of a case whose temperatures are computed."""
+    each = [balance_dataset(case.balance(model)) for model in case.models]
+    why = [json.loads(data.attrs.pop("lost")) for data in each]
+    lost = dict(zip((model.name for model in case.models), why, strict=True))
+    whole = xr.concat(each, _bundle_axis(case)).assign_attrs(lost=json.dumps(lost))
+    readings = [
+        {
+            "node": one.node,
+            "kind": one.kind,
+            "indicated_K": one.indicated,
+            "temperature_K": one.temperature,
+            "uncertainty_K": one.uncertainty,
+        }
+        for one in case.readings
+    ]
+    held = {name: float(np.ravel(t)[0]) for name, t in case.gearbox.measured.items()}
+    if case.readings:
+        whole["half_backlash_uncertainty"] = dressed(
+            ("operating",),
+            carried_uncertainty(case),
+            "m",
+            "standard uncertainty of the half backlash from the readings",
+        )
+    return whole.assign_attrs(readings=json.dumps(readings), held=json.dumps(held))
+
+
+def carried_uncertainty(case: GearCase) -> NDArray[np.float64]:
+    """Standard uncertainty [m] of the mean half backlash from the readings' own, (operating,).
+
+    Each reading is moved by its standard uncertainty up and down, the heat balance solved anew,
+    and the differences added in squares: first order, independent readings, the first model.
+    0 without readings.
+    """
+    model, at = case.models[0], case.stated
+    square = np.zeros(at.speed.size)
+    phase = np.arange(16) / 16.0
+    for one in case.readings:
+        if one.uncertainty == 0.0:
+            continue
+        ends = []
+        for sign in (1.0, -1.0):
+            held = {**case.gearbox.measured, one.node: one.temperature + sign * one.uncertainty}
+            box = replace(case.gearbox, measured=held)
+            moved = case.balance_of(model, at.speed, at.torque, gearbox=box, from_hot=False)
+            hot = HotPair(case.pair, moved.operating, model)
+            gap = clearance(hot, phase, case.deviations)
+            ends.append(gap.half_backlash.mean(axis=1))
+        square += (0.5 * (ends[0] - ends[1])) ** 2
+    return np.sqrt(square)
 
 
 # --- dimensionless cases ------------------------------------------------------------------

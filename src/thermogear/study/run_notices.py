@@ -25,8 +25,7 @@ from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
 from thermogear.results.result import Notice
-from thermogear.study.balances import reasons, several_words
-from thermogear.study.friction_notices import friction_notices
+from thermogear.study.notices import friction_notices, reasons, several_words
 
 Floats = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +13,12 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.bifurcations import FLIP, FOLD
-from thermogear.analysis.branches import with_branches
+from thermogear.analysis.branches import with_branches, with_branches_of_states
 from thermogear.analysis.family import axis_values
 from thermogear.analysis.follow import Leap, follow
 from thermogear.analysis.outcome import (
     outcome_arrays,
     outcome_variables,
-    rule_inputs,
     settle_with_status,
 )
 from thermogear.analysis.section import ReturnMap
@@ -30,15 +29,14 @@ from thermogear.base.units import RPM
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
+from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, finished, range_notices
-from thermogear.study.response import RECORD, Recording, respond, response_variables
 
 Floats = NDArray[np.float64]
 
-RUN_UP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 DIRECTIONS = (1, -1)
 BLOCK = 24
 KEEP = 16
@@ -57,15 +55,33 @@ APART = 1e-3
 """Half backlashes between two motions that are not one."""
 LEAP_KINDS = (FOLD, FLIP)
 LEAP = {
-    "leap_fold": "speed at which the followed motion leaves its branch",
-    "leap_to": "speed just behind, where the new motion stands",
-    "leap_before": "transmission error before, peak to peak",
-    "leap_after": "transmission error after, peak to peak",
-    "leap_kind": "0: at a fold, 1: at a subcritical period doubling",
-    "leap_x": "displacement of the new motion, in half backlashes",
-    "leap_v": "its velocity",
-    "leap_period": "periods of the new motion, 0: no orbit",
+    "leap_fold": ("speed at which the followed motion leaves its branch", "rad/s"),
+    "leap_to": ("speed just behind, where the new motion stands", "rad/s"),
+    "leap_before": ("transmission error before, peak to peak", "m"),
+    "leap_after": ("transmission error after, peak to peak", "m"),
+    "leap_kind": ("0: at a fold, 1: at a subcritical period doubling", "1"),
+    "leap_x": ("displacement of the new motion, in half backlashes", "1"),
+    "leap_v": ("its velocity", "1"),
+    "leap_period": ("periods of the new motion, 0: no orbit", "1"),
 }
+JUMP = {
+    "state": ("thermal state of the jump", "", ""),
+    "direction": ("1 up, -1 down", "", ""),
+    "kind": (LEAP["leap_kind"][0], "", "leap_kind"),
+    "from": ("last speed before the jump", "rad/s", "leap_fold"),
+    "to": ("first speed after it", "rad/s", "leap_to"),
+    "fold": (LEAP["leap_fold"][0], "rad/s", "leap_fold"),
+    "return": (
+        "speed at which a run back from there jumps again; NaN: not in this range, or "
+        "it runs into chaos before",
+        "rad/s",
+        "",
+    ),
+    "into": (LEAP["leap_period"][0], "", "leap_period"),
+    "before": (LEAP["leap_before"][0], "m", "leap_before"),
+    "after": (LEAP["leap_after"][0], "m", "leap_after"),
+}
+"""What is stored of a jump: in words, its unit, and what of the leap it is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +93,7 @@ class RunUpPlan:
     states: tuple[ThermalState, ...]
     bundle: str
     torque: float
-    rule: Rule = RUN_UP_RULE
+    rule: Rule = RULE
     record: Recording = RECORD
     block: int = BLOCK
     branch_period: int = 2
@@ -104,8 +120,8 @@ class RunUpPlan:
             "speeds": list(self.speeds),
             "temperatures": [state.stored for state in self.states],
             "torque": self.torque,
-            "rule": rule_inputs(self.rule),
-            "record": {f.name: getattr(self.record, f.name) for f in fields(self.record)},
+            "rule": asdict(self.rule),
+            "record": asdict(self.record),
             "block": self.block,
             "branch_period": self.branch_period,
         }
@@ -117,33 +133,22 @@ class RunUpPlan:
 
     def variables(self) -> dict[str, Variable]:
         dims = ("state", "direction", "pinion_speed")
-        nan = float("nan")
+
+        def real(words: str, units: str, *inner: str) -> Variable:
+            attributes = {"long_name": words, "units": units}
+            return Variable((*dims, *inner), "float64", float("nan"), attributes)
+
         found = outcome_variables(dims) | response_variables(dims, lines=True)
         for name in "xv":
-            found[f"section_{name}"] = Variable(
-                (*dims, "section"),
-                "float64",
-                nan,
-                {"long_name": "Poincare section in half backlashes", "units": "1"},
-            )
-            found[f"end_{name}"] = Variable(
-                dims, "float64", nan, {"long_name": "state carried on", "units": "1"}
-            )
-        found["end_speed"] = Variable(
-            dims, "float64", nan, {"long_name": "speed of the state carried on", "units": "rad/s"}
-        )
+            found[f"section_{name}"] = real("Poincare section in half backlashes", "1", "section")
+            found[f"end_{name}"] = real("state carried on", "1")
+        found["end_speed"] = real("speed of the state carried on", "rad/s")
         found["end_period"] = Variable(
             dims, "int32", 0, {"long_name": "periods of the orbit that is followed, 0: none"}
         )
-        units = {"leap_fold": "rad/s", "leap_to": "rad/s", "leap_before": "m", "leap_after": "m"}
-        for name, words in LEAP.items():
-            attributes = {"long_name": words, "units": units.get(name, "1")}
-            found[name] = Variable((*dims, "leap"), "float64", nan, attributes)
-        found["left_early"] = Variable(
-            dims, "int8", 0,
-            {"long_name": "1: a run in these steps alone leaves its branch before this speed"},
-        )  # fmt: skip
-        return found
+        found |= {name: real(*told, "leap") for name, told in LEAP.items()}
+        early = {"long_name": "1: a run in these steps alone leaves its branch before this speed"}
+        return found | {"left_early": Variable(dims, "int8", 0, early)}
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         reference = self.case.stated.temperatures.reference
@@ -166,11 +171,7 @@ class RunUpPlan:
                 np.array(self.speeds),
                 {"units": "rad/s", "long_name": "pinion speed"},
             ),
-            "order": (
-                ("order",),
-                self.record.orders,
-                {"units": "1", "long_name": "order of the mesh frequency"},
-            ),
+            "order": self.record.coordinate,
         }
 
     def needs(self, key: Key) -> Key | None:
@@ -244,9 +245,7 @@ class RunUpPlan:
             "total_periods": int(data["used_periods"].values.astype(np.int64).sum()),
         }
         data = _with_jumps(self, data)
-        data.attrs |= range_notices(self.case, data)
-        told = json.loads(data.attrs["notices"]) + difference_notices(data)
-        data.attrs["notices"] = json.dumps(told)
+        told = range_notices(self.case, data) + difference_notices(data)
         early = np.argwhere(data["left_early"].values > 0)
         if early.size:
             speeds = np.unique(np.array(self.speeds)[early[:, 2]]) / RPM
@@ -255,49 +254,24 @@ class RunUpPlan:
                 f"{', '.join(f'{s:.4g}' for s in speeds)} rpm the state of the speed before leads "
                 "elsewhere; the run shown follows the motion in finer steps"
             )
-            data.attrs["notices"] = json.dumps(told)
-        return data
+        return data.assign_attrs(notices=json.dumps(told))
 
 
 def _with_folds(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     """Branches and bifurcations of every thermal state, side by side."""
-    parts: list[xr.Dataset] = []
-    notes: list[str] = []
+    found: dict[int, xr.Dataset] = {}
     speeds = np.array(plan.speeds)
-    if speeds.size < 2:
-        return data
-    for state in range(len(plan.states)):
+    for state in range(len(plan.states) if speeds.size > 1 else 0):
         here = data.isel(state=state).expand_dims(start=1)
-        if not np.any(here["status"].values == 0):
-            continue
-        family = Tabulated.of(plan.family(state), speeds)
-        found = with_branches(here, family, "pinion_speed", plan.branch_period)
-        names = [n for n in found.data_vars if str(n).startswith(("branch_", "bifurcation_"))]
-        part = found[names].drop_vars(list(found.coords), errors="ignore")
-        part["branch_state"] = (("branch",), np.full(part.sizes.get("branch", 0), state, np.int32))
-        part["bifurcation_state"] = (
-            ("bifurcation",),
-            np.full(part.sizes.get("bifurcation", 0), state, np.int32),
-        )
-        parts.append(part)
-        notes.append(str(found.attrs.get("branch_notes", "")))
-    if not parts:
-        return data
-    longest = max(part.sizes.get("branch_point", 1) for part in parts)
-    for name in parts[0].data_vars:
-        rows = []
-        for part in parts:
-            values = part[name].values
-            if "branch_point" in part[name].dims:
-                gap = longest - values.shape[1]
-                values = np.pad(values, ((0, 0), (0, gap)), constant_values=np.nan)
-            rows.append(values)
-        first = parts[0][name]
-        data[str(name)] = (first.dims, np.concatenate(rows), first.attrs)
-    for name in ("branch_value", "bifurcation_value"):
-        data[name].attrs["units"] = "rad/s"
-    data.attrs["branch_notes"] = "; ".join(n for n in notes if n)
-    return data
+        if np.any(here["status"].values == 0):
+            family = Tabulated.of(plan.family(state), speeds)
+            found[state] = with_branches(here, family, "pinion_speed", plan.branch_period)
+    return with_branches_of_states(data, found, "rad/s")
+
+
+def _period(settled: Settled) -> int:
+    """Periods of the orbit a motion settled on; 0: no orbit."""
+    return int(settled.period[0]) if int(settled.label[0]) == PERIODIC else 0
 
 
 class _Run:
@@ -329,8 +303,7 @@ class _Run:
         else:
             self._walk(self.table, speed)
         found = self._settled(point, self.state)
-        calm = int(found.label[0]) == PERIODIC
-        if self.period > 0 and before is not None and calm:
+        if self.period > 0 and before is not None and _period(found) > 0:
             alone = self._settled(point, before)
             section = ReturnMap(point.flat)
             near = section.distance(alone.sections[0], found.sections[0][-1]).min()
@@ -368,7 +341,7 @@ class _Run:
         if bool(np.isfinite(settled.state).all()):
             self.state = settled.state[0]
         self.at = speed
-        self.period = int(settled.period[0]) if int(settled.label[0]) == PERIODIC else 0
+        self.period = _period(settled)
 
     def _single(self, speed: float) -> Points:
         assert self.table is not None
@@ -381,8 +354,7 @@ class _Run:
 
     def _settle(self, speed: float, state: Floats) -> tuple[Floats, int]:
         settled = self._settled(self._single(speed), state)
-        calm = int(settled.label[0]) == PERIODIC
-        return settled.state[0], int(settled.period[0]) if calm else 0
+        return settled.state[0], _period(settled)
 
     def returned(self, leap: Mapping[str, float], end: float) -> float:
         """Where a run from behind a jump back towards ``end`` first jumps; NaN: nowhere."""
@@ -424,51 +396,23 @@ class _Run:
 
 def _with_jumps(plan: RunUpPlan, data: xr.Dataset) -> xr.Dataset:
     """Where the followed motion left its branch, on the way up or down, and where it returns."""
-    rows: list[dict[str, float | int]] = []
+    rows: list[dict[str, float]] = []
     speeds = np.array(plan.speeds)
     for state in range(data.sizes["state"]):
         back: _Run | None = None
         for direction, sign in enumerate(DIRECTIONS):
             here = data.isel(state=state, direction=direction)
             for place, number in np.argwhere(np.isfinite(here["leap_fold"].values))[::sign]:
-                row = {name: float(here[name].values[place, number]) for name in LEAP}
+                leap = {name: float(here[name].values[place, number]) for name in LEAP}
                 if back is None:
                     back = _Run(plan, Tabulated.of(plan.family(state), speeds), keep_going)
-                rows.append(
-                    {
-                        "state": state,
-                        "direction": sign,
-                        "kind": int(row["leap_kind"]),
-                        "from": row["leap_fold"],
-                        "to": row["leap_to"],
-                        "fold": row["leap_fold"],
-                        "before": row["leap_before"],
-                        "after": row["leap_after"],
-                        "into": int(row["leap_period"]),
-                        "return": back.returned(row, float(speeds[0 if sign > 0 else -1])),
-                    }
-                )
-    units = {
-        "from": "rad/s", "to": "rad/s", "fold": "rad/s", "return": "rad/s",
-        "before": "m", "after": "m",
-    }  # fmt: skip
-    words = {
-        "state": "thermal state of the jump",
-        "direction": "1 up, -1 down",
-        "kind": "0: at a fold, 1: at a subcritical period doubling",
-        "from": "last speed before the jump",
-        "to": "first speed after it",
-        "fold": "speed at which the followed motion leaves its branch",
-        "return": "speed at which a run back from there jumps again; NaN: not in this range, or "
-        "it runs into chaos before",
-        "into": "periods of the new motion, 0: no orbit",
-        "before": "transmission error before, peak to peak",
-        "after": "transmission error after, peak to peak",
-    }
-    for name, long_name in words.items():
-        kind = np.int32 if name in ("state", "direction", "kind", "into") else float
-        attributes = {"long_name": long_name} | ({"units": units[name]} if name in units else {})
-        data[f"jump_{name}"] = (("jump",), np.array([r[name] for r in rows], kind), attributes)
+                again = back.returned(leap, float(speeds[0 if sign > 0 else -1]))
+                own = {"state": state, "direction": sign, "return": again}
+                rows.append(own | {n: leap[of] for n, (_, _, of) in JUMP.items() if of})
+    for name, (words, unit, _) in JUMP.items():
+        values = np.array([row[name] for row in rows], float if unit else np.int32)
+        attributes = {"long_name": words} | ({"units": unit} if unit else {})
+        data[f"jump_{name}"] = (("jump",), values, attributes)
     return data
 
 
@@ -479,7 +423,7 @@ def run_up_plan(
     temperatures: Sequence[StateLike] | None = None,
     bundle: str = "",
     torque: float | None = None,
-    rule: Rule = RUN_UP_RULE,
+    rule: Rule = RULE,
     branch_period: int = 2,
 ) -> RunUpPlan:
     """The plan of :func:`run_up`."""
@@ -519,7 +463,7 @@ def run_up(
     temperatures: Sequence[StateLike] | None = None,
     bundle: str = "",
     torque: float | None = None,
-    rule: Rule = RUN_UP_RULE,
+    rule: Rule = RULE,
     branch_period: int = 2,
     store: str | Path | None = None,
     threads: int | None = None,

@@ -20,17 +20,15 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
 from thermogear.base.excitation import Excitation, Periodic
-from thermogear.base.materials import LUBRICANTS, Lubricant
 from thermogear.base.parameters import PARAMETERS, Parameter
 from thermogear.base.progress import Progress, silent
-from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.case.points import excitations, points_of
 from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
 from thermogear.gears.pair import GearPair
-from thermogear.heat.lubrication import kinematic_viscosity
+from thermogear.heat.lubrication import grade
 from thermogear.mesh.excite import NO_ERROR, disc_inertia
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating, Temperatures
@@ -180,22 +178,6 @@ def salib(module: str) -> Any:
 def require_salib() -> None:
     """Refuse in one line where SALib is missing, before anything is computed."""
     salib("sample.sobol")
-
-
-def grade(viscosity_40: float) -> Lubricant:
-    """A mineral oil with the kinematic viscosity ``viscosity_40`` [m^2/s] at 40 °C.
-
-    Its viscosity at 100 °C follows the package's own mineral oils: nu_100 = c nu_40^p, fitted to
-    them.
-    """
-    known = [LUBRICANTS[name] for name in sorted(LUBRICANTS) if name.startswith("M")]
-    warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
-    low = np.log([float(kinematic_viscosity(one, warm)) for one in known])
-    high = np.log([float(kinematic_viscosity(one, hot)) for one in known])
-    slope, level = np.polyfit(low, high, 1)
-    at_100 = float(np.exp(level + slope * np.log(viscosity_40)))
-    name = f"mineral oil of {viscosity_40 * 1e6:.4g} mm2/s"
-    return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))
 
 
 def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress = silent) -> Result:
@@ -385,41 +367,24 @@ def _case_of(case: GearCase, speed: float, at: dict[str, Floats], count: int) ->
     Without its kinematic error, which each sample has to its own size.
     """
     one = {name: float(at[name][0]) for name in FIXED if name in at}
-    pair = _pair(case, one)
+    given = (case.pair.pinion, case.pair.wheel)
+    own: dict[str, Any] = {n: one[n] for n in ("face_width", "roughness") if n in one}
+    pinion, wheel = (replace(gear, **own) for gear in given)
+    # of discs that are as wide as the gears
+    first, second = (
+        disc_inertia(new, radius=new.pitch_radius) / disc_inertia(old, radius=old.pitch_radius)
+        for new, old in zip((pinion, wheel), given, strict=True)
+    )
     return replace(
         case,
-        pair=pair,
-        inertias=_inertias(case, pair),
+        pair=GearPair(pinion, wheel, case.pair.centre_distance),
+        inertias=(case.inertias[0] * first, case.inertias[1] * second),
         stated=_operating(case, speed, at, one, count),
         computed=False,
         transmission_error=NO_ERROR,
         mesh_positions=PHASES,
         harmonics=HARMONICS,
     )
-
-
-def _pair(case: GearCase, at: dict[str, float]) -> GearPair:
-    pinion, wheel = (
-        replace(
-            gear,
-            face_width=at.get("face_width", gear.face_width),
-            roughness=at.get("roughness", gear.roughness),
-        )
-        for gear in (case.pair.pinion, case.pair.wheel)
-    )
-    return GearPair(pinion, wheel, case.pair.centre_distance)
-
-
-def _inertias(case: GearCase, pair: GearPair) -> tuple[float, float]:
-    """The case's inertias, of discs that are as wide as the gears."""
-    first, second = (
-        disc_inertia(new, radius=new.pitch_radius) / disc_inertia(old, radius=old.pitch_radius)
-        for new, old in (
-            (pair.pinion, case.pair.pinion),
-            (pair.wheel, case.pair.wheel),
-        )
-    )
-    return case.inertias[0] * first, case.inertias[1] * second
 
 
 def _error(case: GearCase, amplitude: float | None) -> Periodic:

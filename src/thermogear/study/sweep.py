@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,6 @@ from thermogear.analysis.family import axis_values
 from thermogear.analysis.outcome import (
     outcome_arrays,
     outcome_variables,
-    rule_inputs,
     settle_with_status,
 )
 from thermogear.analysis.settle import Rule
@@ -32,15 +32,14 @@ from thermogear.base.plan import (
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
+from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import finished, range_notices
-from thermogear.study.response import RECORD, Recording, respond, response_variables
 
 Floats = NDArray[np.float64]
 
-SWEEP_RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
 CHUNK_POINTS = 128
 
 
@@ -51,7 +50,7 @@ class SweepPlan:
     family: GearFamily
     axes: tuple[tuple[float, ...], ...]
     start: tuple[float, float]
-    rule: Rule = SWEEP_RULE
+    rule: Rule = RULE
     record: Recording = RECORD
     kind: str = "sweep"
 
@@ -75,8 +74,8 @@ class SweepPlan:
             "model": self.family.inputs(),
             "axes": {n: list(v) for n, v in zip(self.family.names, self.axes, strict=True)},
             "initial_state": list(self.start),
-            "rule": rule_inputs(self.rule),
-            "record": {f.name: getattr(self.record, f.name) for f in fields(self.record)},
+            "rule": asdict(self.rule),
+            "record": asdict(self.record),
         }
 
     def variables(self) -> dict[str, Variable]:
@@ -85,8 +84,7 @@ class SweepPlan:
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         found = axis_coordinates(self.family.names, self.family.units, self.axes)
-        orders = {"units": "1", "long_name": "order of the mesh frequency"}
-        return found | {"order": (("order",), self.record.orders, orders)}
+        return found | {"order": self.record.coordinate}
 
     def needs(self, key: Key) -> Key | None:
         return None
@@ -119,9 +117,11 @@ class SweepPlan:
         return {name: a.reshape(*shape, *a.shape[1:]) for name, a in flat.items()}
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        data.attrs |= {"bundle": self.family.bundle, "state": self.family.state.stored}
-        data.attrs |= range_notices(self.family.case, data)
-        return data
+        return data.assign_attrs(
+            bundle=self.family.bundle,
+            state=self.family.state.stored,
+            notices=json.dumps(range_notices(self.family.case, data)),
+        )
 
 
 def _by_long_names(axes: Mapping[str, ArrayLike]) -> dict[str, Floats]:
@@ -141,7 +141,7 @@ def sweep_plan(
     *,
     bundle: str = "",
     state: StateLike = HOT,
-    rule: Rule = SWEEP_RULE,
+    rule: Rule = RULE,
     record: Recording = RECORD,
 ) -> SweepPlan:
     """The plan of :func:`sweep`."""
@@ -163,7 +163,7 @@ def sweep(
     *,
     bundle: str = "",
     state: StateLike = HOT,
-    rule: Rule = SWEEP_RULE,
+    rule: Rule = RULE,
     store: str | Path | None = None,
     threads: int | None = None,
     scheduler: str | None = None,

@@ -21,13 +21,14 @@ from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.film import regime_shares
 from thermogear.heat.scuffing import scuffing_margin, scuffing_temperature
 from thermogear.mesh.balance import HeatBalance
+from thermogear.mesh.balance_table import balance_dataset, blanked
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.result import Notice, Result
-from thermogear.study.balances import balance_dataset, blanked, several_words
-from thermogear.study.trends import QUANTITIES, conclusion, verdicts
+from thermogear.study.notices import several_words
 
 Floats = NDArray[np.float64]
 KIND = "temperature"
@@ -221,9 +222,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     merged["tempered"] = dressed(
         along, (teeth > hottest).astype(np.int8), "1", "1 where the steel is tempered"
     )
-    lost = np.zeros(status.size, dtype=np.bool_)
-    lost[list(settled.lost)] = True
-    return blanked(merged, lost).assign_coords(
+    return blanked(merged, settled).assign_coords(
         regime_name=list(REGIMES),
         estimate=list(ESTIMATES),
         path_position=labelled("path_position", cycle["path_position"].values),
@@ -314,9 +313,6 @@ def _notices(
         f"{int(grid['iterations'].max())} iterations, greatest residual of a settled point "
         f"{float(np.max(grid['residual'].values[settled], initial=0.0)):.1e} K.",
     )
-
-
-__all__ = ["GRID", "KIND", "LUBRICATIONS", "QUANTITIES", "SPEEDS", "TORQUES", "thermal_map"]
 
 
 def _in_proportion(kelvin: NDArray[np.float64], reference: float) -> str:

@@ -5,41 +5,32 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.base import bounds
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
-from thermogear.case.columns import read_columns, require_times
-from thermogear.case.duty import point_duty
+from thermogear.case.duty import Measured, point_duty
 from thermogear.case.gearbox_schema import NODES
-from thermogear.case.sensors import SENSORS, Shown, shown_by
+from thermogear.case.sensors import Shown, shown_by
+from thermogear.mesh.balance_table import LOSSES
 from thermogear.mesh.clearance import clearance
-from thermogear.mesh.cycle import mesh_cycle
-from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
-from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, warm_up, with_factors
+from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
-from thermogear.study.balances import LOSSES
 
 Floats = NDArray[np.float64]
 KIND = "warmup"
-PATH_POSITIONS = 41
 LEAST_LOSS = 5e-9
 """A steady loss of backlash [m] below which another one is no share of it."""
-MESH_POSITIONS = 96
-BLOCK = 100
-"""Moments whose mesh is solved together: memory and progress, not the result."""
 MOMENTS = 400
 """About so many moments are stored, and at least 12 of each piece of the duty."""
 MOST_OF_ONE = 120
@@ -49,37 +40,6 @@ FIT_TOLERANCE = 3e-3
 """Of a step's error [K] while factors are looked for: far below any thermometer's."""
 
 ALONG = ("moment",)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Measured:
-    """A measured record: ``time`` [s], ``names`` of nodes or sensors, ``values`` [K] or nan."""
-
-    time: Floats
-    names: tuple[str, ...]
-    values: Floats
-
-
-def read_measured(path: str | Path, field: str = "measured") -> Measured:
-    """The record in a CSV file with units in its head: ``time [min],pinion_tooth [degC],...``.
-
-    Columns are named by nodes of the heat balance or by sensors; empty cells are left out. Units as
-    in a case file, times [s] from the start of the duty. Raises InputError in one line.
-    """
-    kinds = {"time": "time"} | dict.fromkeys((*NODES, *SENSORS), "temperature")
-    table = read_columns(path, field, kinds, ("time",), gaps=True)
-    when = table.pop("time")
-    require_times(when, field)
-    values = np.stack([c.values for c in table.values()], axis=1) if table else np.empty((0, 0))
-    if not np.any(np.isfinite(values)):
-        raise InputError(
-            field,
-            "no temperature",
-            allowed="time and one or more of " + ", ".join((*NODES, *SENSORS)),
-        )
-    for name, column in table.items():
-        bounds.BODY.require(f"{field}.{name}", column.values[np.isfinite(column.values)])
-    return Measured(time=when.values, names=tuple(table), values=values)
 
 
 def chosen_point(case: GearCase) -> tuple[float, float]:
@@ -200,61 +160,6 @@ def _course(
 # --- over time ------------------------------------------------------------------------------
 
 
-def _mesh(case: GearCase, operating: Operating, progress: Progress) -> dict[str, Floats]:
-    """Flash, film and stiffness at every moment, solved in blocks."""
-    found: dict[str, list[Floats]] = {}
-    count = operating.speed.size
-    bodies: dict[str, Any] = operating.temperatures.bodies
-    for first in range(0, count, BLOCK):
-        progress("mesh", first, count)
-        here = slice(first, first + BLOCK)
-        part = replace(
-            operating,
-            speed=operating.speed[here],
-            torque=operating.torque[here],
-            oil_temperature=np.asarray(operating.oil_temperature)[here],
-            temperatures=replace(operating.temperatures, **{n: t[here] for n, t in bodies.items()}),
-        )
-        cycle = mesh_cycle(
-            case.pair,
-            part,
-            case.models[0],
-            deviations=case.deviations,
-            path_positions=PATH_POSITIONS,
-            mesh_positions=MESH_POSITIONS,
-        )
-        loaded = part.torque > 0.0
-        turning = loaded & (part.speed > 0.0)
-        film = cycle["film_parameter"].min("path_position").values
-        friction = cycle["friction_coefficient"] * cycle["line_load"]
-        carried = cycle["line_load"].sum("path_position").values
-        for name, values in {
-            "greatest_flash": cycle["flash_temperature"].max("path_position").values,
-            "greatest_contact_temperature": cycle["contact_temperature"]
-            .max("path_position")
-            .values,
-            "least_film_parameter": np.where(turning, film, np.nan),
-            "mean_friction": np.where(
-                turning,
-                friction.sum("path_position").values / np.where(carried > 0.0, carried, 1.0),
-                np.nan,
-            ),
-            "mean_stiffness": np.where(loaded, cycle["mean_stiffness"].values, np.nan),
-        }.items():
-            found.setdefault(name, []).append(values)
-    progress("mesh", count, count)
-    return {name: np.concatenate(parts) for name, parts in found.items()}
-
-
-_WORDS = {
-    "greatest_flash": ("K", "greatest flash temperature along the path"),
-    "greatest_contact_temperature": ("K", "greatest contact temperature along the path"),
-    "least_film_parameter": ("1", "least film parameter along the path"),
-    "mean_friction": ("1", "friction coefficient, mean by load"),
-    "mean_stiffness": ("N/m", "mean mesh stiffness"),
-}
-
-
 def _course_dataset(
     case: GearCase, course: WarmUp, shown: Sequence[Shown], progress: Progress
 ) -> xr.Dataset:
@@ -304,9 +209,9 @@ def _course_dataset(
             ALONG, course.course.imbalance, "1", "|kept - in + out| over the heat turned over"
         ),
     }  # fmt: skip
-    meshing = _mesh(case, course.operating, progress)
+    meshed = meshing(case.pair, course.operating, case.models[0], case.deviations, progress)
     return label(
-        each | {name: (ALONG, values, *_WORDS[name]) for name, values in meshing.items()},
+        each | meshed,
         {
             "node": nodes,
             "loss_kind": list(LOSSES),
@@ -330,9 +235,6 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
     except InputError:
         known = False
     model = case.models[0]
-    left = np.full(duty.pieces, np.nan)
-    settled = np.zeros(duty.pieces, np.int8)
-    nodes: dict[str, Floats] = {}
     points = np.stack([duty.ambient, duty.speed, duty.torque], axis=1)
     unique, back = np.unique(points, axis=0, return_inverse=True)
     values = np.full(len(unique), np.nan)
@@ -356,13 +258,12 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         for name, t in balance.steady.temperatures.items():
             whole = temperatures.setdefault(name, np.full(len(unique), np.nan))
             whole[here] = np.where(settled_here, np.broadcast_to(t, here.shape), np.nan)
-    left, settled = values[back], fine[back]
     nodes = {name: t[back] for name, t in temperatures.items()}
     along = ("piece",)
     return label(
         {
-            "half_backlash": (along, left, "m", "least half backlash if held for good"),
-            "settled": (along, settled, "1", "1 where there is a steady state"),
+            "half_backlash": (along, values[back], "m", "least half backlash if held for good"),
+            "settled": (along, fine[back], "1", "1 where there is a steady state"),
             "several": (along, twice[back], "1", "1 where from hot another one is reached"),
             "node_temperature": (
                 ("piece", "node"),
@@ -385,7 +286,7 @@ def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]
     rest = float(steady["half_backlash"][one.piece])
     lost, lost_for_good = cold - one.half_backlash, cold - rest
     ratio = lost / lost_for_good - 1.0 if lost_for_good > LEAST_LOSS else np.nan
-    numbers = {
+    return {
         "time_s": one.time,
         "half_backlash_m": one.half_backlash,
         "margin_K": one.margin,
@@ -396,15 +297,12 @@ def _worst(case: GearCase, course: WarmUp, steady: xr.Dataset) -> dict[str, Any]
         "end_s": float(course.time[-1]),
         "pinion_speed_rpm": float(course.duty.speed[one.piece]) / RPM,
         "pinion_torque_Nm": float(course.duty.torque[one.piece]),
+        "piece": one.piece,
+        "temperatures_K": one.temperatures,
+        "at_the_end": bool(one.time >= course.time[-1]),
+        "warmed": bool(one.temperatures["pinion_tooth"] > course.temperatures["pinion_tooth"][0]),
+        "at_the_start": bool(one.time <= course.time[0]),
     }
-    found: dict[str, Any] = {n: v if np.isfinite(v) else None for n, v in numbers.items()}
-    found["piece"] = one.piece
-    found["temperatures_K"] = one.temperatures
-    found["at_the_end"] = bool(one.time >= course.time[-1])
-    first = {name: float(t[0]) for name, t in course.temperatures.items()}
-    found["warmed"] = one.temperatures["pinion_tooth"] > first["pinion_tooth"]
-    found["at_the_start"] = bool(one.time <= course.time[0])
-    return found
 
 
 # --- against a record -------------------------------------------------------------------------
@@ -471,24 +369,19 @@ def _fit_dataset(found: Fit) -> xr.Dataset:
     )
 
 
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
-
-
 def _fit_words(found: Fit | None) -> dict[str, Any]:
     if found is None:
         return {}
     return {
         "factors": [
-            {"name": f.name, "value": f.value, "low": _finite(f.low), "high": _finite(f.high)}
-            for f in found.factors
+            {"name": f.name, "value": f.value, "low": f.low, "high": f.high} for f in found.factors
         ],
         "rms_before_K": found.before,
         "rms_after_K": found.after,
         "count": found.count,
         "effective": found.effective,
         "autocorrelation": found.autocorrelation,
-        "correlation": _finite(found.correlation),
+        "correlation": found.correlation,
         "runs": found.runs,
     }
 
@@ -505,7 +398,7 @@ def _notices(
     worst: Mapping[str, Any],
     seconds: float,
 ) -> Iterator[Notice]:
-    if worst["half_backlash_m"] is not None and worst["half_backlash_m"] <= 0.0:
+    if worst["half_backlash_m"] <= 0.0:
         first = f"{course.jams[0] / 60.0:.2f} min" if course.jams.size else "the start"
         yield Notice("important", f"The pair jams: the backlash is used up at {first}.")
     if course.course.too_hot:

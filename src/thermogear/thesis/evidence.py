@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.case.case import DimensionlessCase, GearCase, gear_case, load_example
+from thermogear.measured.comparison import Comparison
 from thermogear.mesh.model import MeshModel
 from thermogear.results.result import Result
-from thermogear.study.compare import Comparison, compare
+from thermogear.study.compare import compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import chain, motions
@@ -154,3 +155,23 @@ class Evidence:
     def textbook(self) -> MeshModel:
         """The thesis's bundle."""
         return MeshModel.thesis()
+
+    @cached_property
+    def contact_at_a(self) -> dict[str, float]:
+        """The contact at A, first operating point, hot, consistent bundle, oil as supplied (SI)."""
+        here = self.bundle("path", "consistent").isel(operating=0, path_position=0)
+        supplied = self.bundle("mesh", "thesis").isel(operating=0)
+        shared = self.groups["path"].isel(operating=0, path_position=0)
+        pair = self.case.pair
+        return {
+            "load": float(here["line_load"]),
+            "v1": float(shared["pinion_rolling_velocity"]),
+            "v2": float(shared["wheel_rolling_velocity"]),
+            "width": float(here["hertz_half_width"]),
+            "friction": float(here["friction_coefficient_mixed"]),
+            "viscosity": float(supplied["dynamic_viscosity"]),
+            "roughness": 0.5 * (pair.pinion.roughness + pair.wheel.roughness),
+            "b1": pair.pinion.material.thermal_contact_coefficient,
+            "b2": pair.wheel.material.thermal_contact_coefficient,
+            "radius": float(shared["reduced_radius"]),
+        }

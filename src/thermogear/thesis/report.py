@@ -13,18 +13,12 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.results.result import Result, now
 from thermogear.study.sensitivity import plain_words
-from thermogear.thesis import section2, section3, section4, section5, section6
-from thermogear.thesis.claim import Claim, Finding, Verdict
+from thermogear.thesis import section6
+from thermogear.thesis.claim import Finding, Verdict
 from thermogear.thesis.document import table
 from thermogear.thesis.evidence import STAGES, Evidence, Size
 
-CLAIMS: tuple[Claim, ...] = (
-    *section2.CLAIMS,
-    *section3.CLAIMS,
-    *section4.CLAIMS,
-    *section5.CLAIMS,
-    *section6.CLAIMS,
-)
+CLAIMS = section6.EARLIER + section6.CLAIMS
 """Every claim of sections 2 to 6, in the document's order."""
 
 TITLE = "The thesis, claim by claim"

@@ -6,9 +6,9 @@ import numpy as np
 
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import UNDEFORMED
+from thermogear.measured.comparison import Row
 from thermogear.measured.published import THESIS_5_2, SpeedLine, unstated_processing
 from thermogear.signals.integration import trapezoid_factor
-from thermogear.study.compare import Row
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
 

@@ -5,20 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from thermogear.base.vocabulary import UNDEFORMED
-from thermogear.thesis import section2, section3, section4, section5
+from thermogear.thesis import section2, section2_growth, section3, section4, section5
 from thermogear.thesis.claim import Claim, Finding, Verdict, listed, verdict_of
 from thermogear.thesis.evidence import Evidence
 
+EARLIER: tuple[Claim, ...] = (
+    *section2.CLAIMS, *section2_growth.CLAIMS, *section3.CLAIMS, *section4.CLAIMS, *section5.CLAIMS
+)  # fmt: skip
+"""Every claim of sections 2 to 5, in the document's order."""
 SENSITIVITY = "thermogear.study.sensitivity.sensitivity"
 GRID = "thermogear.thesis.chain.operating_grid"
 
 
 def judged(e: Evidence, number: str) -> Finding:
     """The finding of an earlier row."""
-    rows: tuple[Claim, ...] = (
-        *section2.CLAIMS, *section3.CLAIMS, *section4.CLAIMS, *section5.CLAIMS
-    )  # fmt: skip
-    return next(claim for claim in rows if claim.number == number).judge(e)
+    return next(claim for claim in EARLIER if claim.number == number).judge(e)
 
 
 def _holds(e: Evidence, output: str) -> str:

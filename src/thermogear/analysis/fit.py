@@ -1,26 +1,19 @@
-"""Parameters of a case fitted to measured lines, with the fit's own uncertainty.
+"""Factors of any simulation fitted to data by least squares, with the fit's own uncertainty.
 
-Every parameter is fitted as a factor on what the case states, on a logarithmic scale, so that
-it keeps its sign and its unit.
+Every parameter is a factor on a stated value, on a logarithmic scale, so that it keeps its sign
+and its unit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.measured.published import LineTable
-from thermogear.study.simulated import overrides_of, tree_lines
-
-if TYPE_CHECKING:
-    from thermogear.case.case import Case
 
 Floats = NDArray[np.float64]
 
@@ -126,50 +119,3 @@ def _cosine(jacobian: Floats, i: int, j: int) -> float:
     a, b = jacobian[:, i], jacobian[:, j]
     length = float(np.linalg.norm(a) * np.linalg.norm(b))
     return float(a @ b) / length if length > 0 else 0.0
-
-
-def fit_case(
-    case: Case | str | Path,
-    measured: LineTable,
-    names: Sequence[str] = ("dynamics.damping_ratio",),
-    model: str | None = None,
-    u_data: float = 0.05,
-) -> Fit:
-    """Fields of a case fitted to the displacements of a table of lines.
-
-    ``names``: dotted fields with one number each, or "transmission_error.amplitude" for all its
-    amplitudes together. ``model`` as "consistent hot" (default: the last of the case);
-    ``u_data`` the relative uncertainty of lines that state none.
-    """
-    from thermogear.case.case import Case as CaseType
-    from thermogear.case.case import load_case
-    from thermogear.study.run import run
-
-    if isinstance(case, CaseType):
-        text, kept = case.text, dict(case.overrides)
-    else:
-        text, kept = load_case(case).text, {}
-    kept["draw.pictures"] = '["motion"]'
-
-    def tables(changes: Mapping[str, str]) -> Mapping[str, LineTable]:
-        return tree_lines(run(load_case(text, {**kept, **changes})))
-
-    base = tables({})
-    chosen = model or list(base)[-1]
-    if chosen not in base:
-        raise InputError("model", repr(chosen), allowed=", ".join(base))
-    lines = [line for line in measured.lines if base[chosen].near(line.speed) is not None]
-    if not lines:
-        raise InputError("speeds", measured.name, why="none of them is simulated")
-    values = np.array([line.displacement for line in lines])
-    errors = values * np.array([line.uncertainty or u_data for line in lines])
-
-    def simulate(factors: Floats) -> Floats:
-        changes: dict[str, str] = {}
-        for name, factor in zip(names, factors, strict=True):
-            changes |= overrides_of(text, kept, name, float(factor))
-        table = tables(changes)[chosen]
-        found = [table.near(line.speed) for line in lines]
-        return np.array([0.0 if line is None else line.displacement for line in found])
-
-    return fit(simulate, names, measured=values, uncertainty=errors)

@@ -10,7 +10,7 @@ import pytest
 
 from thermogear import InputError, run
 from thermogear.case.case import load_example
-from thermogear.study.versus import (
+from thermogear.results.versus import (
     MOST_CASES,
     OWN,
     Stored,

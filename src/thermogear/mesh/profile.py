@@ -1,4 +1,4 @@
-"""The tooth's flank cold and consistently hot; for the thesis's rig also as printed, hot."""
+"""The tooth's flank cold and hot; where it is asked for also hot as printed."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import label
-from thermogear.case.case import GearCase
-from thermogear.case.thesis_cases import of_the_thesis
+from thermogear.gears.pair import GearPair
 from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
 from thermogear.mesh.model import MeshModel
+from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
@@ -18,16 +18,15 @@ Floats = NDArray[np.float64]
 POINTS = 61
 
 
-def profiles(case: GearCase) -> xr.Dataset:
+def profiles(pair: GearPair, operating: Operating, *, printed: bool) -> xr.Dataset:
     """One flank of each gear, form circle to tip: coordinates [m], y the tooth's centre line.
 
-    The first operating point's temperatures hold. ``consistent`` is the hot profile; ``printed``,
-    for the thesis's rig alone, the one with the angle as printed (whose second term carries 1/K).
+    The first operating point's temperatures hold. ``consistent`` is the hot profile; where it is
+    asked for, ``printed`` the one with the angle as printed (whose second term carries 1/K).
     """
-    hot = HotPair(case.pair, case.operating, MeshModel.consistent())
-    printed = of_the_thesis(case)
+    hot = HotPair(pair, operating, MeshModel.consistent())
     columns: dict[str, list[Floats]] = {}
-    for gear in (case.pair.pinion, case.pair.wheel):
+    for gear in (pair.pinion, pair.wheel):
         r = np.linspace(max(gear.form_radius, gear.base_radius), gear.tip_radius, POINTS)
         psi = gear.half_thickness_angle(r)
         field = hot.field(gear)

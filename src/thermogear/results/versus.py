@@ -17,9 +17,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.toml import overridden, pairs, tables
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import attributes, label, told_labels
-from thermogear.case.source import overridden, pairs, tables
 from thermogear.results.result import Notice, Result
 
 MOST_CASES = 6
@@ -468,18 +468,3 @@ def _rounded(values: xr.DataArray) -> list[float]:
 def _union(lists: Sequence[Sequence[Any]]) -> list[Any]:
     """Every entry once, in the order of first appearance."""
     return list(dict.fromkeys(entry for each in lists for entry in each))
-
-
-__all__ = [
-    "MOST_CASES",
-    "OWN",
-    "Stored",
-    "choices",
-    "differences",
-    "flat",
-    "require_number",
-    "require_one_kind",
-    "stored",
-    "unique_titles",
-    "versus",
-]

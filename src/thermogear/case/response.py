@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.analysis.settle import Rule
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.case.points import Points
 from thermogear.dynamics import exact
@@ -48,8 +49,15 @@ class Recording:
         count = round(self.highest_order / self.order_step)
         return np.asarray(self.order_step * np.arange(1, count + 1, dtype=float))
 
+    @property
+    def coordinate(self) -> tuple[tuple[str, ...], Floats, dict[str, Any]]:
+        """:attr:`orders` as the axis of stored lines."""
+        return ("order",), self.orders, {"units": "1", "long_name": "order of the mesh frequency"}
+
 
 RECORD = Recording()
+RULE = Rule(first=128, cap=8192, settled=1e-6, chaos_periods=1000)
+"""How long the motion of gears is followed in run-ups and sweeps."""
 ROUNDING = 1e-12
 
 

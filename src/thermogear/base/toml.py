@@ -1,0 +1,80 @@
+"""The nested tables of a TOML text, and dotted overrides put into them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from thermogear.base.errors import InputError, short
+
+NAMED = {"model.friction": "law"}
+"""A name that may stand for a table, and the field of the table that holds it."""
+
+_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
+
+
+def tables(name: str, text: str) -> dict[str, Any]:
+    """The tables of a TOML text; a syntax error names line and column."""
+    if not text.strip():
+        raise InputError(name, "an empty file", fix="`thermogear example rig` shows a case file")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as cause:
+        match = re.fullmatch(r"(?P<what>.*) \(at (?P<where>.*)\)", str(cause), re.DOTALL)
+        what, where = (match["what"], match["where"]) if match else (str(cause), "some line")
+        unquoted = what.startswith(("Invalid value", "Expected newline"))
+        fix = 'a value with its unit stands in quotes: "5 mm"' if unquoted else None
+        if text.lstrip().startswith(("{", "<")):
+            fix = "a case file is TOML; `thermogear example rig` shows one"
+        elif what.startswith("Illegal character '\\n'"):
+            fix = "a text ends with the quote it began with"
+        raise InputError(name, f"invalid TOML at {where}", why=what, fix=fix) from cause
+    except (ValueError, RecursionError) as cause:
+        raise InputError(name, "a number or a nesting beyond reason", allowed="TOML") from cause
+
+
+def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Overrides as (dotted path, text), from a mapping or from ``"a.b=c"``."""
+    if isinstance(overrides, Mapping):
+        return tuple((str(key), str(value)) for key, value in overrides.items())
+    found = []
+    for text in overrides:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(
+                "--set", short(text), allowed="PATH=VALUE", fix="write gears.pinion.teeth=30"
+            )
+        found.append((key.strip(), value.strip()))
+    return tuple(found)
+
+
+def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> dict[str, Any]:
+    """``data`` with ``changes`` put in, in place; a table on the way is made where missing."""
+    for path, text in changes:
+        if not _KEY.fullmatch(path):
+            raise InputError("--set", short(path), allowed="a dotted path: gears.pinion.teeth")
+        *way, last = path.split(".")
+        table: Any = data
+        for depth, key in enumerate(way):
+            above, table = table, table.setdefault(key, {})
+            if isinstance(table, str) and ".".join(way[: depth + 1]) in NAMED:
+                table = above[key] = {NAMED[".".join(way[: depth + 1])]: table}
+            if not isinstance(table, dict):
+                raise InputError(
+                    path,
+                    "an unknown path",
+                    why=f"{'.'.join(way[: depth + 1])} is a value, not a table",
+                )
+        table[last] = _value(text)
+    return data
+
+
+def _value(text: str) -> Any:
+    """The value of an override: TOML where it is TOML, else the text itself."""
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return parsed["value"] if set(parsed) == {"value"} else text

@@ -1,0 +1,384 @@
+"""Measured lines against simulated ones: errors, uncertainties, verdicts, what the lines imply.
+
+The verdict follows the validation uncertainty of ASME V&V 20: u_val^2 = u_num^2 + u_input^2 +
+u_D^2, and one model is better than another only where their errors differ by more than u_val.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from thermogear.base.errors import InputError
+from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.base.vocabulary import label
+from thermogear.measured.published import LineTable, Printed, SpeedLine, unstated_processing
+from thermogear.measured.reduction import Measurement
+from thermogear.results.result import Notice, Result, now
+
+_IMPLAUSIBLE_G = 50.0
+_DEEPEST_SUBHARMONIC = 16
+UNCERTAINTIES = ("u_num", "u_input", "u_data", "u_val")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One quantity at one speed; uncertainties relative to ``measured`` (standard, k = 1)."""
+
+    speed: float
+    quantity: str
+    measured: float
+    simulated: tuple[float, ...]
+    u_num: float = 0.0
+    u_input: float = 0.0
+    u_data: float = 0.0
+    verdict: str = ""
+    printed: tuple[str, ...] = ()
+
+    @property
+    def errors(self) -> tuple[float, ...]:
+        """(simulated - measured)/measured of every model."""
+        return tuple(one / self.measured - 1.0 for one in self.simulated)
+
+    @property
+    def u_val(self) -> float:
+        """Validation uncertainty, the root of the sum of squares."""
+        return float(np.sqrt(self.u_num**2 + self.u_input**2 + self.u_data**2))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Implied:
+    """What a measured line says if taken at its word."""
+
+    speed: float
+    acceleration_g: float
+    shaft_speed: float | None
+    offset_hertz: float | None
+    offset_bins: float | None
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Rows for every speed, what the lines imply, and what should be known before believing."""
+
+    measured: str
+    models: tuple[str, ...]
+    rows: tuple[Row, ...]
+    implied: tuple[Implied, ...]
+    notices: tuple[Notice, ...]
+
+    @property
+    def conclusion(self) -> str:
+        """One sentence on the displacement rows."""
+        verdicts = [row.verdict for row in self.rows if row.quantity == "displacement"]
+        if len(self.models) < 2:
+            return "one model: its errors stand beside u_val, no other to be better than"
+        counts = {v: verdicts.count(v) for v in dict.fromkeys(verdicts)}
+        return f"of {len(verdicts)} displacements: " + ", ".join(
+            f"{verdict} {count} times" for verdict, count in counts.items()
+        )
+
+    def row(self, speed: float, quantity: str) -> Row:
+        """The row of a quantity at the speed [rad/s] nearest to ``speed``."""
+        rows = [row for row in self.rows if row.quantity == quantity]
+        if not rows:
+            raise InputError("quantity", repr(quantity), allowed="frequency or displacement")
+        return min(rows, key=lambda row: abs(row.speed - speed))
+
+
+def verdict(errors: Sequence[float], names: Sequence[str], u_val: float) -> str:
+    """ "A better", "B better" or "not resolvable": |E_A| - |E_B| against u_val."""
+    if len(errors) < 2:
+        return "within u_val" if abs(errors[0]) <= u_val else "outside u_val"
+    order = np.argsort(np.abs(errors), kind="stable")
+    best, second = int(order[0]), int(order[1])
+    gap = abs(errors[second]) - abs(errors[best])
+    return f"{names[best]} better" if gap > u_val else "not resolvable"
+
+
+def table_of(found: Measurement, speed: float | None = None) -> LineTable:
+    """The mesh line of a measurement (the channel where it stands out most) as a table."""
+    lines = [line for line in found.lines if line.name == "mesh x 1"]
+    lines = [line for line in lines if np.isfinite(line.displacement)]
+    if not lines:
+        raise InputError(
+            "measured",
+            found.record.source,
+            why="it gives no displacement: rate or unit is unknown, or no mesh line was found",
+            fix="--rate, --unit",
+        )
+    line = max(lines, key=lambda item: item.prominence)
+    nominal = speed if speed is not None else line.shaft_speed
+    if not np.isfinite(nominal):
+        raise InputError("speed", "none", why="no tooth number is known", fix="--teeth or --speed")
+    return LineTable(
+        f"{found.record.source}, {line.channel}",
+        (
+            SpeedLine(
+                speed=nominal,
+                frequency=line.frequency,
+                displacement=line.displacement,
+                uncertainty=line.uncertainty,
+            ),
+        ),
+        found.teeth,
+        found.record.source,
+        (found.record.rate or 1.0) / found.samples,
+        processing_stated=True,
+    )
+
+
+def compared(
+    models: Mapping[str, LineTable],
+    printed: Printed,
+    *,
+    u_data: float | None,
+    u_num: float,
+    u_input: Mapping[float, float] | None = None,
+    said: Sequence[Notice] = (),
+) -> Comparison:
+    """Models against measured lines, each within 5 % of a measured speed.
+
+    Standard uncertainties, relative: ``u_data`` of the measurement (None: as the table states it),
+    ``u_num`` of the simulation, ``u_input`` by speed [rad/s]; ``said``: notices that come first.
+    Raises InputError when no speed is common to both sides.
+    """
+    table = printed.measured
+    names = tuple(models)
+    if not names:
+        raise InputError("simulated", "nothing", allowed="at least one model")
+    rows: list[Row] = []
+    notices: list[Notice] = list(said)
+    highest = max(line.frequency for line in table.lines)
+    for number, line in enumerate(table.lines):
+        found = [models[name].near(line.speed) for name in names]
+        if any(item is None for item in found):
+            notices.append(
+                Notice("warning", f"{line.speed / RPM:.0f} rpm: no simulated line at this speed")
+            )
+            continue
+        simulated = [item for item in found if item is not None]
+        u_d, why = _data_uncertainty(line, table, highest, u_data)
+        if why and why not in [text for _, text in notices]:
+            notices.append(Notice("important", why))
+        entered = next(
+            (u for s, u in (u_input or {}).items() if abs(s - line.speed) < 0.05 * s), 0.0
+        )
+        swing, turns = (
+            Row(
+                speed=line.speed,
+                quantity=quantity,
+                measured=getattr(line, quantity),
+                simulated=tuple(getattr(one, quantity) for one in simulated),
+                printed=_printed(printed, names, quantity, number),
+            )
+            for quantity in ("displacement", "frequency")
+        )
+        swing = replace(swing, u_num=u_num, u_input=entered, u_data=u_d)
+        rows += [
+            replace(
+                turns,
+                u_data=(table.bin_width or 0.0) / np.sqrt(12.0) / line.frequency,
+                verdict=_frequency_verdict(simulated, line, table, names),
+            ),
+            replace(swing, verdict=verdict(swing.errors, names, swing.u_val)),
+        ]
+    if not rows:
+        raise InputError(
+            "speeds",
+            ", ".join(f"{line.speed / RPM:.0f} rpm" for line in table.lines),
+            why="none of them is simulated",
+        )
+    implied = tuple(_implied(line, table) for line in table.lines)
+    notices += _misprints(rows, names) + _doubts(implied)
+    return Comparison(table.name, names, tuple(rows), implied, tuple(notices))
+
+
+def _data_uncertainty(
+    line: SpeedLine, table: LineTable, highest: float, given: float | None
+) -> tuple[float, str]:
+    if given is not None:
+        return float(given), ""
+    if line.uncertainty is not None:
+        return line.uncertainty, ""
+    if table.processing_stated:
+        return 0.0, "the measurement states no uncertainty: u_D is taken as 0"
+    parts = unstated_processing(line.frequency, highest=highest)
+    return (
+        float(np.sqrt(sum(part**2 for part in parts.values()))),
+        "window, rate and integration of the measurement are not stated: u_D holds a Hann "
+        "window's scalloping (0..15.1 %) and what the trapezoid loses at 2.56 times the highest "
+        "line; state u_D to replace it",
+    )
+
+
+def _frequency_verdict(
+    simulated: Sequence[SpeedLine], line: SpeedLine, table: LineTable, names: Sequence[str]
+) -> str:
+    """A model forced at the mesh frequency answers at j/n of it and nowhere else."""
+    teeth = table.teeth
+    if teeth is None:
+        return "no tooth number: nothing to tell"
+    forced = teeth * line.speed / (2.0 * np.pi)
+    impossible = []
+    for name, item in zip(names, simulated, strict=True):
+        ratio = item.frequency / forced
+        rational = Fraction(ratio).limit_denominator(_DEEPEST_SUBHARMONIC)
+        if abs(float(rational) - ratio) > 1e-4:
+            impossible.append(f"{name} ({item.frequency:g} Hz)")
+    if impossible:
+        return (
+            f"impossible: {', '.join(impossible)} is no line j/n of the {forced:.3f} Hz that "
+            "forces the model"
+        )
+    if len({item.frequency for item in simulated}) == 1:
+        return "the same by construction: the speed sets it"
+    return "set by the speed, not by the model"
+
+
+def _printed(printed: Printed, names: Sequence[str], quantity: str, number: int) -> tuple[str, ...]:
+    found = tuple(printed.errors.get((name, quantity, number), "") for name in names)
+    return found if any(found) else ()
+
+
+def _misprints(rows: Sequence[Row], names: Sequence[str]) -> list[Notice]:
+    notices = []
+    for row in rows:
+        for name, error, text in zip(names, row.errors, row.printed or (), strict=False):
+            if not text:
+                continue
+            digits = len(text.partition(".")[2])
+            percent = 100.0 * abs(error)
+            if f"{percent:.{digits}f}" != text:
+                notices.append(
+                    Notice(
+                        "important",
+                        f"{row.speed / RPM:.0f} rpm, {row.quantity}, {name}: printed {text} %, "
+                        f"recomputed {percent:.2f} %",
+                    )
+                )
+    wrong = [row for row in rows if row.verdict.startswith("impossible")]
+    if wrong:
+        notices.append(
+            Notice(
+                "important",
+                "the frequency column carries no thermal information: at "
+                + ", ".join(f"{row.speed / RPM:.0f}" for row in wrong)
+                + " rpm the simulated main frequency is "
+                + wrong[0].verdict.split(" is ", 1)[-1].split(" of the ")[0]
+                + " of the mesh frequency",
+            )
+        )
+    return notices
+
+
+def _implied(line: SpeedLine, table: LineTable) -> Implied:
+    shaft, offset, bins = None, None, None
+    if table.teeth is not None:
+        shaft = line.shaft_speed(table.teeth)
+        offset = line.frequency - table.teeth * line.speed / (2.0 * np.pi)
+        bins = offset / table.bin_width if table.bin_width else None
+    return Implied(
+        speed=line.speed,
+        acceleration_g=line.acceleration_g,
+        shaft_speed=shaft,
+        offset_hertz=offset,
+        offset_bins=bins,
+    )
+
+
+def _doubts(implied: Sequence[Implied]) -> list[Notice]:
+    notices = []
+    large = [item for item in implied if item.acceleration_g > _IMPLAUSIBLE_G]
+    if large:
+        notices.append(
+            Notice(
+                "important",
+                "implausible on a housing: "
+                + ", ".join(
+                    f"{item.acceleration_g:.1f} g at {item.speed / RPM:.0f} rpm" for item in large
+                ),
+            )
+        )
+    notices.append(
+        Notice(
+            "info",
+            "a housing's acceleration integrated twice is the housing's motion, not the relative "
+            "displacement of the teeth: equal figures prove nothing without the path between",
+        )
+    )
+    return notices
+
+
+def result_of(found: Comparison) -> Result:
+    """The comparison as labelled datasets, ready to store and to draw."""
+
+    def column(rows: Sequence[object], name: str) -> Any:
+        found = [getattr(row, name) for row in rows]
+        return [float("nan") if value is None else value for value in found]
+
+    rows, implied = found.rows, found.implied
+    values: dict[str, tuple[tuple[str, ...], Any]] = {
+        "measured_value": (("row",), column(rows, "measured")),
+        "simulated_value": (("row", "model"), column(rows, "simulated")),
+        "comparison_error": (("row", "model"), column(rows, "errors")),
+        **{name: (("row",), column(rows, name)) for name in UNCERTAINTIES},
+        "pinion_speed": (("row",), column(rows, "speed")),
+    }
+    table = label(values).assign_coords(
+        model=list(found.models),
+        quantity=("row", column(rows, "quantity")),
+        verdict=("row", column(rows, "verdict")),
+    )
+    gravities = np.array(column(implied, "acceleration_g"))
+    said = label(
+        {
+            "pinion_speed": (("speed",), column(implied, "speed")),
+            "implied_acceleration": (("speed",), gravities * STANDARD_GRAVITY),
+            "implied_shaft_speed": (("speed",), column(implied, "shaft_speed")),
+            "mesh_line_offset": (("speed",), column(implied, "offset_hertz")),
+            "line_bin_offset": (("speed",), column(implied, "offset_bins")),
+        }
+    )
+    return Result.of(
+        "comparison",
+        f"Models {' and '.join(found.models)} against {found.measured}",
+        {"comparison": table, "implied": said},
+        found.notices,
+        conclusion=found.conclusion[:1].upper() + found.conclusion[1:] + ".",
+        figures=figures(found),
+        created=now(),
+    )
+
+
+def figures(found: Comparison) -> dict[str, Any]:
+    """The comparison as plain figures, in SI units."""
+    told = (
+        "speed",
+        "quantity",
+        "measured",
+        "simulated",
+        "errors",
+        *UNCERTAINTIES,
+        "verdict",
+        "printed",
+    )
+    rows = [{name: getattr(row, name) for name in told} for row in found.rows]
+    return {
+        "measured": found.measured,
+        "models": list(found.models),
+        "conclusion": found.conclusion,
+        "rows": rows,
+        "implied": [vars(item) for item in found.implied],
+        "notices": [list(pair) for pair in found.notices],
+    }
+
+
+def as_json(found: Comparison) -> str:
+    """:func:`figures` as a JSON text."""
+    return json.dumps(figures(found), indent=2, ensure_ascii=False)
