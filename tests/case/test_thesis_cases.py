@@ -9,11 +9,16 @@ import pytest
 from own_pair import OWN_PAIR
 from thermogear.base.errors import InputError
 from thermogear.case.case import load_case, load_example
-from thermogear.case.examples import EXAMPLES, example_text
+from thermogear.case.examples import EXAMPLES, OF_THE_THESIS, example_text
 from thermogear.case.thesis_cases import of_the_thesis, require_of_the_thesis
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", sorted(set(EXAMPLES) - set(OF_THE_THESIS)))
+def test_the_other_ready_made_cases_are_not(name: str) -> None:
+    assert not of_the_thesis(load_example(name))
+
+
+@pytest.mark.parametrize("name", OF_THE_THESIS)
 def test_the_ready_made_cases_are_the_thesis_s(name: str) -> None:
     assert of_the_thesis(load_example(name))
     assert of_the_thesis(load_example(name, ['title="Something else"', "simulation.periods=16"]))

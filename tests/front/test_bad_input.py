@@ -451,7 +451,8 @@ SEVERAL = {
         [
             "line 2: 'a\\nb': got an unknown key; the case file does not have it; known: backlash, "
             "draw, dynamics, flanks, gearbox, gears, grid, housing, inertia, kind, materials, "
-            "model, oil, operating, ours, sensors, simulation, temperatures, title, transmission_error",
+            "model, oil, operating, ours, sensors, simulation, temperatures, title, "
+            "transmission_error",
             "gears: got nothing; needed; add the table [gears]",
             "operating: got nothing; needed; add the table [operating]",
         ],

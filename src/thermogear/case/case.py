@@ -312,7 +312,12 @@ def load_case(
     except InputError as error:
         others = [one for one in parts.faults(read) if str(one) != str(error)]
         raise _together([error, *others], text, changes) from error
-    return replace(case, assumptions=assumptions(data, read, decided(case)))
+    return replace(case, assumptions=assumptions(data, read, _decided(case)))
+
+
+def _decided(case: GearCase) -> dict[str, str]:
+    around = case.gearbox.surroundings
+    return decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
 
 
 def _together(

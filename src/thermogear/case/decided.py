@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
+from thermogear.case.backlash import Backlash
 from thermogear.case.units import shown
+from thermogear.gears.deviations import Deviation
 from thermogear.gears.graded_flanks import WavyProfile
+from thermogear.gears.pair import GearPair
+from thermogear.heat.gearbox import Surroundings
 
-if TYPE_CHECKING:
-    from thermogear.case.case import GearCase
 
-
-def decided(case: GearCase) -> dict[str, str]:
+def decided(
+    pair: GearPair,
+    backlash: Backlash,
+    around: Surroundings,
+    deviations: Sequence[Deviation],
+    accuracy: int | None,
+) -> dict[str, str]:
     """Field -> the value that stands in its place, with its unit."""
-    pair = case.pair
     found = {
         "gears.centre_distance": shown(pair.centre_distance, "length"),
-        "backlash.value": f"{shown(2.0 * case.cold_backlash.half, 'length')}, total, normal",
+        "backlash.value": f"{shown(2.0 * backlash.half, 'length')}, total, normal",
     }
-    grades = {one.gear for one in case.deviations if isinstance(one, WavyProfile)}
-    known = "" if case.accuracy is None else f"{case.accuracy}, {' and '.join(sorted(grades))}"
+    grades = {one.gear for one in deviations if isinstance(one, WavyProfile)}
+    known = "" if accuracy is None else f"{accuracy}, {' and '.join(sorted(grades))}"
     found["flanks.accuracy"] = known or "none: the tables of ISO 1328-1 end before these gears"
-    around = case.gearbox.surroundings
     found |= {
         "gearbox.housing_area": shown(around.housing_area, "area", 3),
         "gearbox.housing_mass": shown(around.housing_mass, "mass", 3),
