@@ -37,7 +37,7 @@ def test_a_profile_is_measured_as_it_was_made(waves: float) -> None:
         made = WavyProfile(
             "pinion", slope=slope, form=form, waves=waves, phase=rng.uniform(0.0, 6.3)
         )
-        found = profile_figures(fine, made.added(fine))
+        found = profile_figures(fine, added=made.added(fine))
         # samples weigh the two ends by h/2 too much: 12 (h/2) (1/2) form on either side,
         # which tilts the line that the form is read from by as much
         assert found.slope == pytest.approx(slope, abs=6.0 / 20000 * form)
@@ -52,7 +52,7 @@ def test_every_flank_keeps_its_tolerances(grade: int, edition: str) -> None:
         for flank in graded_flanks(PAIR, grade, seed=seed, edition=edition):
             gear = PAIR.pinion if flank.gear == "pinion" else PAIR.wheel
             limit = flank_tolerances(gear.teeth, gear.module, grade=grade, edition=edition)
-            found = profile_figures(ROLL, flank.added(ROLL))
+            found = profile_figures(ROLL, added=flank.added(ROLL))
             assert abs(found.slope) <= limit.profile_slope
             assert found.form <= limit.profile_form * (1.0 + 1e-5)
             assert found.total <= limit.profile_total * (1.0 + 1e-5)
@@ -151,7 +151,7 @@ def test_what_is_refused() -> None:
             "profile.waves: got 0.0; allowed 1..20",
         ),
         (
-            lambda: profile_figures([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
+            lambda: profile_figures([0.0, 0.0, 1.0], added=[0.0, 0.0, 0.0]),
             "profile: got 3 positions; allowed three or more, strictly rising, one trace",
         ),
         (

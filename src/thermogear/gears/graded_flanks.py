@@ -42,7 +42,7 @@ class ProfileFigures(NamedTuple):
     total: float
 
 
-def profile_figures(position: ArrayLike, added: ArrayLike) -> ProfileFigures:
+def profile_figures(position: ArrayLike, *, added: ArrayLike) -> ProfileFigures:
     """f_Halpha, f_falpha and F_alpha of a trace: least-squares line and peaks.
 
     position: roll path [m] or share of the evaluated length, shape (n,), rising from root to
