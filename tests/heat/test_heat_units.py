@@ -203,6 +203,9 @@ DECLARED = {
     "flash_at_tip_13989_2": "N/mm, m/s, mm",
     "body_temperature_15144": "kW, mm",
     "fzg_torque": "N m",
+    "approach_factor": "um",
+    "integral_safety": "C",
+    "permissible_film_parameter": "mm^2/s",
     "scuffing_temperature": "C",
     "scuffing_integral_temperature": "C, mm^2/s",
     "band_radiance": "up to a constant factor",
@@ -225,6 +228,7 @@ NUMBERS = {
     "gear_loss_factor",
     "lubricant_factor",
     "matsumoto_share",
+    "micropitting_safety",
     "moving_source_rise",
     "peclet_factor",
     "regime",
@@ -251,6 +255,7 @@ NOT_FORMULAS = {
     "jam_temperature",
     "laws_together",
     "outside_range",
+    "structure_factor",
     "transition_pieces",
 }
 

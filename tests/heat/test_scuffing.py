@@ -20,7 +20,10 @@ from thermogear.heat.laws import iso_13989_1, iso_13989_2
 from thermogear.heat.losses import mesh_loss
 from thermogear.heat.lubrication import dynamic_viscosity
 from thermogear.heat.scuffing import (
+    FZG_STAGES,
+    STRUCTURE_FACTORS,
     angle_factor,
+    approach_factor,
     body_temperature_13989_1,
     body_temperature_13989_2,
     body_temperature_15144,
@@ -29,6 +32,7 @@ from thermogear.heat.scuffing import (
     flash_at_tip_13989_2,
     fzg_torque,
     geometry_factor,
+    integral_safety,
     integral_temperature,
     load_sharing_13989,
     rotation_factor,
@@ -36,6 +40,7 @@ from thermogear.heat.scuffing import (
     scuffing_margin,
     scuffing_safety,
     scuffing_temperature,
+    structure_factor,
     thermo_elastic_factor,
 )
 from thermogear.heat.temperature import blok_flash
@@ -263,3 +268,45 @@ def test_scuffing_limits_and_margins() -> None:
     assert scuffing_margin(limit=limit, temperature=limit - 60.0) == pytest.approx(60.0)
     assert scuffing_safety(limit=400.0, temperature=375.0, oil_temperature=350.0) == 2.0
     assert scuffing_safety(limit=400.0, temperature=350.0, oil_temperature=350.0) == np.inf
+
+
+@pytest.mark.parametrize(
+    ("stage", "torque", "flash", "integral"),
+    [(5, 93, 136, 129), (8, 239, 224, 206), (10, 373, 305, 278), (12, 537, 404, 364),
+     (14, 730, 521, 467)],
+)  # fmt: skip
+def test_table_of_stages(stage: int, torque: float, flash: float, integral: float) -> None:
+    """Mineral oil, nu40 100, X_L X_W 1."""
+    assert fzg_torque(stage) == pytest.approx(torque, abs=0.6)
+    assert scuffing_temperature(stage) - ZERO_CELSIUS == pytest.approx(flash, abs=0.6)
+    found = scuffing_integral_temperature(stage, 100e-6) - ZERO_CELSIUS
+    assert found == pytest.approx(integral, abs=0.6)
+
+
+def test_torques_of_the_test(compared: Compared) -> None:
+    stages = np.arange(5, 15)
+    compared(
+        "torque of the FZG load stages 5 to 14",
+        "the test's table",
+        fzg_torque(stages) / np.array(FZG_STAGES)[4:] - 1.0,
+        0.025,
+    )
+
+
+def test_approach_factor() -> None:
+    s = np.array([0.0, 1.0, 2.0, 3.0])
+    found = approach_factor(s, a=0.0, c=2.0, e=4.0, missing=25e-6)
+    assert found == pytest.approx([1.0 + 0.5 / 8.0, 1.0 + 0.5 / 64.0, 1.0, 1.0])
+    assert np.array_equal(approach_factor(s, a=0.0, c=2.0, e=4.0, missing=-1e-6), np.ones(4))
+
+
+def test_integral_safety_counts_in_degrees_celsius() -> None:
+    found = integral_safety(limit=ZERO_CELSIUS + 300.0, temperature=ZERO_CELSIUS + 150.0)
+    assert found == pytest.approx(2.0)
+
+
+def test_steels() -> None:
+    assert structure_factor("nitrided") == 1.5
+    assert min(STRUCTURE_FACTORS, key=STRUCTURE_FACTORS.__getitem__) == "stainless"
+    with pytest.raises(InputError, match=r"^scuffing.steel: got 'nitride'; allowed "):
+        structure_factor("nitride")

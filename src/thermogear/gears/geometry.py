@@ -173,7 +173,7 @@ class Gear:
 
     def _check_tooth(self) -> None:
         needed = self.minimum_profile_shift
-        if self.profile_shift < needed - 1e-12 and not self.allow_undercut:
+        if self.undercut and not self.allow_undercut:
             advised = math.ceil(100.0 * needed) / 100.0
             raise GeometryError(
                 "profile_shift",
@@ -192,7 +192,7 @@ class Gear:
                 allowed=f"> {millimetres(self.form_radius)} (form circle)",
                 why="no involute flank is left",
             )
-        if self.profile_shift < needed - 1e-12:
+        if self.undercut:
             # how much of the tooth the cutter leaves at the neck
             neck = self.fillet.point(np.linspace(self.junction[0], 0.5 * math.pi, 200))[0]
             if not float(neck.min()) > 0.0:
@@ -275,6 +275,11 @@ class Gear:
         return straight - 0.5 * self.teeth * sine**2
 
     @property
+    def undercut(self) -> bool:
+        """Whether the rack's tip cuts into the involute: x below :attr:`minimum_profile_shift`."""
+        return self.profile_shift < self.minimum_profile_shift - 1e-12
+
+    @property
     def minimum_teeth(self) -> int:
         """Least number of teeth without undercut at this profile shift."""
         sine = math.sin(self.pressure_angle)
@@ -303,7 +308,7 @@ class Gear:
         an undercut fillet cuts the involute where both have the same polar angle.
         """
         sine = math.sin(self.pressure_angle)
-        if self.profile_shift >= self.minimum_profile_shift - 1e-12:
+        if not self.undercut:
             depth = self.fillet.centre_depth + self.rack.fillet_radius * self.module * sine
             t = math.tan(self.pressure_angle) - depth / (self.base_radius * sine)
             return self.pressure_angle, max(t, 0.0)

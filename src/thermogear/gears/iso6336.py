@@ -6,6 +6,7 @@ of the loaded contact.
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import NamedTuple
 
@@ -93,20 +94,38 @@ def single_stiffness(
     return np.asarray(np.asarray(theoretical, dtype=float) * factor)
 
 
-def iso6336_stiffness(pair: GearPair, line_load: ArrayLike = 200e3) -> IsoStiffness:
-    """c'_th, c' and c_gamma_alpha = c' (0.75 eps_alpha + 0.25) of a spur pair [N/m^2].
+def blank_factor(*, web: float, rim: float) -> float:
+    """C_R of a gear with a web, 1 + ln(b_s/b)/(5 e^(s_R/(5 m))); 1 for a solid disc.
 
-    line_load: F_t K_A/b [N/m], any shape; below 100 N/mm c' falls with its fourth root, and
-    0 gives 0. Moduli scale by 2 E1 E2/(E1 + E2) over that of steel. The source's first gear is
-    the pinion: the one with fewer teeth, whichever drives. Of two with equally many teeth it is
-    the one with the larger shift, the only order inside the source's range. So c is continuous
-    in both shifts, and exchanging the gears changes nothing. Warns outside the source's shifts,
-    x1 >= x2 and -0.5 <= x1 + x2 <= 2.
+    ``web``: b_s/b, 0.2..1.2; ``rim``: s_R/m, at least 1, both held at the ends of their range.
     Source: ISO 6336-1:2006, method B, clause 9.
     """
+    ratio, thickness = min(max(web, 0.2), 1.2), max(rim, 1.0)
+    return 1.0 + math.log(ratio) / (5.0 * math.exp(thickness / 5.0))
+
+
+def pinion_first(pair: GearPair) -> tuple[Gear, Gear]:
+    """The source's gear 1 and 2: fewer teeth first, of equally many the larger shift."""
     first, second = sorted(
         (pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift)
     )
+    return first, second
+
+
+def iso6336_stiffness(
+    pair: GearPair, line_load: ArrayLike = 200e3, *, blank: float = 1.0
+) -> IsoStiffness:
+    """c'_th, c' and c_gamma_alpha = c' (0.75 eps_alpha + 0.25) of a spur pair [N/m^2].
+
+    line_load: F_t K_A/b [N/m], any shape; below 100 N/mm c' falls with its fourth root, and
+    0 gives 0. blank: C_R, the mean of both gears' :func:`blank_factor`. Moduli scale by
+    2 E1 E2/(E1 + E2) over that of steel. The source's first gear is the pinion: the one with
+    fewer teeth, whichever drives. Of two with equally many teeth it is the one with the larger
+    shift, the only order inside the source's range. So c is continuous in both shifts, and
+    exchanging the gears changes nothing. Warns outside the source's shifts, x1 >= x2 and
+    -0.5 <= x1 + x2 <= 2. Source: ISO 6336-1:2006, method B, clause 9.
+    """
+    first, second = pinion_first(pair)
     _warn_of_shifts(first, second)
     theory = theoretical_single_stiffness(
         teeth1=first.teeth,
@@ -119,6 +138,7 @@ def iso6336_stiffness(pair: GearPair, line_load: ArrayLike = 200e3) -> IsoStiffn
         theory * (2.0 * e1 * e2 / (e1 + e2) / _STEEL),
         dedendum=0.5 * (first.rack.dedendum + second.rack.dedendum),
         pressure_angle=first.pressure_angle,
+        blank_factor=blank,
     )
     load = np.asarray(line_load, dtype=float)
     single = single * np.minimum(load / _LOW_LOAD, 1.0) ** 0.25

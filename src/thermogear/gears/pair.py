@@ -171,6 +171,26 @@ class GearPair:
         return PathPoints(start, end - self.base_pitch, pitch, start + self.base_pitch, end)
 
     @property
+    def start_radii(self) -> tuple[float, float]:
+        """r_Nf [m] where the active profile begins: what the other gear's tip still touches.
+
+        r_Nf1 = sqrt((N1N2 - sqrt(r_a2^2 - r_b2^2))^2 + r_b1^2), and the wheel's alike. Above each
+        gear's form radius in every pair that can mesh. Source: ISO 21771-1.
+        """
+        return (
+            math.hypot(self.pinion.base_radius, self.path.a),
+            math.hypot(self.wheel.base_radius, self.line_of_action - self.path.e),
+        )
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """c = a - r_a1 - r_f2 and a - r_a2 - r_f1 [m]: from a tip to the other gear's root."""
+        return (
+            self.centre_distance - self.pinion.tip_radius - self.wheel.root_radius,
+            self.centre_distance - self.wheel.tip_radius - self.pinion.root_radius,
+        )
+
+    @property
     def contact_ratio(self) -> float:
         """Length of the path of contact over the base pitch."""
         return (self.path.e - self.path.a) / self.base_pitch

@@ -9,10 +9,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, nearest
 from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
+
+# fmt: off
+FZG_STAGES = (
+    3.3, 13.7, 35.25, 60.75, 94.1, 135.3, 183.35, 239.25, 302.0, 372.6, 450.1, 534.5, 626.9, 714.2,
+)
+# fmt: on
+"""Pinion torques of the FZG load stages 1 to 14 [N m]; only A/8.3/90 counts for scuffing."""
+
+STRUCTURE_FACTORS: dict[str, float] = {
+    "nitrided": 1.5,
+    "copper-plated": 1.5,
+    "phosphated": 1.25,
+    "case-hardened, austenite below 10 %": 1.15,
+    "case-hardened": 1.0,
+    "case-hardened, austenite above 20 %": 0.85,
+    "through-hardened": 1.0,
+    "stainless": 0.45,
+}
+"""X_W of a gear's steel, ISO/TR 13989: nitrided from public code, the others usual, unconfirmed."""
 
 
 def thermo_elastic_factor(reduced_modulus: ArrayLike, contact_coefficient: ArrayLike) -> Floats:
@@ -212,6 +231,31 @@ def integral_temperature(*, body_temperature: ArrayLike, integral_flash: ArrayLi
     return np.asarray(np.asarray(body_temperature, dtype=float) + 1.5 * np.asarray(integral_flash))
 
 
+def approach_factor(position: ArrayLike, *, a: float, c: float, e: float, missing: float) -> Floats:
+    """X_J of tip corners that meet too early, pinion driving [-].
+
+    1 + (C_eff - C_a2)/50 um (-Gamma/(Gamma_E - Gamma_A))^3 before the pitch point, at least 1; 1
+    beyond.
+
+    ``position`` s [m] on the path, any shape, ``a``, ``c``, ``e`` [m] of the path (Gamma = s/c -
+    1), ``missing`` C_eff - C_a2 [m]: what the wheel's tip relief lacks. Source: ISO/TR 13989-1.
+    """
+    ahead = np.maximum(c - np.asarray(position, dtype=float), 0.0) / (e - a)
+    return np.asarray(np.maximum(1.0 + missing / 50e-6 * ahead**3, 1.0))
+
+
+def structure_factor(steel: str) -> float:
+    """X_W out of :data:`STRUCTURE_FACTORS`, or an error that says the nearest name."""
+    if steel not in STRUCTURE_FACTORS:
+        raise InputError(
+            "scuffing.steel",
+            repr(steel),
+            allowed=" | ".join(STRUCTURE_FACTORS),
+            fix=nearest(steel, STRUCTURE_FACTORS),
+        )
+    return STRUCTURE_FACTORS[steel]
+
+
 def fzg_torque(load_stage: ArrayLike) -> Floats:
     """Pinion torque of an FZG load stage, 3.726 S^2 [N m]; within 5 % of the test's table."""
     return np.asarray(3.726 * np.asarray(load_stage, dtype=float) ** 2)
@@ -264,6 +308,15 @@ def scuffing_safety(
     oil = np.asarray(oil_temperature, dtype=float)
     above, below = np.broadcast_arrays(np.asarray(limit) - oil, np.asarray(temperature) - oil)
     return np.asarray(np.divide(above, below, out=np.full(above.shape, np.inf), where=below > 0.0))
+
+
+def integral_safety(*, limit: ArrayLike, temperature: ArrayLike) -> Floats:
+    """S_int = theta_intS/theta_int in degrees Celsius [-]: < 1 high risk, 1..2 critical, > 2 low.
+
+    ``limit``, ``temperature`` [K], the latter above 0 C. Source: ISO/TR 13989-2.
+    """
+    above = np.asarray(limit, dtype=float) - ZERO_CELSIUS
+    return np.asarray(above / (np.asarray(temperature, dtype=float) - ZERO_CELSIUS))
 
 
 def scuffing_margin(*, limit: ArrayLike, temperature: ArrayLike) -> Floats:

@@ -8,23 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
-from thermogear.gears.contact import curvature_radii, reduced_modulus, reduced_radius
+from thermogear.gears.contact import reduced_radius
 from thermogear.gears.pair import GearPair
 from thermogear.heat.laws import ISO_LUBRICANT_FACTOR, iso_13989_2
 from thermogear.heat.losses import gear_loss_factor, mesh_loss
 from thermogear.heat.lubrication import dynamic_viscosity
 from thermogear.heat.scuffing import (
-    angle_factor,
     body_temperature_13989_1,
     body_temperature_13989_2,
     body_temperature_15144,
-    contact_ratio_factor,
-    flash_at_tip_13989_2,
-    geometry_factor,
-    rotation_factor,
-    thermo_elastic_factor,
 )
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.scuffing_rating import integral_flash
 
 Floats = NDArray[np.float64]
 
@@ -75,32 +70,8 @@ def body_estimates(
         lubrication=supply,
     )
     try:
-        factor = contact_ratio_factor(recess=recess, approach=approach)
+        mean = integral_flash(pair, friction, tangential, speed)
     except InputError:
         return np.stack([first, np.full_like(first, np.nan), third])
-    rho_1, rho_2 = (float(r[0]) for r in curvature_radii(pair, np.array([path.e])))
-    one, two = pair.pinion.material, pair.wheel.material
-    modulus = 2.0 * reduced_modulus(
-        one.youngs_modulus, one.poisson_ratio, two.youngs_modulus, two.poisson_ratio
-    )
-    contact = 0.5 * (one.thermal_contact_coefficient + two.thermal_contact_coefficient)
-    tip = flash_at_tip_13989_2(
-        friction,
-        tangential,
-        speed,
-        pair.centre_distance,
-        geometry=geometry_factor(curvature_1=rho_1, curvature_2=rho_2, ratio=pair.ratio),
-        angle=angle_factor(pressure_angle=alpha, operating_angle=working),
-        rotation=rotation_factor(approach=approach, recess=recess),
-        tip_relief=1.0,
-        thermo_elastic=thermo_elastic_factor(modulus, contact),
-    )
-    return np.stack(
-        [
-            first,
-            body_temperature_13989_2(
-                oil_temperature=oil, integral_flash=tip * factor, lubrication=supply
-            ),
-            third,
-        ]
-    )
+    second = body_temperature_13989_2(oil_temperature=oil, integral_flash=mean, lubrication=supply)
+    return np.stack([first, second, third])
