@@ -136,6 +136,7 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Noti
     balance = groups["balance"]
     ours = sum(one.field.startswith("gearbox.") for one in case.assumptions)
     limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
+    lost_by = json.loads(balance.attrs.get("lost", "{}"))
     for place, bundle in enumerate(balance["bundle"].values):
         here = balance.isel(bundle=place)
         settled = here["status"].values == STATUS.index("ok")
@@ -145,15 +146,11 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Noti
                 "important",
                 f"{bundle}: {lost} of {settled.size} operating points have no steady "
                 "temperature; their status is not_converged and they have no motion."
-                + reasons(balance, str(bundle)),
+                + reasons(lost_by.get(str(bundle), {}).values()),
             )
         if not settled.any():
             continue
-        several = settled & (here["several"].values == 1)
-        if several.any():
-            oil = here["hot_node_temperature"] - here["node_temperature"]
-            far = float(oil.sel(node="oil").values[several].max())
-            text = several_words(several=int(several.sum()), count=settled.size, hotter=far)
+        if text := several_words(here, settled):
             yield Notice("important", f"{bundle}: {text}")
         steady = here.isel(operating=np.flatnonzero(settled))
         teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])

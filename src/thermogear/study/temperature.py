@@ -28,7 +28,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.result import Notice, Result
-from thermogear.study.notices import several_words
+from thermogear.study.notices import reasons, several_words
 
 Floats = NDArray[np.float64]
 KIND = "temperature"
@@ -258,17 +258,10 @@ def _notices(
         yield Notice(
             "important",
             f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
-            "picture." + (f" No value: {'; '.join(dict.fromkeys(why))}." if why else ""),
+            "picture." + reasons(why),
         )
-    several = settled & (grid["several"].values == 1)
-    if several.any():
-        hotter = grid["hot_node_temperature"].sel(node="oil") - grid["node_temperature"].sel(
-            node="oil"
-        )
-        far = float(np.max(hotter.values[several]))
-        yield Notice(
-            "important", several_words(several=int(several.sum()), count=count, hotter=far)
-        )
+    if text := several_words(grid, settled):
+        yield Notice("important", text)
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
     if outside.any():
