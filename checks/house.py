@@ -23,6 +23,8 @@ FLOORS = (
 )  # fmt: skip
 MOST_LINES = 500
 """No module is longer: beyond that it holds two ideas."""
+MOST_LINES_BESIDE = 600
+"""Nor a file of tests, measurements or checks, whose tables and cases stand in one place."""
 
 
 def sizes() -> dict[str, tuple[int, int, int]]:

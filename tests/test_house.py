@@ -111,7 +111,8 @@ def test_no_file_holds_two_ideas() -> None:
         str(path.relative_to(ROOT))
         for folder in (SOURCE, ROOT / "tests", ROOT / "bench", ROOT / "checks")
         for path in folder.rglob("*.py")
-        if len(path.read_text(encoding="utf-8").splitlines()) > house.MOST_LINES
+        if len(path.read_text(encoding="utf-8").splitlines())
+        > (house.MOST_LINES if folder == SOURCE else house.MOST_LINES_BESIDE)
     ]
     assert long == []
 

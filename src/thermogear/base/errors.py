@@ -88,10 +88,13 @@ class WorkerWarning(UserWarning):
 def nearest(name: str, known: Iterable[str]) -> str:
     """Advice for an unknown ``name``: the nearest known one, else the whole list."""
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    if close:
-        return f"did you mean {close[0]!r}?"
-    return "known: " + ", ".join(names)
+    return meant(name, names, cutoff=0.5) or "known: " + ", ".join(names)
+
+
+def meant(name: str, known: Iterable[str], *, cutoff: float) -> str | None:
+    """Advice for an unknown ``name`` that is like a known one: alike by ``cutoff`` 0..1 or more."""
+    close = difflib.get_close_matches(name, list(known), n=1, cutoff=cutoff)
+    return f"did you mean {close[0]!r}?" if close else None
 
 
 def short(value: object) -> str:

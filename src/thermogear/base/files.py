@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, meant
 
 LOCK = "lock"
 """Stands in every directory that one process at a time writes into; stays there."""
@@ -54,6 +54,15 @@ def decoded(raw: bytes, errors: str = "strict") -> str:
     if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return raw.decode("utf-16", errors)
     return raw.decode("utf-8-sig", errors)
+
+
+def meant_beside(path: Path, pattern: str = "*") -> str | None:
+    """Advice for a ``path`` that is not there: the name beside it that is like its own."""
+    try:
+        names = [one.name for one in path.parent.glob(pattern)]
+    except OSError:
+        return None
+    return meant(path.name, names, cutoff=0.6)
 
 
 def require_new_file(path: Path, field: str = "output") -> None:

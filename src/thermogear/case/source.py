@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from thermogear.base.errors import InputError
-from thermogear.base.files import decoded
+from thermogear.base.files import decoded, meant_beside
 from thermogear.case.examples import EXAMPLES, example_text
 
 LARGEST = 1_000_000
@@ -61,14 +61,7 @@ def _binary(name: str) -> InputError:
 
 
 def _instead(path: Path) -> str:
-    import difflib
-
-    try:
-        beside = [p.name for p in path.parent.glob("*.toml")]
-    except OSError:
-        beside = []
-    close = difflib.get_close_matches(path.name, beside, n=1, cutoff=0.6)
-    if close:
-        return f"did you mean {close[0]!r}?"
     example = path.stem if path.stem in EXAMPLES else "rig"
-    return f"`thermogear example {example} -o {example}.toml` writes one"
+    return meant_beside(path, "*.toml") or (
+        f"`thermogear example {example} -o {example}.toml` writes one"
+    )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -78,20 +77,16 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
 def _existing(path: Path) -> Path:
     """``path`` where it is there or names a ready-made case; else the nearest name beside it."""
     from thermogear.base.errors import InputError
+    from thermogear.base.files import meant_beside
     from thermogear.case.examples import EXAMPLES
 
     if path.exists() or str(path) in EXAMPLES:
         return path
-    try:
-        beside = [one.name for one in path.parent.iterdir()]
-    except OSError:
-        beside = []
-    close = difflib.get_close_matches(path.name, beside, n=1, cutoff=0.6)
     raise InputError(
         "results",
         repr(str(path)),
         why="there is no such directory or case file",
-        fix=f"did you mean {close[0]!r}?" if close else "`thermogear run CASE -o DIR` writes one",
+        fix=meant_beside(path) or "`thermogear run CASE -o DIR` writes one",
     )
 
 

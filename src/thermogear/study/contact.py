@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import dressed, label
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
-from thermogear.gears.deviations import Contacts
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.gears.loaded import LoadedModel, loaded_contact
 from thermogear.gears.stiffness import Moduli
@@ -25,7 +24,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
-from thermogear.study.relief import EDGE_WORDS, one_point
+from thermogear.study.relief import EDGE_WORDS, Seen, one_point
 
 Floats = NDArray[np.float64]
 KIND = "contact"
@@ -36,17 +35,6 @@ DIFFERENCES = (-40.0, -20.0, 0.0, 20.0, 40.0)
 LIGHT = tuple(np.geomspace(0.02, 2.0, 41))
 """Loads, as parts of the case's greatest, of the double-contact picture."""
 PHASES = 200
-
-
-@dataclass(frozen=True, eq=False)
-class AlongLoads:
-    """A deviation over temperatures, with an axis of its own for the loads."""
-
-    deviation: ThermalDeviation
-
-    def gap(self, at: Contacts) -> Floats:
-        """e [m], (temperature, 1, position, pair)."""
-        return np.asarray(self.deviation.gap(at)[:, None])
 
 
 def loaded_survey(
@@ -164,7 +152,7 @@ def _solve(
         PHASES,
         pinion=first,
         wheel=second,
-        deviations=[*case.deviations, AlongLoads(ThermalDeviation(hot))],
+        deviations=[*case.deviations, Seen(ThermalDeviation(hot), np.s_[:, None])],
         model=LoadedModel(body=body),
         dimensions=("temperature", "load"),
     )

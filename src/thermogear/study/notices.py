@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 import xarray as xr
@@ -126,22 +126,29 @@ def range_notices(case: GearCase, data: xr.Dataset) -> list[str]:
     return found
 
 
-def reasons(balance: xr.Dataset, bundle: str) -> str:
+def reasons(why: Iterable[str]) -> str:
     """Why points have no value at all, each reason once."""
-    why = json.loads(balance.attrs.get("lost", "{}")).get(bundle, {})
-    return f" No value: {'; '.join(dict.fromkeys(why.values()))}." if why else ""
+    each = "; ".join(dict.fromkeys(why))
+    return f" No value: {each}." if each else ""
 
 
-def several_words(*, several: int, count: int, hotter: float) -> str:
-    """That points have two steady states, and which one is told; ``hotter`` [K], nan: unknown."""
-    some = "1 point has" if several == 1 else f"{several} points have"
+def several_words(data: xr.Dataset, settled: NDArray[np.bool_]) -> str:
+    """That points of a heat balance have two steady states, and which one is told; "" if none."""
+    several = settled & (data["several"].values == 1)
+    number, count = int(several.sum()), settled.size
+    if not number:
+        return ""
+    hotter = data["hot_node_temperature"] - data["node_temperature"]
+    most = float(hotter.sel(node="oil").values[several].max())
+    some = "1 point has" if number == 1 else f"{number} points have"
     some = "The point has" if count == 1 else f"Of {count} points, {some}"
-    far = f", up to {hotter:.1f} K hotter" if np.isfinite(hotter) else ""
+    far = f", up to {most:.1f} K hotter" if np.isfinite(most) else ""
+    come = "it comes" if number == 1 else "they come"
     return (
-        f"{some} another steady state when they come from hot{far}: thinner oil lets the layer on "
+        f"{some} another steady state when {come} from hot{far}: thinner oil lets the layer on "
         "the gears turn turbulent, which drags more. All figures are those of the state reached "
         "from cold."
-    ).replace("when they come", "when it comes" if several == 1 else "when they come")
+    )
 
 
 def friction_notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +66,7 @@ def relief_survey(
     elastic = LoadedPair(hot)
     moduli = [Moduli(tooth=np.ravel(m.tooth)[0], body=np.ravel(m.body)[0]) for m in elastic.moduli]
     kept = [d for d in case.deviations if not (isinstance(d, Relief) and d.end == "tip")]
-    deviations = [*kept, FirstPoint(ThermalDeviation(hot))]
+    deviations = [*kept, Seen(ThermalDeviation(hot), 0)]
     loaded = LoadedModel(body="bore_clamped")
     force = moment / case.pair.pinion.base_radius
     most = len(STARTS) * MOST_EVALUATIONS
@@ -184,15 +185,16 @@ def one_point(operating: Operating, torque: float) -> Operating:
     return replace(operating.point(0), torque=np.array([torque]))
 
 
-class FirstPoint:
-    """A deviation over operating points, seen at the first of them."""
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A deviation over operating points, its first axis taken at ``places``."""
 
-    def __init__(self, deviation: ThermalDeviation) -> None:
-        self.deviation = deviation
+    deviation: ThermalDeviation
+    places: Any
 
     def gap(self, at: Contacts) -> Floats:
-        """e [m], (position, pair)."""
-        return np.asarray(self.deviation.gap(at)[0])
+        """e [m], (places, position, pair)."""
+        return np.asarray(self.deviation.gap(at)[self.places])
 
 
 def _notices(case: GearCase, edges: Sequence[float]) -> Iterator[Notice]:

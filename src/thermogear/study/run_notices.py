@@ -38,8 +38,10 @@ MOST_POINTS = 12
 LIBRARIES = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
-def _rpm(speed: float) -> float:
-    return speed / RPM
+def _point(here: xr.Dataset, form: str = ".0f") -> str:
+    """Speed and torque of one operating point."""
+    speed, torque = float(here["pinion_speed"]) / RPM, float(here["pinion_torque"])
+    return f"{speed:{form}} rpm, {torque:{form}} N m"
 
 
 # --- notices ------------------------------------------------------------------------------
@@ -136,6 +138,7 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Noti
     balance = groups["balance"]
     ours = sum(one.field.startswith("gearbox.") for one in case.assumptions)
     limit = min(g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel))
+    lost_by = json.loads(balance.attrs.get("lost", "{}"))
     for place, bundle in enumerate(balance["bundle"].values):
         here = balance.isel(bundle=place)
         settled = here["status"].values == STATUS.index("ok")
@@ -145,15 +148,11 @@ def _computed(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Noti
                 "important",
                 f"{bundle}: {lost} of {settled.size} operating points have no steady "
                 "temperature; their status is not_converged and they have no motion."
-                + reasons(balance, str(bundle)),
+                + reasons(lost_by.get(str(bundle), {}).values()),
             )
         if not settled.any():
             continue
-        several = settled & (here["several"].values == 1)
-        if several.any():
-            oil = here["hot_node_temperature"] - here["node_temperature"]
-            far = float(oil.sel(node="oil").values[several].max())
-            text = several_words(several=int(several.sum()), count=settled.size, hotter=far)
+        if text := several_words(here, settled):
             yield Notice("important", f"{bundle}: {text}")
         steady = here.isel(operating=np.flatnonzero(settled))
         teeth = steady["node_temperature"].sel(node=["pinion_tooth", "wheel_tooth"])
@@ -229,19 +228,16 @@ def _jams(here: xr.Dataset, reference: float) -> tuple[float, str]:
     alone, together = (
         np.ravel(here[name].values) for name in ("jam_temperature", "proportional_jam_temperature")
     )
+    least = float(np.nanmin(alone, initial=np.inf))
     first = f"at {_degrees(alone, np.argsort(alone), here)} of the pinion's addendum"
     words = f"{first} where both gears rise alike with the housing as it is"
     nearest = np.argsort(np.abs(together - reference))
     known = float(together[nearest[0]])
     if not math.isfinite(known):
-        return float(np.nanmin(alone, initial=np.inf)), (
-            f"{words}, and never where shafts and housing go along in proportion"
-        )
+        return least, f"{words}, and never where shafts and housing go along in proportion"
     way = "rise" if known > reference else "cool"
-    return float(np.nanmin(alone, initial=np.inf)), (
-        f"{words}, at {_degrees(together, nearest, here)} where shafts and housing {way} in "
-        "proportion to the gears"
-    )
+    at = _degrees(together, nearest, here)
+    return least, f"{words}, at {at} where shafts and housing {way} in proportion to the gears"
 
 
 def _degrees(kelvin: Floats, order: NDArray[np.int64], here: xr.Dataset) -> str:
@@ -252,9 +248,7 @@ def _degrees(kelvin: Floats, order: NDArray[np.int64], here: xr.Dataset) -> str:
     text = f"{kelvin[first] - ZERO_CELSIUS:.0f} °C"
     if np.all(np.abs(kelvin - kelvin[first]) < 0.5):
         return text
-    one = here.isel(operating=first)
-    speed, torque = _rpm(float(one["pinion_speed"])), float(one["pinion_torque"])
-    return f"{text} ({speed:.5g} rpm, {torque:.5g} N m)"
+    return f"{text} ({_point(here.isel(operating=first), '.5g')})"
 
 
 def _regime(case: GearCase, mesh: xr.Dataset) -> Iterator[Notice]:
@@ -371,9 +365,7 @@ def facts(case: GearCase, groups: Mapping[str, xr.Dataset]) -> list[dict[str, ob
         table.append(Fact("heat the assumed field sends into the shaft", name, heat, "W"))
     path = groups["path"].isel(bundle=0, state=-1)
     for place in range(path.sizes["operating"]):
-        here = path.isel(operating=place)
-        rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
-        at = f"at {rpm:.0f} rpm, {torque:.0f} N m"
+        at = f"at {_point(path.isel(operating=place))}"
         loss = float(mesh["frictional_power"].isel(bundle=0, state=-1, operating=place))
         table.append(Fact("frictional power of the mesh", at, loss, "W"))
     table += _balance_facts(groups)
@@ -394,15 +386,13 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
     if "half_backlash_uncertainty" in balance:
         for o in range(min(balance.sizes["operating"], MOST_POINTS)):
             here = balance.isel(operating=o)
-            at = f"at {_rpm(float(here['pinion_speed'])):.0f} rpm, "
-            at += f"{float(here['pinion_torque']):.0f} N m"
             sigma = 1e6 * float(here["half_backlash_uncertainty"])
-            found.append(Fact("uncertainty of b' from the measured temperatures", at, sigma, "um"))
+            words = "uncertainty of b' from the measured temperatures"
+            found.append(Fact(words, f"at {_point(here)}", sigma, "um"))
     for place, bundle in enumerate(balance["bundle"].values):
         for o in range(min(balance.sizes["operating"], MOST_POINTS)):
             here = balance.isel(bundle=place, operating=o)
-            rpm, torque = _rpm(float(here["pinion_speed"])), float(here["pinion_torque"])
-            group = f"heat balance, {bundle}, {rpm:.0f} rpm, {torque:.0f} N m"
+            group = f"heat balance, {bundle}, {_point(here)}"
             if np.isnan(here["residual"]):
                 found.append(Fact(group, "temperatures", "no value"))
                 continue

@@ -28,7 +28,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.result import Notice, Result
-from thermogear.study.notices import several_words
+from thermogear.study.notices import reasons, several_words
 
 Floats = NDArray[np.float64]
 KIND = "temperature"
@@ -115,27 +115,20 @@ def _heading(grid: xr.Dataset) -> str:
 
 
 def _points(case: GearCase, model: MeshModel, speed: Floats, torque: Floats) -> xr.Dataset:
-    """Everything that the map shows, over ``operating``."""
+    """Everything that the map shows, over ``operating``: of heat balance and mesh cycle."""
     with warnings.catch_warnings():
         # told once, with the number of points, in the notices
         warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
-        return _gathered(case, *_solved(case, model, speed, torque))
-
-
-def _solved(
-    case: GearCase, model: MeshModel, speed: Floats, torque: Floats
-) -> tuple[HeatBalance, xr.Dataset]:
-    """The heat balance of the points, and the mesh cycle at its temperatures."""
-    settled = case.balance_of(model, speed, torque)
-    cycle = mesh_cycle(
-        case.pair,
-        settled.operating,
-        model,
-        deviations=case.deviations,
-        path_positions=PATH_POSITIONS,
-        mesh_positions=MESH_POSITIONS,
-    )
-    return settled, cycle
+        settled = case.balance_of(model, speed, torque)
+        cycle = mesh_cycle(
+            case.pair,
+            settled.operating,
+            model,
+            deviations=case.deviations,
+            path_positions=PATH_POSITIONS,
+            mesh_positions=MESH_POSITIONS,
+        )
+        return _gathered(case, settled, cycle)
 
 
 def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dataset:
@@ -143,9 +136,14 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     operating: Operating = settled.operating
     flash, share = cycle["flash_temperature"], cycle["film_parameter"]
     mean_flash = flash.mean("path_position").values
+
+    def greatest(name: str) -> Floats:
+        return np.asarray(cycle[name].max("path_position").values)
+
     weight = cycle["line_load"] * np.abs(cycle["sliding_velocity"])
-    friction = (cycle["friction_coefficient"] * weight).sum("path_position")
-    contact = cycle["contact_temperature"].max("path_position").values
+    friction = (cycle["friction_coefficient"] * weight).sum("path_position").values
+    weighed = weight.sum("path_position").values
+    contact = greatest("contact_temperature")
     stage = case.scuffing_load_stage
     margin = (
         np.full(contact.shape, np.nan)
@@ -155,21 +153,16 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     least = cycle["half_backlash_curve"].min("mesh_phase").values
     figures: Mapping[str, tuple[Any, str, str]] = {
         "mean_friction": (
-            np.divide(
-                friction.values,
-                weight.sum("path_position").values,
-                out=np.full(contact.shape, np.nan),
-                where=weight.sum("path_position").values > 0.0,
-            ),
+            np.divide(friction, weighed, out=np.full(contact.shape, np.nan), where=weighed > 0.0),
             "1",
             "friction coefficient, mean by sliding power",
         ),
         "greatest_friction": (
-            cycle["friction_coefficient"].max("path_position").values,
+            greatest("friction_coefficient"),
             "1",
             "greatest friction coefficient along the path",
         ),
-        "greatest_flash": (flash.max("path_position").values, "K", "greatest flash temperature"),
+        "greatest_flash": (greatest("flash_temperature"), "K", "greatest flash temperature"),
         "greatest_contact_temperature": (contact, "K", "greatest contact temperature"),
         "scuffing_margin": (margin, "K", "scuffing temperature less contact temperature"),
         "least_film_parameter": (
@@ -179,7 +172,7 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
         ),
         "least_half_backlash": (least, "m", "least half backlash over the mesh phase"),
         "thermal_growth": (
-            cycle["deformation_sum"].max("path_position").values,
+            greatest("deformation_sum"),
             "m",
             "greatest normal growth of both flanks together",
         ),
@@ -203,11 +196,9 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
         "K",
         "body temperature by an ISO report",
     )
-    friction_path = cycle["friction_coefficient"].variable
-    flash_path = flash.variable
     by = ("operating", "path_position")
-    variables["friction_along"] = labelled("friction_coefficient", (by, friction_path.values))
-    variables["flash_along"] = labelled("flash_temperature", (by, flash_path.values))
+    for name in ("friction_coefficient", "flash_temperature"):
+        variables[f"{name.partition('_')[0]}_along"] = labelled(name, (by, cycle[name].values))
     merged = data.assign(variables)
     status = np.where(settled.settled, cycle["status"].values, STATUS.index("not_converged"))
     merged["status"] = labelled("status", (along, status))
@@ -258,17 +249,10 @@ def _notices(
         yield Notice(
             "important",
             f"{int((~settled).sum())} of {told} no steady temperature; they are left out of every "
-            "picture." + (f" No value: {'; '.join(dict.fromkeys(why))}." if why else ""),
+            "picture." + reasons(why),
         )
-    several = settled & (grid["several"].values == 1)
-    if several.any():
-        hotter = grid["hot_node_temperature"].sel(node="oil") - grid["node_temperature"].sel(
-            node="oil"
-        )
-        far = float(np.max(hotter.values[several]))
-        yield Notice(
-            "important", several_words(several=int(several.sum()), count=count, hotter=far)
-        )
+    if text := several_words(grid, settled):
+        yield Notice("important", text)
     outside = settled & (grid["within_oil_range"].values == 0)
     low, high = case.stated.lubricant.temperature_range
     if outside.any():

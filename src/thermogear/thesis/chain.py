@@ -21,7 +21,7 @@ from thermogear.heat.expansion import RadialField, radial_displacement
 from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.mesh.operating import Temperatures
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
     flat = np.repeat(omega, torques), np.tile(moment, speeds)
     # the document's mixed friction, as far as it can be read, feeds the loop too
     model = MeshModel.consistent().override(friction="benedict-kelley")
-    given = replace(case.operating, speed=flat[0], torque=flat[1], housing=case.housing)
+    given = replace(case.operating, speed=flat[0], torque=flat[1])
     closed = heat_balance(
         case.pair,
         *flat,
@@ -54,7 +54,7 @@ def operating_grid(case: GearCase, *, speeds: int = 6, torques: int = 5) -> xr.D
         reference=case.operating.temperatures.reference,
         housing=case.housing,
     )
-    states = {"given": given, "balance": replace(closed.operating, housing=case.housing)}
+    states = {"given": given, "balance": closed.operating}
     rows: dict[str, list[Floats]] = {}
     for operating in states.values():
         cycle = mesh_cycle(case.pair, operating, model, path_positions=101, mesh_positions=16)
@@ -173,11 +173,7 @@ def uniform_change(case: GearCase, temperature: float) -> tuple[float, float]:
     found = []
     for at in (reference, temperature):
         operating = replace(
-            case.operating,
-            speed=case.operating.speed[:1],
-            torque=case.operating.torque[:1],
-            temperatures=Temperatures.uniform(at, reference=reference),
-            housing=case.housing,
+            case.operating.point(0), temperatures=Temperatures.uniform(at, reference=reference)
         )
         cycle = mesh_cycle(case.pair, operating, model, path_positions=3, mesh_positions=64)
         found.append((float(cycle["half_backlash"][0]), float(cycle["mean_stiffness"][0])))
@@ -189,7 +185,7 @@ def thermal_springs(case: GearCase, temperatures: Floats) -> tuple[Floats, Float
     """The thesis's mean k_T [N/m] and elastic k [N/m] at gear ``temperatures`` [K]."""
     rows = []
     for temperature in temperatures:
-        operating = _one(case, case.operating_at(float(temperature)))
+        operating = case.operating_at(float(temperature)).point(0)
         cycle = mesh_cycle(
             case.pair, operating, MeshModel.thesis(), path_positions=3, mesh_positions=64
         )
@@ -204,21 +200,11 @@ def thermal_spring_over_torque(case: GearCase, torques: Floats) -> Floats:
         case.operating,
         speed=np.full(torques.size, case.speeds[0]),
         torque=torques,
-        housing=case.housing,
     )
     cycle = mesh_cycle(
         case.pair, operating, MeshModel.thesis(), path_positions=3, mesh_positions=64
     )
     return np.asarray(cycle["thermal_stiffness"].values.mean(axis=1))
-
-
-def _one(case: GearCase, operating: Operating) -> Operating:
-    return replace(
-        operating,
-        speed=case.operating.speed[:1],
-        torque=case.operating.torque[:1],
-        housing=case.housing,
-    )
 
 
 def width_of_printed_stiffness(case: GearCase) -> dict[str, float]:
