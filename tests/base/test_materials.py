@@ -10,6 +10,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.materials import (
     LUBRICANTS,
     MATERIALS,
+    POLYMER_LIMITS,
     ZERO_CELSIUS,
     Lubricant,
     lubricant,
@@ -108,21 +109,26 @@ def test_a_viscosity_grade_alone_is_the_mineral_oil_of_that_grade(name: str) -> 
     assert lubricant(name) is lubricant("M100")
 
 
-MINERAL = "grades of mineral base oil: M32, M46, M68, M100, M150, M220, M320"
+MINERAL = "grades of mineral base oil: M32, M46, M68, M100, M150, M220, M320, M460"
 
 
 @pytest.mark.parametrize(
     ("name", "fix"),
     [
-        ("ISO VG 460", MINERAL),
+        ("ISO VG 680", MINERAL),
         ("VG 10", MINERAL),
-        ("M460", MINERAL),
+        ("M680", MINERAL),
         ("m100", "did you mean 'M100' (mineral base oil)?"),
         ("P46", "grades of polyalphaolefin: P68, P100, P150, P220, P320"),
         ("PAO 100", "did you mean 'M100' (mineral base oil) or 'P100' (polyalphaolefin)?"),
         ("FVA 3", "did you mean 'FVA3' (mineral base oil)?"),
         ("75W-90", "did you mean '75W90' (polyalphaolefin)?"),
-        ("CLP 220", "did you mean 'M220' (mineral base oil) or 'P220' (polyalphaolefin)?"),
+        ("CLP 100", "did you mean 'M100' (mineral base oil) or 'P100' (polyalphaolefin)?"),
+        (
+            "PAG 220",
+            "did you mean 'M220' (mineral base oil) or 'P220' (polyalphaolefin) or 'G220' "
+            "(polyalkylene glycol)?",
+        ),
         ("butter", f"known: {', '.join(LUBRICANTS)}"),
     ],
 )
@@ -132,3 +138,73 @@ def test_an_unknown_oil_is_answered_with_its_own_kind_or_the_kind_is_said(
     with pytest.raises(InputError) as caught:
         lubricant(name)
     assert str(caught.value) == f"lubricant: got {name!r}; {fix}"
+
+
+@pytest.mark.parametrize(
+    ("name", "points"),
+    [
+        ("ISO VG 220", {20: 852.0, 60: 78.8, 80: 35.6, 100: 19.0, 120: 11.45}),
+        ("ISO VG 100", {60: 40.2, 80: 19.9, 100: 11.4}),
+    ],
+)
+def test_walthers_line_through_two_grades(name: str, points: dict[int, float]) -> None:
+    """lg lg(nu + 0.7) = A - B lg T through 220/19.0 and 100/11.4; the named oils within 6 %."""
+    grade, hot = float(name.split()[-1]), points[100]
+    sheet = Lubricant.from_two_points(
+        "sheet", (ZERO_CELSIUS + 40.0, grade * 1e-6), (ZERO_CELSIUS + 100.0, hot * 1e-6)
+    )
+    for celsius, nu in points.items():
+        assert walther(sheet, celsius) == pytest.approx(nu, rel=2e-3)
+        assert walther(lubricant(name), celsius) == pytest.approx(nu, rel=0.06)
+
+
+def test_the_line_of_the_collection() -> None:
+    one = Lubricant.from_two_points("220", (313.15, 220e-6), (373.15, 19.0e-6))
+    two = Lubricant.from_two_points("100", (313.15, 100e-6), (373.15, 11.4e-6))
+    assert (one.walther_a, one.walther_b) == pytest.approx((8.8222, 3.3867), abs=1e-4)
+    assert (two.walther_a, two.walther_b) == pytest.approx((9.0593, 3.5090), abs=1e-4)
+
+
+@pytest.mark.parametrize("grade", [32, 46, 68, 100, 150, 220, 320, 460])
+def test_every_usual_grade_has_an_oil(grade: int) -> None:
+    """At 100 C within 10 % of the usual mineral sheet of the grade."""
+    sheet = {32: 5.5, 46: 6.8, 68: 8.7, 100: 11.2, 150: 14.7, 220: 19.0, 320: 24.1, 460: 30.6}
+    oil = lubricant(f"ISO VG {grade}")
+    assert oil.kind == "mineral"
+    assert walther(oil, 100.0) == pytest.approx(sheet[grade], rel=0.1)
+
+
+def test_a_glycol_thins_less_than_an_olefin_and_that_less_than_a_mineral_oil() -> None:
+    mineral, olefin, glycol = (walther(lubricant(n), 100.0) for n in ("M220", "P220", "G220"))
+    assert mineral < olefin < glycol
+    assert glycol == pytest.approx(34.4, rel=1e-9)
+    assert lubricant("G220").density_15 == 1074.0
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_every_material_has_a_source_and_plausible_values(name: str) -> None:
+    found = material(name)
+    assert found.name == name
+    assert found.source
+    polymer = name in POLYMER_LIMITS
+    assert (found.youngs_modulus < 5e9) == polymer
+    assert (
+        found.thermal_contact_coefficient < 1000.0
+        if polymer
+        else (found.thermal_contact_coefficient == pytest.approx(13000.0, rel=0.1))
+    )
+    if polymer:
+        lasting, short = POLYMER_LIMITS[name]
+        assert ZERO_CELSIUS + 60.0 < lasting <= short
+
+
+def test_a_hot_polymer_is_soft_and_then_refused() -> None:
+    """POM: 3.2, 2.0 and 1.0 GPa at 20, 60 and 100 C, on one line within 6 %."""
+    pom = material("POM")
+    kelvin = ZERO_CELSIUS + np.array([20.0, 60.0, 100.0])
+    assert pom.youngs_modulus_at(kelvin) == pytest.approx([3.2e9, 2.0e9, 1.0e9], rel=0.06)
+    with pytest.raises(InputError) as caught:
+        pom.youngs_modulus_at(ZERO_CELSIUS + 140.0)
+    assert str(caught.value) == (
+        "temperature of POM: got 140 degC; allowed < 133.6 degC; its modulus falls to nothing there"
+    )

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from thermogear.base.materials import MATERIALS
 from thermogear.case.examples import example_text
 from thermogear.front.cli import main
 
@@ -147,7 +148,8 @@ BAD_VALUES: list[tuple[str, str]] = [
     ),
     (
         "gears.pinion.material=stele",
-        "gears.pinion.material: got 'stele'; allowed steel; did you mean 'steel'? "
+        f"gears.pinion.material: got 'stele'; allowed {' | '.join(MATERIALS)}; "
+        "did you mean 'steel'? "
         "Or describe it in [materials.stele]",
     ),
     (

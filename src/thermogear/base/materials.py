@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError, nearest
+from thermogear.base.material_table import TABLE
 from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
@@ -55,9 +56,18 @@ class Material:
             raise InputError("material.poisson_ratio", self.poisson_ratio, allowed="0 <= nu < 0.5")
 
     def youngs_modulus_at(self, temperature: ArrayLike) -> Floats:
-        """E(T) [Pa] at ``temperature`` [K], any shape."""
+        """E(T) [Pa] at ``temperature`` [K], any shape; InputError where nothing is left of it."""
         rise = np.asarray(temperature, dtype=float) - (ZERO_CELSIUS + 20.0)
-        return np.asarray(self.youngs_modulus * (1.0 - self.modulus_slope * rise))
+        found = np.asarray(self.youngs_modulus * (1.0 - self.modulus_slope * rise))
+        if np.any(found <= 0.0):
+            hottest = float(np.max(rise)) + 20.0
+            raise InputError(
+                f"temperature of {self.name}",
+                f"{hottest:.6g} degC",
+                allowed=f"< {20.0 + 1.0 / self.modulus_slope:.4g} degC",
+                why="its modulus falls to nothing there",
+            )
+        return found
 
     @property
     def thermal_contact_coefficient(self) -> float:
@@ -192,6 +202,29 @@ MATERIALS: dict[str, Material] = {
         source="case-hardening gear steel, handbook values; E(T) slope fitted to Roark's table",
     ),
 }
+MATERIALS |= {
+    name: Material(
+        name=name,
+        youngs_modulus=row.modulus * 1e9,
+        poisson_ratio=row.poisson,
+        density=row.density,
+        thermal_conductivity=row.conductivity,
+        specific_heat=row.heat,
+        thermal_expansion=row.expansion * 1e-6,
+        modulus_slope=row.slope * 1e-4,
+        tempering_temperature=NEVER if row.tempered is None else ZERO_CELSIUS + row.tempered,
+        source=row.source,
+    )
+    for name, row in TABLE.items()
+}
+
+POLYMER_LIMITS: dict[str, tuple[float, float]] = {
+    "PA66": (ZERO_CELSIUS + 100.0, ZERO_CELSIUS + 160.0),
+    "POM": (ZERO_CELSIUS + 100.0, ZERO_CELSIUS + 140.0),
+    "PEEK": (ZERO_CELSIUS + 250.0, ZERO_CELSIUS + 250.0),
+}
+"""Tooth temperatures [K] a polymer bears lastingly and for a short time: usual, unconfirmed.
+Creep of PA66 and POM begins at 60 to 80 C."""
 
 
 def material(name: str) -> Material:
@@ -229,19 +262,32 @@ def _graded(prefix: str, kind: str, lines: dict[int, tuple[float, float]]) -> di
     }
 
 
+_PUBLIC_MINERAL = _graded(
+    "M",
+    "mineral",
+    {
+        32: (9.5259, 3.7449),
+        46: (9.7044, 3.7995),
+        68: (9.4422, 3.6778),
+        100: (9.2479, 3.5849),
+        150: (9.0379, 3.4861),
+        220: (8.8178, 3.3852),
+        320: (9.0658, 3.4730),
+    },
+)
+PUBLIC_MINERAL = tuple(_PUBLIC_MINERAL)
+"""Names of the mineral oils of one public set."""
+
+_SHEETS = "usual data sheet as a public gear code holds it: grade at 40 C, viscosity at 100 C"
+
 LUBRICANTS: dict[str, Lubricant] = {
-    **_graded(
-        "M",
-        "mineral",
-        {
-            32: (9.5259, 3.7449),
-            46: (9.7044, 3.7995),
-            68: (9.4422, 3.6778),
-            100: (9.2479, 3.5849),
-            150: (9.0379, 3.4861),
-            220: (8.8178, 3.3852),
-            320: (9.0658, 3.4730),
-        },
+    **_PUBLIC_MINERAL,
+    "M460": Lubricant.from_two_points(
+        "M460",
+        (ZERO_CELSIUS + 40.0, 460e-6),
+        (ZERO_CELSIUS + 100.0, 30.6e-6),
+        density_15=900.0,
+        source=_SHEETS,
     ),
     **_graded(
         "P",
@@ -253,6 +299,14 @@ LUBRICANTS: dict[str, Lubricant] = {
             220: (7.4846, 2.8510),
             320: (7.3514, 2.7865),
         },
+    ),
+    "G220": Lubricant.from_two_points(
+        "G220",
+        (ZERO_CELSIUS + 40.0, 220e-6),
+        (ZERO_CELSIUS + 100.0, 34.4e-6),
+        kind="pag",
+        density_15=1074.0,
+        source=_SHEETS,
     ),
     "FVA3": Lubricant(
         name="FVA3",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
-from thermogear.base.materials import LUBRICANTS, Lubricant
+from thermogear.base.materials import LUBRICANTS, PUBLIC_MINERAL, Lubricant
 from thermogear.base.units import ZERO_CELSIUS
 
 Floats = NDArray[np.float64]
@@ -106,7 +106,7 @@ def grade(viscosity_40: float) -> Lubricant:
     Its viscosity at 100 °C follows the package's own mineral oils: nu_100 = c nu_40^p, fitted to
     them.
     """
-    known = [LUBRICANTS[name] for name in sorted(LUBRICANTS) if name.startswith("M")]
+    known = [LUBRICANTS[name] for name in sorted(PUBLIC_MINERAL)]
     warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
     low = np.log([float(kinematic_viscosity(one, warm)) for one in known])
     high = np.log([float(kinematic_viscosity(one, hot)) for one in known])
