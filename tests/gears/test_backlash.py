@@ -106,8 +106,8 @@ def test_the_pair_of_the_collection() -> None:
     span = standard_backlash(PAIR, "25cd", "25cd")
     assert 1e6 * span.least == pytest.approx(141.0, abs=0.6)
     assert 1e6 * span.most == pytest.approx(253.0, abs=0.6)
-    assert 0.5e6 * span.least == pytest.approx(71.0, abs=0.6)
-    assert 0.5e6 * span.most == pytest.approx(127.0, abs=0.6)
+    assert 1e6 * span.half.least == pytest.approx(71.0, abs=0.6)
+    assert 1e6 * span.half.most == pytest.approx(127.0, abs=0.6)
     assert span.middle == pytest.approx(0.5 * (span.least + span.most), rel=1e-3)
 
 

@@ -88,12 +88,12 @@ def from_tolerances(
     order); ``distance``: deviations of the centre distance [m].
     """
     try:
-        span = backlash_span(pinion=pinion, wheel=wheel, distance=distance, pair=pair)
+        span = backlash_span(pinion=pinion, wheel=wheel, distance=distance, pair=pair).half
     except InputError as error:
         raise error.under("backlash.tolerances") from error
     return Backlash(
-        half=0.5 * span.middle,
-        least=0.5 * span.least,
-        most=0.5 * span.most,
+        half=span.middle,
+        least=span.least,
+        most=span.most,
         origin="tooth-thickness allowances and centre-distance tolerance",
     )

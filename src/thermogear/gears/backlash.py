@@ -79,6 +79,11 @@ class BacklashSpan(NamedTuple):
     middle: float
     most: float
 
+    @property
+    def half(self) -> BacklashSpan:
+        """The half backlashes j_bn/2 [m], to each side of a tooth in the middle."""
+        return BacklashSpan(0.5 * self.least, 0.5 * self.middle, 0.5 * self.most)
+
 
 def backlash_span(
     *,

@@ -44,7 +44,7 @@ _TOLERANCES = (  # row of numbers and its first place, of the six steps of diame
 )
 USES: dict[str, tuple[str, ...]] = {
     "general": ("b26",),
-    "reversing": ("c25", "c24", "cd25", "cd24", "d25", "d24", "e25", "e24"),
+    "reversing": ("c25", "cd25", "d25", "e25"),
     "turbo": ("ab25",),
     "polymer": ("c25", "cd25"),
     "cars": ("d26",),
