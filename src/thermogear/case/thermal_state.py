@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
 
 from thermogear.base import vocabulary
 from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.allowed import within
 from thermogear.case.case import GearCase
 from thermogear.case.fields import BODY
 from thermogear.case.units import read_quantity
 from thermogear.mesh.balance import HeatBalance
+from thermogear.mesh.balance_table import OF_OIL, blanked
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ALLOWED = "undeformed | hot | computed | degrees Celsius"
 
@@ -103,6 +110,23 @@ class ThermalState:
         if self != COMPUTED and not case.computed:
             return None
         return case.balance(model, None if case.follow == "proportional" else self.temperature)
+
+    def cycle(self, case: GearCase, model: MeshModel) -> xr.Dataset:
+        """The mesh cycle of every operating point, nan where nothing is known of its temperatures.
+
+        Points are not_converged where these did not settle; undeformed gears ask only for the
+        oil's.
+        """
+        cycle = case.cycle(self.operating(case, model), model)
+        balance = self.balance(case, model)
+        if balance is None:
+            return cycle
+        if self == UNDEFORMED:
+            return blanked(cycle, balance, OF_OIL)
+        status = cycle["status"]
+        values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
+        kept = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
+        return blanked(kept, balance)
 
 
 StateLike: TypeAlias = "ThermalState | str | float | None"

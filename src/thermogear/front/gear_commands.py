@@ -28,6 +28,27 @@ def _common(command: _Command) -> _Command:
 
 
 @click.command()
+@delivery.case
+@delivery.output("Directory for results and a page of the answers.", required=False)
+@delivery.overrides
+@delivery.as_json
+def answers(case: str, output: str | None, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Answer what one wants to know of CASE: each in a sentence with its limit and a verdict.
+
+    Does it mesh, how hot does it run, what is left of the backlash, is there a film, at which
+    speeds does it resonate or lose contact, how large are dynamic factor and transmission error.
+    """
+    read = delivery.load_gears(case, overrides)
+
+    def make(report: Progress) -> Result:
+        from thermogear.study.answers.survey import answers as study
+
+        return study(read, progress=report)
+
+    delivery.deliver(make, output, as_json=as_json)
+
+
+@click.command()
 @_common
 def friction(case: str, output: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Draw every friction law over CASE's path of contact, with ranges and regime.
@@ -274,7 +295,7 @@ def contact(
     delivery.deliver(make, output, as_json=as_json)
 
 
-COMMANDS: tuple[click.Command, ...] = (friction, temperature, warmup, relief, contact)
+COMMANDS: tuple[click.Command, ...] = (answers, friction, temperature, warmup, relief, contact)
 """For the main group to register."""
 
 

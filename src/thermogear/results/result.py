@@ -21,6 +21,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.stores import RESULT as STORE
 from thermogear.base.stores import read_store
+from thermogear.results.answer import Answer
 from thermogear.results.files import RESULTS, claimed, finite
 from thermogear.results.tables import frames
 
@@ -129,6 +130,11 @@ class Result:
     def summary(self) -> dict[str, Any]:
         """What the study summed up, where it did: the figures a script wants."""
         return self.table("summary")
+
+    @property
+    def answers(self) -> tuple[Answer, ...]:
+        """What the study answered, in the order of the questions; empty where it did not."""
+        return tuple(Answer(**row) for row in self.rows("answers"))
 
     @property
     def interrupted(self) -> bool:

@@ -28,13 +28,13 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
-from thermogear.mesh.balance_table import OF_OIL, balance_dataset, blanked
+from thermogear.mesh.balance_table import balance_dataset
 from thermogear.mesh.clearance import clearance
-from thermogear.mesh.model import MeshModel
 from thermogear.mesh.profile import profiles
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result, now
 from thermogear.study import run_notices
+from thermogear.study.answers.survey import answered
 from thermogear.study.motion import Motion, follow, follow_gears
 
 
@@ -50,12 +50,18 @@ def run(case: Case, *, progress: Progress = silent) -> Result:
         notices = run_notices.dimensionless_notices(groups["points"])
         own: dict[str, Any] = {}
     elif isinstance(case, GearCase):
-        groups = _gear_groups(case, progress)
+        cycles = _cycles(case, progress)
+        groups = _gear_groups(case, cycles, progress)
+        cold, hot = (cycles[case.models[0].name].sel(state=state) for state in STATES)
+        found, speeds = answered(case, case.models[0], cold, hot, progress)
+        if speeds is not None:
+            groups["speeds"] = speeds.data
         notices = run_notices.notices(case, groups)
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},
             "choices": run_notices.choice_meanings(),
+            "answers": [one.row for one in found],
         }
     else:
         raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
@@ -79,9 +85,10 @@ def run(case: Case, *, progress: Progress = silent) -> Result:
 # --- gear cases ---------------------------------------------------------------------------
 
 
-def _gear_groups(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
+def _gear_groups(
+    case: GearCase, cycles: Mapping[str, xr.Dataset], progress: Progress
+) -> dict[str, xr.Dataset]:
     groups: dict[str, xr.Dataset] = {}
-    cycles = _cycles(case, progress)
     groups |= _split(
         xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
     )
@@ -112,29 +119,12 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     found: dict[str, xr.Dataset] = {}
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
-        states = [_cycle(case, model, state) for state in (UNDEFORMED, HOT)]
+        states = [state.cycle(case, model) for state in (UNDEFORMED, HOT)]
         found[model.name] = _with_numbers(
             case, xr.concat(states, xr.DataArray(list(STATES), dims="state", name="state"))
         )
     progress("mesh cycle", len(case.models), len(case.models))
     return found
-
-
-def _cycle(case: GearCase, model: MeshModel, state: ThermalState) -> xr.Dataset:
-    """The mesh cycle in ``state``, nan where nothing is known of its temperatures.
-
-    Points are not_converged where these did not settle; undeformed gears ask only for the oil's.
-    """
-    cycle = case.cycle(state.operating(case, model), model)
-    balance = state.balance(case, model)
-    if balance is None:
-        return cycle
-    if state == UNDEFORMED:
-        return blanked(cycle, balance, OF_OIL)
-    status = cycle["status"]
-    values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
-    told = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
-    return blanked(told, balance)
 
 
 def _with_numbers(case: GearCase, cycle: xr.Dataset) -> xr.Dataset:
@@ -281,7 +271,7 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
     cycles: dict[str, xr.Dataset] = {}
     temperatures = np.asarray(case.gear_temperatures)
     for model in case.models:
-        row = [_cycle(case, model, ThermalState.of(float(t))) for t in temperatures]
+        row = [ThermalState.of(float(t)).cycle(case, model) for t in temperatures]
         drawn = case.cycle(UNDEFORMED.operating(case, model), model)
         reference = drawn["mean_stiffness"].values
         axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")

@@ -10,7 +10,7 @@ from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.csv_files import curve_tables
 from thermogear.views.page import Page, Pictures, Section, notice_lines
-from thermogear.views.pages import gear_sections, headline, row_sections
+from thermogear.views.pages import answers, gear_sections, headline, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
 
@@ -35,22 +35,23 @@ def page(result: Result) -> Page:
     whole = with_hot_temperature(result)
     return Page(
         result,
-        headline.summary(whole),
+        answers.summary(result) or headline.summary(whole),
         _sections(whole),
         tiles=headline.tiles(whole),
         numbers=lambda: numbers(result),
-        lines=lambda: notice_lines(result),
+        lines=lambda: [*answers.lines(result), *notice_lines(result)],
         tables=lambda: curve_tables(result),
     )
 
 
 def _sections(results: Result) -> list[Section]:
-    found: list[Section] = []
+    pictures = Pictures()
+    first = answers.section(results, pictures)
+    found = [] if first is None else [first]
     mesh = results.group("mesh")
     if mesh is not None:
         table = tables.key_results(mesh, results.group("path"), results.group("motion"))
         found.append(Section("results", "Key results", [table]))
-    pictures = Pictures()
     for make in ORDER:
         section = make(results, pictures)
         if section is not None:

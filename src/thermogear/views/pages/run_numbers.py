@@ -18,6 +18,7 @@ def numbers(result: Result) -> dict[str, Any]:
         "thermogear": result.text("thermogear"),
         "title": result.title,
         "kind": result.kind,
+        "answers": [one.row for one in result.answers],
         "notices": [one._asdict() for one in result.notices],
     }
     groups = result.groups

@@ -1,0 +1,107 @@
+"""Thresholds of verdicts: what a number is held against, and where that comes from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+
+FINE, LOOK, OPEN = "fine", "look here", "not decided"
+VERDICTS = (FINE, LOOK, OPEN)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A bound that a value keeps: ``least`` or ``most`` in ``unit`` as shown.
+
+    ``what`` is held against it, in words, where that is not the figure of the sentence itself.
+
+    ``confirmed`` False: the source is recalled, not read; a verdict then calls the limit usual.
+    """
+
+    unit: str
+    _: KW_ONLY
+    what: str = ""
+    least: float = -math.inf
+    most: float = math.inf
+    source: str
+    confirmed: bool = True
+
+    def verdict(self, value: float) -> str:
+        """Fine within the bound, look here outside; not decided where there is no value."""
+        if not math.isfinite(value):
+            return OPEN
+        return FINE if self.least <= value <= self.most else LOOK
+
+    @property
+    def words(self) -> str:
+        """The bound as a reader sees it, called usual where it is unconfirmed."""
+        side, bound = (
+            ("at least", self.least) if math.isfinite(self.least) else ("at most", self.most)
+        )
+        unit = f" {self.unit}" if self.unit else ""
+        what = f"{self.what} " if self.what else ""
+        return f"{what}{side} {bound:g}{unit}" + ("" if self.confirmed else ", usual")
+
+
+LIMITS: dict[str, Limit] = {
+    "contact_ratio": Limit("", least=1.2, source="public gear code; 1.0 is where contact breaks"),
+    "form_clearance": Limit(
+        "µm", least=0.0, source="ISO 21771-1: the other tip stays on the involute"
+    ),
+    "tip_thickness": Limit(
+        "modules", least=0.2, source="public gear code; 0.4 for case-hardened", confirmed=True
+    ),
+    "tip_clearance": Limit(
+        "modules", least=0.12, source="half of the 0.25 of ISO 53", confirmed=False
+    ),
+    "oil_mineral": Limit("°C", most=90.0, source="sump of mineral oil", confirmed=False),
+    "oil_pao": Limit("°C", most=105.0, source="sump of polyalphaolefin", confirmed=False),
+    "oil_ester": Limit("°C", most=105.0, source="sump of ester, as of PAO", confirmed=False),
+    "oil_pag": Limit("°C", most=110.0, source="sump of polyalkylene glycol", confirmed=False),
+    "teeth_steel": Limit(
+        "°C", most=150.0, source="stress relief of carburised steel, 150 to 200", confirmed=False
+    ),
+    "teeth_tempered": Limit(
+        "°C", most=400.0, source="50 K and more below tempering of 42CrMo4", confirmed=False
+    ),
+    "teeth_POM": Limit("°C", most=100.0, source="lasting temperature of POM", confirmed=False),
+    "teeth_PA66": Limit("°C", most=100.0, source="lasting temperature of PA 66", confirmed=False),
+    "teeth_PEEK": Limit("°C", most=250.0, source="lasting temperature of PEEK", confirmed=False),
+    "backlash": Limit("µm", least=0.0, source="a pair without backlash jams"),
+    "jam_margin": Limit(
+        "K", what="margin", least=30.0, source="ours: as much as a heat balance may be off"
+    ),
+    "film": Limit("", least=0.7, source="boundary lubrication below", confirmed=False),
+    "scuffing_margin": Limit(
+        "K", what="margin", least=50.0, source="ISO/TR 13989-1, ISO/TS 6336-20"
+    ),
+    "scuffing_safety": Limit(
+        "", what="safety", least=2.0, source="ISO/TR 13989-2, ISO/TS 6336-21: low risk"
+    ),
+    "resonance": Limit(
+        "%",
+        what="own speeds off it by",
+        least=15.0,
+        source="ISO 6336-1: main resonance at 0.85 to 1.15 of it",
+    ),
+    "contact_loss": Limit("%", what="own speeds in it", most=0.0, source="flanks that part hammer"),
+    "back_contact": Limit(
+        "%", what="own speeds in it", most=0.0, source="a tooth that hits the back side rattles"
+    ),
+    "coexisting": Limit(
+        "",
+        what="motions at own speeds",
+        most=1.0,
+        source="one steady motion: no jump, no hysteresis",
+    ),
+    "dynamic_factor": Limit(
+        "", most=0.0, source="ISO 6336-1 method B: what the load rating counts with"
+    ),
+    "transmission_error": Limit(
+        "µm", most=6.0, source="manufactured pairs of class 6: 3 to 6 µm", confirmed=False
+    ),
+    "relief": Limit(
+        "%", what="gain", most=30.0, source="ours: a relief that takes more is worth cutting"
+    ),
+}
+"""Every threshold of a verdict, by the name of its answer."""

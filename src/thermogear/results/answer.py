@@ -1,0 +1,40 @@
+"""An answer: one question, one sentence, one number with its limit, one verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+
+from thermogear.base.limits import FINE, LOOK, OPEN
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """What one question comes to at one operating point, or for the case as a whole.
+
+    ``name`` of the figure and its ``question``; ``sentence`` for a reader; ``value`` in ``unit``
+    as shown, None where there is none; ``limit`` in words and its ``source``; ``verdict`` one of
+    :data:`~thermogear.base.limits.VERDICTS`; ``operating`` "3000 rpm, 80 N m", empty where it is
+    not of one point.
+    """
+
+    name: str
+    question: str
+    sentence: str
+    value: float | None
+    unit: str
+    limit: str
+    source: str
+    verdict: str
+    operating: str = ""
+
+    @property
+    def row(self) -> dict[str, object]:
+        """For a file."""
+        return asdict(self)
+
+
+def worst(answers: Iterable[Answer]) -> Answer:
+    """The gravest of several: look here before not decided before fine, the first of equals."""
+    order = (LOOK, OPEN, FINE)
+    return min(answers, key=lambda one: order.index(one.verdict))

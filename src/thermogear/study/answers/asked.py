@@ -1,0 +1,141 @@
+"""What several answers share: the case, its mesh cycles, the surveys; and how one is held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.analysis.outcome import settle_with_status
+from thermogear.analysis.side_by_side import RULE
+from thermogear.base.limits import LIMITS
+from thermogear.base.progress import Progress
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import STATUS
+from thermogear.case.case import GearCase
+from thermogear.case.duty import point_duty
+from thermogear.case.points import excitations, points_of
+from thermogear.case.response import respond
+from thermogear.mesh.model import MeshModel
+from thermogear.mesh.warm_up import WarmUp, warm_up
+from thermogear.results.answer import Answer
+from thermogear.study.speeds import RECORD, Speeds, look
+from thermogear.study.warm_up import chosen_point
+
+Floats = NDArray[np.float64]
+WARM_UP_TOLERANCE = 0.1
+"""Of a step's error [K]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A case with its two mesh cycles, and the surveys that several answers share."""
+
+    case: GearCase
+    model: MeshModel
+    cold: xr.Dataset
+    hot: xr.Dataset
+    progress: Progress
+
+    @property
+    def points(self) -> range:
+        return range(self.hot.sizes["operating"])
+
+    def at(self, point: int) -> str:
+        """The operating point in words; empty where the case has one alone."""
+        if len(self.points) == 1:
+            return ""
+        rpm = float(self.hot["pinion_speed"][point]) / RPM
+        return f"{rpm:.6g} rpm, {float(self.hot['pinion_torque'][point]):.6g} N m"
+
+    def moves(self, point: int) -> bool:
+        return STATUS[int(self.hot["status"][point])] == "ok"
+
+    @cached_property
+    def hardest(self) -> int:
+        """The operating point of the greatest power."""
+        at = self.case.stated
+        return int(np.argmax(at.speed * at.torque))
+
+    @cached_property
+    def bodies(self) -> tuple[Floats, Floats]:
+        """(oil, hotter teeth) [K] of every point."""
+        at = self.case.operating_of(self.model)
+        teeth = np.maximum(at.temperatures.pinion_addendum, at.temperatures.wheel_addendum)
+        shape = (len(self.points),)
+        return np.broadcast_to(at.oil_temperature, shape), np.broadcast_to(teeth, shape)
+
+    @cached_property
+    def warming(self) -> WarmUp:
+        """The way from cold to steady at the hardest point."""
+        case, at = self.case, self.case.stated
+        self.progress("warm-up", 0, 1)
+        found = warm_up(
+            case.pair,
+            point_duty(case, *chosen_point(case)),
+            at.lubricant,
+            at.half_backlash,
+            self.model,
+            gearbox=case.gearbox,
+            reference=at.temperatures.reference,
+            housing=at.housing,
+            deviations=case.deviations,
+            moments=40,
+            tolerance=WARM_UP_TOLERANCE,
+        )
+        self.progress("warm-up", 1, 1)
+        return found
+
+    @cached_property
+    def speeds(self) -> Speeds | None:
+        """Motions over speed at the hardest point; None where it does not move."""
+        if not self.moves(self.hardest):
+            return None
+        self.progress("speeds", 0, 1)
+        here = self.hot.isel(operating=[self.hardest])
+        points = points_of(excitations(self.case, here))
+        found = look(points, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
+        self.progress("speeds", 1, 1)
+        return found
+
+    @cached_property
+    def motion(self) -> dict[str, Any]:
+        """Figures of the motion at every operating point, started from rest."""
+        points = points_of(excitations(self.case, self.hot))
+        start = np.stack([points.half_backlash / points.length, np.zeros(len(self.points))], axis=1)
+        start[:, 0] += points.flat.force[:, 0].real
+        settled = settle_with_status(points.flat, points.status, start, RULE)
+        return respond(points, settled.state, RECORD, lines=False)
+
+
+def answer(
+    question: str,
+    name: str,
+    sentence: str,
+    value: float,
+    *,
+    limit: str = "",
+    verdict: str = "",
+    at: str = "",
+) -> Answer:
+    """An answer held against its limit in the table; ``verdict`` overrules where it must."""
+    bound = LIMITS[limit or name]
+    return Answer(
+        name=name,
+        question=question,
+        sentence=sentence,
+        value=float(value) if np.isfinite(value) else None,
+        unit=bound.unit,
+        limit=bound.words,
+        source=bound.source,
+        verdict=verdict or bound.verdict(value),
+        operating=at,
+    )
+
+
+def undecided(question: str, name: str, why: str, *, limit: str = "", at: str = "") -> Answer:
+    return answer(question, name, f"Not decided: {why}.", float("nan"), limit=limit, at=at)

@@ -1,0 +1,230 @@
+"""Answers of a steady pair: geometry, heat, backlash, film and scuffing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError, ThermogearError
+from thermogear.base.limits import FINE, LIMITS, LOOK
+from thermogear.base.units import ZERO_CELSIUS
+from thermogear.base.vocabulary import STATUS
+from thermogear.case.case import GearCase
+from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
+from thermogear.results.answer import Answer
+from thermogear.study.answers.asked import Asked, answer, undecided
+
+Floats = NDArray[np.float64]
+
+MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
+FILM = "Is there a film, does it scuff?"
+
+STAGE = 12.0
+"""FZG load stage of an oil of which none is given: the least of CLP oils (DIN 51517-3; usual)."""
+
+
+# --- does it mesh -----------------------------------------------------------------------------
+
+
+def mesh(asked: Asked) -> Iterator[Answer]:
+    pair = asked.case.pair
+    gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
+    module = pair.pinion.module
+    yield answer(
+        MESH, "contact_ratio", f"The contact ratio is {pair.contact_ratio:.3f}.", pair.contact_ratio
+    )
+    form = [
+        1e6 * (start - gear.form_radius)
+        for start, (_, gear) in zip(pair.start_radii, gears, strict=True)
+    ]
+    least = int(np.argmin(form))
+    cut = [name for name, gear in gears if gear.undercut]
+    yield answer(
+        MESH,
+        "form_clearance",
+        f"The flank in use begins {form[least]:.0f} µm above the involute's end on the "
+        f"{gears[least][0]}" + (f"; undercut: {' and '.join(cut)}." if cut else "; no undercut."),
+        form[least],
+    )
+    tips = [gear.tip_thickness / module for _, gear in gears]
+    thin = int(np.argmin(tips))
+    yield answer(
+        MESH,
+        "tip_thickness",
+        f"The thinner tip, the {gears[thin][0]}'s, is {tips[thin]:.2f} modules thick.",
+        tips[thin],
+    )
+    clear = [c / module for c in pair.tip_clearances]
+    close = int(np.argmin(clear))
+    yield answer(
+        MESH,
+        "tip_clearance",
+        f"The {gears[close][0]}'s tip clears the other root by {clear[close]:.3f} modules.",
+        clear[close],
+    )
+
+
+# --- how hot ----------------------------------------------------------------------------------
+
+
+def heat(asked: Asked) -> Iterator[Answer]:
+    oil, teeth = asked.bodies
+    kind = f"oil_{asked.case.stated.lubricant.kind}"
+    how = "computed" if asked.case.computed else "given"
+    held = "oil" in asked.case.gearbox.measured
+    for point in asked.points:
+        warm, at = float(oil[point]) - ZERO_CELSIUS, asked.at(point)
+        if not np.isfinite(warm):
+            yield undecided(HEAT, "oil_temperature", "the heat balance did not settle", limit=kind)
+            continue
+        said = "given" if held else how
+        yield answer(
+            HEAT, "oil_temperature", f"The oil is at {warm:.0f} °C ({said}).", warm,
+            limit=kind, at=at,
+        )  # fmt: skip
+        hottest = float(teeth[point]) - ZERO_CELSIUS
+        flash = float(asked.hot["flash_temperature"][point].max())
+        yield answer(
+            HEAT,
+            "tooth_temperature",
+            f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {flash:.0f} K.",
+            hottest,
+            limit=_tooth_limit(asked.case),
+            at=at,
+        )
+
+
+def _tooth_limit(case: GearCase) -> str:
+    """The limit of the gear that stands least heat; steel's where nobody knows better."""
+    names = [gear.material.name for gear in (case.pair.pinion, case.pair.wheel)]
+    known = [f"teeth_{name}" for name in names if f"teeth_{name}" in LIMITS]
+    if not known:
+        soft = [g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel)]
+        return "teeth_tempered" if ZERO_CELSIUS + 500.0 <= min(soft) < 1e6 else "teeth_steel"
+    return min(known, key=lambda name: LIMITS[name].most)
+
+
+# --- backlash -----------------------------------------------------------------------------------
+
+
+def gap(asked: Asked) -> Iterator[Answer]:
+    cold = 2e6 * float(asked.hot["cold_half_backlash"].values.flat[0])
+    for point in asked.points:
+        at = asked.at(point)
+        if STATUS[int(asked.hot["status"][point])] == "not_converged":
+            yield undecided(GAP, "backlash", "the heat balance did not settle", at=at)
+            continue
+        left = 2e6 * float(asked.hot["least_half_backlash"][point])
+        yield answer(
+            GAP,
+            "backlash",
+            f"Of {cold:.0f} µm cold, {left:.0f} µm are left hot along the line of action.",
+            left,
+            at=at,
+            verdict=FINE if left > 0.0 else LOOK,
+        )
+        jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
+        hot = float(asked.bodies[1][point]) - ZERO_CELSIUS
+        if not np.isfinite(jam):
+            sentence, margin = "No heat of the gears alone jams the pair.", float("nan")
+            yield answer(GAP, "jam_margin", sentence, margin, at=at, verdict=FINE)
+            continue
+        yield answer(
+            GAP,
+            "jam_margin",
+            f"It jams with teeth at {jam:.0f} °C and the housing as it is, {jam - hot:.0f} K above "
+            "what they have.",
+            jam - hot,
+            at=at,
+        )
+    yield _worst_moment(asked)
+
+
+def _worst_moment(asked: Asked) -> Answer:
+    try:
+        course = asked.warming
+    except ThermogearError as error:
+        return undecided(GAP, "warm_up_backlash", str(error), limit="backlash")
+    worst = course.worst
+    least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
+    start = float(course.temperatures["oil"][0]) - ZERO_CELSIUS
+    sentence = f"Warming up from {start:.0f} °C it is never less than when steady, {steady:.0f} µm."
+    if least < 0.995 * steady:
+        sentence = (
+            f"Warming up from {start:.0f} °C it is least after {worst.time / 60.0:.3g} min: "
+            f"{least:.0f} µm, {steady:.0f} µm when steady."
+        )
+    return answer(
+        GAP, "warm_up_backlash", sentence, least,
+        limit="backlash", at=asked.at(asked.hardest), verdict=FINE if least > 0.0 else LOOK,
+    )  # fmt: skip
+
+
+# --- film and scuffing --------------------------------------------------------------------------
+
+
+def film(asked: Asked) -> Iterator[Answer]:
+    case, oil = asked.case, asked.bodies[0]
+    given = case.scuffing_load_stage is not None
+    stage = float(case.scuffing_load_stage or STAGE)
+    whose = f"stage {stage:g}" + ("" if given else ", assumed")
+    for point in asked.points:
+        at = asked.at(point)
+        film = asked.hot["film_parameter"][point].values
+        least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
+        if not np.isfinite(least):
+            yield undecided(FILM, "film", "no film could be computed", at=at)
+        else:
+            acting = "boundary" if least < 1.0 else "mixed" if least < 3.0 else "full film"
+            yield answer(
+                FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
+            )
+        torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
+        steels = all(g.material.youngs_modulus > 1e11 for g in (case.pair.pinion, case.pair.wheel))
+        if not (steels and torque > 0.0 and np.isfinite(oil[point])):
+            why = "the rating is for steel gears under load, with a known oil temperature"
+            for name in ("scuffing_margin", "scuffing_safety"):
+                yield undecided(FILM, name, why, at=at)
+            continue
+        state = Scuffing(
+            lubricant=case.stated.lubricant, oil_temperature=float(oil[point]), load_stage=stage
+        )
+        for name, words in (
+            ("scuffing_margin", _flash_words),
+            ("scuffing_safety", _integral_words),
+        ):
+            yield _rated(name, partial(words, case, torque, speed, state, whose), at)
+
+
+def _rated(name: str, make: Callable[[], tuple[str, float]], at: str) -> Answer:
+    try:
+        sentence, value = make()
+    except InputError as error:
+        return undecided(FILM, name, str(error), at=at)
+    return answer(FILM, name, sentence, value, at=at)
+
+
+def _flash_words(
+    case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
+) -> tuple[str, float]:
+    found = flash_rating(case.pair, torque, speed, state)
+    contact, limit = float(found.contact) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
+    return (
+        f"By flash temperature the contact reaches {contact:.0f} °C of {limit:.0f} °C ({whose}): "
+        f"safety {float(found.safety):.2f}.",
+        float(found.margin),
+    )
+
+
+def _integral_words(
+    case: GearCase, torque: float, speed: float, state: Scuffing, whose: str
+) -> tuple[str, float]:
+    found = integral_rating(case.pair, torque, speed, state)
+    total, limit = float(found.integral) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
+    return (
+        f"By integral temperature it is {total:.0f} °C of {limit:.0f} °C ({whose}).",
+        float(found.safety),
+    )

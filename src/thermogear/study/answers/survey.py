@@ -1,0 +1,93 @@
+"""Answers first: does it mesh, how hot, what backlash is left, film, speeds, dynamic factor, error.
+
+Each question has one sentence, one number with its limit, and a verdict by the table of
+:mod:`thermogear.base.limits`. What costs long work is answered from a short own survey.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+
+import xarray as xr
+
+from thermogear.base.errors import ValidityWarning
+from thermogear.base.progress import Progress, silent
+from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import HOT, UNDEFORMED
+from thermogear.mesh.model import MeshModel
+from thermogear.results.answer import Answer
+from thermogear.results.result import Notice, Result
+from thermogear.study.answers import moving, steady
+from thermogear.study.answers.asked import Asked
+from thermogear.study.speeds import Speeds
+
+KIND = "answers"
+MAKERS = (
+    steady.mesh,
+    steady.heat,
+    steady.gap,
+    steady.film,
+    moving.speeds,
+    moving.loads,
+    moving.errors,
+)
+"""What answers each question, in the order of the page."""
+
+
+def answers(case: GearCase, *, progress: Progress = silent) -> Result:
+    """The answers of a gear case by its first model: ``result.answers``, the ``speeds`` behind.
+
+    Raises InputError where the case as a whole is impossible; what fails at one point is a verdict
+    "not decided" with its reason.
+    """
+    model = case.models[0]
+    progress("mesh cycle", 0, 2)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
+        hot = HOT.cycle(case, model)
+        progress("mesh cycle", 1, 2)
+        cold = UNDEFORMED.cycle(case, model)
+    progress("mesh cycle", 2, 2)
+    found, speeds = answered(case, model, cold, hot, progress)
+    return Result.of(
+        KIND,
+        case.title,
+        {} if speeds is None else {"speeds": speeds.data},
+        notices(case),
+        **case.provenance,
+        bundle=model.name,
+        choices=model.choices(),
+        assumptions=[
+            {"field": a.field, "value": a.value, "reason": a.reason} for a in case.assumptions
+        ],
+        answers=[one.row for one in found],
+    )
+
+
+def notices(case: GearCase) -> Iterator[Notice]:
+    """What limits the answers as a whole."""
+    if case.accuracy is not None:
+        yield Notice(
+            "info",
+            f"Flanks drawn from accuracy class {case.accuracy} repeat in every mesh period; pitch "
+            "errors over a whole turn, which bring lines of the shaft, are not modelled.",
+        )
+    yield Notice(
+        "info",
+        "Speeds: one hot mesh at every speed, in steps of 2.5 % from 0.15 to 1.8 of the resonance, "
+        "without branches between the steps; `thermogear runup` follows them.",
+    )
+
+
+def answered(
+    case: GearCase, model: MeshModel, cold: xr.Dataset, hot: xr.Dataset, progress: Progress = silent
+) -> tuple[tuple[Answer, ...], Speeds | None]:
+    """Every answer from the mesh cycles undeformed and ``hot`` under ``model``; the speeds."""
+    asked = Asked(case, model, cold, hot, progress)
+    found: list[Answer] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        for make in MAKERS:
+            found += make(asked)
+    return tuple(found), asked.speeds

@@ -1,0 +1,144 @@
+"""A coarse look over the speeds: where a pair resonates, loses contact, hits back and may jump.
+
+The mesh is that of one hot operating point; its speed alone varies, in steps of 2.5 %. Motions are
+handed on from speed to speed until nothing new turns up; branches between the steps are not
+followed (:func:`~thermogear.study.run_up.run_up` does, with the heat of each speed's state).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from thermogear.analysis.side_by_side import motions_along
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import label
+from thermogear.case.points import Points, on_numbers
+from thermogear.case.response import Recording, respond
+
+Floats = NDArray[np.float64]
+
+LOWEST, HIGHEST, STEP = 0.15, 1.8, 0.025
+"""Mesh over natural frequency, and the step of it."""
+RECORD = Recording(periods=8, samples=64)
+PEAK = 1.05
+"""A peak stands out by this factor from the least between it and the next."""
+LOST = 1e-3
+"""Share of time out of contact below which contact is kept."""
+
+VALUES = {
+    "frequency_ratio": ("1", "mesh frequency over natural frequency"),
+    "dynamic_factor": ("1", "dynamic factor: greatest mesh force over its mean"),
+    "dte_peak_to_peak": ("m", "dynamic transmission error, peak to peak"),
+    "contact_loss_share": ("1", "share of time out of drive-side contact"),
+    "mesh_force_min": ("N", "dynamic mesh force, least; below 0 on the back flank"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Speeds:
+    """What a look over the speeds found: ``data`` over (motion), and what is read off it."""
+
+    data: xr.Dataset
+    step: float
+
+    @property
+    def grid(self) -> Floats:
+        """Every speed [rad/s], rising."""
+        return np.unique(self.data["pinion_speed"].values)
+
+    def ranges(self, where: NDArray[np.bool_]) -> list[tuple[float, float]]:
+        """Connected ranges of speed [rad/s] in which a motion of those ``where`` lives."""
+        hit = np.isin(self.grid, self.data["pinion_speed"].values[where])
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], hit.astype(int), [0]))))
+        return [
+            (float(self.grid[a]), float(self.grid[b - 1]))
+            for a, b in zip(edges[::2], edges[1::2], strict=True)
+        ]
+
+    @property
+    def lost(self) -> list[tuple[float, float]]:
+        """Ranges [rad/s] in which the flanks part."""
+        return self.ranges(self.data["contact_loss_share"].values > LOST)
+
+    @property
+    def back(self) -> list[tuple[float, float]]:
+        """Ranges [rad/s] in which a tooth hits the back side."""
+        return self.ranges(self.data["mesh_force_min"].values < 0.0)
+
+    @property
+    def several(self) -> list[tuple[float, float]]:
+        """Ranges [rad/s] in which two motions or more exist: a run-up may jump there."""
+        speed = self.data["pinion_speed"].values
+        _, place, count = np.unique(speed, return_inverse=True, return_counts=True)
+        return self.ranges(count[place] > 1)
+
+    def peaks(self) -> list[tuple[float, float]]:
+        """(speed [rad/s], dynamic factor) of the resonances, the greatest first."""
+        speed, factor = self.data["pinion_speed"].values, self.data["dynamic_factor"].values
+        top = np.array([np.nanmax(factor[speed == one], initial=0.0) for one in self.grid])
+        inner = np.arange(1, top.size - 1)
+        tops = inner[(top[inner] >= top[inner - 1]) & (top[inner] > top[inner + 1])]
+        found = [
+            (float(self.grid[i]), float(top[i]))
+            for i in tops
+            if top[i] > PEAK * max(_valley(top, i, -1), _valley(top, i, 1))
+        ]
+        return sorted(found, key=lambda one: -one[1])
+
+
+def _valley(top: Floats, place: int, way: int) -> float:
+    """The least on one side before something higher than the peak, the end's where none is."""
+    side = top[place + way :: way] if way > 0 else top[place - 1 :: -1]
+    higher = np.flatnonzero(side > top[place])
+    return float(side[: higher[0] if higher.size else side.size].min())
+
+
+def look(points: Points, *, teeth: int, own: Floats) -> Speeds:
+    """Motions of the first of ``points`` over the speed of its pinion of so many ``teeth``.
+
+    Each of about a hundred speeds is started at rest in static contact, with a far throw, and on
+    the back side. ``own``: the case's own speeds [rad/s], kept beside.
+    """
+    count = int(np.ceil(np.log(HIGHEST / LOWEST) / np.log1p(STEP)))
+    ratio = np.geomspace(LOWEST, HIGHEST, count + 1)
+    one = points.take(np.zeros(ratio.size, dtype=np.int64))
+    lanes = on_numbers(one, {"frequency": ratio})
+    gap, force = float(points.flat.half_backlash[0]), float(points.flat.force[0, 0].real)
+    starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0]]
+    motions = motions_along(lanes.flat, starts)
+    found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)
+    data = label(
+        {name: (("motion",), found[name], unit, words) for name, (unit, words) in VALUES.items()}
+        | {
+            "period": (("motion",), motions.period, "1", "mesh periods of the motion, 0: none"),
+            "label_code": (("motion",), motions.label, "1", "kind of the motion"),
+        },
+        {
+            "pinion_speed": (
+                ("motion",), lanes.mesh_frequency[motions.lane] / teeth, "rad/s", "pinion speed"
+            ),
+        },
+    )  # fmt: skip
+    data = data.assign_attrs(own_speeds=np.unique(own))
+    return Speeds(data, float(ratio[1] / ratio[0] - 1.0))
+
+
+def rpm(speed: float) -> str:
+    """A speed [rad/s] in rpm, to three figures: finer than the steps of a look."""
+    value = speed / RPM
+    size = max(int(np.floor(np.log10(value))) - 2, 0)
+    return f"{round(value, -size):.0f}" if value >= 100.0 else f"{value:.3g}"
+
+
+def told(ranges: list[tuple[float, float]], most: int = 3) -> str:
+    """Ranges of speed in rpm, the first few."""
+    words = [
+        f"{rpm(low)} to {rpm(high)} rpm" if high > low else f"near {rpm(low)} rpm"
+        for low, high in ranges[:most]
+    ]
+    more = len(ranges) - most
+    return ", ".join(words) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,131 @@
+"""The answers: a table of questions, sentences, limits and verdicts, and the speeds behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from markupsafe import Markup
+
+from thermogear.base.limits import FINE, LOOK, OPEN
+from thermogear.results.answer import Answer, worst
+from thermogear.results.result import Result
+from thermogear.views.page import Block, Page, Pictures, Section, Table, Text, notice_lines
+from thermogear.views.pages.background import background
+from thermogear.views.plots.speeds import speeds_picture
+
+KINDS = ("answers",)
+MOST_POINTS = 6
+"""Operating points that the table shows one by one; of more only the gravest answers."""
+
+
+def page(result: Result) -> Page:
+    """The answers alone."""
+    pictures = Pictures()
+    sections = [one for one in (section(result, pictures),) if one is not None]
+    return Page(
+        result,
+        summary(result),
+        sections + background(result),
+        numbers=lambda: numbers(result),
+        lines=lambda: [*lines(result), *notice_lines(result)],
+    )
+
+
+def summary(result: Result) -> str:
+    """How many answers are fine, and which want a look."""
+    found = gravest(result.answers)
+    if not found:
+        return ""
+    fine = sum(one.verdict == FINE for one in found)
+    looks = [one.sentence for one in found if one.verdict == LOOK]
+    open_ = sum(one.verdict == OPEN for one in found)
+    words = [f"{fine} of {len(found)} answers are fine."]
+    if looks:
+        words.append("Look here: " + " ".join(looks))
+    if open_:
+        words.append(f"{open_} not decided.")
+    return " ".join(words)
+
+
+def gravest(answers: Sequence[Answer]) -> list[Answer]:
+    """One answer for each figure: that of the operating point that wants a look most."""
+    by_name: dict[str, list[Answer]] = {}
+    for one in answers:
+        by_name.setdefault(one.name, []).append(one)
+    return [worst(several) for several in by_name.values()]
+
+
+def section(result: Result, pictures: Pictures) -> Section | None:
+    """The first section of a page: every answer with its verdict, then the speeds."""
+    found = result.answers
+    if not found:
+        return None
+    blocks: list[Block] = [_table("", gravest(found))]
+    points = list(dict.fromkeys(one.operating for one in found if one.operating))
+    if 1 < len(points) <= MOST_POINTS:
+        blocks.append(Text("Each operating point", "title"))
+        blocks += [
+            _table(point, [one for one in found if one.operating == point]) for point in points
+        ]
+    speeds = result.group("speeds")
+    if speeds is not None:
+        pictures.add(
+            "speeds",
+            "Dynamic factor over speed",
+            "Every motion found at each speed, the hot pair's: filled where the flanks part, a "
+            "second one where two exist. Dashed: the case's own speeds.",
+            speeds,
+            ("dynamic_factor", "contact_loss_share"),
+            lambda: speeds_picture(speeds),
+            wide=True,
+        )
+    return Section("answers", "Answers", blocks + pictures.take())
+
+
+def _table(caption: str, answers: Sequence[Answer]) -> Table:
+    rows = [
+        (
+            one.question if first else "",
+            Markup("<b>{}</b>").format(one.verdict),
+            _sentence(one),
+            one.limit,
+            one.source,
+        )
+        for first, one in _firsts(answers)
+    ]
+    marked = frozenset(i for i, one in enumerate(answers) if one.verdict == LOOK)
+    head = ("question", "verdict", "answer", "limit", "from")
+    return Table(caption, head, rows, names=5, marked=marked, wordy=True)
+
+
+def _firsts(answers: Sequence[Answer]) -> Iterator[tuple[bool, Answer]]:
+    """Every answer, and whether it is the first to its question."""
+    for _, several in groupby(answers, key=lambda one: one.question):
+        for place, one in enumerate(several):
+            yield place == 0, one
+
+
+def _sentence(one: Answer) -> str:
+    return f"{one.sentence[:-1]}, at {one.operating}." if one.operating else one.sentence
+
+
+def lines(result: Result) -> list[str]:
+    """The answers for a terminal: one line each, under their questions."""
+    found: list[str] = []
+    for first, one in _firsts(gravest(result.answers)):
+        if first:
+            found.append(one.question)
+        found.append(f"  {one.verdict:<11}  {_sentence(one)} [{one.limit}]")
+    return found
+
+
+def numbers(result: Result) -> dict[str, object]:
+    """The answers for a script."""
+    return {
+        "thermogear": result.text("thermogear"),
+        "title": result.title,
+        "kind": result.kind,
+        "answers": [one.row for one in result.answers],
+        "notices": [one._asdict() for one in result.notices],
+    }
