@@ -43,6 +43,9 @@ class Limit:
         return f"{what}{side} {bound:g}{unit}" + ("" if self.confirmed else ", usual")
 
 
+USUAL_ERROR = ((4, 3.0), (6, 6.0), (8, 15.0), (10, 40.0))
+"""(accuracy class, peak to peak of the transmission error [um] that pairs of it have at most)."""
+
 LIMITS: dict[str, Limit] = {
     "contact_ratio": Limit("", least=1.2, source="public gear code; 1.0 is where contact breaks"),
     "form_clearance": Limit(
@@ -95,10 +98,13 @@ LIMITS: dict[str, Limit] = {
         source="one steady motion: no jump, no hysteresis",
     ),
     "dynamic_factor": Limit(
-        "", most=0.0, source="ISO 6336-1 method B: what the load rating counts with"
+        "", most=1.0, source="ISO 6336-1 method B: what the load rating counts with"
     ),
     "transmission_error": Limit(
-        "µm", most=6.0, source="manufactured pairs of class 6: 3 to 6 µm", confirmed=False
+        "µm",
+        most=6.0,
+        source="manufactured pairs of the class, and 0.43 w/c' of the load on flanks as they are",
+        confirmed=False,
     ),
     "relief": Limit(
         "%", what="gain", most=30.0, source="ours: a relief that takes more is worth cutting"

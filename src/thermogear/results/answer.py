@@ -35,6 +35,11 @@ class Answer:
 
 
 def worst(answers: Iterable[Answer]) -> Answer:
-    """The gravest of several: look here before not decided before fine, the first of equals."""
+    """The gravest of several: look here before not decided before fine, then the worst value."""
     order = (LOOK, OPEN, FINE)
-    return min(answers, key=lambda one: order.index(one.verdict))
+
+    def rank(one: Answer) -> tuple[int, float]:
+        value = 0.0 if one.value is None else one.value
+        return order.index(one.verdict), value if "at least" in one.limit else -value
+
+    return min(answers, key=rank)

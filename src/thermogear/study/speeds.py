@@ -24,6 +24,8 @@ Floats = NDArray[np.float64]
 LOWEST, HIGHEST, STEP = 0.15, 1.8, 0.025
 """Mesh over natural frequency, and the step of it."""
 RECORD = Recording(periods=8, samples=64)
+DEEPEST, FARTHEST = 0.05, 10.0
+"""How far the case's own speeds may widen that range."""
 PEAK = 1.05
 """A peak stands out by this factor from the least between it and the next."""
 LOST = 1e-3
@@ -103,8 +105,11 @@ def look(points: Points, *, teeth: int, own: Floats) -> Speeds:
     Each of about a hundred speeds is started at rest in static contact, with a far throw, and on
     the back side. ``own``: the case's own speeds [rad/s], kept beside.
     """
-    count = int(np.ceil(np.log(HIGHEST / LOWEST) / np.log1p(STEP)))
-    ratio = np.geomspace(LOWEST, HIGHEST, count + 1)
+    natural = float(points.rate[0])
+    ends = 0.9 * teeth * own.min() / natural, 1.1 * teeth * own.max() / natural
+    low, high = max(min(LOWEST, ends[0]), DEEPEST), max(HIGHEST, min(ends[1], FARTHEST))
+    count = int(np.ceil(np.log(high / low) / np.log1p(STEP)))
+    ratio = np.geomspace(low, high, count + 1)
     one = points.take(np.zeros(ratio.size, dtype=np.int64))
     lanes = on_numbers(one, {"frequency": ratio})
     gap, force = float(points.flat.half_backlash[0]), float(points.flat.force[0, 0].real)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -119,11 +119,17 @@ def answer(
     value: float,
     *,
     limit: str = "",
+    most: float | None = None,
     verdict: str = "",
     at: str = "",
 ) -> Answer:
-    """An answer held against its limit in the table; ``verdict`` overrules where it must."""
+    """An answer held against its limit in the table.
+
+    ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must.
+    """
     bound = LIMITS[limit or name]
+    if most is not None:
+        bound = replace(bound, most=most)
     return Answer(
         name=name,
         question=question,

@@ -75,8 +75,8 @@ def notices(case: GearCase) -> Iterator[Notice]:
         )
     yield Notice(
         "info",
-        "Speeds: one hot mesh at every speed, in steps of 2.5 % from 0.15 to 1.8 of the resonance, "
-        "without branches between the steps; `thermogear runup` follows them.",
+        "Speeds: one hot mesh at every speed, in steps of 2.5 %, without branches between the "
+        "steps; `thermogear runup` follows them.",
     )
 
 
