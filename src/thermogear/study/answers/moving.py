@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.limits import FINE
+from thermogear.base.limits import FINE, USUAL_ERROR
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.gears.deviations import Relief
 from thermogear.gears.dynamic_factor import DynamicFactor, dynamic_factor
+from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.results.answer import Answer
@@ -142,7 +143,8 @@ def errors(asked: Asked) -> Iterator[Answer]:
 
 def _usual_error(case: GearCase, torque: float) -> float:
     """What a pair of the accuracy class usually has [um]: unloaded, and 0.43 w/c' of the load."""
-    unloaded = float(np.interp(case.accuracy or 6, *zip(*USUAL_ERROR, strict=True)))
+    classes, errors_of = zip(*USUAL_ERROR, strict=True)
+    unloaded = float(np.interp(float(case.accuracy or 6), classes, errors_of))
     load = torque / (case.pair.pinion.pitch_radius * case.pair.face_width)
     single = float(iso6336_stiffness(case.pair, load).single)
     return unloaded + (0.43e6 * load / single if single > 0.0 else 0.0)
