@@ -40,7 +40,7 @@ class Limit:
         )
         unit = f" {self.unit}" if self.unit else ""
         what = f"{self.what} " if self.what else ""
-        return f"{what}{side} {bound:g}{unit}" + ("" if self.confirmed else ", usual")
+        return f"{what}{side} {bound:.4g}{unit}" + ("" if self.confirmed else ", usual")
 
 
 USUAL_ERROR = ((4, 3.0), (6, 6.0), (8, 15.0), (10, 40.0))
