@@ -157,7 +157,8 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
     gears = file.gears
     tip = LEFT_OUT if table.tip_diameter is None else 0.5 * table.tip_diameter
     other = gears.wheel if table is gears.pinion else gears.pinion
-    width = table.face_width if table.face_width is not None else other.face_width
+    widths = (table.face_width, gears.face_width, other.face_width)
+    width = next((one for one in widths if one is not None), LEFT_OUT)
     material = named_material(table.material, f"{prefix}.material", known)
     # a rack left out is the gear's own to choose, with a fillet that fits its pressure angle
     rack: dict[str, Any] = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
@@ -167,7 +168,7 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
         module=gears.module,
         pressure_angle=gears.pressure_angle,
         profile_shift=table.profile_shift,
-        face_width=LEFT_OUT if width is None else width,
+        face_width=width,
         tip_radius=tip,
         material=material,
         roughness=table.roughness,

@@ -45,6 +45,7 @@ class NewCase:
     def _lines(self) -> list[str]:
         gears = (
             _line("module", self.module),
+            _line("face_width", self.face_width),
             _line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
         )
         found = [
@@ -58,7 +59,6 @@ class NewCase:
             found += _table(
                 f"gears.{name}",
                 _line("teeth", self.teeth[place]),
-                _line("face_width", self.face_width),
                 _line("profile_shift", shift and shift[place], "in modules"),
                 _line("material", material and material[place]),
             )

@@ -62,7 +62,7 @@ class GearTable(Table):
     teeth: Annotated[int, Count(low=bounds.LEAST_TEETH, high=bounds.MOST_TEETH)]
     face_width: Length | None = Field(
         default=None,
-        description="as wide as the gear it meshes with. Stiffness, line load, "
+        description="as [gears] or the other gear says. Stiffness, line load, "
         "inertia and heat flow scale with the narrower of both",
     )
     bore_radius: Length | None = Field(
@@ -109,6 +109,7 @@ class GearsTable(Table):
     pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)] = Field(
         default=math.radians(20.0), description="20 deg, the basic rack of ISO 53"
     )
+    face_width: Length | None = Field(default=None, title="of both gears; or one for each below")
     centre_distance: Annotated[
         float | None, measure("length", bounds.CENTRE_DISTANCE, example="250 mm")
     ] = Field(default=None, title="left out: the mesh of the profile shifts without backlash")
@@ -117,6 +118,17 @@ class GearsTable(Table):
     )
     pinion: GearTable
     wheel: GearTable
+
+    @model_validator(mode="after")
+    def _wide(self) -> GearsTable:
+        of_each = (self.pinion.face_width, self.wheel.face_width)
+        if self.face_width is None and of_each == (None, None):
+            raise InputError(
+                "face_width", "nothing", why="needed", fix='write face_width = "30 mm"'
+            )
+        if self.face_width is not None and None not in of_each:
+            raise InputError("face_width", "one beside those of both gears", fix="leave one out")
+        return self
 
 
 class InertiaTable(Table):
