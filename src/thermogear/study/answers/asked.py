@@ -27,6 +27,8 @@ from thermogear.study.speeds import RECORD, Speeds, look
 from thermogear.study.warm_up import chosen_point
 
 Floats = NDArray[np.float64]
+MOST_POINTS = 60
+"""Operating points that are answered one by one."""
 WARM_UP_TOLERANCE = 0.1
 """Of a step's error [K]."""
 
@@ -41,13 +43,16 @@ class Asked:
     hot: xr.Dataset
     progress: Progress
 
-    @property
-    def points(self) -> range:
-        return range(self.hot.sizes["operating"])
+    @cached_property
+    def points(self) -> list[int]:
+        """The operating points that are answered: all, of very many a spread and the hardest."""
+        count = self.hot.sizes["operating"]
+        spread = np.linspace(0, count - 1, min(count, MOST_POINTS)).round().astype(int)
+        return sorted({*spread.tolist(), self.hardest})
 
     def at(self, point: int) -> str:
         """The operating point in words; empty where the case has one alone."""
-        if len(self.points) == 1:
+        if self.hot.sizes["operating"] == 1:
             return ""
         rpm = float(self.hot["pinion_speed"][point]) / RPM
         return f"{rpm:.6g} rpm, {float(self.hot['pinion_torque'][point]):.6g} N m"
@@ -66,7 +71,7 @@ class Asked:
         """(oil, hotter teeth) [K] of every point."""
         at = self.case.operating_of(self.model)
         teeth = np.maximum(at.temperatures.pinion_addendum, at.temperatures.wheel_addendum)
-        shape = (len(self.points),)
+        shape = (self.hot.sizes["operating"],)
         return np.broadcast_to(at.oil_temperature, shape), np.broadcast_to(teeth, shape)
 
     @cached_property
@@ -104,12 +109,17 @@ class Asked:
 
     @cached_property
     def motion(self) -> dict[str, Any]:
-        """Figures of the motion at every operating point, started from rest."""
-        points = points_of(excitations(self.case, self.hot))
+        """Figures of the motion from rest at the operating points answered, nan at the others."""
+        points = points_of(excitations(self.case, self.hot.isel(operating=self.points)))
         start = np.stack([points.half_backlash / points.length, np.zeros(len(self.points))], axis=1)
         start[:, 0] += points.flat.force[:, 0].real
         settled = settle_with_status(points.flat, points.status, start, RULE)
-        return respond(points, settled.state, RECORD, lines=False)
+        found = respond(points, settled.state, RECORD, lines=False)
+        every = {}
+        for name, values in found.items():
+            every[name] = np.full(self.hot.sizes["operating"], np.nan)
+            every[name][self.points] = values
+        return every
 
 
 def answer(

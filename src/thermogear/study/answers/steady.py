@@ -151,11 +151,13 @@ def _worst_moment(asked: Asked) -> Answer:
     worst = course.worst
     least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
     start = float(course.temperatures["oil"][0]) - ZERO_CELSIUS
-    sentence = f"Warming up from {start:.0f} °C it is never less than when steady, {steady:.0f} µm."
+    how = "" if asked.case.computed else " by the heat balance"
+    words = f"Warming up from {start:.0f} °C{how} it is"
+    sentence = f"{words} never less than when steady, {steady:.0f} µm."
     if least < 0.995 * steady:
         sentence = (
-            f"Warming up from {start:.0f} °C it is least after {worst.time / 60.0:.3g} min: "
-            f"{least:.0f} µm, {steady:.0f} µm when steady."
+            f"{words} least after {worst.time / 60.0:.3g} min: {least:.0f} µm, {steady:.0f} µm "
+            "when steady."
         )
     return answer(
         GAP, "warm_up_backlash", sentence, least,

@@ -19,7 +19,7 @@ from thermogear.mesh.model import MeshModel
 from thermogear.results.answer import Answer
 from thermogear.results.result import Notice, Result
 from thermogear.study.answers import moving, steady
-from thermogear.study.answers.asked import Asked
+from thermogear.study.answers.asked import MOST_POINTS, Asked
 from thermogear.study.speeds import Speeds
 
 KIND = "answers"
@@ -67,6 +67,11 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
 
 def notices(case: GearCase) -> Iterator[Notice]:
     """What limits the answers as a whole."""
+    count = case.stated.speed.size
+    if count > MOST_POINTS:
+        yield Notice(
+            "info", f"{MOST_POINTS} of {count} operating points are answered, evenly spread."
+        )
     if case.accuracy is not None:
         yield Notice(
             "info",
