@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import math
+import random
+import subprocess
+import sys
 
 import pint
 import pytest
@@ -11,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thermogear.base.errors import InputError, short
-from thermogear.case.units import KINDS, Kind, convert, read_quantity, shown
+from thermogear.case.units import _USUAL, KINDS, Kind, convert, read_quantity, shown
 
 
 @pytest.mark.parametrize(
@@ -178,3 +181,24 @@ def test_long_values_are_shortened() -> None:
     assert short("x" * 500).endswith("...")
     assert len(short("x" * 500)) == 60
     assert short(10**4000) == "a whole number of about 4001 digits"
+
+
+def test_usual_units_are_what_pint_makes_of_them_bit_for_bit() -> None:
+    registry = pint.UnitRegistry()
+    rng = random.Random(20261123)
+    names = {"degC": "degC", "N m": "newton*meter"}
+    for kind in KINDS.values():
+        for unit in [*_USUAL[kind.name], *(["degC"] if kind.name == "temperature" else [])]:
+            si = registry.parse_units(names.get(kind.si, kind.si))
+            for _ in range(200):
+                number = rng.uniform(0.1, 1.0) * 10.0 ** rng.randint(-3, 3)
+                theirs = registry.Quantity(number, names.get(unit, unit)).to(si).magnitude
+                assert convert(number, unit, kind) == theirs, (kind.name, unit, number)
+
+
+def test_a_file_of_usual_units_loads_no_pint() -> None:
+    code = (
+        "import sys; from thermogear.case.case import load_example; load_example('fzg-c'); "
+        "assert 'pint' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

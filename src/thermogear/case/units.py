@@ -1,7 +1,7 @@
 """Units as text, read once: ``"5 mm"`` becomes 0.005.
 
 Below the case file every float is SI, every temperature K, every angle rad. pint is loaded when
-the first text is read, never on import.
+a unit is read that is none of the usual ones, never on import.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermogear.base.errors import InputError, short
+from thermogear.base.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     import pint
@@ -67,6 +68,31 @@ KINDS: dict[str, Kind] = {
         Kind("volume flow", "m^3/s", "l/min", "2 l/min"),
     )
 }
+
+_USUAL: dict[str, dict[str, float]] = {
+    "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6},
+    "time": {"s": 1.0, "min": 60.0, "h": 3600.0},
+    "angle": {"rad": 1.0, "deg": math.pi / 180.0},
+    "temperature": {"K": 1.0},
+    "temperature difference": {"K": 1.0},
+    "rotational speed": {"rad/s": 1.0, "rpm": 2.0 * math.pi / 60.0},
+    "torque": {"N m": 1.0},
+    "moment of inertia": {"kg m^2": 1.0},
+    "kinematic viscosity": {"m^2/s": 1.0, "mm^2/s": 1e-6},
+    "density": {"kg/m^3": 1.0},
+    "pressure": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "thermal conductivity": {"W/(m K)": 1.0},
+    "specific heat": {"J/(kg K)": 1.0},
+    "thermal expansion": {"1/K": 1.0},
+    "area": {"m^2": 1.0},
+    "heat transfer coefficient": {"W/(m^2 K)": 1.0},
+    "thermal conductance": {"W/K": 1.0},
+    "heat flux": {"W/m^2": 1.0, "kW/m^2": 1e3},
+    "mass": {"kg": 1.0},
+    "volume flow": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05},
+}
+"""Units that stand in nearly every file, by their factor to SI: bit for bit what pint makes of
+them, without loading it, which takes longer than many a command."""
 
 _TEXT = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)(?![a-z]))"
@@ -140,6 +166,14 @@ def convert(number: float, unit: str, kind: Kind) -> float:
     Raises :class:`InputError` (with an empty field; the reader knows which) where the unit is
     unknown or of another kind.
     """
+    if unit in _USUAL.get(kind.name, {}):
+        return _USUAL[kind.name][unit] * number
+    if unit == "degC" and kind.name == "temperature":
+        return number + ZERO_CELSIUS
+    return _by_pint(number, unit, kind)
+
+
+def _by_pint(number: float, unit: str, kind: Kind) -> float:
     example = f'write for instance "{kind.example}"'
     meant = _SLIPS.get(kind.name, {}).get(unit)
     slip = f'did you mean "{number:g} {meant}"?' if meant else example
@@ -220,5 +254,6 @@ def _with_point(text: str, kind: Kind) -> str:
 def shown(value: float, kind_name: str, digits: int = 6) -> str:
     """An SI ``value`` as text in the unit that messages and tables speak in."""
     kind = KINDS[kind_name]
-    quantity = _registry().Quantity(value, kind.si).to(kind.shown)
-    return f"{float(quantity.magnitude):.{digits}g} {kind.shown}"
+    told = value - ZERO_CELSIUS if kind_name == "temperature" else value
+    told /= _USUAL[kind_name].get(kind.shown, 1.0)
+    return f"{told:.{digits}g} {kind.shown}"
