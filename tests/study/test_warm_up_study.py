@@ -12,12 +12,12 @@ import xarray as xr
 from own_pair import OWN_PAIR
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_case, load_example
-from thermogear.case.duty import Measured
+from thermogear.case.duty import Measured, chosen_point
 from thermogear.case.sensors import flank_area, shaft_share
 from thermogear.heat.measured_temperature import infrared_temperature, surface_temperature
 from thermogear.mesh.warm_up import Duty
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
-from thermogear.study.warm_up import chosen_point, warm_up_survey
+from thermogear.study.warm_up import warm_up_survey
 from thermogear.views.page import Table
 from thermogear.views.pages.warm_up import answer, fit_sentence, page
 

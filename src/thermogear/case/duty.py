@@ -67,6 +67,12 @@ def read_duty(path: str | Path, case: GearCase, field: str = "duty") -> Duty:
     )
 
 
+def chosen_point(case: GearCase) -> tuple[float, float]:
+    """(speed [rad/s], torque [N m]) of the case's operating point of the greatest power."""
+    place = int(np.argmax(case.stated.speed * case.stated.torque))
+    return float(case.stated.speed[place]), float(case.stated.torque[place])
+
+
 def point_duty(case: GearCase, speed: float, torque: float, field: str = "duty") -> Duty:
     """One operating point, ``speed`` [rad/s] and ``torque`` [N m], held until it is steady.
 

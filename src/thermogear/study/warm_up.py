@@ -17,7 +17,7 @@ from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
-from thermogear.case.duty import Measured, point_duty
+from thermogear.case.duty import Measured, chosen_point, point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import Shown, shown_by
 from thermogear.mesh.balance_table import LOSSES
@@ -40,12 +40,6 @@ FIT_TOLERANCE = 3e-3
 """Of a step's error [K] while factors are looked for: far below any thermometer's."""
 
 ALONG = ("moment",)
-
-
-def chosen_point(case: GearCase) -> tuple[float, float]:
-    """(speed [rad/s], torque [N m]) of the case's operating point of the greatest power."""
-    place = int(np.argmax(case.stated.speed * case.stated.torque))
-    return float(case.stated.speed[place]), float(case.stated.torque[place])
 
 
 def warm_up_survey(

@@ -17,14 +17,13 @@ from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
-from thermogear.case.duty import point_duty
+from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import respond
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
 from thermogear.study.speeds import RECORD, Speeds, look
-from thermogear.study.warm_up import chosen_point
 
 Floats = NDArray[np.float64]
 MOST_POINTS = 60
