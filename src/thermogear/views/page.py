@@ -188,6 +188,8 @@ class Page:
                     yield from block.pictures
 
 
+OPEN = 3
+"""Notes above the first picture; the others fold."""
 LEVELS = {"important": "Important", "warning": "Mind", "info": "Note"}
 
 
@@ -220,6 +222,7 @@ def render(page: Page) -> str:
         summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),
         tiles=page.tiles,
         notices=told(page.result.notices),
+        open=OPEN,
         sections=[section for section in page.sections if section.blocks],
         version=page.result.text("thermogear"),
     )
