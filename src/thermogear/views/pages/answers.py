@@ -71,7 +71,7 @@ def section(result: Result, pictures: Pictures) -> Section | None:
     speeds = result.group("speeds")
     if speeds is not None:
         pictures.add(
-            "speeds",
+            "dynamic-factor",
             "Dynamic factor over speed",
             "Every motion found at each speed, the hot pair's: filled where the flanks part, a "
             "second one where two exist. Dashed: the case's own speeds.",
