@@ -84,6 +84,13 @@ def cli() -> None:
 @delivery.as_json
 @click.option("--force", is_flag=True, help="Run even if it may not fit into the free memory.")
 @click.option("--reference", is_flag=True, help="Flash temperature by the exact moving source.")
+@click.option(
+    "--pictures",
+    type=click.Choice(["first", "all", "none"]),
+    default="first",
+    show_default=True,
+    help="Which the page shows; `thermogear report DIR` draws all of them later.",
+)
 def run(
     case: str,
     output: str,
@@ -91,6 +98,7 @@ def run(
     as_json: bool,
     force: bool,
     reference: bool,
+    pictures: str,
 ) -> None:
     """Run CASE and write results.nc, summary.json, CSV curves and report.html to DIR."""
     from thermogear.case.size import require_room
@@ -106,7 +114,7 @@ def run(
 
         return with_errata(study(read, progress=report), read)
 
-    delivery.deliver(make, output, as_json=as_json)
+    delivery.deliver(make, output, as_json=as_json, pictures=pictures)
 
 
 @cli.command()
@@ -115,7 +123,7 @@ def run(
 @click.option("--pictures", metavar="FOLDER", help="Save the page's pictures to FOLDER as well.")
 @click.option("--kind", metavar="KIND", help="Of the pictures: png [the default], svg or pdf.")
 def report(directory: str, of: str, pictures: str | None, kind: str | None) -> None:
-    """Draw the page anew from the results of any command stored in DIR."""
+    """Draw the page anew, with every picture, from the results of any command stored in DIR."""
     from thermogear.views.write import write_pictures, write_report
 
     place, written = Path(directory), list[Path]()

@@ -56,11 +56,12 @@ def deliver(
     *,
     as_json: bool,
     kept: str = "what was found so far stays",
+    pictures: str = "all",
 ) -> None:
     """Compute, store and draw into ``directory`` if one is named, and print.
 
     The directory is claimed before anything is computed; everything is written, or after an
-    error or Ctrl+C nothing. A result that Ctrl+C cut short is kept, and Ctrl+C passed on.
+    error or Ctrl+C nothing. Of the page's ``pictures`` all, the first or none are drawn. A result that Ctrl+C cut short is kept, and Ctrl+C passed on.
     """
     from thermogear.front.progress import Stopped, progress
     from thermogear.results.files import claimed
@@ -74,7 +75,8 @@ def deliver(
         page = page_of(result)
         if folder is not None:
             result.put(folder)
-            written = write(page, folder)
+            every = f"All of them: thermogear report {place}"
+            written = write(page.showing(pictures, every), folder)
     if place is not None:
         clear_tables(place, written)
     tell(page, None if place is None else place / written[0].name, as_json=as_json)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -151,6 +151,10 @@ def galleries(pictures: Iterable[Shown]) -> list[Block]:
     return blocks + [Gallery(row)] * bool(row)
 
 
+SHOWN = ("first", "all", "none")
+"""How many pictures a page shows."""
+
+
 def nothing() -> Any:
     """No tables, no lines."""
     return {}
@@ -162,7 +166,8 @@ class Page:
 
     ``numbers`` makes the figures a script wants (JSON-ready), ``lines`` the text of the terminal,
     ``tables`` CSV texts by the names of their files. ``files`` are the kinds of picture that
-    stand beside the page.
+    stand beside the page. ``first`` are the pictures that carry the answer, each by its names in
+    order of preference: what a page shows that is asked for no more.
     """
 
     result: Result
@@ -173,6 +178,24 @@ class Page:
     lines: Callable[[], Sequence[str]] = nothing
     tables: Callable[[], Mapping[str, str]] = nothing
     files: tuple[str, ...] = ()
+    first: Sequence[Sequence[str]] = ()
+
+    def showing(self, which: str, every: str) -> Page:
+        """The same page with the ``which`` of :data:`SHOWN` of its pictures, and no others drawn.
+
+        The pictures kept stand together behind the first section, with ``every``: how to get all.
+        """
+        there = {one.name: one for one in self.pictures}
+        if which == "all" or not self.first or not there:
+            return self
+        kept: list[Shown] = []
+        if which == "first":
+            found = (next((n for n in names if n in there), "") for names in self.first)
+            kept = [there[name] for name in found if name] or [*there.values()][: len(self.first)]
+        told = Text(f"{len(kept)} of {len(there)} pictures. {every}", "note")
+        shown = Section("pictures", "In pictures", [*galleries(kept), told])
+        rest = [one for one in map(_without_pictures, self.sections) if one.blocks]
+        return replace(self, sections=[*rest[:1], shown, *rest[1:]])
 
     @property
     def figures(self) -> dict[str, Any]:
@@ -186,6 +209,18 @@ class Page:
             for block in section.blocks:
                 if isinstance(block, Gallery):
                     yield from block.pictures
+
+
+def _without_pictures(section: Section) -> Section:
+    """Its tables and warnings; words that speak of its pictures go with them."""
+    if not any(isinstance(block, Gallery) for block in section.blocks):
+        return section
+    kept = [
+        block
+        for block in section.blocks
+        if not isinstance(block, Gallery) and not (isinstance(block, Text) and block.tone != "jam")
+    ]
+    return replace(section, blocks=kept)
 
 
 OPEN = 3

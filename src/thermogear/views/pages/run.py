@@ -27,6 +27,14 @@ ORDER = (
 """The sections between key results and closing, in the order of the page."""
 
 
+FIRST = (
+    ("dynamic-factor",),
+    ("gap-temperature", "gap-phase"),
+    ("flash-own", "flash-mixed", "friction"),
+    ("stiffness-0",),
+    ("motion-0-0",),
+)
+"""The pictures that carry the answers: speeds, gap, friction, stiffness, motion."""
 KINDS = ("gear", "dimensionless")
 
 
@@ -41,6 +49,7 @@ def page(result: Result) -> Page:
         numbers=lambda: numbers(result),
         lines=lambda: [*answers.lines(result), *notice_lines(result)],
         tables=lambda: curve_tables(result),
+        first=FIRST,
     )
 
 
