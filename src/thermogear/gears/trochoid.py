@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 Floats = NDArray[np.float64]
 
@@ -69,6 +68,8 @@ class Trochoid:
         towards the root circle, with the centre above the rolling line only from
         sin^2(gamma) = -a1/r on.
         """
+        from scipy.optimize import brentq  # half a second that checking a case need not spend
+
         turning = math.asin(math.sqrt(min(max(-self.centre_depth / self.pitch_radius, 0.0), 1.0)))
         low = max(turning, 1e-3)
         return float(
@@ -95,5 +96,7 @@ class Trochoid:
         hits = np.nonzero(outside[1:] & (gap[:-1] > 0.0) & (gap[1:] <= 0.0))[0]
         if hits.size == 0:
             return None
+        from scipy.optimize import brentq
+
         low, high = gammas[hits[0] + 1], gammas[hits[0]]
         return float(brentq(lambda g: float(excess(g)), low, high, xtol=1e-15))

@@ -11,7 +11,6 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import solve_bvp, solve_ivp
 
 from thermogear.base.errors import ConvergenceError, InputError
 
@@ -49,6 +48,8 @@ def rotating_disc_flow() -> tuple[float, float, float]:
 
 @cache
 def _flow() -> tuple[object, tuple[float, float], float]:
+    from scipy.integrate import solve_bvp  # half a second that checking a case need not spend
+
     def slope(z: Floats, y: Floats) -> Floats:  # F, F', G, G', H
         f, df, g, dg, h = y
         return np.vstack([df, f**2 - g**2 + h * df, dg, 2.0 * f * g + h * dg, -2.0 * f])
@@ -81,6 +82,8 @@ def rotating_disc_gradient(prandtl: float, *, exponent: float) -> float:
         raise InputError("prandtl", prandtl, allowed=f"{_PRANDTL[0]} .. {_PRANDTL[1]:g}")
     if not exponent >= 0.0:
         raise InputError("exponent", exponent, allowed=">= 0")
+    from scipy.integrate import solve_ivp
+
     flow, _, inflow = _flow()
 
     def slope(back: float, p: Floats) -> Floats:

@@ -19,7 +19,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from thermogear.base.errors import ConvergenceError, InputError, nearest
 from thermogear.base.materials import Material
@@ -459,6 +458,8 @@ def jam_temperature(
         return low
     for after in np.linspace(low, high, scan)[1:]:
         if known(float(after)) <= 0.0:
+            from scipy.optimize import brentq
+
             return float(brentq(known, before, float(after), xtol=1e-9))
         before = float(after)
     return float("nan")

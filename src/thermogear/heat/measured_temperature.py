@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.constants import Boltzmann, Planck, speed_of_light
-from scipy.optimize import brentq
 
 from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH, require_share
 from thermogear.base.errors import InputError
@@ -77,6 +76,8 @@ def _invert(radiance: float, band: Band) -> float:
             why="reflections and the window alone are brighter than the reading",
             fix="check emissivity, transmission and the surroundings' temperature",
         )
+    from scipy.optimize import brentq
+
     return float(
         brentq(lambda t: float(band_radiance(t, band)) - radiance, _LEAST, _GREATEST, xtol=1e-10)
     )

@@ -13,12 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
-from scipy.optimize import minimize_scalar
-from scipy.special import k0e, k1e
 
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
@@ -27,6 +25,9 @@ from thermogear.heat.temperature import (
     flash_factor,
     frictional_heat,
 )
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 Floats = NDArray[np.float64]
 
@@ -67,6 +68,8 @@ def moving_source_rise(
     flash_factor(distribution)
     if not (np.isfinite(peclet) and peclet > 0.0):
         raise InputError("peclet", peclet, allowed="> 0")
+    from scipy.special import k0e
+
     shape = _SHAPES[distribution]
     x = np.asarray(position, dtype=float)
     front, back, weight = _tanh_sinh()
@@ -93,6 +96,8 @@ def _peak(peclet: float, distribution: str) -> float:
     def minus(x: float) -> float:
         return -float(moving_source_rise(x, peclet=peclet, distribution=distribution))
 
+    from scipy.optimize import minimize_scalar
+
     found = minimize_scalar(minus, bounds=(-0.2, 1.0), method="bounded", options={"xatol": 1e-7})
     return max(-float(found.fun), -minus(1.0))
 
@@ -100,6 +105,8 @@ def _peak(peclet: float, distribution: str) -> float:
 @cache
 def _peak_table(distribution: str) -> CubicSpline:
     """C over ln Pe; the ends are the limits' own slopes to interpolation accuracy."""
+    from scipy.interpolate import CubicSpline
+
     knots = np.linspace(np.log(_LOWEST), np.log(_HIGHEST), 70)
     return CubicSpline(knots, [_peak(float(np.exp(k)), distribution) for k in knots])
 
@@ -183,6 +190,8 @@ def peclet_flash(
 
 def _kernel_integral(distance: Floats, peclet: float) -> Floats:
     """int_0^x exp(Pe t/2) K_0(Pe |t|/2) dt, closed form (Jaeger)."""
+    from scipy.special import k0e, k1e
+
     z = 0.5 * peclet * np.abs(distance)
     safe = np.where(z > 0.0, z, 1.0)
     ahead = safe * (k0e(safe) + k1e(safe)) - 1.0
