@@ -59,7 +59,9 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         return seen["result"]
 
     def page_of(result: Result) -> Any:
-        return types.SimpleNamespace(lines=lambda: ["- two lines"], numbers=lambda: {"kind": "0"})
+        page = types.SimpleNamespace(lines=lambda: ["- two lines"], numbers=lambda: {"kind": "0"})
+        page.showing = lambda which, every: page
+        return page
 
     def write(page: Any, folder: Path) -> list[Path]:
         assert (folder / "results.nc").is_file()
@@ -99,6 +101,18 @@ def started(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]
 
 
 # --- light ------------------------------------------------------------------------------
+def test_checking_a_case_loads_no_part_of_scipy_that_only_a_run_uses() -> None:
+    code = (
+        "import sys\n"
+        "from thermogear.front.cli import main\n"
+        "assert main(['check', 'rig']) == 0\n"
+        "heavy = ('scipy.optimize', 'scipy.integrate', 'scipy.interpolate', 'matplotlib')\n"
+        "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "[]"
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["--version"], ["example"]])
 def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
     code = (

@@ -61,7 +61,8 @@ def deliver(
     """Compute, store and draw into ``directory`` if one is named, and print.
 
     The directory is claimed before anything is computed; everything is written, or after an
-    error or Ctrl+C nothing. Of the page's ``pictures`` all, the first or none are drawn. A result that Ctrl+C cut short is kept, and Ctrl+C passed on.
+    error or Ctrl+C nothing. ``pictures`` says how many the page shows: all, first or none. A
+    result that Ctrl+C cut short is kept, and Ctrl+C passed on.
     """
     from thermogear.front.progress import Stopped, progress
     from thermogear.results.files import claimed
@@ -76,7 +77,8 @@ def deliver(
         if folder is not None:
             result.put(folder)
             every = f"All of them: thermogear report {place}"
-            written = write(page.showing(pictures, every), folder)
+            shown = page if pictures == "all" else page.showing(pictures, every)
+            written = write(shown, folder)
     if place is not None:
         clear_tables(place, written)
     tell(page, None if place is None else place / written[0].name, as_json=as_json)
