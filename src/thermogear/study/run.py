@@ -35,6 +35,7 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result, now
 from thermogear.study import run_notices
 from thermogear.study.answers.survey import answered
+from thermogear.study.answers.survey import notices as answer_notices
 from thermogear.study.motion import Motion, follow, follow_gears
 
 
@@ -56,7 +57,7 @@ def run(case: Case, *, progress: Progress = silent) -> Result:
         found, speeds = answered(case, case.models[0], cold, hot, progress)
         if speeds is not None:
             groups["speeds"] = speeds.data
-        notices = run_notices.notices(case, groups)
+        notices = [*run_notices.notices(case, groups), *answer_notices(case)]
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},

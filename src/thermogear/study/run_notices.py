@@ -180,9 +180,13 @@ def _deviations(case: GearCase) -> Iterator[Notice]:
     count = len(case.deviations)
     text = (
         f"{count} deviation{'s' if count > 1 else ''} of the flanks: in clearance, jam and error, "
-        "and in stiffness and load shares of the loaded contact. The kinematic error of "
-        "[transmission_error] comes on top: what the deviations cause should not stand there again."
+        "and in stiffness and load shares of the loaded contact."
     )
+    if case.transmission_error.harmonics:
+        text += (
+            " The kinematic error of [transmission_error] comes on top: what the deviations cause "
+            "should not stand there again."
+        )
     if deaf:
         text += f" The textbook sum of {', '.join(deaf)} does not feel them."
     yield Notice("warning" if deaf else "info", text)

@@ -235,9 +235,15 @@ def told(notices: Iterable[Notice]) -> list[tuple[str, str, Markup]]:
     return [(one.level, LEVELS[one.level], prose(one.text)) for one in found]
 
 
-def notice_lines(result: Result) -> list[str]:
-    """Every notice as a line of a terminal."""
-    return [f"- {' '.join(one.text.split())}" for one in result.notices]
+def notice_lines(result: Result, most: int | None = None) -> list[str]:
+    """Notices as lines of a terminal: all, or the ``most`` important ones and how many more."""
+    if most is None or len(result.notices) <= most:
+        return [f"- {' '.join(one.text.split())}" for one in result.notices]
+    order = list(LEVELS)
+    first = sorted(result.notices, key=lambda one: order.index(one.level))[:most]
+    more = len(result.notices) - most
+    words = f"- {more} more note{'s' if more > 1 else ''} on the page"
+    return [*(f"- {' '.join(one.text.split())}" for one in first), words]
 
 
 def render(page: Page) -> str:

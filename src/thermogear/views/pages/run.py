@@ -9,7 +9,7 @@ import xarray as xr
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.csv_files import curve_tables
-from thermogear.views.page import Page, Pictures, Section, notice_lines
+from thermogear.views.page import OPEN, Page, Pictures, Section, notice_lines
 from thermogear.views.pages import answers, gear_sections, headline, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
@@ -47,7 +47,10 @@ def page(result: Result) -> Page:
         _sections(whole),
         tiles=headline.tiles(whole),
         numbers=lambda: numbers(result),
-        lines=lambda: [*answers.lines(result), *notice_lines(result)],
+        lines=lambda: [
+            *answers.lines(result),
+            *notice_lines(result, OPEN if result.answers else None),
+        ],
         tables=lambda: curve_tables(result),
         first=FIRST,
     )
