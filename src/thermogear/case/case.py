@@ -36,7 +36,7 @@ from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
-from thermogear.case.source import case_text
+from thermogear.case.source import case_text, folder_of
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
@@ -333,7 +333,10 @@ def load_case(
 
 def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
-    return decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
+    found = decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
+    if len(case.charts) == 2:
+        found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
+    return found
 
 
 def _together(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.enclosed import with_files
 from thermogear.base.errors import InputError, short
 from thermogear.base.files import decoded
 from thermogear.case.flank_file import LARGEST, FlankFile, read_flanks
@@ -22,8 +21,6 @@ from thermogear.gears.measured_flanks import MeasuredFlank, ProfileTraces, roll_
 from thermogear.gears.pair import GearPair
 
 GEARS = ("pinion", "wheel")
-ENCLOSED = "# The files named above, as they were read: the case needs them no more."
-_OTHER = {"left": "right", "right": "left"}
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
@@ -39,6 +36,11 @@ class Chart:
     flanks: tuple[MeasuredFlank, ...]
     deviations: tuple[FlankTable, ...]
 
+    def hand(self, trace: int) -> str:
+        """A trace's name: tooth and side as the file has them, and what the side does."""
+        side, acts = self.read.side[trace], self.traces.flank[trace]
+        return f"tooth {self.read.tooth[trace]} {side}" + (f" ({acts})" if acts != side else "")
+
 
 def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:
     """``text`` with the files of ``[flanks]`` at its end, put into ``data`` too.
@@ -46,7 +48,7 @@ def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:
     A result keeps the text, so that neither a page nor a run from it needs the files. What
     ``[files]`` holds already is not read again; ``folder`` is where names count from.
     """
-    found = []
+    found: dict[str, str] = {}
     table = data.get("flanks")
     files = data.get("files", {})
     if not isinstance(table, dict) or not isinstance(files, dict):
@@ -59,17 +61,8 @@ def enclosed(text: str, data: dict[str, Any], folder: Path) -> str:
                 continue
             content = _content(name, folder, f"flanks.{gear}")
             files = data["files"] = {**files, name: {"text": content}}
-            key = json.dumps(name, ensure_ascii=False)
-            body = f"'''\n{content}'''" if "'''" not in content else _basic(content)
-            found.append(f"[files.{key}]\ntext = {body}\n")
-    if not found:
-        return text
-    head = "" if ENCLOSED in text else f"{ENCLOSED}\n"
-    return text.rstrip("\n") + "\n\n" + head + "\n".join(found)
-
-
-def _basic(content: str) -> str:
-    return json.dumps(content, ensure_ascii=False)
+            found[name] = content
+    return with_files(text, found)
 
 
 def _content(name: str, folder: Path, field: str) -> str:
@@ -84,9 +77,7 @@ def _content(name: str, folder: Path, field: str) -> str:
             raw = file.read(4 * LARGEST + 1)
     except FileNotFoundError as cause:
         why = f"there is no such file in {folder.resolve()}"
-        raise InputError(
-            field, got, why=why, fix="name it relative to the case file"
-        ) from cause
+        raise InputError(field, got, why=why, fix="name it relative to the case file") from cause
     except (OSError, ValueError) as cause:
         reason = getattr(cause, "strerror", None) or str(cause)
         raise InputError(field, got, why=f"it cannot be read: {reason}") from cause
@@ -207,9 +198,7 @@ def _shown(read: FlankFile, place: int) -> str:
     return f"{1e3 * value:.6g} mm"
 
 
-def _inside(
-    name: str, read: FlankFile, rho: NDArray[np.float64], gear: Gear, which: str
-) -> None:
+def _inside(name: str, read: FlankFile, rho: NDArray[np.float64], gear: Gear, which: str) -> None:
     """Refuse a trace that leaves the tooth's involute, from base circle to tip."""
     tip = float(gear.curvature_radius(gear.tip_radius))
     wrong = ~((rho >= 0.0) & (rho <= tip * (1.0 + 1e-6)))

@@ -151,7 +151,12 @@ class _Block:
         return [f"{self.name} line {line}" for line, _ in self.rows]
 
     def refused(
-        self, got: str, *, allowed: str | None = None, why: str | None = None, fix: str | None = None
+        self,
+        got: str,
+        *,
+        allowed: str | None = None,
+        why: str | None = None,
+        fix: str | None = None,
     ) -> InputError:
         return InputError("", f"{self.where}: {got}", allowed=allowed, why=why, fix=fix)
 
@@ -272,7 +277,9 @@ def _scale(block: _Block, place: int, kind: str, ask: str) -> float:
     """The SI value of one unit of a column."""
     words, unit = _column(block, place)
     if not unit:
-        raise block.refused(f"column '{words}' without a unit", allowed=f"a unit of {kind}", fix=ask)
+        raise block.refused(
+            f"column '{words}' without a unit", allowed=f"a unit of {kind}", fix=ask
+        )
     try:
         return read_quantity(f"1 {unit}", kind)
     except InputError as error:
@@ -374,9 +381,7 @@ def _drive(
     return hands[0] if hands else None
 
 
-def _range(
-    said: Mapping[str, tuple[str, str]], over: str
-) -> tuple[str, float, float] | None:
+def _range(said: Mapping[str, tuple[str, str]], over: str) -> tuple[str, float, float] | None:
     """What the evaluated range runs over, and its ends."""
     if "evaluate" not in said:
         return None

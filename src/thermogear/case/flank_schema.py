@@ -7,10 +7,9 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from thermogear.base import bounds
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, short
 from thermogear.case.fields import Choice, Count, Reader, Several, Words, measure
 from thermogear.case.table import Table
-from thermogear.case.units import short
 
 Flank = Annotated[str, Choice("drive", "back", "both")]
 

@@ -116,9 +116,7 @@ def flank_tolerances(
     return FlankTolerances(*(value * _STEP ** (grade - 5) * _UM for value in values))
 
 
-def flank_class(
-    teeth: int, module: float, *, figures: tuple[float, float, float]
-) -> int | None:
+def flank_class(teeth: int, module: float, *, figures: tuple[float, float, float]) -> int | None:
     """The best class of ISO 1328-1:2013 that lets a profile deviate so far.
 
     ``figures``: f_Halpha, f_falpha, F_alpha [m], signs left aside; each is held against the

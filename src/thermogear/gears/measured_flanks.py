@@ -111,7 +111,7 @@ class ProfileTraces:
         finest = max((high - low) / _WAVES, _SHORTEST, 2.0 * widest)
         at = np.linspace(x[0], x[-1], math.ceil(2 * _KNOTS * (x[-1] - x[0]) / finest) + 1)
         plain = rows @ smoothing(x, at, finest).T
-        figures = tuple(profile_figures(at, one) for one in plain)
+        figures = tuple(profile_figures(position=at, added=one) for one in plain)
         grades = tuple(flank_class(gear.teeth, gear.module, figures=one) for one in figures)
         noise = noise_of(x, rows)
         wanted = quiet_cutoff(

@@ -1,9 +1,9 @@
 """A run: from a case to the tree of labelled results that pages are drawn from.
 
 The groups of the tree: ``path`` (along the path of contact), ``mesh`` (over the mesh phase, and
-figures per operating point), ``balance`` (where the temperatures are computed), ``profile``,
-``motion``, ``temperature`` (the same over gear temperatures) and ``base_sets/...``; a
-dimensionless case has ``points`` alone.
+figures per operating point), ``flanks/...`` (where they are measured), ``balance`` (where the
+temperatures are computed), ``profile``, ``motion``, ``temperature`` (the same over gear
+temperatures) and ``base_sets/...``; a dimensionless case has ``points`` alone.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result, now
 from thermogear.study import run_notices
 from thermogear.study.answers.survey import answered
+from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
 
 
@@ -92,6 +93,7 @@ def _gear_groups(
     groups |= _split(
         xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
     )
+    groups |= measured_flanks(case)
     if case.computed:
         groups["balance"] = balances(case)
     wanted = set(case.pictures)
