@@ -165,7 +165,6 @@ def _chart(gear: str, names: tuple[str, ...], read: FlankFile, pair: GearPair) -
         raise InputError(
             "", f"{name}: {error.got}", allowed=error.allowed, why=error.why, fix=error.fix
         ) from error
-    tables = [flank.table(gear, body.base_radius) for flank in flanks]
     return Chart(
         gear=gear,
         names=names,
@@ -173,7 +172,7 @@ def _chart(gear: str, names: tuple[str, ...], read: FlankFile, pair: GearPair) -
         traces=traces,
         range=span,
         flanks=flanks,
-        deviations=tuple(table for table in tables if table is not None),
+        deviations=tuple(flank.table(gear, body.base_radius) for flank in flanks),
     )
 
 

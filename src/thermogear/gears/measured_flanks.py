@@ -55,10 +55,8 @@ class MeasuredFlank(NamedTuple):
     scatter: float
     limited: bool
 
-    def table(self, gear: str, base_radius: float) -> FlankTable | None:
-        """What acts, as a deviation of the mesh; None where it is nothing at all."""
-        if not self.acting.any():
-            return None
+    def table(self, gear: str, base_radius: float) -> FlankTable:
+        """What acts, as a deviation of the mesh."""
         radius = np.hypot(base_radius, self.rho)
         return FlankTable(gear, radius=radius, added=self.acting, flank=self.flank)
 

@@ -36,10 +36,10 @@ def caption(data: xr.Dataset) -> str:
     scatter = ", ".join(f"{1e6 * float(data[f'{side}_scatter']):.2g} µm" for side in sides)
     return (
         f"Read from {data.attrs.get('files', 'a chart')}; {' and '.join(sides)} flank. "
-        f"What acts is the mean of the teeth below a cut-off of {cut} along the roll path: shorter waves cannot be told from "
-        f"noise. It is zero at the pitch circle and constant beyond the evaluated range, at most "
-        f"{1e6 * flanks.peak(data):.2g} µm peak to peak. Scatter between the teeth, which no mesh "
-        f"period holds: {scatter}."
+        f"What acts is the mean of the teeth below a cut-off of {cut} along the roll path: shorter "
+        "waves cannot be told from noise. It is zero at the pitch circle and constant beyond the "
+        f"evaluated range, at most {1e6 * flanks.peak(data):.2g} µm peak to peak. Scatter between "
+        f"the teeth, which no mesh period holds: {scatter}."
     )
 
 
