@@ -216,6 +216,7 @@ def _blocks(name: str, text: str, said: dict[str, tuple[str, str]]) -> list[_Blo
             separator = next((one for one in ";\t" if one in line), ",")
             head = cells_of(line.strip(), separator)
             found.append(_Block(name, number, head, separator))
+            _position_name(found[-1])
         elif found:
             found[-1].rows.append((number, line.strip()))
         else:
@@ -291,13 +292,22 @@ def _scale(block: _Block, place: int, kind: str, ask: str) -> float:
         ) from error
 
 
+def _position_name(block: _Block) -> str:
+    """What the first column is: what a trace runs over, or "tooth"."""
+    words, _ = _column(block, 0)
+    if block.of_pitch or words in POSITIONS:
+        return words
+    close = difflib.get_close_matches(words, POSITIONS, n=1, cutoff=0.5)
+    raise block.refused(
+        f"column '{words[:40]}'",
+        allowed=" | ".join(POSITIONS),
+        fix=f"did you mean '{close[0]}'?" if close else "a line that is no header starts with #",
+    )
+
+
 def _position(block: _Block) -> tuple[str, float]:
     """What the first column is, and the SI value of its unit."""
-    words, _ = _column(block, 0)
-    if words not in POSITIONS:
-        raise block.refused(
-            f"column '{words}'", allowed=" | ".join(POSITIONS), fix=nearest(words, POSITIONS)
-        )
+    words = _position_name(block)
     kind = POSITIONS[words]
     units = "'[deg]' or '[rad]'" if kind == "angle" else "'[mm]'"
     return words, _scale(block, 0, kind, f"write {units} behind it")

@@ -107,7 +107,7 @@ class ProfileTraces:
         rows = self.added[[place for place, one in enumerate(self.flank) if one == side]][:, inside]
         widest = float(np.max(np.diff(x)))
         finest = max((high - low) / _WAVES, _SHORTEST, 2.0 * widest)
-        at = np.linspace(x[0], x[-1], math.ceil(2 * _KNOTS * (x[-1] - x[0]) / finest) + 1)
+        at = _even(x, finest / (2 * _KNOTS))
         plain = rows @ smoothing(x, at, finest).T
         figures = tuple(profile_figures(position=at, added=one) for one in plain)
         grades = tuple(flank_class(gear.teeth, gear.module, figures=one) for one in figures)
@@ -119,7 +119,7 @@ class ProfileTraces:
         )
         broadest = max(finest, (high - low) / _BROADEST)
         cutoff = min(max(finest, wanted), broadest)
-        knots = np.linspace(x[0], x[-1], math.ceil(_KNOTS * (x[-1] - x[0]) / cutoff) + 1)
+        knots = _even(x, cutoff / _KNOTS)
         acting = smoothing(x, knots, cutoff) @ rows.mean(axis=0)
         _, pitch, _ = active_profile(pair, self.gear)
         acting = acting - np.interp(pitch, knots, acting)
@@ -189,6 +189,11 @@ def quiet_cutoff(noise: float, *, spacing: float, curvature: float) -> float:
         return 0.0
     bend = noise * math.sqrt(3.0 * spacing / (8.0 * math.sqrt(math.pi)))
     return float((bend / curvature) ** 0.4 * math.pi / math.sqrt(0.5 * math.log(2.0)))
+
+
+def _even(x: Floats, step: float) -> Floats:
+    """Even places over ``x``, at most about ``step`` apart; as many where ``x`` is rounded."""
+    return np.linspace(x[0], x[-1], math.ceil((x[-1] - x[0]) / step - 1e-6) + 1)
 
 
 def _least_curvature(pair: GearPair, name: str, rho: Floats) -> float:
