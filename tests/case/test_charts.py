@@ -88,7 +88,8 @@ def test_slope_form_and_what_acts_are_read_back_of_200_random_traces(tmp_path: P
         assert apart < bound
         worst[2] = max(worst[2], apart)
     print(
-        f"200 traces, worst: f_Halpha {worst[0]:.3f}, f_falpha {worst[1]:.3f}, acting {worst[2]:.3f} um"
+        f"200 traces, worst: f_Halpha {worst[0]:.3f}, f_falpha {worst[1]:.3f}, "
+        f"acting {worst[2]:.3f} um"
     )
 
 

@@ -17,7 +17,9 @@ def test_a_straight_line_passes_the_filter_up_to_its_ends() -> None:
     x = np.sort(rng.uniform(0.0, 10e-3, 300))
     at = np.linspace(x[0], x[-1], 77)
     line = 4e-6 - 1e-3 * x
-    np.testing.assert_allclose(smoothing(x, at, 0.5e-3) @ line, 4e-6 - 1e-3 * at, atol=1e-18)
+    np.testing.assert_allclose(
+        smoothing(x, at=at, cutoff=0.5e-3) @ line, 4e-6 - 1e-3 * at, atol=1e-18
+    )
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0, 2.0])
@@ -26,7 +28,7 @@ def test_a_wave_keeps_what_the_gaussian_filter_says(share: float) -> None:
     x, cutoff = np.linspace(0.0, 10e-3, 4001), 0.5e-3
     at = np.linspace(3e-3, 7e-3, 201)
     wave = np.sin(2.0 * math.pi * x / (share * cutoff))
-    kept = smoothing(x, at, cutoff) @ wave
+    kept = smoothing(x, at=at, cutoff=cutoff) @ wave
     expected = 2.0 ** -(share**-2) * np.sin(2.0 * math.pi * at / (share * cutoff))
     np.testing.assert_allclose(kept, expected, atol=2e-5)
 
@@ -35,9 +37,9 @@ def test_noise_is_told_from_any_cubic() -> None:
     rng = np.random.default_rng(7)
     x = np.sort(rng.uniform(0.0, 1.0, 4000))
     cubic = 3.0 - 2.0 * x + 5.0 * x**2 - 4.0 * x**3
-    assert noise_of(x, cubic[None]) < 1e-12
+    assert noise_of(x, rows=cubic[None]) < 1e-12
     noisy = cubic + 1e-3 * rng.standard_normal((5, x.size))
-    assert noise_of(x, noisy) == pytest.approx(1e-3, rel=0.05)
+    assert noise_of(x, rows=noisy) == pytest.approx(1e-3, rel=0.05)
 
 
 def test_the_quiet_cutoff_leaves_noise_the_curvature_it_says() -> None:
@@ -47,7 +49,7 @@ def test_the_quiet_cutoff_leaves_noise_the_curvature_it_says() -> None:
     x = np.arange(4000) * spacing
     step = cutoff / 40.0
     at = np.arange(2.0 * cutoff, x[-1] - 2.0 * cutoff, step)
-    weights = smoothing(x, at, cutoff)
+    weights = smoothing(x, at=at, cutoff=cutoff)
     bends = [
         np.diff(weights @ (noise * rng.standard_normal(x.size)), 2) / step**2 for _ in range(4)
     ]

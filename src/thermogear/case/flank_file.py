@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base import bounds
+from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.base.errors import InputError, nearest, short
 from thermogear.case.units import read_quantity
-from thermogear.measured.layout import MISSING, NUMBER, cells_of
 
 Floats = NDArray[np.float64]
 

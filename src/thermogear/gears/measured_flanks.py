@@ -108,10 +108,10 @@ class ProfileTraces:
         widest = float(np.max(np.diff(x)))
         finest = max((high - low) / _WAVES, _SHORTEST, 2.0 * widest)
         at = _even(x, finest / (2 * _KNOTS))
-        plain = rows @ smoothing(x, at, finest).T
+        plain = rows @ smoothing(x, at=at, cutoff=finest).T
         figures = tuple(profile_figures(position=at, added=one) for one in plain)
         grades = tuple(flank_class(gear.teeth, gear.module, figures=one) for one in figures)
-        noise = noise_of(x, rows)
+        noise = noise_of(x, rows=rows)
         wanted = quiet_cutoff(
             noise / math.sqrt(len(rows)),
             spacing=float(np.mean(np.diff(x))),
@@ -120,7 +120,7 @@ class ProfileTraces:
         broadest = max(finest, (high - low) / _BROADEST)
         cutoff = min(max(finest, wanted), broadest)
         knots = _even(x, cutoff / _KNOTS)
-        acting = smoothing(x, knots, cutoff) @ rows.mean(axis=0)
+        acting = smoothing(x, at=knots, cutoff=cutoff) @ rows.mean(axis=0)
         _, pitch, _ = active_profile(pair, self.gear)
         acting = acting - np.interp(pitch, knots, acting)
         own = rows - rows.mean(axis=1, keepdims=True)
@@ -147,12 +147,13 @@ def roll_path(
     return np.sqrt(np.where(square >= 0.0, square, np.nan))
 
 
-def smoothing(x: Floats, at: Floats, cutoff: float) -> Floats:
+def smoothing(x: Floats, *, at: Floats, cutoff: float) -> Floats:
     """Weights (len(at), len(x)) of the Gaussian profile filter of a ``cutoff`` [m] wavelength.
 
     A sine of that wavelength keeps half its height; the filter is a local straight line, so that
     a line passes unchanged up to the ends, where a plain Gaussian would need a run-in. ``x`` [m]
-    rising, its gaps at most half a cut-off. Source: ISO 16610-21 (weights), -31 (ends).
+    rising, its gaps at most half a cut-off; ``at`` [m] where the filtered trace is asked for.
+    Source: ISO 16610-21 (weights), -31 (ends).
     """
     cells = np.gradient(x)
     away = x[None, :] - at[:, None]
@@ -161,11 +162,11 @@ def smoothing(x: Floats, at: Floats, cutoff: float) -> Floats:
     return np.asarray(weight * (second - first * away) / (zeroth * second - first**2))
 
 
-def noise_of(x: Floats, rows: Floats) -> float:
+def noise_of(x: Floats, *, rows: Floats) -> float:
     """Standard deviation [m] of what changes from point to point: fourth divided differences.
 
     Five neighbours are weighed so that every cubic cancels and white noise keeps its variance;
-    the median over all of ``rows`` (trace, point) leaves single outliers out.
+    the median over all of ``rows`` [m] (trace, point) at ``x`` [m] leaves single outliers out.
     """
     near = np.stack([x[k : x.size - 4 + k] for k in range(5)])
     near = (near - near.mean(axis=0)) / np.ptp(near, axis=0)
