@@ -397,3 +397,14 @@ def test_no_file_is_told(tmp_path: Path, name: str, words: str) -> None:
     file.write_text(f'{own_chart.CASE}\n[flanks]\npinion = "{name}"\n')
     with pytest.raises(InputError, match=words):
         load_case(file)
+
+
+def test_the_chart_of_the_how_to_is_read(tmp_path: Path) -> None:
+    page = Path(__file__).parents[2] / "docs" / "howto" / "measured_flanks.md"
+    text = page.read_text(encoding="utf-8").split("```text\n")[1].split("```")[0]
+    case = own_chart.case(tmp_path, text)
+    drive, back = case.charts[0].flanks
+    assert (drive.flank, back.flank) == ("drive", "back")
+    assert case.charts[0].hand(1) == "tooth 1 right (drive)"
+    assert drive.figures[0].slope > 4e-6
+    assert case.charts[0].read.signed

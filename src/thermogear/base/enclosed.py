@@ -37,7 +37,7 @@ def folded(text: str) -> str:
             content = json.loads(match["quoted"])
         return f"# {json.loads(match['name'])}: {told(content)}, kept in the stored results"
 
-    return _BODY.sub(said, text)
+    return _BODY.sub(said, text.replace(f"{_HEAD}\n", ""))
 
 
 def told(content: str) -> str:

@@ -328,12 +328,11 @@ def _trace(block: _Block, place: int) -> tuple[str, int, float]:
             why=ask,
             fix=f"write 'tooth {tooth} left [um]' or 'tooth {tooth} right [um]'",
         )
-    scale = 1.0 if unit else float("nan")
+    ask = ""
     if not unit:
-        body = np.abs(block.values()[:, place])
-        ask = f"are the values, up to {body.max():.6g}, micrometres? then write '{words} [um]'"
-    else:
-        ask = ""
+        most = float(np.abs(block.values()[:, place]).max())
+        likely, words_ = ("mm", "millimetres") if most < 0.2 else ("um", "micrometres")
+        ask = f"are the values, up to {most:.6g}, {words_}? then write '{words} [{likely}]'"
     scale = _scale(block, place, "length", ask)
     return side[0], int(number[0]) if number else 1, scale
 
