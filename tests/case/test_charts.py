@@ -247,8 +247,10 @@ def test_a_chart_replaces_the_class_of_its_gear_alone(tmp_path: Path) -> None:
     assert case.accuracy == 6
     told = {one.field: one.value for one in case.assumptions}
     assert told["flanks.accuracy"] == "6, wheel"
+    assert case.measured_class == case.charts[0].flanks[0].grades[0]
     both = own_chart.case(tmp_path, chart({LEFT: TRACE}, diameter(RHO)), _wheel())
     assert both.accuracy is None
+    assert both.measured_class == case.measured_class
     told = {one.field: one.value for one in both.assumptions}
     assert told["flanks.accuracy"] == told["flanks.seed"] == "none: both gears are measured"
 

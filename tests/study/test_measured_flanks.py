@@ -11,6 +11,7 @@ import own_chart
 from own_chart import END, START, chart, diameter
 from thermogear.case.case import GearCase, load_case
 from thermogear.results.result import Result
+from thermogear.results.versus import stored
 from thermogear.study.measured_flanks import measured_flanks, measured_notices
 from thermogear.study.run import run
 from thermogear.views.page import Gallery, Pictures, Table
@@ -76,6 +77,9 @@ def test_the_notices_tell_what_was_decided(tmp_path: Path) -> None:
     told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
     assert "58 to 65 mm (stated)" in told[0]
     assert "taken as positive" not in told[0]
+    lines = ("drive: right", "evaluate: 56.5..65 mm")
+    told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
+    assert "(stated, as far as the trace goes)" in told[0]
     only = own_chart.case(tmp_path, chart({"tooth 1 left [um]": SHARE}, diameter(RHO)))
     assert any("no trace of the back flank" in one.text for one in measured_notices(only))
 
@@ -105,3 +109,22 @@ def test_a_page_shows_the_case_and_not_every_row_of_its_charts(tmp_path: Path) -
     words = code.words  # type: ignore[union-attr]
     assert words.count("\n") < own_chart.CASE.count("\n") + 10
     assert "# pinion.csv: 204 lines, sha256 " in words
+
+
+def test_a_relief_beside_a_chart_is_told(tmp_path: Path) -> None:
+    charted(tmp_path)
+    relief = 'gears.pinion.tip_relief={amount="5 um", length="2 mm"}'
+    case = load_case(tmp_path / "mine.toml", [relief])
+    assert isinstance(case, GearCase)
+    assert any("a relief of the case stands on top" in one.text for one in measured_notices(case))
+
+
+def test_charts_side_by_side_differ_by_their_digest(tmp_path: Path) -> None:
+    tables = []
+    for lines in (("drive: right",), ("drive: left",)):
+        case = charted(tmp_path, *lines)
+        tables.append(stored(Result.of("gear", "own", {}, **case.provenance)).table())
+    one, other = tables
+    (key,) = (key for key in one if one[key] != other[key])
+    assert "pinion.csv" in str(key)
+    assert str(one[key]).startswith("204 lines, sha256 ")

@@ -155,6 +155,12 @@ class GearCase(Case):
     )
 
     @property
+    def measured_class(self) -> int | None:
+        """The worst class of ISO 1328-1:2013 of measured drive flanks; None where none has one."""
+        flanks = [one for chart in self.charts for one in chart.flanks if one.flank == "drive"]
+        return max((grade for one in flanks for grade in one.grades if grade), default=None)
+
+    @property
     def housing(self) -> Material:
         """The material of the housing."""
         return self.stated.housing

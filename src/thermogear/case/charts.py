@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -116,11 +117,17 @@ def charts(file: GearFile, pair: GearPair) -> tuple[Chart, ...]:
                     why=f"[gears.{gear}.profile] gives the same flanks",
                     fix="leave one out",
                 )
-            texts = {name: file.files[name].text for name in names}
-            found.append(_chart(gear, names, read_flanks(texts), pair))
+            texts = tuple((name, file.files[name].text) for name in names)
+            found.append(_chart(gear, names, _read(texts), pair))
         except InputError as error:
             raise error.named(f"flanks.{gear}") from error
     return tuple(found)
+
+
+@lru_cache(maxsize=8)
+def _read(texts: tuple[tuple[str, str], ...]) -> FlankFile:
+    """A file is read once, however often a sweep loads its case."""
+    return read_flanks(dict(texts))
 
 
 def _chart(gear: str, names: tuple[str, ...], read: FlankFile, pair: GearPair) -> Chart:

@@ -118,7 +118,7 @@ def read_flanks(texts: Mapping[str, str]) -> FlankFile:
         drive=_drive(said, sides, table),
         teeth=_teeth(said),
         signed="sign" in said,
-        pitch=_pitch([block for block in blocks if block.of_pitch], sign),
+        pitch=_pitch([block for block in blocks if block.of_pitch]),
     )
 
 
@@ -337,8 +337,8 @@ def _trace(block: _Block, place: int) -> tuple[str, int, float]:
     return side[0], int(number[0]) if number else 1, scale
 
 
-def _pitch(blocks: Iterable[_Block], sign: float) -> dict[str, Floats]:
-    """Pitch deviations [m] over the teeth, by the name of their column."""
+def _pitch(blocks: Iterable[_Block]) -> dict[str, Floats]:
+    """Pitch deviations [m] over the teeth, signs as in the file, by the name of their column."""
     found: dict[str, Floats] = {}
     for block in blocks:
         values = block.values()
@@ -348,7 +348,7 @@ def _pitch(blocks: Iterable[_Block], sign: float) -> dict[str, Floats]:
         for place in range(1, len(block.head)):
             words, _ = _column(block, place)
             scale = _scale(block, place, "length", f"write '{words} [um]' if that is meant")
-            found[words] = sign * scale * values[:, place]
+            found[words] = scale * values[:, place]
     return found
 
 

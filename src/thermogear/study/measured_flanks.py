@@ -11,7 +11,7 @@ import xarray as xr
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.charts import Chart
-from thermogear.gears.deviations import active_profile
+from thermogear.gears.deviations import Relief, active_profile
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.results.result import Notice
@@ -109,7 +109,10 @@ def measured_notices(case: GearCase) -> Iterator[Notice]:
                 f"of the range; noise {1e6 * one.noise:.2g} um)"
             )
         stated = "" if chart.read.signed else " Material outside is taken as positive."
-        ranged = "stated" if chart.read.evaluate else "active profile within the trace"
+        ranged = "active profile within the trace"
+        if chart.traces.range is not None:
+            cut = not np.allclose(chart.traces.range, chart.range, rtol=0.0, atol=1e-6)
+            ranged = "stated, as far as the trace goes" if cut else "stated"
         yield Notice(
             "info",
             f"{name} flanks as measured ({', '.join(chart.names)}): {'; '.join(sides)}. Evaluated "
@@ -129,6 +132,15 @@ def measured_notices(case: GearCase) -> Iterator[Notice]:
                 "warning",
                 f"{name} flanks: no trace of the {missing.pop()} flank; it is taken as the "
                 "involute itself.",
+            )
+        relieved = any(
+            isinstance(one, Relief) and one.gear == chart.gear for one in case.deviations
+        )
+        if relieved:
+            yield Notice(
+                "warning",
+                f"{name} flanks: a relief of the case stands on top of the traces, which hold what "
+                "relief was cut already.",
             )
         if chart.read.pitch:
             yield Notice(
