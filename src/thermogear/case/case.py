@@ -24,6 +24,7 @@ from thermogear.case import build as parts
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.build import TemperatureRule
+from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.decided import decided
 from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
@@ -35,7 +36,7 @@ from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
-from thermogear.case.source import case_text
+from thermogear.case.source import case_text, folder_of
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
@@ -84,7 +85,10 @@ class Simulation:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What every case has; ``text`` is the file as it was read, without the ``overrides``."""
+    """What every case has.
+
+    ``text`` is the file as it was read, with the files it names, without the ``overrides``.
+    """
 
     title: str
     text: str
@@ -112,7 +116,8 @@ class GearCase(Case):
     :meth:`operating_of` computes the hot state from the heat balance of ``gearbox``.
     ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
     the other temperatures go along with it (:data:`~thermogear.case.fields.FOLLOW`).
-    ``deviations`` of the flanks, their ``accuracy`` class where they follow from one;
+    ``deviations`` of the flanks, their ``accuracy`` class where they follow from one, the
+    ``charts`` they were measured in;
     ``readings`` of thermometers; ``sensors`` that watch a warm-up; ``scuffing_load_stage`` of the
     oil in the FZG test, None where unknown. ``inertias`` [kg m^2];
     ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
@@ -138,6 +143,7 @@ class GearCase(Case):
     base_sets: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
     accuracy: int | None = None
+    charts: tuple[Chart, ...] = ()
     gearbox: Gearbox = field(default_factory=Gearbox)
     readings: tuple[Reading, ...] = ()
     sensors: SensorsTable = field(default_factory=SensorsTable)
@@ -147,6 +153,12 @@ class GearCase(Case):
     _balances: dict[tuple[MeshModel, float | None], HeatBalance] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
+
+    @property
+    def measured_class(self) -> int | None:
+        """The worst class of ISO 1328-1:2013 of measured drive flanks; None where none has one."""
+        flanks = [one for chart in self.charts for one in chart.flanks if one.flank == "drive"]
+        return max((grade for one in flanks for grade in one.grades if grade), default=None)
 
     @property
     def housing(self) -> Material:
@@ -278,9 +290,15 @@ class DimensionlessCase(Case):
 
 
 def load_case(
-    source: str | Path, overrides: Mapping[str, str] | Sequence[str] = ()
+    source: str | Path,
+    overrides: Mapping[str, str] | Sequence[str] = (),
+    *,
+    folder: Path | None = None,
 ) -> GearCase | DimensionlessCase:
     """The case in the file ``source``, or in the text itself, with ``overrides`` put in.
+
+    Files that it names count from ``folder`` (default: where the case file is, of a text the
+    working directory) and stand in its ``text`` afterwards.
 
     ``overrides`` map dotted fields to values as a file would hold them, or are texts
     ``"gears.pinion.teeth=30"``. Raises :class:`InputError` in one line; warns with
@@ -289,6 +307,10 @@ def load_case(
     name, text = case_text(source)
     changes = pairs(overrides)
     data = overridden(tables(name, text), changes)
+    try:
+        text = enclosed(text, data, folder or folder_of(source))
+    except InputError as error:
+        raise _together([error], text, changes) from error
     kind = data.get("kind", "gear")
     file = DimensionlessFile if kind == "dimensionless" else GearFile
     try:
@@ -317,7 +339,10 @@ def load_case(
 
 def _decided(case: GearCase) -> dict[str, str]:
     around = case.gearbox.surroundings
-    return decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
+    found = decided(case.pair, case.cold_backlash, around, case.deviations, case.accuracy)
+    if len(case.charts) == 2:
+        found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
+    return found
 
 
 def _together(
@@ -387,6 +412,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
             fix="split the case",
         )
     inertias, inertia_kind = parts.inertias(file, pair)
+    measured = charts(file, pair)
     case = GearCase(
         pair=pair,
         stated=Operating(
@@ -413,8 +439,9 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         path_positions=file.grid.path_positions,
         pictures=file.draw.pictures,
         base_sets=file.draw.base_sets,
-        deviations=deviations(file, pair),
+        deviations=deviations(file, pair, measured),
         accuracy=accuracy(file, pair),
+        charts=measured,
         gearbox=box,
         readings=readings,
         sensors=file.sensors or SensorsTable(),

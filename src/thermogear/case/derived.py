@@ -11,6 +11,7 @@ from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.case import Case, DimensionlessCase, GearCase
+from thermogear.case.charts import Chart
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import kinematic_viscosity
 
@@ -118,6 +119,7 @@ def _held(case: GearCase) -> list[Fact]:
         Fact("deviations of the flanks", str(place), type(one).__name__)
         for place, one in enumerate(case.deviations, 1)
     ]
+    found += [fact for chart in case.charts for fact in _measured(chart)]
     if not case.computed:
         return found
     group = "temperatures computed from the heat balance"
@@ -129,6 +131,32 @@ def _held(case: GearCase) -> list[Fact]:
         found.append(Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"))
         found.append(Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"))
     return found or [Fact(group, "held nodes", "none")]
+
+
+def _measured(chart: Chart) -> list[Fact]:
+    """Each trace's figures and class, then what of them acts."""
+    group = f"measured flanks of the {chart.gear}, class of ISO 1328-1:2013"
+    found = []
+    for flank in chart.flanks:
+        places = [k for k, side in enumerate(chart.traces.flank) if side == flank.flank]
+        for place, figures, grade in zip(places, flank.figures, flank.grades, strict=True):
+            slope, form, total = (1e6 * value for value in figures)
+            text = f"f_Halpha {slope:+.2f}, f_falpha {form:.2f}, F_alpha {total:.2f} um: "
+            text += "no class" if grade is None else f"class {grade}"
+            found.append(Fact(group, chart.hand(place), text))
+    group = f"measured flanks of the {chart.gear}, what acts"
+    for flank in chart.flanks:
+        count = chart.traces.flank.count(flank.flank)
+        mean = f"mean of {count} teeth" if count > 1 else "one tooth"
+        text = f"{mean}, low-pass {1e3 * flank.cutoff:.3g} mm of roll path"
+        found.append(Fact(group, flank.flank, text))
+        found.append(Fact(group, f"{flank.flank}, peak to peak", 1e6 * np.ptp(flank.acting), "um"))
+        found.append(Fact(group, f"{flank.flank}, noise of one trace", 1e6 * flank.noise, "um"))
+        if count > 1:
+            found.append(
+                Fact(group, f"{flank.flank}, scatter between teeth", 1e6 * flank.scatter, "um")
+            )
+    return found
 
 
 def _rows(case: DimensionlessCase) -> tuple[Fact, ...]:

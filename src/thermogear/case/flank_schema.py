@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from thermogear.base import bounds
-from thermogear.case.fields import Choice, Count, Several, measure
+from thermogear.base.errors import InputError, short
+from thermogear.case.fields import Choice, Count, Reader, Several, Words, measure
 from thermogear.case.table import Table
 
 Flank = Annotated[str, Choice("drive", "back", "both")]
@@ -46,8 +47,38 @@ class ProfileTable(Table):
     flank: Flank = Field(default="both", description="drive and back flanks alike")
 
 
+Charts = Annotated[
+    tuple[str, ...] | None, Several(Words('"pinion.csv"'), least=1, most=2, distinct=True)
+]
+
+
+class Content(Reader):
+    """The text of a file that a case names, line breaks and all."""
+
+    example = "'''...'''"
+
+    def read(self, raw: object) -> str:
+        if not isinstance(raw, str):
+            raise InputError("", short(raw), allowed="a text", fix="leave [files] out")
+        return raw
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "string"}
+
+
+class EnclosedTable(Table):
+    """A file that the case names, in the case itself: results keep it so."""
+
+    text: Annotated[str, Content()]
+
+
 class FlanksTable(Table):
-    """How true the flanks are: an accuracy class, from which seeded deviations are drawn."""
+    """How true the flanks are: measured, or an accuracy class that seeded deviations keep."""
+
+    pinion: Charts = Field(
+        default=None, title="CSV of the pinion's inspection chart, beside the case file; none"
+    )
+    wheel: Charts = Field(default=None, title="the same of the wheel; none")
 
     accuracy: Annotated[int | None, Count(low=0, high=12, example="6")] = Field(
         default=None,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from thermogear.base.errors import InputError
+from thermogear.case.charts import Chart
 from thermogear.case.flank_schema import ReliefTable
 from thermogear.case.schema import GearFile, GearTable
 from thermogear.gears.candidates import mesh_points
@@ -26,8 +27,10 @@ PLASTIC = 30e9
 """Young's modulus [Pa] below which a gear is one of plastic."""
 
 
-def deviations(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
-    """Every deviation that the file gives, pinion's first.
+def deviations(
+    file: GearFile, pair: GearPair, measured: Sequence[Chart] = ()
+) -> tuple[Deviation, ...]:
+    """Every deviation that the file gives, pinion's first, ``measured`` flanks among them.
 
     What does not fit the gears (a relief longer than the active profile, pitch errors that are
     not one for each tooth) is refused under its field of the file.
@@ -50,6 +53,7 @@ def deviations(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
                     fix=error.fix,
                 ) from error
             found.append(deviation)
+    found += [one for chart in measured for one in chart.deviations]
     return (*found, *_graded(file, pair))
 
 
@@ -59,7 +63,7 @@ def accuracy(file: GearFile, pair: GearPair) -> int | None:
     Left out it is 6 for metal, 9 for plastics, and none where the tables of ISO 1328-1 end.
     """
     table = file.flanks
-    if table is None:
+    if table is None or not _unmeasured(file):
         return None
     if table.accuracy is not None:
         return table.accuracy
@@ -90,8 +94,16 @@ def _graded(file: GearFile, pair: GearPair) -> tuple[Deviation, ...]:
             why=error.why,
             fix="give [transmission_error] harmonics, or measured profiles, instead",
         ) from error
-    given = {"pinion": file.gears.pinion.profile, "wheel": file.gears.wheel.profile}
-    return tuple(one for one in profiles if given[one.gear] is None)
+    return tuple(one for one in profiles if one.gear in _unmeasured(file))
+
+
+def _unmeasured(file: GearFile) -> list[str]:
+    """The gears whose flanks neither a table nor a chart gives."""
+    return [
+        name
+        for name in ("pinion", "wheel")
+        if getattr(file.gears, name).profile is None and getattr(file.flanks, name, None) is None
+    ]
 
 
 def _given(gear: str, table: GearTable) -> Iterator[tuple[str, Callable[[], Deviation]]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
@@ -30,12 +31,17 @@ class NewCase:
     oil_temperature: str | None = None
     backlash: str | None = None
     accuracy: int | None = None
+    pinion_flanks: str | None = None
+    wheel_flanks: str | None = None
 
-    def text(self) -> str:
-        """The file; InputError where the case it describes is impossible."""
+    def text(self, folder: Path | None = None) -> str:
+        """The file; InputError where the case it describes is impossible.
+
+        Names of charts count from ``folder``, where the file is to stand (default: here).
+        """
         text = "\n".join(self._lines()) + "\n"
         try:
-            load_case(text)
+            load_case(text, folder=folder)
         except InputError as error:
             for one in getattr(error, "errors", (error,)):
                 one.line = None
@@ -69,7 +75,12 @@ class NewCase:
         if self.backlash is not None:
             value = _line("value", self.backlash, "of the whole gap, along the line of action")
             found += _table("backlash", value, 'direction = "normal"', 'extent = "total"')
-        found += _table("flanks", _line("accuracy", self.accuracy, "class of ISO 1328-1"))
+        found += _table(
+            "flanks",
+            _line("accuracy", self.accuracy, "class of ISO 1328-1"),
+            _line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
+            _line("wheel", self.wheel_flanks),
+        )
         return found + _table(
             "operating",
             _line("speed", self.speed, "of the pinion, which drives"),

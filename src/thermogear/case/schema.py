@@ -27,7 +27,12 @@ from thermogear.case.fields import (
     Words,
     measure,
 )
-from thermogear.case.flank_schema import FlanksTable, ProfileTable, ReliefTable
+from thermogear.case.flank_schema import (
+    EnclosedTable,
+    FlanksTable,
+    ProfileTable,
+    ReliefTable,
+)
 from thermogear.case.friction_schema import FRICTION, FrictionTable
 from thermogear.case.gearbox_schema import GearboxTable
 from thermogear.case.material_schema import HousingTable, MaterialTable, OilTable
@@ -424,6 +429,7 @@ class GearFile(Table):
     grid: GridTable = GridTable()
     simulation: SimulationTable = SimulationTable()
     draw: DrawTable = DrawTable()
+    files: dict[str, EnclosedTable] = Field(default={}, title="put here when it is read")
     ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
 
     @model_validator(mode="before")

@@ -12,14 +12,23 @@ LARGEST = 1_000_000
 """A case file is text written by hand: one larger than this [bytes] is something else."""
 
 
+def folder_of(source: str | Path) -> Path:
+    """Where the files that a case names are: beside its file; for a text the working directory."""
+    return Path() if _is_text(source) else Path(source).parent
+
+
+def _is_text(source: str | Path) -> bool:
+    return isinstance(source, str) and (not source.strip() or "\n" in source or "=" in source)
+
+
 def case_text(source: str | Path) -> tuple[str, str]:
     """(name, text) of a case given by its path or as text.
 
     A ``str`` is a text when it holds a line break or an equals sign, or nothing; else a path. The
     bare name of a ready-made case stands for it where no such file exists.
     """
-    if isinstance(source, str) and (not source.strip() or "\n" in source or "=" in source):
-        return "case", source
+    if _is_text(source):
+        return "case", str(source)
     path = Path(source)
     name = path.name or str(path)
     if str(source) in EXAMPLES and not path.exists():

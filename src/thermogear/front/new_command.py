@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,8 @@ NEEDED = {
 @click.option(
     "--accuracy", type=int, metavar="CLASS", help="Accuracy class of the flanks, ISO 1328-1; 6."
 )
+@click.option("--pinion-flanks", metavar="CSV", help="Inspection chart of the pinion's flanks.")
+@click.option("--wheel-flanks", metavar="CSV", help="The wheel's; each replaces the class.")
 @click.option("-o", "--output", metavar="FILE", help="Write a new FILE instead of printing.")
 def new(output: str | None, **given: Any) -> None:
     """Write a short case of your own gear pair; without options it asks.
@@ -77,12 +80,24 @@ def new(output: str | None, **given: Any) -> None:
             why="a gear pair needs module, teeth, face width, torque and speed",
             fix=f"write --{first.replace('_', '-')} {_quoted(first)}",
         )
-    text = NewCase(**{k: v for k, v in given.items() if v is not None}).text()
+    folder = Path() if output is None else Path(output).parent
+    for name in ("pinion_flanks", "wheel_flanks"):
+        if given[name] is not None:
+            given[name] = _from(folder, given[name])
+    text = NewCase(**{k: v for k, v in given.items() if v is not None}).text(folder)
     if output is None:
         click.echo(text, nl=False)
         return
     click.echo(put(Path(output), text))
     click.echo(f"next: thermogear answers {output}")
+
+
+def _from(folder: Path, chart: str) -> str:
+    """The name of a file as a case in ``folder`` says it; as given where there is no way."""
+    try:
+        return Path(os.path.relpath(chart, folder)).as_posix()
+    except ValueError:  # another drive
+        return chart
 
 
 def _quoted(name: str) -> str:

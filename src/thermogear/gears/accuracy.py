@@ -116,6 +116,24 @@ def flank_tolerances(
     return FlankTolerances(*(value * _STEP ** (grade - 5) * _UM for value in values))
 
 
+def flank_class(teeth: int, module: float, *, figures: tuple[float, float, float]) -> int | None:
+    """The best class of ISO 1328-1:2013 that lets a profile deviate so far.
+
+    ``figures``: f_Halpha, f_falpha, F_alpha [m], signs left aside; each is held against the
+    rounded tolerance. None where class 11 is exceeded, or the gear leaves the standard's range;
+    ``module`` [m].
+    """
+    low, high = _GRADES["2013"]
+    for grade in range(low, high + 1):
+        try:
+            limits = flank_tolerances(teeth, module, grade=grade).rounded()[2:]
+        except InputError:
+            return None
+        if all(abs(got) <= most for got, most in zip(figures, limits, strict=True)):
+            return grade
+    return None
+
+
 def helix_tolerances(
     teeth: int, module: float, *, face_width: float, grade: int
 ) -> HelixTolerances:

@@ -7,13 +7,12 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Notice
 from thermogear.measured.traps import is_possible_rate, is_rate_name, is_time_name, split_unit
 from thermogear.measured.units import factor_of, kind_of, unit
 
-NUMBER = re.compile(r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$")
-MISSING = {"", "nan", "na", "n/a", "null", "-", "--", "inf", "-inf", "#n/a", "-nan", "1.#qnan"}
 MOST_COLUMNS = 4096
 _LONGEST_FACT = 400  # characters of a line above the table that are looked at
 _META = re.compile(r"^[\s#%;/!\"']*([^:=,;\t]{2,40}?)\s*[:=,;\t]\s*\"?([^\s\"]+)\s*\"?([^\s\"]*)")
@@ -36,16 +35,6 @@ class Layout:
     skip: int
     rate: float | None = None
     notices: list[Notice] = field(default_factory=list)
-
-
-def cells_of(line: str, separator: str | None) -> list[str]:
-    """The fields of a line, without quotes and without the empty one after a last separator."""
-    if separator is None:
-        return line.split()
-    cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
-    if len(cells) > 1 and cells[-1] == "":
-        cells.pop()
-    return cells
 
 
 def _is_row(cells: list[str]) -> bool:

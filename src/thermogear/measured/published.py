@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from thermogear.base.cells import NUMBER, cells_of
 from thermogear.base.errors import InputError
 from thermogear.base.files import decoded
 from thermogear.base.units import RPM, STANDARD_GRAVITY
-from thermogear.measured.layout import NUMBER, cells_of
 from thermogear.measured.traps import split_unit
 from thermogear.measured.units import factor_of, kind_of
 from thermogear.signals.integration import trapezoid_factor

@@ -12,8 +12,9 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.base.errors import InputError, nearest
-from thermogear.measured.layout import MISSING, NUMBER, Layout, cells_of, find_layout
+from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import ReadOptions, place_of, refused, too_large
 from thermogear.measured.record import BLOCK, Channel, Notice, Record
 from thermogear.measured.store import ColumnStore, StoredColumn

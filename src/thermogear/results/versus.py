@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from thermogear.base.enclosed import folded, with_digests
 from thermogear.base.errors import InputError
 from thermogear.base.toml import overridden, pairs, tables
 from thermogear.base.units import RPM
@@ -101,7 +102,7 @@ class Stored:
         """The fields of its case file, what the command line put in their place included."""
         data = tables(f"case of {self.name}", str(self.texts.get("case", "")))
         changes = {str(path): str(value) for path, value in self.read("overrides", [])}
-        return flat(overridden(data, pairs(changes)))
+        return flat(with_digests(overridden(data, pairs(changes))))
 
     def read(self, name: str, absent: Any) -> Any:
         """A JSON attribute, ``absent`` where it is not stored."""
@@ -291,7 +292,7 @@ def _shown(value: object) -> str:
 
 def _text(case: Stored) -> str:
     """The file as read, and below it what the command line put in its place."""
-    text = str(case.texts.get("case", "")).rstrip()
+    text = folded(str(case.texts.get("case", ""))).rstrip()
     if "# on the command line:" in text:
         return text
     changes = case.read("overrides", [])

@@ -1,17 +1,18 @@
 """A run: from a case to the tree of labelled results that pages are drawn from.
 
 The groups of the tree: ``path`` (along the path of contact), ``mesh`` (over the mesh phase, and
-figures per operating point), ``balance`` (where the temperatures are computed), ``profile``,
-``motion``, ``temperature`` (the same over gear temperatures) and ``base_sets/...``; a
-dimensionless case has ``points`` alone.
+figures per operating point), ``flanks/...`` (where they are measured), ``balance`` (where the
+temperatures are computed), ``profile``, ``motion``, ``temperature`` (the same over gear
+temperatures) and ``base_sets/...``; a dimensionless case has ``points`` alone.
 """
 
 from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -32,10 +33,11 @@ from thermogear.mesh.balance_table import balance_dataset
 from thermogear.mesh.clearance import clearance
 from thermogear.mesh.profile import profiles
 from thermogear.mesh.thermal import HotPair
-from thermogear.results.result import Result, now
+from thermogear.results.result import Notice, Result, now
 from thermogear.study import run_notices
 from thermogear.study.answers.survey import answered
 from thermogear.study.answers.survey import notices as answer_notices
+from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
 
 
@@ -48,7 +50,7 @@ def run(case: Case, *, progress: Progress = silent) -> Result:
     """
     if isinstance(case, DimensionlessCase):
         groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}
-        notices = run_notices.dimensionless_notices(groups["points"])
+        notices: Iterator[Notice] = run_notices.dimensionless_notices(groups["points"])
         own: dict[str, Any] = {}
     elif isinstance(case, GearCase):
         cycles = _cycles(case, progress)
@@ -57,7 +59,7 @@ def run(case: Case, *, progress: Progress = silent) -> Result:
         found, speeds = answered(case, case.models[0], cold, hot, progress)
         if speeds is not None:
             groups["speeds"] = speeds.data
-        notices = [*run_notices.notices(case, groups), *answer_notices(case)]
+        notices = chain(run_notices.notices(case, groups), answer_notices(case))
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},
@@ -93,6 +95,7 @@ def _gear_groups(
     groups |= _split(
         xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
     )
+    groups |= measured_flanks(case)
     if case.computed:
         groups["balance"] = balances(case)
     wanted = set(case.pictures)

@@ -25,6 +25,7 @@ from thermogear.gears.deviations import PitchError
 from thermogear.gears.iso6336 import iso6336_stiffness
 from thermogear.mesh.model import CHOICES
 from thermogear.results.result import Notice
+from thermogear.study.measured_flanks import measured_notices
 from thermogear.study.notices import friction_notices, reasons, several_words
 
 Floats = NDArray[np.float64]
@@ -53,6 +54,7 @@ def notices(case: GearCase, groups: Mapping[str, xr.Dataset]) -> Iterator[Notice
     yield from _computed(case, groups)
     yield from _jammed(case, mesh)
     yield from _deviations(case)
+    yield from measured_notices(case)
     if of_the_thesis(case):
         yield from _regime(case, mesh)
     if "motion" in groups:

@@ -19,10 +19,11 @@ CURVES = {
     "sample": "time",
     "section": "section",
     "order": "spectrum",
+    "flank_point": "flanks",
 }
 """The dimension a curve runs along, and the word its file carries."""
 
-ROWS = ("operating", "point")
+ROWS = ("operating", "point", "trace")
 """Dimensions whose places stand below each other in one file."""
 
 Column = tuple[str, list[str]]

@@ -89,7 +89,7 @@ def _here(own: Floats, ranges: list[tuple[float, float]]) -> float:
 
 def loads(asked: Asked) -> Iterator[Answer]:
     case = asked.case
-    grade = case.accuracy or 6
+    grade = _class(case)
     for point in asked.points:
         at = asked.at(point)
         own = float(asked.motion["dynamic_factor"][point]) if asked.moves(point) else float("nan")
@@ -99,7 +99,8 @@ def loads(asked: Asked) -> Iterator[Answer]:
             mine = f"computed {own:.2f}; " if np.isfinite(own) else ""
             yield undecided(LOADS, "dynamic_factor", f"{mine}{why}", at=at)
             continue
-        words = f"class {grade}" + ("" if case.accuracy else ", assumed")
+        said = "" if case.accuracy else ", profiles as measured"
+        words = f"class {grade}" + (said if case.accuracy or case.measured_class else ", assumed")
         yield answer(
             LOADS,
             "dynamic_factor",
@@ -141,10 +142,15 @@ def errors(asked: Asked) -> Iterator[Answer]:
     yield _relief(asked)
 
 
+def _class(case: GearCase) -> int:
+    """The class of ISO 1328-1 that the flanks are of, the worse gear's; 6 where none is known."""
+    return max((one for one in (case.accuracy, case.measured_class) if one), default=6)
+
+
 def _usual_error(case: GearCase, torque: float) -> float:
     """What a pair of the accuracy class usually has [um]: unloaded, and 0.43 w/c' of the load."""
     classes, errors_of = zip(*USUAL_ERROR, strict=True)
-    unloaded = float(np.interp(float(case.accuracy or 6), classes, errors_of))
+    unloaded = float(np.interp(float(_class(case)), classes, errors_of))
     load = torque / (case.pair.pinion.pitch_radius * case.pair.face_width)
     single = float(iso6336_stiffness(case.pair, load).single)
     return unloaded + (0.43e6 * load / single if single > 0.0 else 0.0)

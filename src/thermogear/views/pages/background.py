@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from thermogear.base.enclosed import folded
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Code, Section, Text
@@ -48,7 +49,7 @@ def background(results: Result) -> list[Section]:
 
 def case_file(results: Result) -> Section:
     """The case as it was read, and below it what the command line put in its place."""
-    text = results.text("case").rstrip()
+    text = folded(results.text("case")).rstrip()
     if "# on the command line:" not in text:
         changes = results.values("overrides")
         text += "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)

@@ -1,0 +1,154 @@
+"""Measured flanks in the results of a run: traces, fit and what acts, and what to know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from thermogear.base.vocabulary import label
+from thermogear.case.case import GearCase
+from thermogear.case.charts import Chart
+from thermogear.gears.deviations import Relief, active_profile
+from thermogear.gears.geometry import Gear
+from thermogear.gears.pair import GearPair
+from thermogear.results.result import Notice
+
+
+def measured_flanks(case: GearCase) -> dict[str, xr.Dataset]:
+    """A group ``flanks/GEAR`` for each gear that was measured."""
+    return {f"flanks/{chart.gear}": _group(chart, case.pair) for chart in case.charts}
+
+
+def _group(chart: Chart, pair: GearPair) -> xr.Dataset:
+    gear = _gear(pair, chart.gear)
+    traces, flanks = chart.traces, chart.flanks
+    rho = traces.rho
+    start, pitch, tip = active_profile(pair, chart.gear)
+    low, high = chart.range
+    entries: dict[str, Any] = {}
+    for one in flanks:
+        rows = [k for k, side in enumerate(traces.flank) if side == one.flank]
+        inside = (rho >= one.rho[0]) & (rho <= one.rho[-1])
+        acts = np.interp(rho, one.rho, one.acting)
+        # the fit stands where the mean trace does, as the chart has it
+        level = float(np.mean(traces.added[rows].mean(axis=0)[inside] - acts[inside]))
+        on_flank = (rho >= start) & (rho <= tip)
+        curves = {
+            "fit": (np.where(inside, acts + level, np.nan), "mean of the teeth, smoothed"),
+            "acting": (np.where(on_flank, acts, np.nan), "what acts, zero at the pitch circle"),
+        }
+        figures_ = {
+            "cutoff": (one.cutoff, "cut-off of the low-pass along the roll path"),
+            "noise": (one.noise, "noise of one trace"),
+            "scatter": (one.scatter, "scatter between the teeth"),
+        }
+        for name, (values, text) in curves.items():
+            told = f"{one.flank} flank, {text}"
+            entries[f"{one.flank}_{name}"] = (("flank_point",), values, "m", told)
+        for name, (value, text) in figures_.items():
+            entries[f"{one.flank}_{name}"] = ((), np.array(value), "m", f"{one.flank}, {text}")
+    figures = {side.flank: iter(zip(side.figures, side.grades, strict=True)) for side in flanks}
+    rows_ = [next(figures[side]) for side in traces.flank]
+    words = {
+        "profile_slope": "profile slope deviation f_Hα, > 0 outside at the tip",
+        "profile_form": "profile form deviation f_fα",
+        "profile_total": "total profile deviation F_α",
+    }
+    entries |= {
+        "trace_deviation": (
+            ("trace", "flank_point"),
+            traces.added,
+            "m",
+            "measured deviation, > 0 outside",
+        ),
+        "trace_name": (("trace",), [chart.hand(k) for k in range(len(traces.flank))]),
+        "trace_flank": (("trace",), list(traces.flank)),
+        "trace_tooth": (("trace",), np.array(traces.tooth), "1", "number of the tooth"),
+        "iso_class": (
+            ("trace",),
+            np.array([grade or 0 for _, grade in rows_]),
+            "1",
+            "class of ISO 1328-1:2013, 0: none",
+        ),
+    }
+    for place, (name, text) in enumerate(words.items()):
+        values = np.array([figure[place] for figure, _ in rows_])
+        entries[name] = (("trace",), values, "m", text)
+    for place, (name, values) in enumerate(chart.read.pitch.items(), 1):
+        entries[f"pitch_{place}"] = (("tooth",), values, "m", f"{name}, kept and not used")
+    coordinates: dict[str, Any] = {
+        "roll_path": (("flank_point",), rho, "m", "roll path from the base circle"),
+        "diameter": (("flank_point",), 2.0 * np.hypot(gear.base_radius, rho), "m", "diameter"),
+    }
+    ends = 2.0 * np.hypot(gear.base_radius, np.array([low, high]))
+    about = {
+        "gear": chart.gear,
+        "files": ", ".join(chart.names),
+        "evaluated_from": float(ends[0]),
+        "evaluated_to": float(ends[1]),
+        "pitch_diameter": 2.0 * float(np.hypot(gear.base_radius, pitch)),
+    }
+    return label(entries, coordinates, about)
+
+
+def measured_notices(case: GearCase) -> Iterator[Notice]:
+    """What of a chart acts, what was decided for it, and what is left out."""
+    for chart in case.charts:
+        gear, name = _gear(case.pair, chart.gear), chart.gear.capitalize()
+        low, high = (2e3 * float(np.hypot(gear.base_radius, end)) for end in chart.range)
+        sides = []
+        for one in chart.flanks:
+            count = chart.traces.flank.count(one.flank)
+            mean = f"mean of {count} teeth" if count > 1 else "one tooth"
+            part = (one.rho[-1] - one.rho[0]) / one.cutoff
+            sides.append(
+                f"{one.flank} {mean}, cut-off {1e3 * one.cutoff:.2g} mm of roll path (1/{part:.0f} "
+                f"of the range; noise {1e6 * one.noise:.2g} um)"
+            )
+        stated = "" if chart.read.signed else " Material outside is taken as positive."
+        ranged = "active profile within the trace"
+        if chart.traces.range is not None:
+            cut = not np.allclose(chart.traces.range, chart.range, rtol=0.0, atol=1e-6)
+            ranged = "stated, as far as the trace goes" if cut else "stated"
+        yield Notice(
+            "info",
+            f"{name} flanks as measured ({', '.join(chart.names)}): {'; '.join(sides)}. Evaluated "
+            f"over diameters {low:.5g} to {high:.5g} mm ({ranged}), held constant beyond; zero at "
+            f"the pitch circle, where backlash counts.{stated}",
+        )
+        limited = [one.flank for one in chart.flanks if one.limited]
+        if limited:
+            yield Notice(
+                "warning",
+                f"{name} flanks, {' and '.join(limited)}: the traces are so noisy that bumps of "
+                "noise may carry in the contact. More teeth, or more points, would settle it.",
+            )
+        missing = {"drive", "back"} - {one.flank for one in chart.flanks}
+        if missing:
+            yield Notice(
+                "warning",
+                f"{name} flanks: no trace of the {missing.pop()} flank; it is taken as the "
+                "involute itself.",
+            )
+        relieved = any(
+            isinstance(one, Relief) and one.gear == chart.gear for one in case.deviations
+        )
+        if relieved:
+            yield Notice(
+                "warning",
+                f"{name} flanks: a relief of the case stands on top of the traces, which hold what "
+                "relief was cut already.",
+            )
+        if chart.read.pitch:
+            yield Notice(
+                "info",
+                f"{name} pitch deviations ({', '.join(chart.read.pitch)}) are kept with the "
+                "results and not used: a run has one mesh period for all teeth.",
+            )
+
+
+def _gear(pair: GearPair, name: str) -> Gear:
+    return pair.pinion if name == "pinion" else pair.wheel

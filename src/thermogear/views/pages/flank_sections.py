@@ -1,0 +1,61 @@
+"""The section of measured flanks: the chart's traces, their figures, what of them acts."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from thermogear.results.result import Result
+from thermogear.views.page import Block, Pictures, Section, Table
+from thermogear.views.plots import flanks
+
+FIGURES = ("profile_slope", "profile_form", "profile_total")
+
+
+def measured(results: Result, pictures: Pictures) -> Section | None:
+    """Traces, fit and what acts of each gear that was measured; None where none was."""
+    found: list[Block] = []
+    for gear in ("pinion", "wheel"):
+        data = results.group(f"flanks/{gear}")
+        if data is None:
+            continue
+        pictures.add(
+            f"flanks-{gear}", f"Measured flanks of the {gear}", caption(data), data,
+            flanks.NEEDS, lambda data=data: flanks.traces(data),  # type: ignore[misc]
+            wide=len(flanks.sides(data)) > 1,
+        )  # fmt: skip
+        found += pictures.take()
+        if all(name in data for name in FIGURES):
+            found.append(table(data, gear))
+    return Section("flanks", "Measured flanks", found) if found else None
+
+
+def caption(data: xr.Dataset) -> str:
+    """What the picture shows and what of it the mesh feels."""
+    sides = flanks.sides(data)
+    cut = ", ".join(f"{1e3 * float(data[f'{side}_cutoff']):.2g} mm" for side in sides)
+    scatter = ", ".join(f"{1e6 * float(data[f'{side}_scatter']):.2g} µm" for side in sides)
+    return (
+        f"Read from {data.attrs.get('files', 'a chart')}; {' and '.join(sides)} flank. "
+        f"What acts is the mean of the teeth below a cut-off of {cut} along the roll path: shorter "
+        "waves cannot be told from noise. It is zero at the pitch circle and constant beyond the "
+        f"evaluated range, at most {1e6 * flanks.peak(data):.2g} µm peak to peak. Scatter between "
+        f"the teeth, which no mesh period holds: {scatter}."
+    )
+
+
+def table(data: xr.Dataset, gear: str) -> Table:
+    """Slope, form and total deviation of each trace with its class."""
+    rows = [
+        [
+            str(data["trace_name"].values[place]),
+            *(f"{1e6 * float(data[name].values[place]):.2f}" for name in FIGURES),
+            str(grade or "none"),
+        ]
+        for place, grade in enumerate(int(value) for value in data["iso_class"].values)
+    ]
+    words = (
+        f"Each trace of the {gear} over the evaluated range, and the class of ISO 1328-1:2013 that "
+        "all three figures keep."
+    )
+    head = ["trace", "f_Hα [µm]", "f_fα [µm]", "F_α [µm]", "class"]
+    return Table(words, head, rows)

@@ -1,0 +1,130 @@
+"""Measured flanks in the results: stored whole, told, and drawn from what is stored."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import own_chart
+from own_chart import END, START, chart, diameter
+from thermogear.case.case import GearCase, load_case
+from thermogear.results.result import Result
+from thermogear.results.versus import stored
+from thermogear.study.measured_flanks import measured_flanks, measured_notices
+from thermogear.study.run import run
+from thermogear.views.page import Gallery, Pictures, Table
+from thermogear.views.pages.background import case_file
+from thermogear.views.pages.flank_sections import measured
+
+RHO = np.linspace(START, END, 181)
+SHARE = (RHO - START) / (END - START)
+
+FEW = ["draw.pictures=[]"]
+
+
+def charted(folder: Path, *lines: str) -> GearCase:
+    rng = np.random.default_rng(2)
+    columns = {
+        f"tooth {tooth} {side} [um]": 5.0 * SHARE + 12.0 + 0.2 * rng.standard_normal(RHO.size)
+        for tooth in (1, 8, 15)
+        for side in ("left", "right")
+    }
+    lines = lines or ("drive: right",)
+    pitch = "tooth,single pitch left [um]\n" + "".join(f"{k + 1},1.5\n" for k in range(20))
+    return own_chart.case(folder, chart(columns, diameter(RHO), "diameter [mm]", *lines) + pitch)
+
+
+def test_a_run_keeps_the_traces_and_computes_the_same_without_the_files(tmp_path: Path) -> None:
+    case = charted(tmp_path)
+    first = run(load_case(tmp_path / "mine.toml", FEW))
+    (tmp_path / "pinion.csv").unlink()
+    file = first.write(tmp_path / "out")
+    stored = Result.read(file)
+    again = load_case(stored.text("case"), dict(stored.values("overrides")))
+    assert again.text == case.text
+    assert isinstance(again, GearCase)
+    one, other = (c.cycle(c.operating, c.models[0]) for c in (case, again))
+    for name, values in one.variables.items():
+        np.testing.assert_array_equal(values.values, other[name].values, err_msg=str(name))
+    data = stored.groups["flanks/pinion"]
+    np.testing.assert_array_equal(data["trace_deviation"].values, case.charts[0].traces.added)
+    assert data["trace_name"].values[0] == "tooth 1 left (back)"
+    assert list(data["iso_class"].values) == [5] * 6 or set(data["iso_class"].values) <= {4, 5, 6}
+    assert all("units" in v.attrs for v in data.variables.values() if v.dtype.kind in "fi")
+
+
+def test_what_acts_is_zero_at_the_pitch_circle_whatever_the_level_of_the_chart(
+    tmp_path: Path,
+) -> None:
+    case = charted(tmp_path)
+    data = measured_flanks(case)["flanks/pinion"]
+    acting = data["drive_acting"].values
+    at = np.interp(data.attrs["pitch_diameter"], data["diameter"].values, acting)
+    assert at == pytest.approx(0.0, abs=2e-9)
+    assert np.nanmean(data["drive_fit"].values) == pytest.approx(14.5e-6, abs=0.2e-6)
+
+
+def test_the_notices_tell_what_was_decided(tmp_path: Path) -> None:
+    told = [one.text for one in measured_notices(charted(tmp_path))]
+    assert len(told) == 2
+    assert told[0].startswith("Pinion flanks as measured (pinion.csv): drive mean of 3 teeth, cut-")
+    assert "active profile within the trace" in told[0]
+    assert told[0].endswith("Material outside is taken as positive.")
+    assert told[1].startswith("Pinion pitch deviations (single pitch left) are kept")
+    lines = ("drive: right", "sign: material outside is positive", "evaluate: 58..65 mm")
+    told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
+    assert "58 to 65 mm (stated)" in told[0]
+    assert "taken as positive" not in told[0]
+    lines = ("drive: right", "evaluate: 56.5..65 mm")
+    told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
+    assert "(stated, as far as the trace goes)" in told[0]
+    only = own_chart.case(tmp_path, chart({"tooth 1 left [um]": SHARE}, diameter(RHO)))
+    assert any("no trace of the back flank" in one.text for one in measured_notices(only))
+
+
+def test_the_section_is_drawn_from_what_is_stored_alone(tmp_path: Path) -> None:
+    case = charted(tmp_path)
+    result = Result.of("gear", "own", measured_flanks(case), case=case.text)
+    section = measured(result, Pictures())
+    assert section is not None
+    gallery, table = section.blocks
+    assert isinstance(gallery, Gallery)
+    assert isinstance(table, Table)
+    assert len(table.rows) == 6
+    picture = gallery.pictures[0].picture.to_json()
+    panels = [panel for row in picture["panels"] for panel in row]
+    assert [panel["title"] for panel in panels] == ["drive flank", "back flank"]
+    for panel in panels:
+        assert (panel["x"]["unit"], panel["y"]["unit"]) == ("mm", "µm")
+        labels = [mark.get("label") for mark in panel["marks"]]
+        assert {"traces", "fit: mean of the teeth, smoothed", "acts", "evaluated"} <= set(labels)
+    assert measured(Result.of("gear", "own", {}), Pictures()) is None
+
+
+def test_a_page_shows_the_case_and_not_every_row_of_its_charts(tmp_path: Path) -> None:
+    case = charted(tmp_path)
+    (code,) = case_file(Result.of("gear", "own", {}, **case.provenance)).blocks
+    words = code.words  # type: ignore[union-attr]
+    assert words.count("\n") < own_chart.CASE.count("\n") + 10
+    assert "# pinion.csv: 204 lines, sha256 " in words
+
+
+def test_a_relief_beside_a_chart_is_told(tmp_path: Path) -> None:
+    charted(tmp_path)
+    relief = 'gears.pinion.tip_relief={amount="5 um", length="2 mm"}'
+    case = load_case(tmp_path / "mine.toml", [relief])
+    assert isinstance(case, GearCase)
+    assert any("a relief of the case stands on top" in one.text for one in measured_notices(case))
+
+
+def test_charts_side_by_side_differ_by_their_digest(tmp_path: Path) -> None:
+    tables = []
+    for lines in (("drive: right",), ("drive: left",)):
+        case = charted(tmp_path, *lines)
+        tables.append(stored(Result.of("gear", "own", {}, **case.provenance)).table())
+    one, other = tables
+    (key,) = (key for key in one if one[key] != other[key])
+    assert "pinion.csv" in str(key)
+    assert str(one[key]).startswith("204 lines, sha256 ")
