@@ -85,7 +85,10 @@ def _here(tmp_path, monkeypatch):
         ("sweep rig --over gears.pinion.teeth=10:25:4 -o out", "use x >= 0.42 or >= 18 teeth"),
         ("sweep rig --over gears.pinion.width=1:2:2 -o out", "got an unknown field"),
         ("sweep rig --over model.friction=1:2:2 -o out", "got a field of words"),
-        ("sweep rig --over rpm=1:2 -o out", "allowed NAME=FROM:TO:COUNT or NAME=A,B,C"),
+        (
+            "sweep rig --over rpm=1:2 -o out",
+            "allowed NAME=FROM:TO:COUNT, COUNT 1..99999999, or NAME=A,B,C",
+        ),
         # places that cannot be written to, and what a file does not need
         ("run rig -o file/x", "output: got file/x; file is a file; name a directory"),
         ("runup rig -o file/x", "store: got file/x; file is a file; name a directory"),

@@ -35,7 +35,10 @@ def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
     counted = len(parts) == 2 and number.isdecimal() and len(number) < 9 and int(number) > 0
     if not sign or (":" in rest and not counted):
         raise InputError(
-            "over", repr(text), allowed="NAME=FROM:TO:COUNT or NAME=A,B,C", fix=f"as {example}"
+            "over",
+            repr(text),
+            allowed="NAME=FROM:TO:COUNT, COUNT 1..99999999, or NAME=A,B,C",
+            fix=f"as {example}",
         )
     if gears:
         parameter = gear_parameter(name)
