@@ -58,6 +58,8 @@ _HOME = {
     "sweep": "thermogear.study.sweep",
     "load_case": "thermogear.case.case",
     "run": "thermogear.study.run",
+    "answers": "thermogear.study.answers.survey",
+    "sensitivity": "thermogear.study.sensitivity",
     "Result": "thermogear.results.result",
     "open_results": "thermogear.results.result",
     "save": "thermogear.views.write",
