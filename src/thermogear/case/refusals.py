@@ -87,7 +87,9 @@ def _unknown_key(location: tuple[int | str, ...], field: str, file: type[BaseMod
             fix="leave it out",
         )
     table = table_at(file, location[:-1])
-    known = set(table.model_fields) if table else set()
+    # what is excluded is not written by hand
+    fields = table.model_fields.items() if table else ()
+    known = {name for name, one in fields if not one.exclude}
     where = f"[{dotted(location[:-1])}]" if len(location) > 1 else "the case file"
     return InputError(
         field, "an unknown key", why=f"{where} does not have it", fix=nearest(key, known)

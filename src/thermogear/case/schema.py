@@ -429,7 +429,9 @@ class GearFile(Table):
     grid: GridTable = GridTable()
     simulation: SimulationTable = SimulationTable()
     draw: DrawTable = DrawTable()
-    files: dict[str, EnclosedTable] = Field(default={}, title="put here when it is read")
+    files: dict[str, EnclosedTable] = Field(
+        default={}, title="put here when the case is read", exclude=True
+    )
     ours: dict[str, Any] = Field(default={}, description="no value is declared as ours")
 
     @model_validator(mode="before")

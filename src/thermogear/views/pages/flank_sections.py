@@ -29,6 +29,12 @@ def measured(results: Result, pictures: Pictures) -> Section | None:
     return Section("flanks", "Measured flanks", found) if found else None
 
 
+def first(results: Result) -> list[tuple[str]]:
+    """The pictures that a page shows unasked: those of each gear that was measured."""
+    gears = ("pinion", "wheel")
+    return [(f"flanks-{gear}",) for gear in gears if results.group(f"flanks/{gear}") is not None]
+
+
 def caption(data: xr.Dataset) -> str:
     """What the picture shows and what of it the mesh feels."""
     sides = flanks.sides(data)

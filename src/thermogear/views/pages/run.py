@@ -53,7 +53,7 @@ def page(result: Result) -> Page:
             *notice_lines(result, OPEN if result.answers else None),
         ],
         tables=lambda: curve_tables(result),
-        first=FIRST,
+        first=(*FIRST, *flank_sections.first(result)),
     )
 
 
