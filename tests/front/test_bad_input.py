@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from thermogear.base.materials import MATERIALS
-from thermogear.case.examples import example_text
+from thermogear.case.examples import EXAMPLES, example_text
 from thermogear.front.cli import main
 
 Run = Callable[..., str]
@@ -568,7 +568,7 @@ def test_path_with_a_zero_byte(failing: Run) -> None:
         (("run",), "Missing argument 'CASE'."),
         (
             ("example", "rigg"),
-            "example: got 'rigg'; allowed rig | table-4.2 | section-4.1; did you mean 'rig'?",
+            f"example: got 'rigg'; allowed {' | '.join(EXAMPLES)}; did you mean 'rig'?",
         ),
         (("schema", "x"), "Got unexpected extra argument (x)"),
     ],

@@ -202,7 +202,7 @@ def test_example_never_overwrites(
 def test_example_needs_a_name_to_write(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["example", "-o", "mine.toml"]) == 2
     assert capsys.readouterr().err == (
-        "error: -o needs the NAME of a case: rig | table-4.2 | section-4.1\n"
+        f"error: -o needs the NAME of a case: {' | '.join(EXAMPLES)}\n"
     )
 
 

@@ -67,7 +67,7 @@ def test_slips_are_told_in_one_line(
     line = refused(capsys, rows, tmp_path / "rig.toml", "-o", out)
     assert "(dimensionless)" in line
     assert "(gear)" in line
-    (tmp_path / "bad.toml").write_text('kind = "dimensionles"', encoding="utf-8")
+    (tmp_path / "bad.toml").write_text("kind = [", encoding="utf-8")
     refused(capsys, rows, tmp_path / "bad.toml", "-o", out)
     assert not out.exists()
 
