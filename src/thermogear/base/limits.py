@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import KW_ONLY, dataclass
 
+from thermogear.base.materials import POLYMER_LIMITS
+from thermogear.base.units import ZERO_CELSIUS
+
 FINE, LOOK, OPEN = "fine", "look here", "not decided"
 VERDICTS = (FINE, LOOK, OPEN)
 
@@ -67,9 +70,15 @@ LIMITS: dict[str, Limit] = {
     "teeth_tempered": Limit(
         "°C", most=400.0, source="50 K and more below tempering of 42CrMo4", confirmed=False
     ),
-    "teeth_POM": Limit("°C", most=100.0, source="lasting temperature of POM", confirmed=False),
-    "teeth_PA66": Limit("°C", most=100.0, source="lasting temperature of PA 66", confirmed=False),
-    "teeth_PEEK": Limit("°C", most=250.0, source="lasting temperature of PEEK", confirmed=False),
+    **{
+        f"teeth_{name}": Limit(
+            "°C",
+            most=lasting - ZERO_CELSIUS,
+            source=f"lasting temperature of {name}",
+            confirmed=False,
+        )
+        for name, (lasting, _) in POLYMER_LIMITS.items()
+    },
     "backlash": Limit("µm", least=0.0, source="a pair without backlash jams"),
     "jam_margin": Limit(
         "K", what="margin", least=30.0, source="ours: as much as a heat balance may be off"

@@ -47,12 +47,6 @@ from thermogear.heat.scuffing import (
 
 Floats = NDArray[np.float64]
 
-GOOD_MARGIN = 50.0
-"""Margin [K] that part 1 advises; below 0 the pair scuffs."""
-INTEGRAL_LIMITS = (1.0, 2.0)
-"""S_int of part 2: below the first the risk is high, above the second low, critical between."""
-REQUIRED = {"flash": 2.0, "integral": 1.8}
-"""Safeties that purchasers often require: usual, unconfirmed."""
 LUBRICATIONS = {"dip": 1.0, "spray": 1.2, "submerged": 0.2}
 """X_S of the way the oil comes to the mesh."""
 _POINTS = 401
