@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from _site.case_file import _cell
-
 from thermogear.base.limits import LIMITS, USUAL_ERROR, Limit
 
 OF_THE_CASE = {
@@ -18,7 +17,8 @@ HEAD = """\
 What `thermogear answers` and the top of every report hold a number against. This page is made from
 `thermogear.base.limits`, the only place where a limit stands. A limit is called *usual* where its
 source is recalled and was not read. The verdict is *fine* within the limit, *look here* outside,
-*not decided* where there is no number. [Reading the answers](../howto/answers.md) says what to do then.
+*not decided* where there is no number. [Read the answers](../howto/answers.md) says what to do
+then.
 
 """
 

@@ -29,7 +29,8 @@ def test_two_motions_live_where_a_diagram_up_and_down_finds_two():
     count = found.count(values.size)
     assert np.all(count[apart] >= 2)
     assert np.all(count[values > 0.7917368893619342] == 1)
-    assert apart.any() and not apart.all()
+    assert apart.any()
+    assert not apart.all()
 
 
 def test_lasting_contact_has_one_motion_everywhere():
