@@ -72,8 +72,9 @@ def cli() -> None:
     stiffness and nonlinear vibration.
 
     \b
-      thermogear example rig -o rig.toml
-      thermogear run rig.toml -o results
+      thermogear new -o mine.toml
+      thermogear answers mine.toml
+      thermogear run mine.toml -o results
     """
 
 
