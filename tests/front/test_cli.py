@@ -434,6 +434,7 @@ def test_check_lists_the_defaults_of_a_short_case(
     lines = capsys.readouterr().out.splitlines()
     heads = [line.split(",")[0] for line in lines if line.endswith("left to defaults")]
     assert heads == ["gears", "oil", "heat", "backlash", "flanks", "motion"]
+    assert sum("um, drawn" in line and "f_Halpha" in line for line in lines) == 4
     told = {line.split()[0]: line for line in lines if line.startswith("  ") and ":" in line}
     assert "0.13 mm, total, normal: the least normal backlash" in told["backlash.value"]
     assert "7.875 mm: 0.3 of the root circle" in told["gears.pinion.bore_radius"]
