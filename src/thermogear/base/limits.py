@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass
 
 FINE, LOOK, OPEN = "fine", "look here", "not decided"
 VERDICTS = (FINE, LOOK, OPEN)
+"""What an answer may come to."""
 
 
 @dataclass(frozen=True)
