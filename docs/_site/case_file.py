@@ -45,7 +45,7 @@ def _kind(field: dict[str, Any]) -> str:
         return f"table of: {_kind(inner)}" if isinstance(inner, dict) else "table"
     if field.get("type") == "string":
         example = field.get("examples")
-        words = field.get("description", "text") if "pattern" in field else "text"
+        words = field.get("$comment", "text")
         return f'{_cell(words)}, as `"{example[0]}"`' if example else _cell(words)
     if field.get("type") in ("integer", "number"):
         low = field.get("minimum", field.get("exclusiveMinimum"))
@@ -58,12 +58,12 @@ def _kind(field: dict[str, Any]) -> str:
 def _default(name: str, field: dict[str, Any], required: bool) -> str:
     if required:
         return "**required**"
-    note = _own(field.get("title"), name)
-    if "pattern" not in field or ": number and unit" not in field.get("description", ""):
-        note = note or field.get("description", "")
+    about = field.get("description", "")
+    note = _own(field.get("title"), name) or ("" if about == field.get("$comment") else about)
     default = field.get("default")
-    shown = "" if default is None or default in ({}, []) else f"`{default!r}`".replace("'", '"')
-    return "; ".join(part for part in (shown, _cell(note)) if part) or "may be left out"
+    shown = "" if default is None or default in ({}, [], "") else f"`{default!r}`".replace("'", '"')
+    said = "; ".join(part for part in (shown, _cell(note).removeprefix("left out: ")) if part)
+    return said or ("every default below" if "$ref" in field else "may be left out")
 
 
 def _table(name: str) -> str:

@@ -80,7 +80,25 @@ def _public(app: Any, env: Any, node: Any, contnode: Any) -> Any:
     return domain.resolve_xref(env, place, app.builder, "obj", f"{home}.{name}", node, contnode)
 
 
+_HOMES = {
+    "Progress": "thermogear.base.progress.Progress",
+    "Result": "thermogear.results.result.Result",
+}
+"""Names of the command line's signatures that other floors have too."""
+
+
+def _signature(app: Any, what: str, name: str, *rest: Any) -> tuple[str | None, str | None] | None:
+    """Signatures whose names are imported for type checkers alone, by their homes."""
+    signature, returned = rest[-2:]
+    if not name.startswith("thermogear.front.") or signature is None:
+        return None
+    for short, home in _HOMES.items():
+        signature = re.sub(rf"(?<![\w.]){short}\b", home, signature)
+    return signature, returned
+
+
 def setup(app: Any) -> dict[str, Any]:
     app.connect("autodoc-process-docstring", _process)
+    app.connect("autodoc-process-signature", _signature)
     app.connect("missing-reference", _public)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

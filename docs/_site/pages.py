@@ -15,6 +15,7 @@ import thermogear
 from _site.case_file import case_file
 from _site.command_pages import commands
 from _site.errata_page import errata_page
+from _site.limits_page import limits
 from _site.validation_page import validation
 
 Pages = dict[str, str]
@@ -82,7 +83,14 @@ def reference() -> Pages:
     return made
 
 
-MAKERS: tuple[Callable[[], Pages], ...] = (reference, commands, case_file, validation, errata_page)
+MAKERS: tuple[Callable[[], Pages], ...] = (
+    reference,
+    commands,
+    case_file,
+    limits,
+    validation,
+    errata_page,
+)
 
 
 def write(docs: Path) -> None:

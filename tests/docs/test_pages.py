@@ -257,3 +257,16 @@ def test_python_shown_runs(
     (tmp_path / "shown.py").write_text(code, "utf-8")
     runpy.run_path(str(tmp_path / "shown.py"))
     assert capsys.readouterr().out.strip()
+
+
+@pytest.mark.slow
+def test_the_answers_of_the_readme_are_those_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The first two commands of the README, and what stands below them."""
+    commands, shown = FENCE.findall((ROOT / "README.md").read_text("utf-8"))[:2]
+    monkeypatch.chdir(tmp_path)
+    for line in commands[2].splitlines():
+        capsys.readouterr()
+        assert main(shlex.split(line)[1:]) == 0
+    assert capsys.readouterr().out == shown[2], "copy the answers into the README again"

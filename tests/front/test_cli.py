@@ -408,3 +408,59 @@ def test_progress_draws_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
         report("motion", 1, 1)
     assert "mesh cycle" in terminal.getvalue()
     assert "motion" in terminal.getvalue()
+
+
+SHORT = """
+[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 40
+bore_radius = "20 mm"
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
+
+
+def test_check_lists_the_defaults_of_a_short_case(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT, encoding="utf-8")
+    assert main(["check", str(path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    heads = [line.split(",")[0] for line in lines if line.endswith("left to defaults")]
+    assert heads == ["gears", "oil", "heat", "backlash", "flanks", "motion"]
+    assert sum("um, drawn" in line and "f_Halpha" in line for line in lines) == 4
+    told = {line.split()[0]: line for line in lines if line.startswith("  ") and ":" in line}
+    assert "0.13 mm, total, normal: the least normal backlash" in told["backlash.value"]
+    assert "7.875 mm: 0.3 of the root circle" in told["gears.pinion.bore_radius"]
+    assert "0.4 um: Ra of ground flanks" in told["gears.roughness"]
+    assert not any(line.strip().startswith("gears.wheel.bore_radius") for line in lines)
+    assert not any(line.strip().startswith(("grid.", "simulation.")) for line in lines)
+    assert "numerics: 10 defaults of [grid] and [simulation], listed with --json" in lines
+    assert lines[-1].startswith("49 values are ours, all of them defaults; a run takes about")
+
+
+def test_what_a_case_states_is_no_default(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT + '[oil]\nname = "ISO VG 220"\n[flanks]\naccuracy = 5\n', "utf-8")
+    assert main(["check", str(path)]) == 0
+    shown = capsys.readouterr().out
+    assert "oil, left to defaults" not in shown
+    assert "flanks.accuracy" not in shown
+    assert "flanks.seed" in shown
+
+
+def test_check_of_a_case_with_every_value_declared_lists_no_default(
+    rig: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(rig)]) == 0
+    shown = capsys.readouterr().out
+    assert "default" not in shown
+    assert "\n61 values are ours; a run takes about" in shown

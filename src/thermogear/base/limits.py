@@ -10,6 +10,7 @@ from thermogear.base.units import ZERO_CELSIUS
 
 FINE, LOOK, OPEN = "fine", "look here", "not decided"
 VERDICTS = (FINE, LOOK, OPEN)
+"""What an answer may come to."""
 
 
 @dataclass(frozen=True)

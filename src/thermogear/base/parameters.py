@@ -3,7 +3,7 @@
 A parameter has one long name, the names a person may write for it, its SI unit and the unit it is
 shown in. Gear parameters stand for fields of a case file; the others are the numbers of the
 dimensionless equation. A field of the case file that has no name here is a parameter too
-(:func:`thermogear.case.allowed.parameter_of`).
+(:func:`thermogear.case.allowed.gear_parameter`).
 """
 
 from __future__ import annotations

@@ -21,7 +21,6 @@ from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.case.alike import same
 from thermogear.case.fields import Measure
 from thermogear.case.refusals import dotted, table_at
-from thermogear.case.units import shown
 
 
 @dataclass(frozen=True)
@@ -31,6 +30,14 @@ class Assumption:
     field: str
     value: str
     reason: str
+
+    @property
+    def default(self) -> str:
+        """What is known of a default left to act; empty where the file declares the value."""
+        return self.reason.removeprefix(_LEFT) if self.reason.startswith(_LEFT) else ""
+
+
+_LEFT = "not in the file; the default: "
 
 
 def assumptions(
@@ -197,7 +204,7 @@ def _defaults(
         elif name not in table.model_fields_set and field.description and name not in _SILENT:
             path = dotted((*above, name))
             text = decided.get(path) or _shown(value, field)
-            reason = f"not in the file; the default: {field.description}"
+            reason = f"{_LEFT}{field.description}"
             found.append(Assumption(path, text, reason))
     return found
 
@@ -207,7 +214,7 @@ def _shown(value: Any, field: FieldInfo) -> str:
     if value is None:
         return "left out"
     readers = [m for m in field.metadata if isinstance(m, Measure)]
-    return shown(value, readers[0].kind) if readers else in_words(value)
+    return readers[0].shown(value) if readers else in_words(value)
 
 
 _SILENT = ("materials", "ours", "row", "pictures", "base_sets", "expected")

@@ -12,7 +12,9 @@ from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.case import Case, DimensionlessCase, GearCase
 from thermogear.case.charts import Chart
+from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
+from thermogear.gears.graded_flanks import WavyProfile
 from thermogear.heat.lubrication import kinematic_viscosity
 
 
@@ -115,10 +117,7 @@ def _operating(case: GearCase) -> list[Fact]:
 
 def _held(case: GearCase) -> list[Fact]:
     """What is known beforehand of temperatures that are computed, and of the flanks."""
-    found = [
-        Fact("deviations of the flanks", str(place), type(one).__name__)
-        for place, one in enumerate(case.deviations, 1)
-    ]
+    found = [_deviation(place, one) for place, one in enumerate(case.deviations, 1)]
     found += [fact for chart in case.charts for fact in _measured(chart)]
     if not case.computed:
         return found
@@ -131,6 +130,15 @@ def _held(case: GearCase) -> list[Fact]:
         found.append(Fact(group, f"{one.node}, correction", one.temperature - one.indicated, "K"))
         found.append(Fact(group, f"{one.node}, standard uncertainty", one.uncertainty, "K"))
     return found or [Fact(group, "held nodes", "none")]
+
+
+def _deviation(place: int, one: Deviation) -> Fact:
+    """What is known of a deviation without a mesh: slope and form of a drawn flank."""
+    group = "deviations of the flanks"
+    if not isinstance(one, WavyProfile):
+        return Fact(group, str(place), type(one).__name__)
+    text = f"f_Halpha {1e6 * one.slope:+.2f}, f_falpha {1e6 * one.form:.2f} um, drawn"
+    return Fact(group, f"{one.gear}, {one.flank} flank", text)
 
 
 def _measured(chart: Chart) -> list[Fact]:

@@ -113,6 +113,10 @@ class Measure(Reader):
     def written(self, value: float) -> str:
         return f"{value!r} {KINDS[self.kind].si}"
 
+    def shown(self, value: float) -> str:
+        """The SI ``value`` in the unit of the example."""
+        return shown(value, self.kind, unit=self.example.strip('"').split(" ", 1)[1])
+
     def within(self, value: float) -> float:
         if not math.isfinite(value):
             raise InputError("", f"{value:g}", allowed=self.allowed)
@@ -121,10 +125,12 @@ class Measure(Reader):
 
     def schema(self) -> dict[str, Any]:
         allowed = f", {self.allowed}" if self.allowed else ""
+        written = f"{self.kind}: number and unit{allowed}"
         return {
             "type": "string",
             "pattern": r"^\s*[+-]?[0-9.].*\S",
-            "description": f"{self.kind}: number and unit{allowed}",
+            "description": written,
+            "$comment": written,  # stays where a field describes its default
             "examples": [self.example.strip('"')],
         }
 

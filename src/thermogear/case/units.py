@@ -251,9 +251,10 @@ def _with_point(text: str, kind: Kind) -> str:
     return f"did you mean {pointed}?"
 
 
-def shown(value: float, kind_name: str, digits: int = 6) -> str:
-    """An SI ``value`` as text in the unit that messages and tables speak in."""
+def shown(value: float, kind_name: str, digits: int = 6, unit: str = "") -> str:
+    """An SI ``value`` as text in a usual ``unit``, else that of messages and tables."""
     kind = KINDS[kind_name]
-    told = value - ZERO_CELSIUS if kind_name == "temperature" else value
-    told /= _USUAL[kind_name].get(kind.shown, 1.0)
-    return f"{told:.{digits}g} {kind.shown}"
+    unit = unit if unit in _USUAL[kind_name] else kind.shown
+    told = value - ZERO_CELSIUS if unit == "degC" else value
+    told /= _USUAL[kind_name].get(unit, 1.0)
+    return f"{told:.{digits}g} {unit}"

@@ -72,8 +72,9 @@ def cli() -> None:
     stiffness and nonlinear vibration.
 
     \b
-      thermogear example rig -o rig.toml
-      thermogear run rig.toml -o results
+      thermogear new -o mine.toml
+      thermogear answers mine.toml
+      thermogear run mine.toml -o results
     """
 
 
@@ -140,9 +141,10 @@ def report(directory: str, of: str, pictures: str | None, kind: str | None) -> N
 @delivery.overrides
 @delivery.as_json
 def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Check CASE without running it, and print the numbers it amounts to."""
+    """Check CASE without running it: the numbers it amounts to, the defaults it has taken."""
     from thermogear.case.derived import facts
     from thermogear.case.size import estimated_bytes
+    from thermogear.front.taken import defaults
 
     read = delivery.load(case, overrides)
     found = facts(read)
@@ -160,8 +162,13 @@ def check(case: str, overrides: tuple[str, ...], as_json: bool) -> None:
             click.echo(f"\n{group}")
         value = f"{fact.value:.7g}" if isinstance(fact.value, float) else str(fact.value)
         click.echo(f"  {fact.name:<38} {value} {fact.unit}".rstrip())
+    taken = [line if line.startswith(" ") else f"\n{line}" for line in defaults(read.assumptions)]
+    for line in taken:
+        click.echo(line)
     count = len(read.assumptions)
     told = "1 value is ours" if count == 1 else f"{count or 'no'} values are ours"
+    left = sum(bool(one.default) for one in read.assumptions)
+    told += f", {'all' if left == count else left} of them defaults" if left else ""
     click.echo(f"\n{told}; a run takes about {estimated_bytes(read) / 2**20:.3g} MiB of memory")
 
 

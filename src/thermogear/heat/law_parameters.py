@@ -20,7 +20,7 @@ PitchFloor = Annotated[float, Bounds(low=1e-6, high=1.0, unit="", si="")]
 Factor = Annotated[float, Bounds(low=0.01, high=100.0, unit="", si="")]
 """A factor of the lubricant; the range is ours."""
 
-Law = TypeVar("Law")
+_Law = TypeVar("_Law")
 
 
 class Bounded:
@@ -62,7 +62,7 @@ def require_known(law: Any, names: Mapping[str, object]) -> None:
             )
 
 
-def with_parameters(law: Law, values: Mapping[str, Any]) -> Law:
+def with_parameters(law: _Law, values: Mapping[str, Any]) -> _Law:
     """``law`` with ``values`` in place of parameters; a mapping speaks to the law in its field.
 
     Raises InputError for an unknown name, which says the nearest, and for a value out of range.
