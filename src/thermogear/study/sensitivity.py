@@ -183,6 +183,8 @@ def require_salib() -> None:
 def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress = silent) -> Result:
     """Sobol' indices of every output for every input of the thesis's rig, with their intervals.
 
+    Indices are shares [-]; inputs and outputs are in SI.
+
     First order: the share of the variance an input brings alone; total: with everything it does
     together with others. Inputs are independent and uniform in their ranges (viscosity in its
     logarithm). Each sample computes the chain cold and hot with the consistent bundle (and the

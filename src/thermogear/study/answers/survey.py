@@ -38,6 +38,8 @@ MAKERS = (
 def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     """The answers of a gear case by its first model: ``result.answers``, the ``speeds`` behind.
 
+    Each answer names the unit of its value; ``speeds`` is in SI, the speed in [rad/s].
+
     Raises InputError where the case as a whole is impossible; what fails at one point is a verdict
     "not decided" with its reason.
     """
