@@ -334,7 +334,10 @@ def load_case(
     except InputError as error:
         others = [one for one in parts.faults(read) if str(one) != str(error)]
         raise _together([error, *others], text, changes) from error
-    return replace(case, assumptions=assumptions(data, read, _decided(case)))
+    found = assumptions(data, read, _decided(case))
+    if read.gears.face_width is not None:  # one for both is no default of each
+        found = tuple(one for one in found if not one.field.endswith(".face_width"))
+    return replace(case, assumptions=found)
 
 
 def _decided(case: GearCase) -> dict[str, str]:
