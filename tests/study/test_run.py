@@ -49,6 +49,7 @@ def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: Result) ->
         "motion",
         "temperature",
         "base_sets",
+        "speeds",
     }
     mesh = small["mesh"]
     assert list(mesh["bundle"].values) == ["consistent", "thesis"]

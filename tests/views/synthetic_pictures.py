@@ -11,10 +11,12 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     claims,
+    flanks,
     laws,
     loaded,
     one_motion,
     relief,
+    speeds,
     sweeps,
     thermal_map,
     warm_up,
@@ -74,6 +76,10 @@ def of_sweeps() -> dict[str, Picture]:
     line = made(width, "dte_peak_to_peak", "dynamic_factor", "label")
     line = line.assign_coords({width: (width, rising(width)[1], {"units": "m"})})
     both = grid.assign(dynamic_factor=rising("damping_ratio", "frequency"))
+    look = made("pinion_speed", "dynamic_factor").assign(
+        pinion_speed=rising("pinion_speed"),
+        contact_loss_share=("pinion_speed", np.array([0.0, 0.0, 0.1, 0.2, 0.0])),
+    ).assign_attrs(own_speeds=[1.5])  # fmt: skip
     diagram = diagram.merge(branches).merge(events).assign_attrs(parameter="damping_ratio")
     return {
         "diagram": sweeps.orbit_diagram_picture(diagram),
@@ -83,6 +89,7 @@ def of_sweeps() -> dict[str, Picture]:
         "waterfall": sweeps.waterfall_picture(run_up),
         "sweep-1": sweeps.sweep_picture(line),
         "sweep-2": sweeps.sweep_picture(both),
+        "look": speeds.speeds_picture(look),
     }
 
 
@@ -115,6 +122,9 @@ def of_orbits() -> dict[str, Picture]:
 
 def of_surveys() -> dict[str, Picture]:
     points = json.dumps({"A": 1.0, "C": 1.5, "E": 2.0})
+    chart = made("sample", "diameter", "drive_fit", "drive_acting").assign(
+        trace_deviation=rising("pair", "sample"), trace_flank=("pair", ["drive", "drive"])
+    ).assign_attrs(evaluated_from=1.2, evaluated_to=1.8, pitch_diameter=1.5)  # fmt: skip
     friction = made(f"operating law {S}", "friction_coefficient").assign(
         outside_range=(("operating", "law", S), np.resize([0, 0, 1], (2, 2, 9))),
         regime=(("operating", S), np.resize([0, 1], (2, 9))), law=["one", "two"],
@@ -138,6 +148,7 @@ def of_surveys() -> dict[str, Picture]:
         peak_to_peak_error=rising("pair_kind", "load"),
     )  # fmt: skip
     return {
+        "flanks": flanks.traces(chart),
         "laws": laws.laws(friction, 0, frozenset({"two"})),
         "film": laws.film(friction),
         "contact-phase": loaded.over_phase(contact),
