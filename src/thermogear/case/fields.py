@@ -8,6 +8,7 @@ with an :class:`InputError` whose field is still empty: where it stood is filled
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
@@ -139,6 +140,33 @@ def measure(kind: str, allowed: Bounds, why: str | None = None, example: str = "
     """The field of a quantity that has its bounds in Python too."""
     low, high = allowed.ends
     return Measure(kind, low, high, why, example)
+
+
+class Module(Measure):
+    """A metric module: inches mean a diametral pitch as often as a module, and are refused."""
+
+    def read(self, raw: object) -> float:
+        inches = _INCHES.fullmatch(raw) if isinstance(raw, str) else None
+        number = float(inches["number"]) if inches else 0.0
+        if inches is None or not number:
+            return super().read(raw)
+        pitch = inches["unit"].lower() in ("dp", "1/in", "1/inch")
+        metric = 25.4 / number if pitch else 25.4 * number
+        raise InputError(
+            "",
+            short(raw),
+            allowed=self.allowed,
+            why="a diametral pitch, no module"
+            if pitch
+            else "a module in inches; in inches gears "
+            f"are named by the diametral pitch, here {1.0 / number:.4g} 1/in",
+            fix=f'write the metric module "{metric:.6g} mm"',
+        )
+
+
+_INCHES = re.compile(
+    r"\s*(?P<number>\d+\.?\d*|\.\d+)\s*(?P<unit>DP|1/in|1/inch|in|inch|inches|\")\s*", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,6 +40,8 @@ def complaints(error: ValidationError, file: type[BaseModel]) -> list[InputError
 
 def _meant(key: str, table: type[BaseModel] | None) -> str | None:
     """The field that a misspelt key most likely stands for."""
+    if "diametral" in key:
+        return "module"
     close = difflib.get_close_matches(key, table.model_fields if table else (), n=1, cutoff=0.5)
     return close[0] if close else None
 
@@ -85,6 +87,13 @@ def _unknown_key(location: tuple[int | str, ...], field: str, file: type[BaseMod
             "a helix angle",
             why="thermogear treats spur gears only",
             fix="leave it out",
+        )
+    if "diametral" in key:
+        return InputError(
+            field,
+            "a diametral pitch",
+            why="gears are named by the metric module",
+            fix="write module, 25.4 mm over the diametral pitch",
         )
     table = table_at(file, location[:-1])
     # what is excluded is not written by hand

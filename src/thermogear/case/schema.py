@@ -22,6 +22,7 @@ from thermogear.case.fields import (
     Choice,
     Count,
     Measure,
+    Module,
     Number,
     Several,
     Words,
@@ -110,7 +111,7 @@ class GearTable(Table):
 class GearsTable(Table):
     """What both gears share, and the two of them."""
 
-    module: Annotated[float, measure("length", bounds.MODULE)]
+    module: Annotated[float, Module("length", *bounds.MODULE.ends)]
     pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)] = Field(
         default=math.radians(20.0), description="20 deg, the basic rack of ISO 53"
     )
