@@ -1,0 +1,178 @@
+"""``thermogear new``: a short case of one's own, from options or asked at a terminal."""
+
+from __future__ import annotations
+
+import os
+import pty
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from thermogear.case.case import GearCase, load_case
+from thermogear.front.cli import main
+
+NEEDED = {
+    "--teeth": ["20", "40"],
+    "--module": ["3 mm"],
+    "--face-width": ["30 mm"],
+    "--torque": ["80 N m"],
+    "--speed": ["3000 rpm"],
+}
+ALL = {
+    "--title": ["My pair"],
+    "--profile-shift": ["0.2", "0.1"],
+    "--centre-distance": ["91 mm"],
+    "--material": ["18CrNiMo7-6", "16MnCr5"],
+    "--oil": ["ISO VG 220"],
+    "--oil-temperature": ["70 degC"],
+    "--backlash": ["0.2 mm"],
+    "--accuracy": ["5"],
+}
+
+
+def options(given: dict[str, list[str]]) -> list[str]:
+    return [word for name, values in given.items() for word in (name, *values)]
+
+
+def written(path: Path, given: dict[str, list[str]]) -> tuple[str, GearCase]:
+    assert main(["new", *options(given), "-o", str(path)]) == 0
+    text = path.read_text(encoding="utf-8")
+    case = load_case(path)
+    assert isinstance(case, GearCase)
+    return text, case
+
+
+def test_five_options_make_a_case_of_at_most_thirty_lines(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    text, case = written(path, NEEDED)
+    assert len(text.splitlines()) <= 30
+    assert capsys.readouterr().out.splitlines() == [str(path), f"next: thermogear answers {path}"]
+    assert (case.pair.pinion.teeth, case.pair.wheel.teeth) == (20, 40)
+    assert case.pair.pinion.module == pytest.approx(3e-3, rel=1e-15)
+    assert case.pair.face_width == pytest.approx(30e-3, rel=1e-15)
+    assert case.torques == pytest.approx([80.0], rel=1e-15)
+    assert case.speeds == pytest.approx([100.0 * 3.141592653589793], rel=1e-12)
+
+
+def test_every_option_at_once_stays_within_thirty_lines_and_arrives(tmp_path: Path) -> None:
+    text, case = written(tmp_path / "mine.toml", NEEDED | ALL)
+    assert len(text.splitlines()) <= 30
+    assert all(len(line) <= 100 for line in text.splitlines())
+    pinion, wheel = case.pair.pinion, case.pair.wheel
+    assert case.title == "My pair"
+    assert (pinion.profile_shift, wheel.profile_shift) == (0.2, 0.1)
+    assert case.pair.centre_distance == pytest.approx(0.091, rel=1e-15)
+    assert (pinion.material.name, wheel.material.name) == ("18CrNiMo7-6", "16MnCr5")
+    assert case.accuracy == 5
+    assert float(case.stated.half_backlash) == pytest.approx(1e-4, rel=1e-12)
+
+
+def test_without_a_file_the_case_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", *options(NEEDED)]) == 0
+    assert isinstance(load_case(capsys.readouterr().out), GearCase)
+
+
+@pytest.mark.parametrize("left_out", NEEDED)
+def test_a_missing_option_is_named_with_an_example(
+    left_out: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = {name: values for name, values in NEEDED.items() if name != left_out}
+    assert main(["new", *options(given)]) == 2
+    example = NEEDED[left_out][0]
+    example = "20 40" if left_out == "--teeth" else f'"{example}"'
+    assert capsys.readouterr().err.splitlines() == [
+        f"error: {left_out}: got nothing; a gear pair needs module, teeth, face width, torque and "
+        f"speed; write {left_out} {example}"
+    ]
+
+
+def test_no_option_without_a_terminal_names_all_that_is_needed(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["new"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: --teeth, --module, --face-width, --torque, --speed: got nothing")
+
+
+def test_an_existing_file_is_left_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text("keep me\n", encoding="utf-8")
+    assert main(["new", *options(NEEDED), "-o", str(path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "mine.toml" in line
+    assert path.read_text(encoding="utf-8") == "keep me\n"
+
+
+@pytest.mark.parametrize(
+    ("option", "values", "said"),
+    [
+        ("--module", ["3,5 mm"], "gears.module: got '3,5 mm'; allowed 0.05..100 mm; decimals "
+         'follow a point, not a comma; did you mean "3.5 mm"?'),
+        ("--module", ["0.125 in"], "gears.module: got '0.125 in'; allowed 0.05..100 mm; a module "
+         "in inches; in inches gears are named by the diametral pitch, here 8 1/in; write the "
+         'metric module "3.175 mm"'),
+        ("--teeth", ["12", "40"], "gears.pinion.profile_shift: got 0 for 12 teeth; needs "
+         "x >= 0.298; use x >= 0.30 or >= 18 teeth"),
+        ("--speed", ["0 rpm"], "operating.speed: got '0 rpm'; allowed 0.1..500000 rpm; a gear at "
+         'rest has no motion; write for instance "1000 rpm"'),
+    ],
+)  # fmt: skip
+def test_what_makes_no_case_writes_no_file(
+    option: str,
+    values: list[str],
+    said: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = tmp_path / "mine.toml"
+    assert main(["new", *options(NEEDED | {option: values}), "-o", str(path)]) == 2
+    assert capsys.readouterr().err.splitlines() == [f"error: {said}"]
+    assert not path.exists()
+
+
+def asked(folder: Path, typed: str) -> tuple[int, str]:
+    """(exit code, what the terminal showed) of ``new`` with no option, ``typed`` at its prompts."""
+    child, terminal = pty.fork()
+    if child == 0:  # pragma: no cover - the other process
+        os.chdir(folder)
+        os.execv(sys.executable, [sys.executable, "-m", "thermogear", "new"])
+    os.write(terminal, typed.encode())
+    shown, until = b"", time.monotonic() + 60.0
+    while time.monotonic() < until:
+        try:
+            part = os.read(terminal, 4096)
+        except OSError:  # the other end is closed
+            break
+        if not part:
+            break
+        shown += part
+    _, status = os.waitpid(child, 0)
+    os.close(terminal)
+    return os.waitstatus_to_exitcode(status), shown.decode()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of POSIX")
+def test_a_person_at_a_terminal_is_asked(tmp_path: Path) -> None:
+    code, shown = asked(tmp_path, "21:43\n2.5 mm\n25 mm\n\n\nown.toml\n")
+    assert code == 0, shown
+    for question in ("Teeth of pinion", "Module", "Face width", "Torque", "Speed", "File to write"):
+        assert question in shown
+    case = load_case(tmp_path / "own.toml")
+    assert isinstance(case, GearCase)
+    assert (case.pair.pinion.teeth, case.pair.wheel.teeth) == (21, 43)
+    assert case.torques == pytest.approx([80.0], rel=1e-15)  # the example, by return alone
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of POSIX")
+def test_a_bad_answer_at_the_terminal_is_one_line(tmp_path: Path) -> None:
+    code, shown = asked(tmp_path, "20 40\n2,5 mm\n25 mm\n\n\nown.toml\n")
+    assert code == 2
+    assert 'did you mean "2.5 mm"?' in shown
+    assert "Traceback" not in shown
+    assert not (tmp_path / "own.toml").exists()
