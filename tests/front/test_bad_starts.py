@@ -83,7 +83,8 @@ STARTS: dict[str, tuple[str, str, str]] = {
         'write for instance "3 mm"',
     ),
     "an unknown oil": (
-        "[operating]", '[oil]\nname = "M10"\n[operating]', "line 9: oil.name: got 'M10'; allowed M32 | ...",
+        "[operating]", '[oil]\nname = "M10"\n[operating]',
+        "line 9: oil.name: got 'M10'; allowed M32 | ...",
     ),
     "an unknown material": (
         "teeth = 20", 'teeth = 20\nmaterial = "stel"',
@@ -98,10 +99,12 @@ STARTS: dict[str, tuple[str, str, str]] = {
         "[gears.wheel]", "[gears.wheel", "bad.toml: got invalid TOML at line 6, column 13; ...",
     ),
     "a table twice": (
-        "[operating]", "[gears]\n[operating]", "bad.toml: got invalid TOML at line 8, column 7; ...",
+        "[operating]", "[gears]\n[operating]",
+        "bad.toml: got invalid TOML at line 8, column 7; ...",
     ),
     "a key twice": (
-        "teeth = 40", "teeth = 40\nteeth = 41", "bad.toml: got invalid TOML at line 8, column 11; ...",
+        "teeth = 40", "teeth = 40\nteeth = 41",
+        "bad.toml: got invalid TOML at line 8, column 11; ...",
     ),
     "a pair at rest": (
         "3000 rpm", "0 rpm",

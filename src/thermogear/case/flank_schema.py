@@ -88,6 +88,6 @@ class FlanksTable(Table):
     edition: Annotated[str, Choice("2013", "1995")] = Field(default="2013", title="of ISO 1328-1")
     seed: Annotated[int, Count(low=0, high=2**31 - 1, example="1")] = Field(
         default=1,
-        description="one drawing of the flanks of the class; another seed, other flanks "
+        description="one drawing of the flanks of the class; another seed decides for other flanks "
         "of the same class",
     )

@@ -106,7 +106,10 @@ class ReadingsTable(Table):
 class GearboxTable(Table):
     """What surrounds the pair, for temperatures computed from the heat balance."""
 
-    ambient: Body = Field(default=_AROUND.ambient, description="a room at 20 degC")
+    ambient: Body = Field(
+        default=_AROUND.ambient,
+        description="a room at 20 degC. Decides what every temperature starts from",
+    )
     housing_area: Annotated[float, Measure("area", "0.0001 m^2", "1000 m^2")] | None = Field(
         default=None,
         description="that of a box around the gears, 20 mm from their tips and as "
@@ -116,7 +119,9 @@ class GearboxTable(Table):
         float, Measure("heat transfer coefficient", "0.1 W/(m^2 K)", "10000 W/(m^2 K)")
     ] = Field(
         default=_AROUND.housing_coefficient,
-        description="15 W/(m^2 K), middle of the customary 10 to 25 to still air",
+        description="15 W/(m^2 K), middle of the customary 10 to 25 to still air. Decides, "
+        "with its "
+        "area, how warm all becomes",
     )
     oil_housing_coefficient: Annotated[
         float,
@@ -126,16 +131,32 @@ class GearboxTable(Table):
             "100000 W/(m^2 K)",
             example="200 W/(m^2 K)",
         ),
-    ] = Field(default=_AROUND.oil_housing_coefficient, description="200 W/(m^2 K), splashed walls")
+    ] = Field(
+        default=_AROUND.oil_housing_coefficient,
+        description="200 W/(m^2 K), splashed walls. Decides how much warmer the oil is than "
+        "the housing",
+    )
     wetted_share: Annotated[
         tuple[float, ...], Several(Number(low=0.001, high=1.0, example="0.3"), least=1, most=2)
-    ] = Field(default=_AROUND.wetted_share, description="oil covers 0.3 of both gears' surface")
+    ] = Field(
+        default=_AROUND.wetted_share,
+        description="oil covers 0.3 of both gears' surface. Decides how much warmer gears "
+        "are than the oil",
+    )
     shaft_length: Annotated[float, Measure("length", "0.1 mm", "10000 mm", example="60 mm")] = (
-        Field(default=_AROUND.shaft_length, description="60 mm from the gear to each bearing")
+        Field(
+            default=_AROUND.shaft_length,
+            description="60 mm from the gear to each bearing. Decides the heat through the "
+            "shafts, and "
+            "how wide the housing is",
+        )
     )
     bearing_conductance: Annotated[
         float, Measure("thermal conductance", "0.01 W/K", "10000 W/K")
-    ] = Field(default=_AROUND.bearing_conductance, description="10 W/K of one bearing")
+    ] = Field(
+        default=_AROUND.bearing_conductance,
+        description="10 W/K of one bearing. Decides the heat through the shafts",
+    )
     oil_mass: Annotated[float, Measure("mass", "0.001 kg", "100000 kg")] | None = Field(
         default=None,
         description="that box filled up to the immersion of the wheel; decides the "
@@ -148,19 +169,23 @@ class GearboxTable(Table):
         )
     )
     housing_specific_heat: Annotated[float, measure("specific heat", bounds.SPECIFIC_HEAT)] = Field(
-        default=_AROUND.housing_specific_heat, description="steel, 470 J/(kg K)"
+        default=_AROUND.housing_specific_heat,
+        description="steel, 470 J/(kg K); decides the warm-up time alone",
     )
     oil_flow: Annotated[float, Measure("volume flow", "0 l/min", "10000 l/min")] = Field(
-        default=_AROUND.oil_flow, description="a closed bath, no oil cooler"
+        default=_AROUND.oil_flow,
+        description="a closed bath, no oil cooler. Decides where the losses go",
     )
     supply_temperature: Body = Field(
-        default=_AROUND.supply_temperature, description="60 degC; without effect in a closed bath"
+        default=_AROUND.supply_temperature, description="60 degC. Decides nothing in a closed bath"
     )
     immersion: Annotated[float, Number(low=0.0, high=1.0, example="0.3")] = Field(
-        default=_BOX.immersion, description="the wheel dips 0.3 of its tip radius; 0 is spray"
+        default=_BOX.immersion,
+        description="the wheel dips 0.3 of its tip radius; 0 is spray. Decides the churning loss",
     )
     bearing_coefficient: Annotated[float, Number(low=0.0, high=0.099, example="0.0015")] = Field(
-        default=_BOX.bearing_coefficient, description="0.0015, deep-groove ball bearings"
+        default=_BOX.bearing_coefficient,
+        description="0.0015, deep-groove ball bearings. Decides their loss",
     )
     measured: MeasuredTable | None = Field(default=None, title="no node is held")
     readings: ReadingsTable | None = Field(default=None, title="no thermometer")

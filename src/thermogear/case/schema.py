@@ -79,10 +79,17 @@ class GearTable(Table):
     profile_shift: Annotated[
         float,
         Number(low=bounds.PROFILE_SHIFT.low, high=bounds.PROFILE_SHIFT.high, example="0.2"),
-    ] = Field(default=0.0, description="no profile shift")
+    ] = Field(
+        default=0.0,
+        description="no profile shift. Decides undercut, sliding and tip thickness",
+    )
     tip_diameter: Annotated[
         float | None, Measure("length", "0.1 mm", "20000 mm", example="135 mm")
-    ] = Field(default=None, description="pitch diameter + 2 (addendum + profile shift) modules")
+    ] = Field(
+        default=None,
+        description="pitch diameter + 2 (addendum + profile shift) modules. Decides the "
+        "contact ratio",
+    )
     material: Annotated[str, Words('"steel"')] = Field(
         default="steel",
         description="case-hardening gear steel. Decides stiffness, expansion and "
@@ -113,14 +120,17 @@ class GearsTable(Table):
 
     module: Annotated[float, Module("length", *bounds.MODULE.ends)]
     pressure_angle: Annotated[float, measure("angle", bounds.PRESSURE_ANGLE)] = Field(
-        default=math.radians(20.0), description="20 deg, the basic rack of ISO 53"
+        default=math.radians(20.0),
+        description="20 deg, the basic rack of ISO 53. Decides contact ratio and undercut",
     )
     face_width: Length | None = Field(default=None, title="of both gears; or one for each below")
     centre_distance: Annotated[
         float | None, measure("length", bounds.CENTRE_DISTANCE, example="250 mm")
     ] = Field(default=None, title="left out: the mesh of the profile shifts without backlash")
     rack: RackTable | None = Field(
-        default=None, description="left out: basic rack of ISO 53, its fillet as round as fits"
+        default=None,
+        description="basic rack of ISO 53, its fillet as round as fits. Decides how tall and how "
+        "stiff the teeth are",
     )
     pinion: GearTable
     wheel: GearTable
@@ -146,10 +156,12 @@ class InertiaTable(Table):
         "Decides the equivalent mass and so where the pair resonates",
     )
     radius: Annotated[str | None, Choice("pitch", "tip")] = Field(
-        default=None, description="radius of the disc; pitch"
+        default=None, description="radius of the disc; pitch. Decides its inertia"
     )
     bored: StrictBool | None = Field(
-        default=None, description="whether the bore is taken out; it is not"
+        default=None,
+        description="whether the bore is taken out; it is not. Decides less than 1 % of the "
+        "inertia",
     )
     pinion: Inertia | None = Field(default=None, title="from the disc")
     wheel: Inertia | None = Field(default=None, title="from the disc")
@@ -215,7 +227,7 @@ class TemperaturesTable(Table):
     follow: Annotated[str, Choice(*FOLLOW)] = Field(
         default="proportional",
         description="where the gears' temperature is varied, every excess over the reference is "
-        "scaled with the gears', as in a linear heat network",
+        "scaled with the gears', as in a linear heat network. Decides rows of temperatures alone",
     )
 
     @property
@@ -282,7 +294,10 @@ class BacklashTable(Table):
     )
     direction: Annotated[str | None, Choice("normal", "circumferential")] = None
     extent: Annotated[str | None, Choice("total", "half")] = None
-    temperature: Body | None = Field(default=None, description="holds at temperatures.reference")
+    temperature: Body | None = Field(
+        default=None,
+        description="holds at temperatures.reference. Decides how much growth it has seen",
+    )
     tolerances: TolerancesTable | None = None
 
     @model_validator(mode="after")
