@@ -7,16 +7,17 @@ followed (:func:`~thermogear.study.run_up.run_up` does, with the heat of each sp
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.side_by_side import motions_along
+from thermogear.base.excitation import Excitation
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
-from thermogear.case.points import Points, on_numbers
+from thermogear.case.points import points_of
 from thermogear.case.response import Recording, respond
 
 Floats = NDArray[np.float64]
@@ -99,20 +100,19 @@ def _valley(top: Floats, place: int, way: int) -> float:
     return float(side[: higher[0] if higher.size else side.size].min())
 
 
-def look(points: Points, *, teeth: int, own: Floats) -> Speeds:
-    """Motions of the first of ``points`` over the speed of its pinion of so many ``teeth``.
+def look(mesh: Excitation, *, teeth: int, own: Floats) -> Speeds:
+    """Motions of one ``mesh`` over the speed of its pinion of so many ``teeth``.
 
     Each of about a hundred speeds is started at rest in static contact, with a far throw, and on
     the back side. ``own``: the case's own speeds [rad/s], kept beside.
     """
-    natural = float(points.rate[0])
+    natural = mesh.natural_frequency
     ends = 0.9 * teeth * own.min() / natural, 1.1 * teeth * own.max() / natural
     low, high = max(min(LOWEST, ends[0]), DEEPEST), max(HIGHEST, min(ends[1], FARTHEST))
     count = int(np.ceil(np.log(high / low) / np.log1p(STEP)))
     ratio = np.geomspace(low, high, count + 1)
-    one = points.take(np.zeros(ratio.size, dtype=np.int64))
-    lanes = on_numbers(one, {"frequency": ratio})
-    gap, force = float(points.flat.half_backlash[0]), float(points.flat.force[0, 0].real)
+    lanes = points_of([replace(mesh, mesh_frequency=natural * float(one)) for one in ratio])
+    gap, force = float(lanes.flat.half_backlash[0]), float(lanes.flat.force[0, 0].real)
     starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0]]
     motions = motions_along(lanes.flat, starts)
     found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)

@@ -101,8 +101,10 @@ class Asked:
             return None
         self.progress("speeds", 0, 1)
         here = self.hot.isel(operating=[self.hardest])
-        points = points_of(excitations(self.case, here))
-        found = look(points, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
+        (mesh,) = excitations(self.case, here)
+        if mesh is None:
+            return None
+        found = look(mesh, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
         self.progress("speeds", 1, 1)
         return found
 
