@@ -28,6 +28,9 @@ from thermogear.study.speeds import RECORD, Speeds, look
 Floats = NDArray[np.float64]
 MOST_POINTS = 60
 """Operating points that are answered one by one."""
+SLOWEST = 1e-3
+"""Mesh over natural frequency below which no motion is followed: vibrations die out within a small
+part of a mesh period."""
 WARM_UP_TOLERANCE = 0.1
 """Of a step's error [K]."""
 
@@ -58,6 +61,10 @@ class Asked:
 
     def moves(self, point: int) -> bool:
         return STATUS[int(self.hot["status"][point])] == "ok"
+
+    def settled(self, point: int) -> bool:
+        """Whether the heat balance of a point closed."""
+        return STATUS[int(self.hot["status"][point])] != "not_converged"
 
     @cached_property
     def hardest(self) -> int:
@@ -110,8 +117,14 @@ class Asked:
 
     @cached_property
     def motion(self) -> dict[str, Any]:
-        """Figures of the motion from rest at the operating points answered, nan at the others."""
+        """Figures of the motion from rest at the operating points answered, nan at the others.
+
+        Nan too where the pair turns so slowly that no motion is followed: the load is static.
+        """
         points = points_of(excitations(self.case, self.hot.isel(operating=self.points)))
+        slow = points.mesh_frequency < SLOWEST * points.rate
+        status = np.where(slow, STATUS.index("jammed"), points.status).astype(np.int8)
+        points = replace(points, status=status)
         start = np.stack([points.half_backlash / points.length, np.zeros(len(self.points))], axis=1)
         start[:, 0] += points.flat.force[:, 0].real
         settled = settle_with_status(points.flat, points.status, start, RULE)

@@ -56,16 +56,19 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     )
     speed = found.data["pinion_speed"].values
     share = found.data["contact_loss_share"].values
-    lost = asked.motion["contact_loss_share"]
-    for name, ranges, happens, never, value in (
+    moving = np.isfinite(asked.motion["contact_loss_share"])
+    parted = asked.motion["contact_loss_share"][moving] > LOST
+    struck = asked.motion["mesh_force_min"][moving] < 0.0
+    for name, ranges, happens, never, own_points in (
         ("contact_loss", found.lost, "Flanks lose contact at", "Flanks keep contact",
-         100.0 * np.nanmax(np.where(lost > LOST, lost, 0.0), initial=0.0)),
+         parted),
         ("back_contact", found.back, "Teeth hit the back side at", "No tooth hits the back side",
-         100.0 * np.mean(asked.motion["mesh_force_min"] < 0.0)),
+         struck),
     ):  # fmt: skip
         over = f"from {rpm(speed.min())} to {rpm(speed.max())} rpm"
         most = f", for up to {100.0 * share.max():.0f} % of the time" * (name == "contact_loss")
         sentence = f"{happens} {told(ranges)}{most}." if ranges else f"{never} {over}."
+        value = 100.0 * float(np.mean(own_points)) if own_points.size else float("nan")
         yield answer(SPEEDS, name, sentence, value)
     several = found.several
     yield answer(
@@ -95,7 +98,8 @@ def loads(asked: Asked) -> Iterator[Answer]:
         own = float(asked.motion["dynamic_factor"][point]) if asked.moves(point) else float("nan")
         rated = _rated_factor(asked, point, grade)
         if isinstance(rated, str) or not np.isfinite(own):
-            why = rated if isinstance(rated, str) else "the pair does not move there"
+            still = "it turns too slowly to vibrate" if asked.moves(point) else "it does not move"
+            why = rated if isinstance(rated, str) else still
             mine = f"computed {own:.2f}; " if np.isfinite(own) else ""
             yield undecided(LOADS, "dynamic_factor", f"{mine}{why}", at=at)
             continue
@@ -126,6 +130,10 @@ def errors(asked: Asked) -> Iterator[Answer]:
         for name, cycle in (("cold", asked.cold), ("hot", asked.hot))
     }
     for point in asked.points:
+        if not asked.settled(point):
+            why = "the heat balance did not settle"
+            yield undecided(ERROR, "transmission_error", why, at=asked.at(point))
+            continue
         warm = float(swing["hot"][point])
         sentence = (
             f"Static and loaded it is {float(swing['cold'][point]):.2f} µm peak to peak "

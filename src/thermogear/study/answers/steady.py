@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer
@@ -22,6 +21,7 @@ Floats = NDArray[np.float64]
 MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the backlash?"
 FILM = "Is there a film, does it scuff?"
 
+UNSETTLED = "the heat balance did not settle"
 STAGE = 12.0
 """FZG load stage of an oil of which none is given: the least of CLP oils (DIN 51517-3; usual)."""
 
@@ -75,16 +75,21 @@ def heat(asked: Asked) -> Iterator[Answer]:
     kind = f"oil_{asked.case.stated.lubricant.kind}"
     how = "computed" if asked.case.computed else "given"
     held = "oil" in asked.case.gearbox.measured
+    of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
         warm, at = float(oil[point]) - ZERO_CELSIUS, asked.at(point)
         if not np.isfinite(warm):
-            yield undecided(HEAT, "oil_temperature", "the heat balance did not settle", limit=kind)
+            yield undecided(HEAT, "oil_temperature", UNSETTLED, limit=kind, at=at)
+            yield undecided(HEAT, "tooth_temperature", UNSETTLED, limit=of_teeth, at=at)
             continue
         said = "given" if held else how
         yield answer(
             HEAT, "oil_temperature", f"The oil is at {warm:.0f} °C ({said}).", warm,
             limit=kind, at=at,
         )  # fmt: skip
+        if not asked.settled(point):
+            yield undecided(HEAT, "tooth_temperature", UNSETTLED, limit=of_teeth, at=at)
+            continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
         flash = float(asked.hot["flash_temperature"][point].max())
         yield answer(
@@ -92,7 +97,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
             "tooth_temperature",
             f"The teeth are at {hottest:.0f} °C ({how}), the flash adds up to {flash:.0f} K.",
             hottest,
-            limit=_tooth_limit(asked.case),
+            limit=of_teeth,
             at=at,
         )
 
@@ -114,8 +119,9 @@ def gap(asked: Asked) -> Iterator[Answer]:
     cold = 2e6 * float(asked.hot["cold_half_backlash"].values.flat[0])
     for point in asked.points:
         at = asked.at(point)
-        if STATUS[int(asked.hot["status"][point])] == "not_converged":
-            yield undecided(GAP, "backlash", "the heat balance did not settle", at=at)
+        if not asked.settled(point):
+            for name in ("backlash", "jam_margin"):
+                yield undecided(GAP, name, UNSETTLED, at=at)
             continue
         left = 2e6 * float(asked.hot["least_half_backlash"][point])
         yield answer(
@@ -129,14 +135,16 @@ def gap(asked: Asked) -> Iterator[Answer]:
         jam = float(asked.hot["jam_temperature"][point]) - ZERO_CELSIUS
         hot = float(asked.bodies[1][point]) - ZERO_CELSIUS
         if not np.isfinite(jam):
-            sentence, margin = "No heat of the gears alone jams the pair.", float("nan")
-            yield answer(GAP, "jam_margin", sentence, margin, at=at, verdict=FINE)
+            free = left > 0.0
+            sentence = f"No heat of the gears alone {'jams' if free else 'frees'} the pair."
+            verdict = FINE if free else LOOK
+            yield answer(GAP, "jam_margin", sentence, float("nan"), at=at, verdict=verdict)
             continue
         yield answer(
             GAP,
             "jam_margin",
-            f"It jams with teeth at {jam:.0f} °C and the housing as it is, {jam - hot:.0f} K above "
-            "what they have.",
+            f"It jams with teeth at {jam:.0f} °C and the housing as it is, {abs(jam - hot):.0f} K "
+            f"{'above' if jam > hot else 'below'} what they have.",
             jam - hot,
             at=at,
         )
@@ -177,7 +185,9 @@ def film(asked: Asked) -> Iterator[Answer]:
         at = asked.at(point)
         film = asked.hot["film_parameter"][point].values
         least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
-        if not np.isfinite(least):
+        if not asked.settled(point):
+            yield undecided(FILM, "film", UNSETTLED, at=at)
+        elif not np.isfinite(least):
             yield undecided(FILM, "film", "no film could be computed", at=at)
         else:
             acting = "boundary" if least < 1.0 else "mixed" if least < 3.0 else "full film"

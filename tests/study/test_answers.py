@@ -1,0 +1,250 @@
+"""Answers first: every verdict both ways and open, sentences that hold their numbers, odd pairs."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from functools import cache
+
+import numpy as np
+import pytest
+
+from thermogear.base.limits import FINE, LIMITS, LOOK, OPEN, Limit
+from thermogear.case.case import GearCase, load_case
+from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
+from thermogear.results.answer import Answer, worst
+from thermogear.study.answers.survey import answers
+
+pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+FIVE = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 40
+[oil]
+name = "ISO VG 100"
+temperature = "80 degC"
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
+SMALL = ("grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12")
+POLISHED = ("gears.pinion.roughness=0.02 um", "gears.wheel.roughness=0.02 um")
+WHOLE = ("backlash.direction=normal", "backlash.extent=total")
+CASES: dict[str, tuple[str, ...]] = {
+    "plain": (),
+    "resonant": ("operating.speed=17000 rpm", "dynamics.damping_ratio=0.03"),
+    "light": ("operating.speed=17500 rpm", "operating.torque=2 N m", "dynamics.damping_ratio=0.02",
+              "flanks.accuracy=9", "backlash.value=0.06 mm", *WHOLE),
+    "relieved": ("operating.speed=15000 rpm", "gears.pinion.tip_relief.amount=8 um",
+                 "gears.pinion.tip_relief.length=1 mm", *POLISHED),
+    "jammed": ("backlash.value=0.005 mm", *WHOLE),
+    "unsettled": ("operating.torque=60000 N m", "gears.face_width=300 mm"),
+    "polymer": ("gears.pinion.material=POM",),
+    "still": ("operating.torque=0 N m",),
+    "slow": ("operating.speed=1 rpm",),
+    "odd": ("gears.pinion.teeth=12", "gears.pinion.profile_shift=0.8", "gears.rack.dedendum=1.1",
+            "gears.rack.fillet_radius=0.15", "oil.temperature=160 degC",
+            "gears.pinion.pressure_angle_error=0.3 deg"),
+    "high": ("gears.rack.addendum=1.3", "gears.rack.dedendum=1.6", "gears.rack.fillet_radius=0.2",
+             "gears.pinion.teeth=40", "gears.wheel.teeth=60"),
+    "short": ("gears.rack.addendum=0.65",),
+}  # fmt: skip
+# (fine, look here, not decided); None: that cannot be, or is refused before
+SEEN: dict[str, tuple[str, str | None, str | None]] = {
+    "contact_ratio": ("plain", "short", None),
+    "form_clearance": ("plain", None, None),
+    "tip_thickness": ("plain", "odd", None),
+    "tip_clearance": ("plain", "odd", None),
+    "oil_temperature": ("plain", "odd", None),
+    "tooth_temperature": ("plain", "odd", "unsettled"),
+    "backlash": ("plain", "jammed", "unsettled"),
+    "jam_margin": ("plain", "polymer", "unsettled"),
+    "warm_up_backlash": ("plain", "jammed", "unsettled"),
+    "film": ("relieved", "plain", "unsettled"),
+    "scuffing_margin": ("plain", "unsettled", "polymer"),
+    "scuffing_safety": ("plain", "unsettled", "high"),
+    "resonance": ("plain", "light", "jammed"),
+    "contact_loss": ("plain", "resonant", "slow"),
+    "back_contact": ("plain", "light", "jammed"),
+    "coexisting": ("plain", "resonant", "jammed"),
+    "dynamic_factor": ("relieved", "resonant", "still"),
+    "transmission_error": ("plain", "odd", "unsettled"),
+    "relief": ("relieved", "plain", "jammed"),
+}
+
+
+def read(*changes: str, text: str = FIVE) -> GearCase:
+    case = load_case(text, [*SMALL, *changes])
+    assert isinstance(case, GearCase)
+    return case
+
+
+@cache
+def of(name: str) -> tuple[Answer, ...]:
+    return answers(read(*CASES[name])).answers
+
+
+@cache
+def verdicts(name: str) -> Mapping[str, Answer]:
+    return {one.name: one for one in of(name)}
+
+
+@pytest.mark.parametrize("name", SEEN)
+def test_every_verdict_has_a_case(name: str) -> None:
+    for case, verdict in zip(SEEN[name], (FINE, LOOK, OPEN), strict=True):
+        if case is not None:
+            found = verdicts(case)[name]
+            assert found.verdict == verdict, (case, found)
+            assert found.limit
+            assert found.source
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_question_is_answered_of_every_pair(name: str) -> None:
+    """Whatever a pair is, each answer is there once, and open only without a value."""
+    found = of(name)
+    assert [one.name for one in found] == list(SEEN)
+    for one in found:
+        assert one.sentence.endswith((".", ")."))
+        assert "nan" not in re.split(r"\W+", one.sentence)
+        assert one.value is None or math.isfinite(one.value)
+        if one.verdict == OPEN:
+            assert one.value is None
+
+
+# --- a sentence holds its number ----------------------------------------------------------
+
+PLACES = {
+    "contact_ratio": 3, "form_clearance": 0, "tip_thickness": 2, "tip_clearance": 3,
+    "oil_temperature": 0, "tooth_temperature": 0, "backlash": 0, "warm_up_backlash": 0,
+    "film": 2, "dynamic_factor": 2, "transmission_error": 2, "jam_margin": 0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_sentences_hold_their_values(name: str) -> None:
+    for one in of(name):
+        if one.value is None or one.name not in PLACES:
+            continue
+        value = abs(one.value) if one.name == "jam_margin" else one.value
+        figures = re.findall(r"-?\d+(?:\.\d+)?", one.sentence)
+        assert f"{value:.{PLACES[one.name]}f}" in figures, one
+
+
+def test_verdicts_follow_from_value_and_limit() -> None:
+    """Read back from the words alone: fine within the bound, look here outside."""
+    for name in CASES:
+        for one in of(name):
+            bound = re.search(r"at (least|most) (-?[0-9.e+]+)", one.limit)
+            assert bound is not None
+            if one.value is None or one.name in ("backlash", "warm_up_backlash"):
+                continue
+            limit = float(bound[2])
+            kept = one.value >= limit if bound[1] == "least" else one.value <= limit
+            # a bound is told to four figures
+            if abs(one.value - limit) > 1e-3 * abs(limit) or one.value == limit:
+                assert one.verdict == (FINE if kept else LOOK), one
+
+
+def test_scuffing_is_that_of_the_rating() -> None:
+    case, found = read(), verdicts("plain")
+    state = Scuffing(lubricant=case.stated.lubricant, oil_temperature=353.15, load_stage=12.0)
+    (torque,), (speed,) = case.torques, case.speeds
+    flash = flash_rating(case.pair, torque, speed, state)
+    whole = integral_rating(case.pair, torque, speed, state)
+    assert found["scuffing_margin"].value == pytest.approx(float(flash.margin), rel=1e-12)
+    assert found["scuffing_safety"].value == pytest.approx(float(whole.safety), rel=1e-12)
+
+
+def test_the_gain_of_a_relief_is_that_of_its_sentence() -> None:
+    one = verdicts("plain")["relief"]
+    before, after = (float(v) for v in re.findall(r"([0-9.]+) → ([0-9.]+)", one.sentence)[0])
+    assert one.value == pytest.approx(100.0 * (1.0 - after / before), abs=0.5)
+
+
+# --- laws ---------------------------------------------------------------------------------
+
+
+def test_the_same_pair_in_other_words_has_the_same_answers() -> None:
+    text = FIVE.replace("3000 rpm", "3000 U/min").replace("80 N m", "80 Nm")
+    other = answers(read(text=text.replace("80 degC", "80 °C"))).answers
+    assert other == of("plain")
+
+
+def test_the_order_of_the_points_decides_nothing(compared: Callable[..., None]) -> None:
+    there, back = (
+        answers(read(f'operating.speed=["{a} rpm", "{b} rpm"]')).answers
+        for a, b in ((3000, 15000), (15000, 3000))
+    )
+    assert {(one.name, one.operating) for one in there} == {(o.name, o.operating) for o in back}
+    values = [{(o.name, o.operating): o.value for o in found} for found in (there, back)]
+    differences = [
+        0.0 if a is None or a == b else abs(a / b - 1.0)
+        for a, b in ((values[0][key], values[1][key]) for key in values[0])
+    ]
+    compared("answers of two points in either order", "each other", differences, 0.0)
+    alone = verdicts("plain")
+    for one in there:
+        if one.operating == "3000 rpm, 80 N m":
+            assert one.value == alone[one.name].value
+
+
+SCALED = (
+    ("2000 teeth", ("gears.pinion.teeth=2000", "gears.wheel.teeth=2000")),
+    ("module 0.2 mm", ("gears.module=0.2 mm", "gears.face_width=2 mm",
+                       "operating.torque=0.05 N m")),
+    ("module 50 mm", ("gears.module=50 mm", "gears.face_width=500 mm",
+                      "operating.torque=200000 N m")),
+    ("500000 rpm", ("operating.speed=500000 rpm",)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("changes", [c for _, c in SCALED], ids=[n for n, _ in SCALED])
+def test_ends_of_the_scale_are_answered(changes: tuple[str, ...]) -> None:
+    found = answers(read(*changes)).answers
+    assert [one.name for one in found] == list(SEEN)
+
+
+def test_geometry_does_not_know_its_size() -> None:
+    small, large = (
+        {one.name: one.value for one in answers(read(*changes)).answers}
+        for changes in (SCALED[1][1], SCALED[2][1])
+    )
+    for name in ("contact_ratio", "tip_thickness", "tip_clearance"):
+        assert small[name] == pytest.approx(large[name], rel=1e-9)
+    assert small["form_clearance"] == pytest.approx((large["form_clearance"] or 0.0) / 250.0, 1e-9)
+
+
+# --- the table of limits --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_limit_decides_at_its_bound(name: str) -> None:
+    one = LIMITS[name]
+    least = math.isfinite(one.least)
+    assert least != math.isfinite(one.most)
+    bound = one.least if least else one.most
+    assert one.verdict(bound) == FINE
+    assert one.verdict(bound + (-1e-9 if least else 1e-9)) == LOOK
+    assert one.verdict(float("nan")) == OPEN
+    assert one.words.endswith(", usual") == (not one.confirmed)
+    assert one.source
+
+
+def test_the_worst_of_several_is_the_gravest() -> None:
+    def made(verdict: str, value: float | None, limit: str) -> Answer:
+        return Answer(name="n", question="q", sentence="s.", value=value, unit="",
+                      limit=limit, source="", verdict=verdict)  # fmt: skip
+
+    fine, nearer = made(FINE, 3.0, "at least 1"), made(FINE, 2.0, "at least 1")
+    open_, look = made(OPEN, None, "at least 1"), made(LOOK, 0.5, "at least 1")
+    assert worst([fine, nearer]) is nearer
+    assert worst([fine, open_]) is open_
+    assert worst([look, open_, fine]) is look
+    hot, hotter = made(LOOK, 95.0, "at most 90"), made(LOOK, 99.0, "at most 90")
+    assert worst([hot, hotter]) is hotter
+    assert Limit("K", most=90.0, source="s").verdict(float(np.nextafter(90.0, 91.0))) == LOOK
