@@ -204,7 +204,8 @@ def polish(
             length = np.max(np.abs(step) / unit[working], axis=1)
         go = np.isfinite(length) & np.isfinite(size) & (size >= 1e-13)
         go &= ~((stalled[working] >= 2) & (least[working] < 1e-9))
-        step[length > 1.0] /= length[length > 1.0, None]
+        far = np.isfinite(length) & (length > 1.0)
+        step[far] /= length[far, None]
         z[working[go]] += step[go]
         if not np.any(go):
             break

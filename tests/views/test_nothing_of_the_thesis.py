@@ -1,0 +1,103 @@
+"""What anybody's pair is told, by any command: no word of the thesis unless its bundle is chosen."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from own_pair import OWN_PAIR
+from thermogear.front.cli import main
+
+pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+FIVE = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 40
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
+PAIRS = {"own": OWN_PAIR, "five": FIVE}
+SMALL = [
+    word
+    for change in (
+        "grid.path_positions=41", "grid.mesh_positions=48", "grid.harmonics=12",
+        "simulation.periods=16", "simulation.samples=32", "simulation.discard=100",
+    )
+    for word in ("--set", change)
+]  # fmt: skip
+# words after the case; {out}: a folder of its own
+COMMANDS: dict[str, tuple[str, ...]] = {
+    "check": (),
+    "answers": ("-o", "{out}"),
+    "run": ("-o", "{out}"),
+    "run all": ("-o", "{out}", "--pictures", "all"),
+    "friction": ("-o", "{out}"),
+    "temperature": ("-o", "{out}", "--speeds", "1000,3000", "--torques", "80"),
+    "warmup": ("-o", "{out}"),
+    "relief": ("-o", "{out}"),
+    "contact": ("-o", "{out}"),
+    "orbit": ("-o", "{out}"),
+    "lyapunov": (),
+    "continue": ("-o", "{out}", "--parameter", "speed", "--to", "3100 rpm"),
+    "shared-force": ("-o", "{out}"),
+    "bifurcation": ("-o", "{out}", "--over", "zeta=0.1:0.2:3"),
+    "map": ("-o", "{out}", "--over", "zeta=0.1:0.2:3", "--over", "omega=1:2:3"),
+    "basins": ("-o", "{out}"),
+    "runup": ("-o", "{out}", "--rpm", "2900:3100:3", "--branch-period", "0"),
+    "sweep": ("-o", "{out}", "--over", "rpm=2900:3100:3"),
+    "versus": ("-o", "{out}"),
+}
+TEXTS = {".html", ".json", ".csv", ".svg", ".txt", ".md", ".toml"}
+
+
+def said(command: str, case: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, str]:
+    """Everything that a command shows, by where it stands."""
+    words = [word.format(out=out) for word in COMMANDS[command]]
+    cases = [str(case), str(case)] if command == "versus" else [str(case)]
+    sets = [] if command == "versus" else SMALL
+    code = main([command.split()[0], *cases, *words, *sets])
+    shown = capsys.readouterr()
+    assert code == 0, shown.err
+    found = {"terminal": shown.out + shown.err}
+    for path in sorted(out.rglob("*")) if out.exists() else ():
+        if path.suffix in TEXTS:
+            found[path.name] = path.read_text(encoding="utf-8")
+    return found
+
+
+def places(found: dict[str, str]) -> list[str]:
+    return [
+        f"{name}: ...{text[max(one.start() - 60, 0) : one.end() + 60]!r}"
+        for name, text in found.items()
+        for one in re.finditer("thesis", text, re.IGNORECASE)
+    ]
+
+
+LONG = ("run all", "shared-force", "versus", "relief", "warmup", "continue")
+ASKED = [
+    pytest.param(command, "five", marks=[pytest.mark.slow] * (command in LONG))
+    for command in COMMANDS
+] + [(command, "own") for command in ("check", "answers", "run")]
+
+
+@pytest.mark.parametrize(("command", "pair"), ASKED)
+def test_a_command_speaks_of_this_pair_alone(
+    command: str, pair: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "pair.toml"
+    case.write_text(PAIRS[pair], encoding="utf-8")
+    found = said(command, case, tmp_path / "out", capsys)
+    assert found["terminal"].strip()
+    assert places(found) == []
+
+
+def test_a_chosen_bundle_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = tmp_path / "pair.toml"
+    case.write_text(OWN_PAIR.replace('"consistent"', '"thesis"'), encoding="utf-8")
+    assert places(said("answers", case, tmp_path / "out", capsys))
