@@ -1,4 +1,4 @@
-"""The five tasks of the how-to, each from a clean directory: at most two commands, answers printed."""
+"""The five tasks of the how-to, each from a clean directory: two commands, answers printed."""
 
 from __future__ import annotations
 

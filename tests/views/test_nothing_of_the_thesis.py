@@ -1,4 +1,4 @@
-"""What anybody's pair is told, by any command: no word of the thesis unless its bundle is chosen."""
+"""What anybody's pair is told, by any command: no word of the thesis without its bundle."""
 
 from __future__ import annotations
 
