@@ -69,7 +69,7 @@ SEEN: dict[str, tuple[str, str | None, str | None]] = {
     "scuffing_safety": ("plain", "unsettled", "high"),
     "resonance": ("plain", "light", "jammed"),
     "contact_loss": ("plain", "resonant", "slow"),
-    "back_contact": ("plain", "light", "jammed"),
+    "back_contact": ("plain", None, "jammed"),
     "coexisting": ("plain", "resonant", "jammed"),
     "dynamic_factor": ("relieved", "resonant", "still"),
     "transmission_error": ("plain", "odd", "unsettled"),
