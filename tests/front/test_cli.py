@@ -153,7 +153,7 @@ def test_a_reader_that_leaves_is_no_error() -> None:
 # --- commands -----------------------------------------------------------------------------
 def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
-    assert "thermogear example rig -o rig.toml" in capsys.readouterr().out
+    assert "thermogear new -o mine.toml" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
