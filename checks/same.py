@@ -1,6 +1,6 @@
 """``make same``: do all commands still store the same numbers, to the last bit?
 
-python checks/same.py                      this tree beside 797e1e2
+python checks/same.py                      this tree beside ced7e69
 python checks/same.py REF --only run-rig   beside another commit, some cases
 python checks/same.py --list               the cases
 
@@ -45,7 +45,7 @@ from same_digest import Array, Digest, Stored, digest, values
 
 ROOT = Path(__file__).parents[1]
 STORE = ROOT / ".same"
-REFERENCE = "797e1e2"
+REFERENCE = "ced7e69"
 RENAMED: dict[str, str] = {}
 """Stored things that have another name now: path of the reference to path of this tree.
 

@@ -280,7 +280,7 @@ CHOICES = (
     "friction=fernandes flash=exact heat_distribution=parabola inlet=oil sharing=equal",
 )
 COMMANDS = [
-    *("run", "report", "check", "example", "schema"),
+    *("new", "answers", "run", "report", "check", "example", "schema"),
     *("friction", "temperature", "warmup", "relief", "contact"),
     *("orbit", "lyapunov", "continue", "shared-force"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
@@ -307,6 +307,15 @@ CASES = (
         "example", ("example", "example rig", "example table-4.2", "example section-4.1 -o a.toml")
     ),
     Case("schema", ("schema", "schema -o schema.json")),
+    Case(
+        "new",
+        (
+            "new --teeth 20 40 --module '3 mm' --face-width '30 mm' --torque '80 N m' "
+            "--speed '3000 rpm' -o five.toml",
+            "check five.toml",
+            "answers five.toml -o answers",
+        ),
+    ),
     Case(
         "check",
         (

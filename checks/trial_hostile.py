@@ -49,7 +49,7 @@ SILENCE = 300.0
 """Seconds after which a worker that says nothing is taken away; its file counts as too slow."""
 
 Random = np.random.Generator
-NEVER = ("tracebacks", "over 10 s", "over 1 GB", "more than one line")
+NEVER = ("tracebacks", "over 10 s", "over 1 GB", "a line that names no fault")
 
 # --- mutations -----------------------------------------------------------------------------------
 
@@ -301,8 +301,10 @@ def tried(kind: str, number: int, words: list[str], rest: int) -> Outcome:
         found.said = lines[0][:300] if lines else ""
         if found.code not in (0, 2) or "Traceback" in err.getvalue():
             found.broken.append("tracebacks")
-        elif len(lines) > 1 or (found.code == 2) != (len(lines) == 1):
-            found.broken.append("more than one line")
+        elif not all(one.startswith("error: ") for one in lines) or (found.code == 2) != bool(
+            lines
+        ):
+            found.broken.append("a line that names no fault")
         if found.memory > MEMORY or re.search("MemoryError|[Uu]nable to allocate", found.said):
             found.broken.append("over 1 GB")
     return found
@@ -415,9 +417,10 @@ def page(found: dict[str, Sum], kept: dict[str, str]) -> str:
         f"Made by `make trial-hostile` (seed {SEED}): case files and records in every format with",
         "bits flipped, pieces cut, doubled, moved or zeroed, counts and sizes made huge, numbers",
         "replaced by hostile ones, also inside of what is packed. Each goes through",
-        "`thermogear check` or `thermogear measure`; what follows is one result, or one line and",
-        "exit code 2. Seconds are those of the processor, bytes what a file takes beside the",
-        "program at rest; a worker that would take a gigabyte more is refused it.",
+        "`thermogear check` or `thermogear measure`; what follows is one result, or exit code 2",
+        "and one line (for a case file one for each fault). Seconds are those of the processor,",
+        "bytes what a file takes beside the program at rest; a worker that would take a gigabyte",
+        "more is refused it.",
         "",
         f"| kind | files | read | refused | {' | '.join(NEVER)} | longest s | most MB |",
         "|---|" + "---:|" * (len(NEVER) + 5),

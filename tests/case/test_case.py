@@ -136,7 +136,8 @@ def test_a_default_left_to_act_is_an_assumption_with_its_value() -> None:
     found = {a.field: a for a in load_case(text).assumptions}
     assert found["gears.pinion.profile_shift"].value == "0"
     assert found["gears.pinion.profile_shift"].reason == (
-        "not in the file; the default: no profile shift"
+        "not in the file; the default: no profile shift. Decides undercut, sliding and tip "
+        "thickness"
     )
     assert found["gears.wheel.profile_shift"].value == "left out"
 

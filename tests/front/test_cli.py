@@ -442,7 +442,7 @@ def test_check_lists_the_defaults_of_a_short_case(
     assert not any(line.strip().startswith("gears.wheel.bore_radius") for line in lines)
     assert not any(line.strip().startswith(("grid.", "simulation.")) for line in lines)
     assert "numerics: 10 defaults of [grid] and [simulation], listed with --json" in lines
-    assert lines[-1].startswith("49 values are ours, all of them defaults; a run takes about")
+    assert lines[-1].startswith("47 values are ours, all of them defaults; a run takes about")
 
 
 def test_what_a_case_states_is_no_default(

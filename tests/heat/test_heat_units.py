@@ -241,6 +241,7 @@ NUMBERS = {
 }
 IMPOSSIBLE = {"blok_as_printed", "benedict_kelley_as_printed", "flank_growth_as_printed"}
 NOT_FORMULAS = {
+    "grade",
     "friction_words",
     "law_words",
     "parameters",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bisect
 import tempfile
+import weakref
 from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -30,6 +31,8 @@ class FileTable:
     ) -> None:
         self._file, self._dtype, self._offset = file, np.dtype(dtype), offset
         self.shape = (frames, columns)
+        # not __del__: among garbage in a ring the file itself may be found open first
+        weakref.finalize(self, file.close)
 
     @classmethod
     def of(
@@ -57,18 +60,13 @@ class FileTable:
         rows, column = key
         return self.frames(rows)[:, column]
 
-    def __del__(self) -> None:
-        self._file.close()
-
 
 class UnnamedFile:
     """An unnamed file that lives as long as whoever reads from it."""
 
     def __init__(self) -> None:
         self.file: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 (closed below)
-
-    def __del__(self) -> None:
-        self.file.close()
+        weakref.finalize(self, self.file.close)
 
 
 class StoredColumn:
