@@ -84,7 +84,9 @@ LIMITS: dict[str, Limit] = {
     "jam_margin": Limit(
         "K", what="margin", least=30.0, source="ours: as much as a heat balance may be off"
     ),
-    "film": Limit("", least=0.7, source="boundary lubrication below", confirmed=False),
+    "film": Limit(
+        "", least=1.0, source="boundary lubrication below (others: 0.4 and 0.7)", confirmed=False
+    ),
     "scuffing_margin": Limit(
         "K", what="margin", least=50.0, source="ISO/TR 13989-1, ISO/TS 6336-20"
     ),

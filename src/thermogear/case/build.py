@@ -206,9 +206,20 @@ def pair_of(file: GearFile, known: Mapping[str, Material]) -> GearPair:
     distance = file.gears.centre_distance
     pinion = _gear(file.gears.pinion, file, "gears.pinion", known)
     wheel = _gear(file.gears.wheel, file, "gears.wheel", known)
-    return _under(
-        "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)
-    )
+    try:
+        return _under(
+            "gears", lambda: GearPair(pinion, wheel, LEFT_OUT if distance is None else distance)
+        )
+    except InputError as error:
+        if distance is None or not error.field.endswith("contact_ratio"):
+            raise
+        raise type(error)(
+            "gears.centre_distance",
+            f"{shown(distance, 'length')}, a contact ratio of {error.got}",
+            allowed=f"a contact ratio {error.allowed}",
+            why="the gears stand too far apart for their teeth",
+            fix="leave it out for the mesh without backlash, or shift the profiles",
+        ) from error
 
 
 def temperature_rule(file: GearFile) -> TemperatureRule | None:

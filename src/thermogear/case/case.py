@@ -201,7 +201,18 @@ class GearCase(Case):
             if gear_temperature is not None:
                 teeth = dict.fromkeys(("pinion_tooth", "wheel_tooth"), gear_temperature)
                 box = replace(box, measured={**box.measured, **teeth})
-            self._balances[key] = self.balance_of(model, at.speed, at.torque, gearbox=box)
+            try:
+                self._balances[key] = self.balance_of(model, at.speed, at.torque, gearbox=box)
+            except InputError as error:
+                if error.field != "prandtl":
+                    raise
+                raise InputError(
+                    "oil",
+                    f"a Prandtl number of {error.got}",
+                    allowed=error.allowed,
+                    why="so cold the oil is too stiff for the laws of convection",
+                    fix="take a warmer, or a thinner, oil",
+                ) from error
         return self._balances[key]
 
     def balance_of(

@@ -69,6 +69,9 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         most = f", for up to {100.0 * share.max():.0f} % of the time" * (name == "contact_loss")
         sentence = f"{happens} {told(ranges)}{most}." if ranges else f"{never} {over}."
         value = 100.0 * float(np.mean(own_points)) if own_points.size else float("nan")
+        if not own_points.size:
+            words = f"{sentence[0].lower()}{sentence[1:]}"
+            sentence = f"Not decided at its own speeds, too slow to vibrate; faster, {words}"
         yield answer(SPEEDS, name, sentence, value)
     several = found.several
     yield answer(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError
 from thermogear.base.limits import FINE, LIMITS, LOOK
+from thermogear.base.materials import NEVER, Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
@@ -78,7 +79,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
     of_teeth = _tooth_limit(asked.case)
     for point in asked.points:
         warm, at = float(oil[point]) - ZERO_CELSIUS, asked.at(point)
-        if not np.isfinite(warm):
+        if not np.isfinite(warm) or not (held or asked.settled(point)):
             yield undecided(HEAT, "oil_temperature", UNSETTLED, limit=kind, at=at)
             yield undecided(HEAT, "tooth_temperature", UNSETTLED, limit=of_teeth, at=at)
             continue
@@ -104,12 +105,15 @@ def heat(asked: Asked) -> Iterator[Answer]:
 
 def _tooth_limit(case: GearCase) -> str:
     """The limit of the gear that stands least heat; steel's where nobody knows better."""
-    names = [gear.material.name for gear in (case.pair.pinion, case.pair.wheel)]
-    known = [f"teeth_{name}" for name in names if f"teeth_{name}" in LIMITS]
-    if not known:
-        soft = [g.material.tempering_temperature for g in (case.pair.pinion, case.pair.wheel)]
-        return "teeth_tempered" if ZERO_CELSIUS + 500.0 <= min(soft) < 1e6 else "teeth_steel"
-    return min(known, key=lambda name: LIMITS[name].most)
+
+    def of(material: Material) -> str:
+        if f"teeth_{material.name}" in LIMITS:
+            return f"teeth_{material.name}"
+        tempered = ZERO_CELSIUS + 500.0 <= material.tempering_temperature < NEVER
+        return "teeth_tempered" if tempered else "teeth_steel"
+
+    pair = case.pair
+    return min(map(of, (pair.pinion.material, pair.wheel.material)), key=lambda n: LIMITS[n].most)
 
 
 # --- backlash -----------------------------------------------------------------------------------
@@ -158,8 +162,10 @@ def _worst_moment(asked: Asked) -> Answer:
         return undecided(GAP, "warm_up_backlash", str(error), limit="backlash")
     worst = course.worst
     least, steady = 2e6 * worst.half_backlash, 2e6 * float(course.half_backlash[-1])
-    start = float(course.temperatures["oil"][0]) - ZERO_CELSIUS
-    how = "" if asked.case.computed else " by the heat balance"
+    start = float(course.temperatures["pinion_body"][0]) - ZERO_CELSIUS
+    held = " and ".join(name.replace("_", " ") for name in course.held)
+    how = f" with {held} held" if held else ""
+    how += "" if asked.case.computed else " by the heat balance"
     words = f"Warming up from {start:.0f} °C{how} it is"
     sentence = f"{words} never less than when steady, {steady:.0f} µm."
     if least < 0.995 * steady:
