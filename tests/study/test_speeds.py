@@ -51,5 +51,6 @@ def test_speeds_in_words():
         "20100", "1990", "340", "12.3"
     ]  # fmt: skip
     many = [(100.0 * RPM, 200.0 * RPM), (300.0 * RPM, 300.0 * RPM)]
-    assert told(many) == "100 to 200 rpm, near 300 rpm"
-    assert told(many * 3).endswith(" and 3 more")
+    ends = (50.0 * RPM, 900.0 * RPM)
+    assert told(many, ends) == "from 100 to 200 rpm, near 300 rpm"
+    assert told(many * 3, ends).endswith(" and 3 more")

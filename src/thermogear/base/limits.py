@@ -31,14 +31,17 @@ class Limit:
     confirmed: bool = True
 
     def verdict(self, value: float) -> str:
-        """Fine within the bound, look here outside; not decided where there is no value."""
-        if not math.isfinite(value):
+        """Fine within the bound, look here outside; not decided without a value or a bound."""
+        bounded = math.isfinite(self.least) or math.isfinite(self.most)
+        if not (bounded and math.isfinite(value)):
             return OPEN
         return FINE if self.least <= value <= self.most else LOOK
 
     @property
     def words(self) -> str:
         """The bound as a reader sees it, called usual where it is unconfirmed."""
+        if not math.isfinite(self.least) and not math.isfinite(self.most):
+            return "no limit known"
         side, bound = (
             ("at least", self.least) if math.isfinite(self.least) else ("at most", self.most)
         )
@@ -123,3 +126,6 @@ LIMITS: dict[str, Limit] = {
     ),
 }
 """Every threshold of a verdict, by the name of its answer."""
+
+NO_LIMIT = Limit("°C", source="no limit is known for a material that is no steel")
+"""Of teeth of which nobody says what they stand."""

@@ -139,11 +139,18 @@ def rpm(speed: float) -> str:
     return f"{round(value, -size):.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
-def told(ranges: list[tuple[float, float]], most: int = 3) -> str:
-    """Ranges of speed in rpm, the first few."""
-    words = [
-        f"{rpm(low)} to {rpm(high)} rpm" if high > low else f"near {rpm(low)} rpm"
-        for low, high in ranges[:most]
-    ]
+def told(ranges: list[tuple[float, float]], ends: tuple[float, float], most: int = 3) -> str:
+    """Ranges of speed in rpm, the first few; ``ends`` [rad/s] of the look stay open."""
+
+    def one(low: float, high: float) -> str:
+        if low <= ends[0] and high >= ends[1]:
+            return "at every speed looked at"
+        if high >= ends[1]:
+            return f"from {rpm(low)} rpm on"
+        if low <= ends[0]:
+            return f"up to {rpm(high)} rpm"
+        return f"from {rpm(low)} to {rpm(high)} rpm" if high > low else f"near {rpm(low)} rpm"
+
+    words = [one(low, high) for low, high in ranges[:most]]
     more = len(ranges) - most
     return ", ".join(words) + (f" and {more} more" if more > 0 else "")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.outcome import settle_with_status
 from thermogear.analysis.side_by_side import RULE
-from thermogear.base.limits import LIMITS
+from thermogear.base.limits import LIMITS, NO_LIMIT
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import STATUS
@@ -151,7 +151,7 @@ def answer(
 
     ``most`` is the bound where it hangs on the case, ``verdict`` overrules where it must.
     """
-    bound = LIMITS[limit or name]
+    bound = LIMITS.get(limit or name, NO_LIMIT)
     if most is not None:
         bound = replace(bound, most=most)
     return Answer(

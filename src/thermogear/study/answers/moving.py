@@ -59,15 +59,16 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     moving = np.isfinite(asked.motion["contact_loss_share"])
     parted = asked.motion["contact_loss_share"][moving] > LOST
     struck = asked.motion["mesh_force_min"][moving] < 0.0
+    ends = (float(speed.min()), float(speed.max()))
     for name, ranges, happens, never, own_points in (
-        ("contact_loss", found.lost, "Flanks lose contact at", "Flanks keep contact",
+        ("contact_loss", found.lost, "Flanks lose contact", "Flanks keep contact",
          parted),
-        ("back_contact", found.back, "Teeth hit the back side at", "No tooth hits the back side",
+        ("back_contact", found.back, "Teeth hit the back side", "No tooth hits the back side",
          struck),
     ):  # fmt: skip
         over = f"from {rpm(speed.min())} to {rpm(speed.max())} rpm"
         most = f", for up to {100.0 * share.max():.0f} % of the time" * (name == "contact_loss")
-        sentence = f"{happens} {told(ranges)}{most}." if ranges else f"{never} {over}."
+        sentence = f"{happens} {told(ranges, ends)}{most}." if ranges else f"{never} {over}."
         value = 100.0 * float(np.mean(own_points)) if own_points.size else float("nan")
         if not own_points.size:
             words = f"{sentence[0].lower()}{sentence[1:]}"
@@ -77,7 +78,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     yield answer(
         SPEEDS,
         "coexisting",
-        f"Two motions exist at {told(several)}: it may jump there, up and down elsewhere."
+        f"Two motions exist {told(several, ends)}: it may jump there, up and down elsewhere."
         if several
         else "One motion exists at every speed looked at: no jump.",
         2.0 if _here(own, several) else 1.0,
@@ -193,8 +194,10 @@ def _relief(asked: Asked) -> Answer:
     best, other = int(np.argmin(hot)), int(np.argmin(cold))
     amounts = np.array([0.0, *RELIEFS]) * 1e6 * deflection
     gain = 100.0 * (1.0 - hot[best] / hot[0])
-    if best == 0:
-        sentence = "No tip relief of both gears makes it smaller, hot."
+    if gain < 1.0:
+        sentence = (
+            "No tip relief of both gears makes it smaller, hot: the flanks themselves decide."
+        )
     else:
         sentence = (
             f"A linear tip relief of {amounts[best]:.1f} µm on both gears makes it "

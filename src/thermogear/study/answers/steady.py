@@ -109,11 +109,14 @@ def _tooth_limit(case: GearCase) -> str:
     def of(material: Material) -> str:
         if f"teeth_{material.name}" in LIMITS:
             return f"teeth_{material.name}"
+        if not steel(material):
+            return "teeth_unknown"
         tempered = ZERO_CELSIUS + 500.0 <= material.tempering_temperature < NEVER
         return "teeth_tempered" if tempered else "teeth_steel"
 
     pair = case.pair
-    return min(map(of, (pair.pinion.material, pair.wheel.material)), key=lambda n: LIMITS[n].most)
+    names = [of(one.material) for one in (pair.pinion, pair.wheel)]
+    return min(names, key=lambda n: LIMITS[n].most if n in LIMITS else -np.inf)
 
 
 # --- backlash -----------------------------------------------------------------------------------
@@ -167,8 +170,8 @@ def _worst_moment(asked: Asked) -> Answer:
     how = f" with {held} held" if held else ""
     how += "" if asked.case.computed else " by the heat balance"
     words = f"Warming up from {start:.0f} °C{how} it is"
-    sentence = f"{words} never less than when steady, {steady:.0f} µm."
-    if least < 0.995 * steady:
+    sentence = f"{words} never less than when steady, {least:.0f} µm."
+    if least < steady - 0.005 * abs(steady) - 0.05:
         sentence = (
             f"{words} least after {worst.time / 60.0:.3g} min: {least:.0f} µm, {steady:.0f} µm "
             "when steady."
@@ -201,9 +204,8 @@ def film(asked: Asked) -> Iterator[Answer]:
                 FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
             )
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
-        steels = all(g.material.youngs_modulus > 1e11 for g in (case.pair.pinion, case.pair.wheel))
-        if not (steels and torque > 0.0 and np.isfinite(oil[point])):
-            why = "the rating is for steel gears under load, with a known oil temperature"
+        why = _unrated(case, torque, float(oil[point]))
+        if why:
             for name in ("scuffing_margin", "scuffing_safety"):
                 yield undecided(FILM, name, why, at=at)
             continue
@@ -215,6 +217,21 @@ def film(asked: Asked) -> Iterator[Answer]:
             ("scuffing_safety", _integral_words),
         ):
             yield _rated(name, partial(words, case, torque, speed, state, whose), at)
+
+
+def _unrated(case: GearCase, torque: float, oil: float) -> str:
+    """Why scuffing is not rated; empty where it is."""
+    for gear in (case.pair.pinion, case.pair.wheel):
+        if not steel(gear.material):
+            return f"the rating is for steel on steel, not {gear.material.name}"
+    if torque <= 0.0:
+        return "there is no load"
+    return "" if np.isfinite(oil) else UNSETTLED
+
+
+def steel(material: Material) -> bool:
+    """Whether a material has the stiffness and the density of steel."""
+    return 180e9 <= material.youngs_modulus <= 230e9 and 7500.0 <= material.density <= 8200.0
 
 
 def _rated(name: str, make: Callable[[], tuple[str, float]], at: str) -> Answer:
@@ -231,8 +248,9 @@ def _flash_words(
     found = flash_rating(case.pair, torque, speed, state)
     contact, limit = float(found.contact) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
     return (
-        f"By flash temperature the contact reaches {contact:.0f} °C of {limit:.0f} °C ({whose}): "
-        f"safety {float(found.safety):.2f}.",
+        f"By flash temperature, with the standard's friction and bulk, the contact reaches "
+        f"{contact:.0f} °C of {limit:.0f} °C ({whose}): margin {float(found.margin):.0f} K, safety "
+        f"{float(found.safety):.2f}.",
         float(found.margin),
     )
 
@@ -243,6 +261,7 @@ def _integral_words(
     found = integral_rating(case.pair, torque, speed, state)
     total, limit = float(found.integral) - ZERO_CELSIUS, found.limit - ZERO_CELSIUS
     return (
-        f"By integral temperature it is {total:.0f} °C of {limit:.0f} °C ({whose}).",
+        f"By integral temperature it is {total:.0f} °C of {limit:.0f} °C ({whose}): safety "
+        f"{float(found.safety):.2f}.",
         float(found.safety),
     )
