@@ -142,9 +142,9 @@ BAD_VALUES: list[tuple[str, str]] = [
     ),
     (
         "gears.centre_distance=256 mm",
-        "gears.contact_ratio: got 0.6158; allowed >= 1; "
-        "the next pair enters after the last one has left; "
-        "lengthen the teeth, take more teeth or a smaller centre distance",
+        "gears.centre_distance: got 256 mm, a contact ratio of 0.6158; allowed a contact ratio "
+        ">= 1; the gears stand too far apart for their teeth; "
+        "leave it out for the mesh without backlash, or shift the profiles",
     ),
     (
         "gears.pinion.material=stele",

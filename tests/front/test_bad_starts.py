@@ -45,7 +45,7 @@ STARTS: dict[str, tuple[str, str, str]] = {
     ),
     "a centre distance too large": (
         "[gears]\n", '[gears]\ncentre_distance = "120 mm"\n',
-        "line 1: gears.contact_ratio: got ...",
+        "line 2: gears.centre_distance: got 120 mm, a contact ratio of ...",
     ),
     "a module in inches": (
         '"3 mm"', '"0.125 in"',

@@ -127,12 +127,12 @@ def test_own_speeds_widen_the_range(own: tuple[float, ...], low: float, high: fl
 def test_ranges_are_told_in_rpm() -> None:
     ranges = [(1000.0 * RPM, 1100.0 * RPM), (2000.0 * RPM, 2000.0 * RPM)]
     ends = (500.0 * RPM, 9000.0 * RPM)
-    assert told(ranges, ends) == "from 1000 to 1100 rpm, near 2000 rpm"
+    assert told(ranges, ends=ends) == "from 1000 to 1100 rpm, near 2000 rpm"
     assert (
-        told([*ranges, *ranges], ends)
+        told([*ranges, *ranges], ends=ends)
         == "from 1000 to 1100 rpm, near 2000 rpm, from 1000 to 1100 rpm and 1 more"
     )
-    assert told([(500.0 * RPM, 600.0 * RPM)], ends) == "up to 600 rpm"
-    assert told([(8000.0 * RPM, 9000.0 * RPM)], ends) == "from 8000 rpm on"
-    assert told([ends], ends) == "at every speed looked at"
+    assert told([(500.0 * RPM, 600.0 * RPM)], ends=ends) == "up to 600 rpm"
+    assert told([(8000.0 * RPM, 9000.0 * RPM)], ends=ends) == "from 8000 rpm on"
+    assert told([ends], ends=ends) == "at every speed looked at"
     assert [rpm(v * RPM) for v in (2.2712, 99.96, 12345.0)] == ["2.27", "100", "12300"]

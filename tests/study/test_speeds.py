@@ -52,5 +52,5 @@ def test_speeds_in_words():
     ]  # fmt: skip
     many = [(100.0 * RPM, 200.0 * RPM), (300.0 * RPM, 300.0 * RPM)]
     ends = (50.0 * RPM, 900.0 * RPM)
-    assert told(many, ends) == "from 100 to 200 rpm, near 300 rpm"
-    assert told(many * 3, ends).endswith(" and 3 more")
+    assert told(many, ends=ends) == "from 100 to 200 rpm, near 300 rpm"
+    assert told(many * 3, ends=ends).endswith(" and 3 more")

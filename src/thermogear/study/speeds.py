@@ -139,8 +139,8 @@ def rpm(speed: float) -> str:
     return f"{round(value, -size):.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
-def told(ranges: list[tuple[float, float]], ends: tuple[float, float], most: int = 3) -> str:
-    """Ranges of speed in rpm, the first few; ``ends`` [rad/s] of the look stay open."""
+def told(ranges: list[tuple[float, float]], *, ends: tuple[float, float], most: int = 3) -> str:
+    """``ranges`` of speed [rad/s] in rpm, the first few; ``ends`` [rad/s] of the look stay open."""
 
     def one(low: float, high: float) -> str:
         if low <= ends[0] and high >= ends[1]:

@@ -68,7 +68,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     ):  # fmt: skip
         over = f"from {rpm(speed.min())} to {rpm(speed.max())} rpm"
         most = f", for up to {100.0 * share.max():.0f} % of the time" * (name == "contact_loss")
-        sentence = f"{happens} {told(ranges, ends)}{most}." if ranges else f"{never} {over}."
+        sentence = f"{happens} {told(ranges, ends=ends)}{most}." if ranges else f"{never} {over}."
         value = 100.0 * float(np.mean(own_points)) if own_points.size else float("nan")
         if not own_points.size:
             words = f"{sentence[0].lower()}{sentence[1:]}"
@@ -78,7 +78,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
     yield answer(
         SPEEDS,
         "coexisting",
-        f"Two motions exist {told(several, ends)}: it may jump there, up and down elsewhere."
+        f"Two motions exist {told(several, ends=ends)}: it may jump there, up and down elsewhere."
         if several
         else "One motion exists at every speed looked at: no jump.",
         2.0 if _here(own, several) else 1.0,
