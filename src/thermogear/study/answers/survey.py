@@ -76,12 +76,11 @@ def notices(case: GearCase) -> Iterator[Notice]:
         )
     if case.accuracy is not None:
         yield Notice(
-            "info",
-            f"Flanks are one drawing from accuracy class {case.accuracy}: another seed "
-            "([flanks] seed) "
-            "moves speeds, dynamic factor and error by a tenth and more. They repeat in every "
-            "mesh period; pitch errors over a whole turn, which bring lines of the shaft, are not "
-            "modelled.",
+            "warning",
+            f"Flanks are one drawing from accuracy class {case.accuracy}. Another one may change "
+            "the error threefold, and whether the flanks part: try [flanks] seed = 2, 3, 4, or "
+            "give measured flanks. They repeat in every mesh period; pitch errors over a whole "
+            "turn, which bring lines of the shaft, are not modelled.",
         )
     yield Notice(
         "info",
