@@ -67,14 +67,15 @@ def test_a_gap_of_no_number_is_refused(value: float) -> None:
 @pytest.fixture
 def soft(monkeypatch: pytest.MonkeyPatch) -> None:
     """Teeth whose compliance is no number at the second position."""
-    known = mesh_system.unit_compliance
+    known = mesh_system.as_drawn
 
-    def broken(*given: object) -> np.ndarray:
-        values = known(*given)  # type: ignore[arg-type]
-        values[1] = np.nan
-        return values
+    def broken(*given: object) -> mesh_system.Drawn:
+        drawn = known(*given)  # type: ignore[arg-type]
+        tooth = drawn.tooth.copy()
+        tooth[:, 1] = np.nan
+        return drawn._replace(tooth=tooth)
 
-    monkeypatch.setattr(mesh_system, "unit_compliance", broken)
+    monkeypatch.setattr(mesh_system, "as_drawn", broken)
 
 
 @pytest.mark.usefixtures("soft")

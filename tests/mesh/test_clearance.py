@@ -23,7 +23,7 @@ from thermogear.gears.deviations import (
     Relief,
 )
 from thermogear.gears.loaded import loaded_contact, mesh_force
-from thermogear.mesh.clearance import clearance
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.excite import excitation
 from thermogear.mesh.load_shared import pair_springs
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
@@ -205,7 +205,7 @@ def test_the_tightest_pair_decides_not_a_mean(rig: GearPair, hot_rig: Operating)
         drive = hot.added_material(np.array([entering, leading]))[0]
         strain = rig.pinion.material.thermal_expansion * difference
         assert drive[1] - drive[0] == pytest.approx(strain * rig.base_pitch, rel=1e-9)
-        found = clearance(hot, phase)
+        found = Clearance(hot, phase)
         taken = hot.operating.half_backlash - found.half_backlash - found.error
         assert float(taken[0, 0]) == pytest.approx(drive[1], rel=0, abs=1e-16)
 
@@ -218,7 +218,7 @@ def test_one_pair_alone_takes_its_own_added_material_off_the_drive_side(
     hot = HotPair(rig, hot_rig, MeshModel.consistent().override(flank=flank))
     phase = np.linspace(rig.contact_ratio - 1.0 + 0.02, 1.0 - 0.02, 9)  # one pair in contact
     s = rig.path.a + phase * rig.base_pitch
-    found = clearance(hot, phase)
+    found = Clearance(hot, phase)
     if flank == "thesis":
         assert not np.any(found.error)
         return

@@ -49,12 +49,13 @@ def test_a_deviation_without_numbers_is_refused(rig: GearPair, hot_rig: Operatin
 @pytest.fixture
 def soft(monkeypatch: pytest.MonkeyPatch) -> None:
     """Teeth whose compliance is no number: the loaded contact cannot settle."""
-    known = mesh_system.unit_compliance
-    monkeypatch.setattr(
-        mesh_system,
-        "unit_compliance",
-        lambda *given: known(*given) * np.where(given[1] > 0, NAN, 1.0),
-    )
+    known = mesh_system.as_drawn
+
+    def broken(*given: object) -> mesh_system.Drawn:
+        drawn = known(*given)  # type: ignore[arg-type]
+        return drawn._replace(tooth=NAN * drawn.tooth)
+
+    monkeypatch.setattr(mesh_system, "as_drawn", broken)
 
 
 @pytest.mark.usefixtures("soft")

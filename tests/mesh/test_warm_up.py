@@ -15,7 +15,7 @@ from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Losses
 from thermogear.heat.transient import State, Stretch, follow
 from thermogear.mesh.balance import Gearbox, heat_balance, node_temperatures
-from thermogear.mesh.clearance import clearance
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import FACTORS, PHASES, Duty, WarmUp, warm_up, with_factors
@@ -146,7 +146,7 @@ def test_a_heavy_housing_makes_the_worst_moment_one_on_the_way(rig: GearPair) ->
     box = Gearbox(surroundings=Surroundings(housing_mass=400.0))
     found = run(rig, Duty.steady(314.159, 100.0, ambient=AMBIENT), gearbox=box)
     steady = heat_balance(rig, 314.159, 100.0, OIL, 125e-6, MODEL, gearbox=box)
-    left = clearance(HotPair(rig, steady.operating, MODEL), np.arange(PHASES) / PHASES)
+    left = Clearance(HotPair(rig, steady.operating, MODEL), np.arange(PHASES) / PHASES)
     for_good = float(left.half_backlash.min())
     assert 5.0 < found.worst.time / 60.0 < 120.0
     assert found.worst.half_backlash < for_good - 1e-8
@@ -167,7 +167,7 @@ def _gap(found: WarmUp, pair: GearPair, state: dict[str, np.ndarray]) -> np.ndar
         oil_temperature=state["oil"],
         temperatures=bodies,
     )
-    return clearance(HotPair(pair, at, MODEL), np.arange(PHASES) / PHASES).half_backlash.min(axis=1)
+    return Clearance(HotPair(pair, at, MODEL), np.arange(PHASES) / PHASES).half_backlash.min(axis=1)
 
 
 def test_a_jam_is_located_and_the_margin_ends_there(rig: GearPair) -> None:

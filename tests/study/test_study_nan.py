@@ -33,7 +33,12 @@ def test_a_fit_does_not_end_where_the_simulation_has_no_numbers(since: float) ->
 
 def test_no_relief_without_a_settled_contact(monkeypatch: pytest.MonkeyPatch) -> None:
     case = gear_case(load_case("rig"))
-    known = mesh_system.unit_compliance
-    monkeypatch.setattr(mesh_system, "unit_compliance", lambda *given: known(*given) * NAN)
+    known = mesh_system.as_drawn
+
+    def broken(*given: object) -> mesh_system.Drawn:
+        drawn = known(*given)  # type: ignore[arg-type]
+        return drawn._replace(tooth=NAN * drawn.tooth)
+
+    monkeypatch.setattr(mesh_system, "as_drawn", broken)
     with pytest.raises(ConvergenceError, match=r"^loaded contact: 100 of 100 positions did not"):
         relief_survey(case)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import difflib
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -94,14 +95,15 @@ class Lubricant:
     kg/m^3 (form of ISO/TR 15144-1 eq. 20, whose slope is 0.7 kg/(m^3 K)). ``kind`` is one of
     :data:`LUBRICANT_KINDS`. ``thermal_conductivity`` [W/(m K)] and ``specific_heat``
     [J/(kg K)] are taken constant. ``temperature_range`` [K] is where the line is trusted;
-    outside it the viscosity functions warn.
+    outside it the viscosity functions warn. ``walther_a``, ``walther_b`` and ``density_15`` may be
+    arrays, one entry for each operating point: oils side by side.
     """
 
     name: str
     kind: str
-    walther_a: float
-    walther_b: float
-    density_15: float
+    walther_a: float | Floats
+    walther_b: float | Floats
+    density_15: float | Floats
     source: str = "given by the user"
     density_slope: float = 0.7
     thermal_conductivity: float = 0.135
@@ -123,7 +125,7 @@ class Lubricant:
             "specific_heat",
         ):
             value = getattr(self, field)
-            if not (np.isfinite(value) and value > 0.0):
+            if not np.all(np.isfinite(value) & (np.asarray(value) > 0.0)):
                 raise InputError(f"lubricant.{field}", value, allowed="> 0, finite")
         if not (np.isfinite(self.density_slope) and self.density_slope >= 0.0):
             raise InputError(
@@ -137,6 +139,12 @@ class Lubricant:
                 f"{low} .. {high} K",
                 allowed="0 K < lower < upper",
             )
+
+    def part(self, places: Any) -> Lubricant:
+        """The oils of some operating points; an index with a new axis shapes them otherwise."""
+        lines = {n: getattr(self, n) for n in ("walther_a", "walther_b", "density_15")}
+        several = {n: line[places] for n, line in lines.items() if np.ndim(line)}
+        return replace(self, **several) if several else self
 
     @classmethod
     def from_two_points(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -41,6 +42,13 @@ def mesh_points(
         raise InputError(
             "flank", repr(flank), allowed="drive | back", fix=nearest(flank, ("drive", "back"))
         )
+    return _at(pair, phi.tobytes(), flank, extended)
+
+
+@lru_cache(maxsize=32)
+def _at(pair: GearPair, phases: bytes, flank: str, extended: bool) -> MeshPoints:
+    """Remembered: a heat balance, a row of temperatures, a sweep ask for the same places."""
+    phi = np.frombuffer(phases)
     pitch, start = pair.base_pitch, pair.path.a
     ranks = np.arange(-1, int(np.ceil(pair.contact_ratio - 1e-12)) + 1)
     if flank == "drive":

@@ -35,7 +35,7 @@ def weber_approach(
     half_width: ArrayLike,
     modulus: ArrayLike,
     poisson: float,
-    face_width: float,
+    face_width: float | Floats,
 ) -> Floats:
     """Approach [m] of one flank to its tooth's axis under a Hertzian line load.
 

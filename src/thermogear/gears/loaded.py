@@ -66,6 +66,13 @@ class LoadedMesh(NamedTuple):
         """Share of the positions at which a tip corner carries load, shape ``lead``."""
         return np.asarray((self.edge > 0).any(axis=-1).mean(axis=-1))
 
+    def wider(self, times: Floats) -> LoadedMesh:
+        """The same deflections of pairs ``times`` as wide under as much more load, each a case."""
+        curve, pairs = times[..., None], times[..., None, None]
+        return self._replace(
+            tangent=self.tangent * curve, secant=self.secant * curve, force=self.force * pairs
+        )
+
     def checked(self) -> LoadedMesh:
         """The same where every position settled; raises ConvergenceError where one did not."""
         lost = int(np.count_nonzero(~self.settled))

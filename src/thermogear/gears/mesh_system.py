@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,6 +78,42 @@ def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Flo
     return out
 
 
+class Drawn(NamedTuple):
+    """What the drawing alone decides of a mesh: unit compliances, radii [m]."""
+
+    tooth: Floats
+    body: Floats
+    depth: Floats
+    radius: Floats
+
+
+@lru_cache(maxsize=32)
+def as_drawn(pair: GearPair, phases: bytes, flank: str, model: LoadedModel) -> Drawn:
+    """Remembered: a heat balance, a row of temperatures, a sweep ask for the same places."""
+    points = mesh_points(pair, np.frombuffer(phases), flank, model.extended)
+    gears = (pair.pinion, pair.wheel)
+    strings = (points.point.pinion, points.point.wheel)
+    parameters = [_on_flank(gear, rho) for gear, rho in zip(gears, strings, strict=True)]
+    radius = np.maximum(
+        strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
+    )
+    depth = np.empty((2, *points.s.shape))
+    for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
+        at = flank_point(gear, t)
+        depth[i] = (at.x / np.cos(at.beta)) ** 2 / (4.0 * radius)
+    tooth = np.stack(
+        [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
+    )
+    # the pinion's load points against its rotation, the wheel's along it
+    body = np.stack(
+        [
+            _body_unit(g, t, sign, model)
+            for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
+        ]
+    )
+    return Drawn(tooth, body, depth, radius)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MeshSystem:
     """The compliances and gaps of a mesh at its positions: what the kernel solves.
@@ -112,8 +150,8 @@ class MeshSystem:
     ) -> MeshSystem:
         """Geometry, unit compliances and gaps; see :func:`loaded_contact` for the arguments."""
         points = mesh_points(pair, phase, flank, model.extended)
+        drawn = as_drawn(pair, np.asarray(phase, dtype=float).tobytes(), flank, model)
         positions, count = points.s.shape
-        gears = (pair.pinion, pair.wheel)
         gap, edge = first_touch(points, deviations)
         lead = np.broadcast_shapes(
             shape, gap.shape[:-2], *(np.shape(e) for m in moduli for e in (m.tooth, m.body))
@@ -127,15 +165,6 @@ class MeshSystem:
             for one in (gap, edge)
         )
 
-        strings = (points.point.pinion, points.point.wheel)
-        parameters = [_on_flank(gear, rho) for gear, rho in zip(gears, strings, strict=True)]
-        radius = np.maximum(
-            strings[0] * strings[1] / (strings[0] + strings[1]), 1e-3 * pair.pinion.module
-        )
-        depth = np.empty((2, positions, count))
-        for i, (gear, t) in enumerate(zip(gears, parameters, strict=True)):
-            at = flank_point(gear, t)
-            depth[i] = (at.x / np.cos(at.beta)) ** 2 / (4.0 * radius)
         tooth_modulus = np.stack([flat(m.tooth, lead=lead) for m in moduli], axis=-1)
         return cls(
             pair=pair,
@@ -143,18 +172,10 @@ class MeshSystem:
             lead=lead,
             gaps=np.ascontiguousarray(gaps, dtype=float),
             edges=np.asarray(edges, dtype=np.int8),
-            tooth=np.stack(
-                [unit_compliance(g, t, model.start) for g, t in zip(gears, parameters, strict=True)]
-            ),
-            # the pinion's load points against its rotation, the wheel's along it
-            body=np.stack(
-                [
-                    _body_unit(g, t, sign, model)
-                    for g, t, sign in zip(gears, parameters, (-1, 1), strict=True)
-                ]
-            ),
-            depth=depth,
-            radius=radius,
+            tooth=drawn.tooth,
+            body=drawn.body,
+            depth=drawn.depth,
+            radius=drawn.radius,
             tooth_modulus=tooth_modulus,
             body_modulus=np.stack([flat(m.body, lead=lead) for m in moduli], axis=-1),
             reduced=reduced_modulus(

@@ -162,7 +162,7 @@ def ring_compliance(
     other: ArrayLike | None = None,
     pitches: int = 0,
     modulus: ArrayLike | None = None,
-    face_width: float | None = None,
+    face_width: float | Floats | None = None,
     windup: bool = True,
 ) -> Floats:
     """Deflection [m/N] at a tooth loaded at ``t`` by a unit force on a tooth ``pitches`` behind.

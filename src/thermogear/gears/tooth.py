@@ -113,7 +113,7 @@ def tooth_compliances(
     t: ArrayLike,
     start: str = "30-degree",
     modulus: ArrayLike | None = None,
-    face_width: float | None = None,
+    face_width: float | Floats | None = None,
 ) -> ToothCompliances:
     """Beam compliances of one tooth under a unit normal force on its flank [m/N].
 

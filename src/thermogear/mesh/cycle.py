@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.errors import InputError, ValidityWarning, nearest
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.gears.contact import (
     entrainment_velocity,
@@ -19,25 +21,27 @@ from thermogear.gears.contact import (
     sliding_velocity,
 )
 from thermogear.gears.deviations import Deviation, PitchError
+from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.heat.expansion import base_circle_growth
 from thermogear.heat.gearbox import body_radius
 from thermogear.heat.losses import efficiency
 from thermogear.heat.temperature import conduction_power, contact_temperature
-from thermogear.mesh.clearance import clearance
-from thermogear.mesh.elastic import ElasticPair, elastic_pair, mean_stiffness_of_body
+from thermogear.mesh.clearance import Clearance
+from thermogear.mesh.elastic import ElasticPair, MeshCurves, elastic_pair, mean_stiffness_of_body
 from thermogear.mesh.friction_path import FrictionPath
-from thermogear.mesh.mesh_heat import mesh_heat
+from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
 
 Floats = NDArray[np.float64]
-Variables = dict[str, tuple[tuple[str, ...], ArrayLike]]
+Flags = NDArray[np.bool_]
 
 PATH = ("operating", "path_position")
 PHASE = ("operating", "mesh_phase")
 POINT = ("operating",)
+ALONG = ("path_position",)
 
 
 def mesh_cycle(
@@ -48,6 +52,7 @@ def mesh_cycle(
     deviations: Sequence[Deviation] = (),
     path_positions: int = 201,
     mesh_positions: int = 512,
+    want: Collection[str] = (),
 ) -> xr.Dataset:
     """Everything quasi-static about ``pair`` at its operating points, in SI.
 
@@ -67,8 +72,11 @@ def mesh_cycle(
     is nan; ``edge_contact_share`` is the share of the mesh period with such a corner, beyond A
     and E too, nan where the stiffness model knows none.
 
+    ``want``: names of stored quantities; only they are computed, with ``status``, which then says
+    ``not_converged`` where one of them is not known. Left out, all are.
+
     ``deviations`` of the flanks (relief, profile, ...) enter the loaded contact and the clearance
-    (:func:`~thermogear.mesh.clearance.clearance`); the cold half backlash is that of the flanks
+    (:func:`~thermogear.mesh.clearance.Clearance`); the cold half backlash is that of the flanks
     without them. The cycle is one mesh period: pitch errors, which differ from tooth to tooth,
     enter with the teeth of the first period alone, and a warning says so. ``model`` defaults to
     :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
@@ -86,32 +94,26 @@ def mesh_cycle(
             stacklevel=2,
         )
     hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
-    elastic = elastic_pair(hot, deviations)
     s = path_of_contact(pair, path_positions)
     phase = np.arange(mesh_positions) / mesh_positions
-
-    variables: Variables = {}
-    path = FrictionPath(elastic, s)
-    variables |= _contact(path)
-    variables |= _deformation(hot, s)
-    variables |= {name: (PATH, k) for name, k in elastic.parts(s).items()}
-    variables["pair_stiffness"] = (PATH, elastic.pair_stiffness(s))
-    variables |= _mesh(hot, elastic, phase)
-    status = np.where(path.settled, variables["status"][1], STATUS.index("not_converged"))
-    variables["status"] = (POINT, status)
-
-    r1, r2 = flank_radii(pair, s)
+    names = _asked(want)
+    computed = _Cycle(hot, tuple(deviations), s, phase)
+    variables = {name: (dims, of(computed)) for name, (dims, of) in TABLE.items() if name in names}
+    coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
+        "pinion_speed": (POINT, operating.speed),
+        "pinion_torque": (POINT, operating.torque),
+    }
+    if any("path_position" in dims for dims, _ in variables.values()):
+        r1, r2 = flank_radii(pair, s)
+        coordinates |= {"path_position": (ALONG, s), "pinion_radius": (ALONG, r1)}
+        coordinates["wheel_radius"] = (ALONG, r2)
+    if any("mesh_phase" in dims for dims, _ in variables.values()):
+        coordinates["mesh_phase"] = (("mesh_phase",), phase)
+    variables["status"] = (POINT, computed.status(names))
     points = pair.path
     return label(
         variables,
-        {
-            "pinion_speed": (POINT, operating.speed),
-            "pinion_torque": (POINT, operating.torque),
-            "path_position": (("path_position",), s),
-            "pinion_radius": (("path_position",), r1),
-            "wheel_radius": (("path_position",), r2),
-            "mesh_phase": (("mesh_phase",), phase),
-        },
+        coordinates,
         {
             "bundle": hot.model.name,
             "choices": json.dumps(hot.model.choices()),
@@ -121,90 +123,111 @@ def mesh_cycle(
     )
 
 
-def _contact(path: FrictionPath) -> Variables:
-    """Kinematics, load, Hertz contact, film, friction and flash along the path."""
-    hot, s = path.hot, path.s
-    pair, speed = hot.pair, hot.operating.speed[:, None]
-    v1, v2 = path.velocities
-    first, second = path.body_temperatures
-    flash = path.flash(path.friction)
-    least, greatest = path.band
-    found: dict[str, ArrayLike] = {
-        "pinion_rolling_velocity": v1,
-        "wheel_rolling_velocity": v2,
-        "sliding_velocity": sliding_velocity(pair, speed, s),
-        "entrainment_velocity": entrainment_velocity(pair, speed, s),
-        "load_share": path.share,
-        "line_load": path.line_load,
-        "hertz_half_width": path.half_width,
-        "hertz_pressure": np.where(path.edge > 0, np.nan, path.pressure),
-        "film_thickness": path.film,
-        "film_parameter": path.film_parameter,
-        "friction_coefficient": path.friction,
-        "friction_coefficient_mixed": path.mixed,
-        "friction_coefficient_dry": path.dry,
-        "friction_coefficient_least": least,
-        "friction_coefficient_greatest": greatest,
-        "flash_temperature": flash,
-        "flash_temperature_mixed": path.flash(path.mixed),
-        "flash_temperature_dry": path.flash(path.dry),
-        "pinion_heat_share": path.heat_share,
-        "contact_temperature": contact_temperature(
-            flash, path.heat_share, bulk_1=first, bulk_2=second
-        ),
-        "pinion_body_temperature": first,
-        "wheel_body_temperature": second,
-    }
-    shape, known = (hot.count, s.size), path.settled[:, None]
-    variables: Variables = {
-        name: (PATH, np.where(known, np.broadcast_to(np.asarray(values), shape), np.nan))
-        for name, values in found.items()
-    }
-    means = mesh_heat(path.elastic)
-    power, share, beyond, conductance = (
-        np.where(means.settled, values, np.nan)
-        for values in (means.power, means.partition, means.beyond, means.conductance)
-    )
-    variables |= {
-        "edge_contact": (PATH, path.edge),
-        "friction_outside_range": (
-            PATH,
-            np.broadcast_to(path.outside, shape).astype(np.int8),
-        ),
-        "film_outside_range": (POINT, path.beyond_oil.astype(np.int8)),
-        "reduced_radius": (("path_position",), path.radius),
-        "normal_force": (POINT, path.elastic.force),
-        "dynamic_viscosity": (POINT, path.viscosity[:, 0]),
-        "frictional_power": (POINT, power),
-        "pinion_share_of_heat": (POINT, share),
-        "power_off_the_path": (POINT, beyond),
-        "flank_conductance": (POINT, conductance),
-        "mesh_efficiency": (
-            POINT,
-            efficiency(power=hot.operating.speed * hot.operating.torque, loss=power),
-        ),
-    }
-    return variables
+def _asked(want: Collection[str]) -> Collection[str]:
+    """The names to compute; all without any."""
+    for name in want:
+        if name not in TABLE and name != "status":
+            raise InputError("want", repr(name), fix=nearest(name, TABLE))
+    return frozenset(want) or TABLE.keys()
 
 
-def _deformation(hot: HotPair, s: Floats) -> Variables:
-    """Growth of both flanks along the path, and what the assumed fields imply."""
-    pair, operating = hot.pair, hot.operating
-    first, second = hot.growth(s)
-    variables: Variables = {
-        "pinion_deformation": (PATH, first),
-        "wheel_deformation": (PATH, second),
-        "deformation_sum": (PATH, first + second),
-    }
-    t = operating.temperatures
-    for name, gear, bore, body, tip in (
-        ("pinion", pair.pinion, t.pinion_bore, t.pinion_body, t.pinion_addendum),
-        ("wheel", pair.wheel, t.wheel_bore, t.wheel_body, t.wheel_addendum),
-    ):
-        # what passes the body node enters the bore; without one the whole field carries it
-        known = body is not None and hot.model.flank != "thesis"
-        growth = base_circle_growth(gear, hot.field(gear), hot.model.bore)
-        variables[f"{name}_base_growth"] = (POINT, np.broadcast_to(growth.ravel(), (hot.count,)))
+@dataclass(frozen=True, eq=False)
+class _Cycle:
+    """What the quantities of one cycle are made of, each computed when first asked for."""
+
+    hot: HotPair
+    deviations: tuple[Deviation, ...]
+    s: Floats
+    phase: Floats
+
+    @cached_property
+    def elastic(self) -> ElasticPair:
+        return elastic_pair(self.hot, self.deviations)
+
+    # --- along the path ---------------------------------------------------------------------
+    @cached_property
+    def path(self) -> FrictionPath:
+        return FrictionPath(self.elastic, self.s)
+
+    @cached_property
+    def heat(self) -> MeshHeat:
+        return mesh_heat(self.elastic)
+
+    @cached_property
+    def growth(self) -> tuple[Floats, Floats]:
+        return self.hot.growth(self.s)
+
+    @cached_property
+    def parts(self) -> dict[str, Floats]:
+        return self.elastic.parts(self.s)
+
+    @cached_property
+    def flash(self) -> Floats:
+        return self.path.flash(self.path.friction)
+
+    # --- over the mesh phase ----------------------------------------------------------------
+    @cached_property
+    def curves(self) -> MeshCurves:
+        return self.elastic.over(self.phase)
+
+    @cached_property
+    def thermal(self) -> Floats:
+        if self.hot.model.thermal_stiffness != "thesis":
+            return np.zeros_like(self.curves.stiffness)
+        return thesis_thermal_stiffness(self.hot, self.phase, self.elastic.pair_stiffness)
+
+    @cached_property
+    def stiffness(self) -> Floats:
+        return self.curves.stiffness + self.thermal
+
+    @cached_property
+    def gap(self) -> Clearance:
+        return Clearance(self.hot, self.phase, self.elastic.deviations)
+
+    @cached_property
+    def least(self) -> Floats:
+        return np.asarray(self.gap.half_backlash.min(axis=1))
+
+    @cached_property
+    def rim(self) -> Floats:
+        return self._of_body("rim")
+
+    @cached_property
+    def clamped(self) -> Floats:
+        return self._of_body("bore-clamped")
+
+    def _of_body(self, body: str) -> Floats:
+        model = self.hot.model
+        if (model.stiffness, model.body, model.spring) == ("loaded", body, "tangent"):
+            return np.asarray(self.curves.stiffness.mean(axis=-1))
+        return mean_stiffness_of_body(self.elastic, self.phase, body)
+
+    def status(self, names: Collection[str]) -> NDArray[np.int64]:
+        """Where the gap is used up, and where what is asked for is not known."""
+        found = np.where(self.least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))
+        known = np.isfinite(self.stiffness).all(axis=1)
+        for name, mean in (("rim_stiffness", "rim"), ("bore_clamped_stiffness", "clamped")):
+            if name in names:
+                known &= np.isfinite(getattr(self, mean))
+        if any(name in CONTACT or name == "edge_contact" for name in names):
+            known &= self.path.settled
+        return np.where(known, found, STATUS.index("not_converged"))
+
+    # --- per gear ---------------------------------------------------------------------------
+    def base_growth(self, gear: Gear) -> Floats:
+        times = self.hot.expansion(gear)
+        growth = times * base_circle_growth(gear, self.hot.field(gear), self.hot.model.bore)
+        return np.broadcast_to(np.ravel(growth), (self.hot.count,))
+
+    def shaft_heat(self, gear: Gear) -> Floats:
+        """What passes the body node enters the bore; without one the whole field carries it."""
+        t = self.hot.temperatures
+        bore, body, tip = (
+            (t.pinion_bore, t.pinion_body, t.pinion_addendum)
+            if gear is self.hot.pair.pinion
+            else (t.wheel_bore, t.wheel_body, t.wheel_addendum)
+        )
+        known = body is not None and self.hot.model.flank != "thesis"
         power = conduction_power(
             bore_radius=gear.bore_radius,
             tip_radius=body_radius(gear) if known else gear.tip_radius,
@@ -213,45 +236,133 @@ def _deformation(hot: HotPair, s: Floats) -> Variables:
             conductivity=gear.material.thermal_conductivity,
             face_width=gear.face_width,
         )
-        variables[f"{name}_shaft_heat"] = (POINT, np.broadcast_to(power, (hot.count,)))
-    return variables
+        return np.broadcast_to(power * np.ravel(self.hot.widened), (self.hot.count,))
 
 
-def _mesh(hot: HotPair, elastic: ElasticPair, phase: Floats) -> Variables:
-    """Stiffness and backlash over the mesh phase, with the figures made of them."""
-    k, error, loaded_error, edge_share = elastic.over(phase)
-    thermal = (
-        thesis_thermal_stiffness(hot, phase, elastic.pair_stiffness)
-        if hot.model.thermal_stiffness == "thesis"
-        else np.zeros_like(k)
-    )
-    total = k + thermal
-    backlash = clearance(hot, phase, elastic.deviations)
-    least = backlash.half_backlash.min(axis=1)
-    status = np.where(least > 0.0, STATUS.index("ok"), STATUS.index("jammed"))
-    rim, clamped = (mean_stiffness_of_body(elastic, phase, b) for b in ("rim", "bore-clamped"))
-    known = np.isfinite(total).all(axis=1) & np.isfinite(rim) & np.isfinite(clamped)
-    status[~known] = STATUS.index("not_converged")
-    highest, lowest = total.max(axis=1), total.min(axis=1)
-    return {
-        "elastic_stiffness": (PHASE, k),
-        "thermal_stiffness": (PHASE, thermal),
-        "mesh_stiffness": (PHASE, total),
-        "half_backlash_curve": (PHASE, backlash.half_backlash),
-        "kinematic_error": (PHASE, backlash.error),
-        "spring_error": (PHASE, backlash.error if error is None else error),
-        "transmission_error": (PHASE, loaded_error),
-        "mean_stiffness": (POINT, total.mean(axis=1)),
-        "rim_stiffness": (POINT, rim),
-        "bore_clamped_stiffness": (POINT, clamped),
-        "peak_to_peak_stiffness": (POINT, highest - lowest),
-        "mid_range_stiffness": (POINT, 0.5 * (highest + lowest)),
-        # counted from the least, so that a constant gap keeps its last bit
-        "half_backlash": (POINT, least + (backlash.half_backlash - least[:, None]).mean(axis=1)),
-        "cold_half_backlash": (POINT, np.full(hot.count, hot.operating.half_backlash)),
-        "least_half_backlash": (POINT, least),
-        "jam_temperature": (POINT, backlash.jam_temperature),
-        "proportional_jam_temperature": (POINT, backlash.proportional_jam_temperature),
-        "edge_contact_share": (POINT, edge_share),
-        "status": (POINT, status),
-    }
+Made = Callable[[_Cycle], ArrayLike]
+
+
+def _of_contact(of: Made, c: _Cycle) -> Floats:
+    """Over the path of contact; nan where the loaded contact is not known."""
+    values = np.broadcast_to(np.asarray(of(c)), (c.hot.count, c.s.size))
+    return np.where(c.path.settled[:, None], values, np.nan)
+
+
+def _of_heat(name: str, c: _Cycle) -> Floats:
+    """A time mean over the mesh; nan where the loaded contact is not known."""
+    return np.where(c.heat.settled, getattr(c.heat, name), np.nan)
+
+
+def _kinematic(law: Callable[..., Floats], c: _Cycle) -> Floats:
+    return law(c.hot.pair, c.hot.operating.speed[:, None], c.s)
+
+
+CONTACT: dict[str, Made] = {
+    "pinion_rolling_velocity": lambda c: c.path.velocities[0],
+    "wheel_rolling_velocity": lambda c: c.path.velocities[1],
+    "sliding_velocity": partial(_kinematic, sliding_velocity),
+    "entrainment_velocity": partial(_kinematic, entrainment_velocity),
+    "load_share": lambda c: c.path.share,
+    "line_load": lambda c: c.path.line_load,
+    "hertz_half_width": lambda c: c.path.half_width,
+    "hertz_pressure": lambda c: np.where(c.path.edge > 0, np.nan, c.path.pressure),
+    "film_thickness": lambda c: c.path.film,
+    "film_parameter": lambda c: c.path.film_parameter,
+    "friction_coefficient": lambda c: c.path.friction,
+    "friction_coefficient_mixed": lambda c: c.path.mixed,
+    "friction_coefficient_dry": lambda c: c.path.dry,
+    "friction_coefficient_least": lambda c: c.path.band[0],
+    "friction_coefficient_greatest": lambda c: c.path.band[1],
+    "flash_temperature": lambda c: c.flash,
+    "flash_temperature_mixed": lambda c: c.path.flash(c.path.mixed),
+    "flash_temperature_dry": lambda c: c.path.flash(c.path.dry),
+    "pinion_heat_share": lambda c: c.path.heat_share,
+    "contact_temperature": lambda c: contact_temperature(
+        c.flash,
+        c.path.heat_share,
+        bulk_1=c.path.body_temperatures[0],
+        bulk_2=c.path.body_temperatures[1],
+    ),
+    "pinion_body_temperature": lambda c: c.path.body_temperatures[0],
+    "wheel_body_temperature": lambda c: c.path.body_temperatures[1],
+}
+"""Of one tooth pair in its contact: load, Hertz, film, friction, flash."""
+
+SPRINGS = (
+    "hertz_stiffness",
+    *(
+        f"{gear}_{part}_stiffness"
+        for gear in ("pinion", "wheel")
+        for part in ("bending", "shear", "axial", "body")
+    ),
+)
+"""The springs of one tooth pair, in the order of storage."""
+
+
+def _spring(name: str, c: _Cycle) -> Floats:
+    return c.parts[name]
+
+
+TABLE: dict[str, tuple[tuple[str, ...], Made]] = {
+    **{name: (PATH, partial(_of_contact, of)) for name, of in CONTACT.items()},
+    "edge_contact": (PATH, lambda c: c.path.edge),
+    "friction_outside_range": (
+        PATH,
+        lambda c: np.broadcast_to(c.path.outside, (c.hot.count, c.s.size)).astype(np.int8),
+    ),
+    "film_outside_range": (POINT, lambda c: c.path.beyond_oil.astype(np.int8)),
+    "reduced_radius": (ALONG, lambda c: c.path.radius),
+    "normal_force": (POINT, lambda c: c.elastic.force),
+    "dynamic_viscosity": (POINT, lambda c: c.path.viscosity[:, 0]),
+    "frictional_power": (POINT, partial(_of_heat, "power")),
+    "pinion_share_of_heat": (POINT, partial(_of_heat, "partition")),
+    "power_off_the_path": (POINT, partial(_of_heat, "beyond")),
+    "flank_conductance": (POINT, partial(_of_heat, "conductance")),
+    "mesh_efficiency": (
+        POINT,
+        lambda c: efficiency(
+            power=c.hot.operating.speed * c.hot.operating.torque, loss=_of_heat("power", c)
+        ),
+    ),
+    "pinion_deformation": (PATH, lambda c: c.growth[0]),
+    "wheel_deformation": (PATH, lambda c: c.growth[1]),
+    "deformation_sum": (PATH, lambda c: c.growth[0] + c.growth[1]),
+    "pinion_base_growth": (POINT, lambda c: c.base_growth(c.hot.pair.pinion)),
+    "pinion_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.pinion)),
+    "wheel_base_growth": (POINT, lambda c: c.base_growth(c.hot.pair.wheel)),
+    "wheel_shaft_heat": (POINT, lambda c: c.shaft_heat(c.hot.pair.wheel)),
+    **{name: (PATH, partial(_spring, name)) for name in SPRINGS},
+    "pair_stiffness": (PATH, lambda c: c.elastic.pair_stiffness(c.s)),
+    "elastic_stiffness": (PHASE, lambda c: c.curves.stiffness),
+    "thermal_stiffness": (PHASE, lambda c: c.thermal),
+    "mesh_stiffness": (PHASE, lambda c: c.stiffness),
+    "half_backlash_curve": (PHASE, lambda c: c.gap.half_backlash),
+    "kinematic_error": (PHASE, lambda c: c.gap.error),
+    "spring_error": (
+        PHASE,
+        lambda c: c.gap.error if c.curves.spring_error is None else c.curves.spring_error,
+    ),
+    "transmission_error": (PHASE, lambda c: c.curves.transmission_error),
+    "mean_stiffness": (POINT, lambda c: c.stiffness.mean(axis=1)),
+    "rim_stiffness": (POINT, lambda c: c.rim),
+    "bore_clamped_stiffness": (POINT, lambda c: c.clamped),
+    "peak_to_peak_stiffness": (
+        POINT,
+        lambda c: c.stiffness.max(axis=1) - c.stiffness.min(axis=1),
+    ),
+    "mid_range_stiffness": (
+        POINT,
+        lambda c: 0.5 * (c.stiffness.max(axis=1) + c.stiffness.min(axis=1)),
+    ),
+    # counted from the least, so that a constant gap keeps its last bit
+    "half_backlash": (
+        POINT,
+        lambda c: c.least + (c.gap.half_backlash - c.least[:, None]).mean(axis=1),
+    ),
+    "cold_half_backlash": (POINT, lambda c: c.hot.half_backlash),
+    "least_half_backlash": (POINT, lambda c: c.least),
+    "jam_temperature": (POINT, lambda c: c.gap.jam_temperature),
+    "proportional_jam_temperature": (POINT, lambda c: c.gap.proportional_jam_temperature),
+    "edge_contact_share": (POINT, lambda c: c.curves.edge_share),
+}
+"""Every stored quantity, in the order of storage: its dimensions and what it is made of."""

@@ -145,10 +145,12 @@ class TextbookPair(ElasticPair):
         parts = {"hertz_stiffness": found.contact}
         for name, gear in (("pinion", found.pinion), ("wheel", found.wheel)):
             parts |= _named(name, gear.tooth, gear.foundation)
-        return self._stiffnesses(parts, s)
+        wider = self.hot.widened
+        return self._stiffnesses({name: part / wider for name, part in parts.items()}, s)
 
     def over(self, phase: Floats) -> MeshCurves:
         k = mesh_stiffness(self.pair, phase[None, :], self.start, *self.moduli)
+        k = k * self.hot.widened
         unsaid = np.full(self.hot.count, np.nan)
         return MeshCurves(k, None, self.force[:, None] / k, unsaid)
 
@@ -164,21 +166,27 @@ class LoadedPair(ElasticPair):
     """
 
     def solve(self, phase: Floats) -> LoadedMesh:
-        """The loaded contact at ``phase``, lead axis (count,)."""
+        """The loaded contact at ``phase``, lead axis (count,).
+
+        All compliances fall with the width alike: a pair b times as wide under F deflects as the
+        pair itself under F/b, with b times the stiffness and the force of each tooth pair.
+        """
         moduli = [Moduli(tooth=np.ravel(m.tooth), body=np.ravel(m.body)) for m in self.moduli]
-        return solve_mesh(
+        wider = np.ravel(self.hot.widened)
+        solved = solve_mesh(
             self.pair,
-            self.force,
+            self.force / wider,
             phase,
             pinion=moduli[0],
             wheel=moduli[1],
             deviations=(*self.deviations, ThermalDeviation(self.hot)),
             model=LoadedModel(body=self.hot.model.body.replace("-", "_")),
         )
+        return solved if self.hot.operating.varied.face_width is None else solved.wider(wider)
 
     def parts(self, s: Floats) -> dict[str, Floats]:
         compliances: dict[str, Floats] = {}
-        pair, width = self.pair, self.pair.face_width
+        pair, width = self.pair, self.hot.face_width
         carried = self.share(s).share * self.force[:, None]
         load = np.maximum(carried, LEAST_LINE_LOAD * width)
         half_width = hertz_half_width(load / width, reduced_radius(pair, s), self.contact_modulus)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import ConvergenceError, ValidityWarning
+from thermogear.base.materials import Lubricant
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.contact import (
     flank_radii,
@@ -91,10 +92,15 @@ class FrictionPath:
             found = np.asarray(operating.oil_temperature, dtype=float)
         return np.broadcast_to(found, (self.hot.count,))[:, None]
 
+    @property
+    def _oil(self) -> Lubricant:
+        """The oil of each point as a column against the positions."""
+        return self.hot.operating.lubricant.part((slice(None), None))
+
     @cached_property
     def inlet_oil(self) -> InletOil:
         """The oil at the film's inlet; beyond the oil's range extrapolated, see ``beyond_oil``."""
-        oil, warm = self.hot.operating.lubricant, self.inlet_temperature
+        oil, warm = self._oil, self.inlet_temperature
         with warnings.catch_warnings():
             if self.hot.model.inlet == "body":
                 # the flanks' temperature is a result: a status, where a given one is warned of
@@ -139,7 +145,7 @@ class FrictionPath:
         operating = self.hot.operating
         supplied = np.asarray(operating.oil_temperature, dtype=float)
         spread = np.broadcast_to(supplied, (self.hot.count,))[:, None]
-        return dynamic_viscosity(operating.lubricant, spread)
+        return dynamic_viscosity(self._oil, spread)
 
     @cached_property
     def velocities(self) -> tuple[Floats, Floats]:
@@ -179,7 +185,7 @@ class FrictionPath:
     @cached_property
     def line_load(self) -> Floats:
         """w [N/m] of this tooth pair."""
-        return np.asarray(self.share * self.elastic.force[:, None] / self.hot.pair.face_width)
+        return np.asarray(self.share * self.elastic.force[:, None] / self.hot.face_width)
 
     @cached_property
     def radius(self) -> Floats:
@@ -229,8 +235,8 @@ class FrictionPath:
         pair = self.hot.pair
         return film_parameter(
             self.film,
-            roughness_1=rms_roughness(pair.pinion.roughness),
-            roughness_2=rms_roughness(pair.wheel.roughness),
+            roughness_1=rms_roughness(self.hot.roughness(pair.pinion)),
+            roughness_2=rms_roughness(self.hot.roughness(pair.wheel)),
         )
 
     @cached_property
@@ -239,8 +245,8 @@ class FrictionPath:
         pair = self.hot.pair
         return mean_roughness_film_parameter(
             self._film_by("grubin"),
-            roughness_1=pair.pinion.roughness,
-            roughness_2=pair.wheel.roughness,
+            roughness_1=self.hot.roughness(pair.pinion),
+            roughness_2=self.hot.roughness(pair.wheel),
         )
 
     @cached_property
@@ -262,17 +268,17 @@ class FrictionPath:
             reduced_radius=self.radius,
             pressure=self.pressure,
             viscosity=self.viscosity,
-            roughness=0.5 * (pair.pinion.roughness + pair.wheel.roughness),
+            roughness=0.5 * (self.hot.roughness(pair.pinion) + self.hot.roughness(pair.wheel)),
             kinematic_viscosity=self.inlet_oil.kinematic,
             film_parameter=self.film_parameter,
             central_film_parameter=self.central_film_parameter,
             bath_viscosity=self.bath_viscosity,
             pressure_viscosity=self.inlet_oil.pressure,
             pitch_point=PitchPoint(
-                line_load=self.elastic.force[:, None] / pair.face_width,
+                line_load=self.elastic.force[:, None] / self.hot.face_width,
                 sum_speed=at_1 + at_2,
                 reduced_radius=reduced_radius(pair, pitch),
-                face_width=pair.face_width,
+                face_width=self.hot.face_width,
             ),
             lubricant_kind=oil.kind,
         )
@@ -285,9 +291,14 @@ class FrictionPath:
     @cached_property
     def mixed(self) -> Floats:
         """Benedict and Kelley's; nan beyond their roughness, where the law has no value."""
-        if float(np.max(np.asarray(self.state.roughness))) >= ROUGHNESS_LIMIT:
+        rough = np.asarray(self.state.roughness)
+        fine = rough < ROUGHNESS_LIMIT
+        if not np.any(fine):
             return np.full(self.state.shape, np.nan)
-        return BenedictKelley()(self.state)
+        if np.all(fine):
+            return BenedictKelley()(self.state)
+        smooth = replace(self.state, roughness=np.where(fine, rough, rough[fine].min()))
+        return np.where(fine, BenedictKelley()(smooth), np.nan)
 
     @cached_property
     def friction(self) -> Floats:

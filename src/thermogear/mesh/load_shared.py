@@ -48,7 +48,7 @@ def pair_springs(
     the backlash beside them is the cold one. The force begins where the tightest pair touches
     (:func:`~thermogear.gears.touch.first_touch`), halfway to the mean load's deflection the
     springs take over: free play and jam are those of
-    :func:`~thermogear.mesh.clearance.clearance`.
+    :func:`~thermogear.mesh.clearance.Clearance`.
 
     ``operating`` the place of the operating point in ``hot``, ``flank`` "drive" or "back",
     ``positions`` samples of the mesh phase. Raises InputError for a torque of 0, where no load

@@ -58,7 +58,7 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
         s, weights = _between_steps(pair)
         shares = None
     path = FrictionPath(elastic, s, shares)
-    scale = pair.face_width / pair.base_pitch * weights
+    scale = elastic.hot.face_width / pair.base_pitch * weights
     heat = np.asarray(path.heat * scale)
     power = heat.sum(axis=-1)
     first = (heat * path.heat_share).sum(axis=-1)

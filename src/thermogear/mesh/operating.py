@@ -70,6 +70,41 @@ class Temperatures:
         return {name: np.asarray(t, dtype=float) for name, t in known.items() if t is not None}
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Varied:
+    """What of a pair differs between its operating points, SI, each (operating,); None: alike.
+
+    ``half_backlash`` cold, ``face_width`` the common one, roughness Ra, Young's modulus at 20 C and
+    thermal expansion of each gear, the housing's expansion. Everything else of the pair, its
+    geometry above all, is one for all points.
+    """
+
+    half_backlash: Floats | None = None
+    face_width: Floats | None = None
+    pinion_roughness: Floats | None = None
+    wheel_roughness: Floats | None = None
+    pinion_modulus: Floats | None = None
+    wheel_modulus: Floats | None = None
+    pinion_expansion: Floats | None = None
+    wheel_expansion: Floats | None = None
+    housing_expansion: Floats | None = None
+
+    @property
+    def grows(self) -> bool:
+        """Whether the points' gears or housing expand differently."""
+        given = (self.pinion_expansion, self.wheel_expansion, self.housing_expansion)
+        return any(one is not None for one in given)
+
+    def part(self, places: slice | NDArray[np.int64]) -> Varied:
+        """Some of the operating points alone."""
+        given = {f.name: getattr(self, f.name) for f in fields(self)}
+        return Varied(**{k: None if v is None else v[places] for k, v in given.items()})
+
+
+ALIKE = Varied()
+"""Nothing of the pair differs."""
+
+
 @dataclass(frozen=True)
 class Operating:
     """Operating points of a gear pair (SI), arrays of one shape ``(operating,)``.
@@ -80,7 +115,8 @@ class Operating:
     torque x ratio), ``half_backlash`` cold half backlash b [m] along the line of action,
     ``oil_temperature`` [K] of the oil supply; ``housing`` the material that moves the axes apart
     when it is warm. ``flank_temperature`` [K] where the film forms, for a model whose inlet is the
-    body's; left out, the mean of both addenda.
+    body's; left out, the mean of both addenda. ``varied``: what of the pair itself differs between
+    the points, in place of the pair's and of ``half_backlash``.
     """
 
     speed: Floats
@@ -91,6 +127,7 @@ class Operating:
     half_backlash: float
     housing: Material = MATERIALS["steel"]
     flank_temperature: ArrayLike | None = None
+    varied: Varied = ALIKE
 
     def __post_init__(self) -> None:
         t = self.temperatures
@@ -122,7 +159,7 @@ class Operating:
         """The operating point ``place`` alone."""
         return self.part(slice(place, place + 1))
 
-    def part(self, places: slice) -> Operating:
+    def part(self, places: slice | NDArray[np.int64]) -> Operating:
         """Some of the operating points alone."""
 
         def at(values: ArrayLike) -> ArrayLike:
@@ -137,6 +174,8 @@ class Operating:
             oil_temperature=at(self.oil_temperature),
             temperatures=replace(self.temperatures, **bodies),
             flank_temperature=None if self.flank_temperature is None else at(self.flanks),
+            lubricant=self.lubricant.part(places),
+            varied=self.varied.part(places),
         )
 
     @property
@@ -151,11 +190,12 @@ class Operating:
         cold = self.temperatures.cold()
         return replace(self, temperatures=cold, flank_temperature=self.flanks)
 
-    def with_gears_at(self, gear_temperature: float) -> Operating:
+    def with_gears_at(self, gear_temperature: ArrayLike) -> Operating:
         """The same points with both addenda at ``gear_temperature`` [K], the rest in proportion.
 
-        Every excess over the reference scales with the gears': a bore's with its own addendum's,
-        housing's and oil's with the mean of both addenda. At the reference all is as it is drawn.
+        A number, or one for each point. Every excess over the reference scales with the gears': a
+        bore's with its own addendum's, housing's and oil's with the mean of both addenda. At the
+        reference all is as it is drawn.
         Raises InputError where the gears stand at the reference: they give no proportion. Warns
         (ValidityWarning) where a body or the oil lies outside 0 to 1.5 times the gears' excess:
         drawn out to other temperatures it would run away from them.
@@ -169,12 +209,13 @@ class Operating:
             for name in ("pinion_bore", "wheel_bore", "housing", "pinion_body", "wheel_body")
             if name in bodies
         }
-        rise = gear_temperature - base
+        wanted = np.asarray(gear_temperature, dtype=float)
+        rise = wanted - base
         still = [LEADERS[name] for name, excess in followed.items() if np.any(excess == 0.0)]
-        if rise != 0.0 and still:
+        if np.any(rise != 0.0) and still:
             raise InputError(
                 "gear temperature",
-                f"{gear_temperature:.6g} K",
+                f"{wanted[rise != 0.0].flat[0]:.6g} K",
                 allowed=f"{base:.6g} K",
                 why=f"{still[0]} stands at the reference temperature, which gives no proportion",
                 fix="give the addenda other temperatures",
@@ -184,13 +225,13 @@ class Operating:
         def beside(temperature: Floats, excess: Floats) -> Floats:
             beyond = np.where(excess == 0.0, 0.0, temperature - base - excess)
             # counted from the gears, so that what is as warm as they are stays so to the last bit
-            return np.asarray(
-                gear_temperature + rise * (beyond / np.where(excess == 0.0, 1.0, excess))
-            )
+            return np.asarray(wanted + rise * (beyond / np.where(excess == 0.0, 1.0, excess)))
 
         changed: dict[str, Any] = {n: beside(bodies[n], excess) for n, excess in followed.items()}
         for name in ("pinion_addendum", "wheel_addendum"):
-            changed[name] = np.full_like(bodies[name], gear_temperature)
+            changed[name] = np.broadcast_to(
+                wanted, np.broadcast_shapes(bodies[name].shape, wanted.shape)
+            )
         oil = beside(oil_now, followed["housing"])
         there = replace(
             self,
@@ -198,7 +239,7 @@ class Operating:
             temperatures=replace(t, **changed),
             flank_temperature=None,
         )
-        if rise != 0.0:
+        if np.any(rise != 0.0):
             for name, excess in followed.items():
                 _warn_of_proportion(f"temperatures.{name}", bodies[name] - base, excess)
             _warn_of_proportion("oil.temperature", oil_now - base, followed["housing"])

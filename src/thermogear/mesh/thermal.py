@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,45 @@ class HotPair:
     def temperatures(self) -> Temperatures:
         return self.operating.temperatures
 
+    # --- what the operating points vary ----------------------------------------------------
+    def _own(self, name: str, gear: Gear) -> Floats | None:
+        """A varied property of one of the two gears, (count,)."""
+        side = "pinion" if gear is self.pair.pinion else "wheel"
+        found: Floats | None = getattr(self.operating.varied, f"{side}_{name}")
+        return found
+
+    @property
+    def half_backlash(self) -> Floats:
+        """Cold half backlash [m], (count,)."""
+        varied = self.operating.varied.half_backlash
+        return np.full(self.count, self.operating.half_backlash) if varied is None else varied
+
+    @property
+    def face_width(self) -> float | Floats:
+        """Common face width [m]; a column (count, 1) where it is varied."""
+        varied = self.operating.varied.face_width
+        return self.pair.face_width if varied is None else varied[:, None]
+
+    @property
+    def widened(self) -> float | Floats:
+        """The face width over the pair's, 1.0 or (count, 1)."""
+        return self.face_width / self.pair.face_width
+
+    def roughness(self, gear: Gear) -> float | Floats:
+        """Ra [m] of one of the two gears; a column (count, 1) where it is varied."""
+        varied = self._own("roughness", gear)
+        return gear.roughness if varied is None else varied[:, None]
+
+    def expansion(self, gear: Gear) -> float | Floats:
+        """lambda over the material's, 1.0 or (count, 1); all growth is linear in it."""
+        varied = self._own("expansion", gear)
+        return 1.0 if varied is None else varied[:, None] / gear.material.thermal_expansion
+
+    # --- fields ------------------------------------------------------------------------------
+    @cached_property
+    def _fields(self) -> tuple[RadialField, RadialField]:
+        return self._field(self.pair.pinion), self._field(self.pair.wheel)
+
     def field(self, gear: Gear) -> RadialField:
         """The radial field of one of the two gears, temperatures of shape (count, 1).
 
@@ -57,6 +97,9 @@ class HotPair:
         (:func:`~thermogear.heat.gearbox.body_places`); the thesis's flank keeps the one
         logarithm from bore to addendum that it is printed for.
         """
+        return self._fields[0 if gear is self.pair.pinion else 1]
+
+    def _field(self, gear: Gear) -> RadialField:
         t = self.temperatures
         bore, body, tip = (
             (t.pinion_bore, t.pinion_body, t.pinion_addendum)
@@ -80,6 +123,8 @@ class HotPair:
     def drawn(self) -> HotPair:
         """The same pair at one operating point with everything at the reference temperature."""
         cold = replace(self.operating.point(0), temperatures=self.temperatures.cold())
+        if self.operating.varied.grows:
+            cold = replace(self.operating, temperatures=self.temperatures.cold())
         return replace(self, operating=cold)
 
     def warmed(self, rise: float) -> HotPair:
@@ -101,14 +146,23 @@ class HotPair:
         r1, r2 = flank_radii(self.pair, s)
         if self.model.flank == "thesis":
             return (
-                thesis_flank_growth(p, self.field(p), r1),
-                thesis_flank_growth(w, self.field(w), r2),
+                self.expansion(p) * thesis_flank_growth(p, self.field(p), r1),
+                self.expansion(w) * thesis_flank_growth(w, self.field(w), r2),
             )
-        bore = self.model.bore
-        return (
-            flank_growth(p, self.field(p), r1, bore, strain_taken_off=taken_off),
-            flank_growth(w, self.field(w), r2, bore, strain_taken_off=taken_off),
-        )
+
+        def grown(gear: Gear, radius: Floats) -> Floats:
+            times = self.expansion(gear)
+            off = np.asarray(taken_off) / times
+            field, bore = self.field(gear), self.model.bore
+            return times * flank_growth(gear, field, radius, bore, strain_taken_off=off)
+
+        return grown(p, r1), grown(w, r2)
+
+    @property
+    def _housing_expansion(self) -> float | Floats:
+        """lambda_h [1/K], a number or (count,)."""
+        varied = self.operating.varied.housing_expansion
+        return self.operating.housing.thermal_expansion if varied is None else varied
 
     def axis_opening(self) -> Floats:
         """Da sin(alpha_w) [m], shape (count,): what the warm housing opens the mesh by."""
@@ -116,7 +170,7 @@ class HotPair:
             return np.zeros(self.count)
         opened = centre_distance_growth(
             self.pair.centre_distance,
-            self.operating.housing.thermal_expansion,
+            self._housing_expansion,
             temperature=np.broadcast_to(
                 np.asarray(self.temperatures.housing, dtype=float), (self.count,)
             ),
@@ -137,7 +191,7 @@ class HotPair:
         strain: ArrayLike = 0.0
         if self.model.housing == "expands":
             rise = np.asarray(self.temperatures.housing, dtype=float) - self.temperatures.reference
-            strain = _column(self.operating.housing.thermal_expansion * rise, self.count)
+            strain = _column(self._housing_expansion * rise, self.count)
         first, second = self.growth(s, strain)
         return first + second
 
@@ -149,14 +203,16 @@ class HotPair:
         shift puts the pitch circle outside the tooth), the body at its mean by area up to the
         root circle; E at 20 C where the model keeps the modulus constant.
         """
+        varied = self._own("modulus", gear)
+        stiffer = 1.0 if varied is None else varied / gear.material.youngs_modulus
         if self.model.modulus == "constant":
-            both = np.full(self.count, gear.material.youngs_modulus)
+            both = np.full(self.count, gear.material.youngs_modulus) * stiffer
             return both, both
         field = self.field(gear)
         middle = min(max(gear.pitch_radius, gear.root_radius), gear.tip_radius)
         teeth = gear.material.youngs_modulus_at(field.temperature(middle))
         body = gear.material.youngs_modulus_at(field.area_mean(gear.root_radius))
-        return teeth[:, 0], body[:, 0]
+        return teeth[:, 0] * stiffer, body[:, 0] * stiffer
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,7 @@ from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
 from thermogear.mesh.balance import NODES, Gearbox, node_temperatures, pair_losses
-from thermogear.mesh.clearance import clearance
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.model import MeshModel
@@ -365,7 +365,7 @@ class _Chain:
     def clearance_of(self, state: State, piece: ArrayLike) -> tuple[Floats, Floats]:
         """(least half backlash [m], margin to the jam [K]) of temperatures (count,)."""
         at = self.operating(state, piece)
-        found = clearance(
+        found = Clearance(
             HotPair(self.pair, at, self.model), np.arange(PHASES) / PHASES, self.deviations
         )
         margin = found.jam_temperature - np.asarray(at.temperatures.pinion_addendum)

@@ -30,7 +30,7 @@ from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.heat.film import regime
 from thermogear.mesh.balance_table import balance_dataset
-from thermogear.mesh.clearance import clearance
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.profile import profiles
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Notice, Result, now
@@ -353,7 +353,7 @@ def carried_uncertainty(case: GearCase) -> NDArray[np.float64]:
             box = replace(case.gearbox, measured=held)
             moved = case.balance_of(model, at.speed, at.torque, gearbox=box, from_hot=False)
             hot = HotPair(case.pair, moved.operating, model)
-            gap = clearance(hot, phase, case.deviations)
+            gap = Clearance(hot, phase, case.deviations)
             ends.append(gap.half_backlash.mean(axis=1))
         square += (0.5 * (ends[0] - ends[1])) ** 2
     return np.sqrt(square)

@@ -19,7 +19,7 @@ from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.load_shared import LoadSharedModel
 from thermogear.dynamics.models import from_excitation
-from thermogear.mesh.clearance import clearance
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
@@ -139,7 +139,7 @@ def free_play(
     """
     phase = np.arange(POSITIONS) / POSITIONS
     shared = LoadSharedModel.from_excitation(here, drive, back)
-    one = clearance(hot, phase, case.deviations).half_backlash[0]
+    one = Clearance(hot, phase, case.deviations).half_backlash[0]
     values = {"shared_clearance": shared.clearance(phase), "one_spring_clearance": 2.0 * one}
     return label(
         {name: ("mesh_phase", play, "m") for name, play in values.items()},

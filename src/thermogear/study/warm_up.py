@@ -21,7 +21,7 @@ from thermogear.case.duty import Measured, chosen_point, point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import Shown, shown_by
 from thermogear.mesh.balance_table import LOSSES
-from thermogear.mesh.clearance import clearance
+from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
@@ -241,7 +241,7 @@ def _steady(case: GearCase, duty: Duty, factors: Mapping[str, float]) -> xr.Data
         box = replace(case.gearbox, surroundings=around)
         balance = case.balance_of(model, unique[here, 1], unique[here, 2], gearbox=box)
         hot = HotPair(case.pair, balance.operating, model)
-        gap = clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
+        gap = Clearance(hot, np.arange(PHASES) / PHASES, case.deviations).half_backlash
         # at rest the balance knows no free convection: it matters where anything but the ambient
         # has a temperature of its own
         runs = (unique[here, 1] > 0.0) | (around.oil_flow == 0.0 and not case.gearbox.measured)

@@ -305,7 +305,7 @@ def _dimensionless_symbols(e: Evidence) -> Finding:
 
 _ROWS = (
     ("3.1.1", "3.1", "statement", "Thermal deformation takes backlash away.", _reduces,
-     ("thermogear.mesh.clearance.clearance", CYCLE), "gap-temperature"),
+     ("thermogear.mesh.clearance.Clearance", CYCLE), "gap-temperature"),
     ("3.1.2", "3.1, half gap", "formula",
      "The hot half gap is the cold one less half the sum of both deformations.", _half_gap,
      ("thermogear.heat.thesis_profile.thesis_half_backlash",
