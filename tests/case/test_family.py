@@ -144,7 +144,7 @@ def test_speeds_that_share_heat_and_load_share_a_mesh_cycle(rig):
         for name in ("period", "damping", "half_backlash", "stiffness", "force"):
             one, all_ = getattr(alone.flat, name), getattr(together.flat, name)
             assert np.array_equal(one[0], all_[place]), name
-    assert len(whole._kept) == 1
+    assert len(whole._springs) == 1
     again = whole(rows[:, :] * [2.0, 1.0])
     assert np.array_equal(again.flat.stiffness, together.flat.stiffness)
     assert again.mesh_frequency == pytest.approx(2.0 * together.mesh_frequency, rel=1e-15)

@@ -70,8 +70,6 @@ def test_a_sample_is_the_chain_of_the_case_it_describes(case: GearCase) -> None:
 
 def test_samples_computed_together_are_those_computed_alone(case: GearCase) -> None:
     at = places(4)
-    fixed = [k for k, one in enumerate(INPUTS) if one.name in study.FIXED]
-    at[:3, fixed] = at[0, fixed]  # three of one pair and oil, one of another
     together, _ = evaluate(case, Plan(), at)
     for row in range(4):
         alone, _ = evaluate(case, Plan(), at[row : row + 1])

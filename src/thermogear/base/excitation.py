@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -46,6 +48,14 @@ class Periodic:
         most = (values.size - 1) // 2
         kept = most if harmonics is None else min(harmonics, most)
         return cls(float(spectrum[0].real), tuple(2.0 * spectrum[1 : kept + 1]))
+
+    @staticmethod
+    def columns(rows: Sequence[Periodic]) -> NDArray[np.complex128]:
+        """The coefficients of several series, (row, 1 + harmonic), the mean first."""
+        found = np.zeros((len(rows), 1 + max(len(one.harmonics) for one in rows)), complex)
+        for place, one in enumerate(rows):
+            found[place, : 1 + len(one.harmonics)] = [one.mean, *one.harmonics]
+        return found
 
     def __call__(self, phase: ArrayLike) -> Floats:
         """Values at ``phase`` (in periods, any shape)."""
@@ -131,3 +141,105 @@ class Excitation:
     def natural_frequency(self) -> float:
         """omega_n = sqrt(k_m/m_e) [rad/s]."""
         return float(np.sqrt(self.stiffness.mean / self.equivalent_mass))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Excitations:
+    """Operating points side by side as their vibration sees them: :class:`Excitation` in columns.
+
+    The first axis of every array is the point. ``status`` as a mesh cycle's: 0 where the point
+    moves, else its other numbers mean nothing. ``stiffness`` and ``error`` are Fourier
+    coefficients (point, 1 + harmonic), the mean first, as :class:`Periodic` has them;
+    ``inertias``, ``base_radii`` and ``torques`` (point, 2); everything in SI.
+    """
+
+    status: NDArray[np.int8]
+    stiffness: NDArray[np.complex128]
+    error: NDArray[np.complex128]
+    half_backlash: Floats
+    reference_half_backlash: Floats
+    mean_force: Floats
+    mesh_frequency: Floats
+    inertias: Floats
+    torques: Floats
+    damping_ratio: Floats
+    base_radii: Floats
+
+    def __len__(self) -> int:
+        return self.status.size
+
+    @property
+    def equivalent_mass(self) -> Floats:
+        """m_e [kg], (point,)."""
+        (i1, i2), (r1, r2) = self.inertias.T, self.base_radii.T
+        return np.asarray(i1 * i2 / (i1 * r2**2 + i2 * r1**2))
+
+    @property
+    def natural_frequency(self) -> Floats:
+        """omega_n [rad/s], (point,); nan where nothing moves."""
+        mean = np.where(self.status == 0, self.stiffness[:, 0].real, np.nan)
+        return np.sqrt(mean / self.equivalent_mass)
+
+    def take(self, index: ArrayLike) -> Excitations:
+        """Some of the points, in that order."""
+        chosen = np.atleast_1d(np.asarray(index))
+        arrays = {f.name: getattr(self, f.name) for f in fields(self)}
+        return replace(self, **{name: array[chosen] for name, array in arrays.items()})
+
+    @classmethod
+    def joined(cls, parts: Sequence[Excitations]) -> Excitations:
+        """All points of ``parts``, one after the other."""
+        if len(parts) == 1:
+            return parts[0]
+        made: dict[str, Any] = {}
+        for field in fields(cls):
+            given = [getattr(one, field.name) for one in parts]
+            if field.name in ("stiffness", "error"):
+                width = max(one.shape[1] for one in given)
+                made[field.name] = np.concatenate([padded(one, width) for one in given])
+            else:
+                made[field.name] = np.concatenate(given)
+        return cls(**made)
+
+    def one(self, place: int) -> Excitation | None:
+        """One point by itself; None where it does not move."""
+        if self.status[place] != 0:
+            return None
+        tables = (
+            Periodic(float(row[0].real), tuple(row[1:]))
+            for row in (self.stiffness[place], self.error[place])
+        )
+        stiffness, error = tables
+        inertias, radii, torques = (
+            (float(both[place, 0]), float(both[place, 1]))
+            for both in (self.inertias, self.base_radii, self.torques)
+        )
+        return Excitation(
+            stiffness=stiffness,
+            error=error,
+            half_backlash=float(self.half_backlash[place]),
+            reference_half_backlash=float(self.reference_half_backlash[place]),
+            mean_force=float(self.mean_force[place]),
+            mesh_frequency=float(self.mesh_frequency[place]),
+            inertias=inertias,
+            base_radii=radii,
+            torques=torques,
+            damping_ratio=float(self.damping_ratio[place]),
+        )
+
+
+def padded(rows: NDArray[Any], width: int) -> NDArray[Any]:
+    """``rows`` with columns of 0 up to ``width``."""
+    if rows.shape[1] == width:
+        return rows
+    return np.pad(rows, ((0, 0), (0, width - rows.shape[1])))
+
+
+def fourier_rows(samples: Floats, harmonics: int) -> NDArray[np.complex128]:
+    """:meth:`Periodic.from_samples` of every row: coefficients (row, 1 + harmonic)."""
+    size = samples.shape[1]
+    spectrum = np.fft.rfft(samples, axis=1) / size
+    kept = min(harmonics, (size - 1) // 2)
+    found = np.asarray(spectrum[:, : kept + 1] * 2.0)
+    found[:, 0] = spectrum[:, 0].real
+    return found

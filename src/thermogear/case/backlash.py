@@ -5,10 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from thermogear.base.errors import InputError
 from thermogear.gears.backlash import backlash_span, normal_from_circumferential
 from thermogear.gears.backlash_standards import recommended_normal_backlash
 from thermogear.gears.pair import GearPair
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +40,9 @@ class Backlash:
             )
 
 
-def cold_from_soaked(half: float, rise: float, pair: GearPair, housing_expansion: float) -> float:
+def cold_from_soaked(
+    half: ArrayLike, rise: float, pair: GearPair, housing_expansion: float
+) -> Floats:
     """Half backlash [m] at T0 of a pair: ``half`` [m] with everything ``rise`` [K] above T0.
 
     b_cold = b + [lambda_1 rho_C1 + lambda_2 rho_C2 - lambda_h a_w sin(alpha_w)] rise: uniform
@@ -47,7 +54,15 @@ def cold_from_soaked(half: float, rise: float, pair: GearPair, housing_expansion
         gear.material.thermal_expansion * gear.base_radius * math.tan(angle)
         for gear in (pair.pinion, pair.wheel)
     )
-    return half + (growth - housing_expansion * pair.centre_distance * math.sin(angle)) * rise
+    moved = growth - housing_expansion * pair.centre_distance * math.sin(angle)
+    return np.asarray(half, dtype=float) + moved * rise
+
+
+def normal_half(value: ArrayLike, direction: str, extent: str, pair: GearPair) -> Floats:
+    """Half backlash [m] along the line of action of a backlash ``value`` [m] of a named kind."""
+    given = np.asarray(value, dtype=float)
+    normal = given if direction == "normal" else normal_from_circumferential(given, pair)
+    return np.asarray(normal if extent == "half" else 0.5 * normal)
 
 
 def from_value(
@@ -59,9 +74,8 @@ def from_value(
     housing_expansion: float,
 ) -> Backlash:
     """A given backlash [m] of a named kind, measured ``rise`` [K] above the reference."""
-    normal = value if direction == "normal" else normal_from_circumferential(value, pair)
-    half = normal if extent == "half" else 0.5 * normal
-    cold = cold_from_soaked(half, rise, pair, housing_expansion)
+    half = float(normal_half(value, direction, extent, pair))
+    cold = float(cold_from_soaked(half, rise, pair, housing_expansion))
     origin = f"a {extent} {direction} backlash of {1e3 * value:.6g} mm"
     if rise:
         origin += f" measured {rise:+.6g} K from the reference temperature"

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from thermogear.base import materials
 from thermogear.base.errors import InputError, ValidityWarning, nearest, short
 from thermogear.base.excitation import Periodic
@@ -39,26 +42,33 @@ BORE = 0.3
 class Follows:
     """A temperature [K] given outright, or as ``value`` kelvins below an addendum's."""
 
-    value: float
+    value: ArrayLike
     below: bool
 
-    def at(self, addendum: float) -> float:
-        """The temperature [K] beside an ``addendum`` [K]."""
-        return addendum - self.value if self.below else self.value
+    def at(self, addendum: ArrayLike) -> ArrayLike:
+        """The temperature [K] beside an ``addendum`` [K]; numbers, or one for each point."""
+        return np.subtract(addendum, self.value) if self.below else self.value
 
-    def checked(self, addendum: float, field: str) -> float:
+    def checked(self, addendum: ArrayLike, field: str) -> ArrayLike:
         """The same, refused under the name of its ``field`` where no such body may be."""
         temperature = self.at(addendum)
         if not self.below:
             return temperature
-        try:
-            return BODY.within(temperature)
-        except InputError as error:
-            raise InputError(
-                f"{field}_below_addendum",
-                f"{self.value:.6g} K below {shown(addendum, 'temperature')} = {error.got}",
-                allowed=error.allowed,
-            ) from error
+        every = np.ravel(temperature)
+        for place in {int(every.argmin()), int(every.argmax())}:
+            tip, drop = (
+                float(np.broadcast_to(np.ravel(one), every.shape)[place])
+                for one in (addendum, self.value)
+            )
+            try:
+                BODY.within(float(every[place]))
+            except InputError as error:
+                raise InputError(
+                    f"{field}_below_addendum",
+                    f"{drop:.6g} K below {shown(tip, 'temperature')} = {error.got}",
+                    allowed=error.allowed,
+                ) from error
+        return temperature
 
 
 @dataclass(frozen=True)
@@ -74,7 +84,7 @@ class TemperatureRule:
     housing: Follows
     oil: Follows
 
-    def at(self, *, pinion_addendum: float, wheel_addendum: float) -> Temperatures:
+    def at(self, *, pinion_addendum: ArrayLike, wheel_addendum: ArrayLike) -> Temperatures:
         """All body temperatures beside the two addenda [K]."""
         return Temperatures(
             reference=self.reference,
@@ -85,7 +95,7 @@ class TemperatureRule:
             housing=self.housing.checked(pinion_addendum, "temperatures.housing"),
         )
 
-    def oil_at(self, pinion_addendum: float) -> float:
+    def oil_at(self, pinion_addendum: ArrayLike) -> ArrayLike:
         """The oil's temperature [K] beside the pinion's addendum [K]."""
         return self.oil.checked(pinion_addendum, "oil.temperature")
 

@@ -6,7 +6,8 @@ nothing of TOML, texts or units any more.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,12 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
-from thermogear.base.errors import InputError, InputErrors
+from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.materials import MATERIALS, Material
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.toml import overridden, pairs, tables
 from thermogear.case import build as parts
+from thermogear.case.allowed import gear_parameter, gear_reader
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
 from thermogear.case.build import TemperatureRule
@@ -31,9 +33,8 @@ from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import accuracy, deviations
 from thermogear.case.gearbox import Reading, gearbox
-from thermogear.case.lines import line_of
-from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
-from thermogear.case.refusals import complaints
+from thermogear.case.ranges import row_of, warn_of_temperatures, warn_of_torque
+from thermogear.case.refusals import complaints, together
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
 from thermogear.case.source import case_text, folder_of
@@ -43,7 +44,7 @@ from thermogear.gears.pair import GearPair
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,7 +122,8 @@ class GearCase(Case):
     ``readings`` of thermometers; ``sensors`` that watch a warm-up; ``scuffing_load_stage`` of the
     oil in the FZG test, None where unknown. ``inertias`` [kg m^2];
     ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
-    compute with.
+    compute with. ``data``: the tables of the file with the overrides in them, ``file``: what was
+    read in them.
     """
 
     pair: GearPair
@@ -150,9 +152,28 @@ class GearCase(Case):
     scuffing_load_stage: float | None = None
     computed: bool = False
     follow: str = "proportional"
-    _balances: dict[tuple[MeshModel, float | None], HeatBalance] = field(
+    file: GearFile = field(repr=False, compare=False)
+    data: dict[str, Any] = field(repr=False, compare=False, default_factory=dict)
+    _balances: dict[tuple[MeshModel, bytes | None], HeatBalance] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
+
+    def with_values(self, values: Mapping[str, float], *, told: bool = True) -> GearCase:
+        """The case with numbers put to other SI ``values``, no text read again.
+
+        The names are those of :data:`~thermogear.base.parameters.GEARS` or dotted fields of the
+        file. The same as :func:`load_case` with these values as overrides, which stand in its
+        ``overrides``. ``told`` as in :func:`case_of`. Raises InputError for an unknown field, and
+        where no case file could hold a value.
+        """
+        changes = tuple(
+            (place, str(gear_reader(name).written(float(value))))
+            for name, value in values.items()
+            for place in gear_parameter(name).fields
+        )
+        data = overridden(deepcopy(self.data), changes)
+        kept = tuple(pair for pair in self.overrides if pair[0] not in dict(changes))
+        return gear_case(case_of(data, self.text, (*kept, *changes), told=told))
 
     @property
     def measured_class(self) -> int | None:
@@ -175,11 +196,16 @@ class GearCase(Case):
         return self.balance(model).operating if self.computed else self.stated
 
     def cycle(
-        self, operating: Operating, model: MeshModel, path_positions: int | None = None
+        self,
+        operating: Operating,
+        model: MeshModel,
+        path_positions: int | None = None,
+        want: Collection[str] = (),
     ) -> xr.Dataset:
         """The mesh cycle at ``operating`` under ``model``: the case's housing, flanks and grids.
 
-        ``path_positions`` replaces the case's number along the path of contact.
+        ``path_positions`` replaces the case's number along the path of contact; ``want`` names the
+        quantities to compute, all without any.
         """
         return mesh_cycle(
             self.pair,
@@ -188,21 +214,25 @@ class GearCase(Case):
             deviations=self.deviations,
             path_positions=path_positions or self.path_positions,
             mesh_positions=self.mesh_positions,
+            want=want,
         )
 
-    def balance(self, model: MeshModel, gear_temperature: float | None = None) -> HeatBalance:
+    def balance(self, model: MeshModel, gear_temperature: ArrayLike | None = None) -> HeatBalance:
         """The heat balance of every operating point, computed once.
 
         ``gear_temperature`` [K] holds the teeth of both gears there.
         """
-        key = (model, gear_temperature)
+        held = None if gear_temperature is None else np.asarray(gear_temperature, dtype=float)
+        key = (model, None if held is None else held.tobytes())
         if key not in self._balances:
             at, box = self.stated, self.gearbox
-            if gear_temperature is not None:
-                teeth = dict.fromkeys(("pinion_tooth", "wheel_tooth"), gear_temperature)
+            if held is not None:
+                teeth = dict.fromkeys(("pinion_tooth", "wheel_tooth"), held)
                 box = replace(box, measured={**box.measured, **teeth})
             try:
-                self._balances[key] = self.balance_of(model, at.speed, at.torque, gearbox=box)
+                self._balances[key] = self.balance_of(
+                    model, at.speed, at.torque, gearbox=box, varied=at.varied
+                )
             except InputError as error:
                 if error.field != "prandtl":
                     raise
@@ -222,11 +252,13 @@ class GearCase(Case):
         torque: ArrayLike,
         *,
         gearbox: Gearbox | None = None,
+        varied: Varied = ALIKE,
         from_hot: bool = True,
     ) -> HeatBalance:
         """The heat balance at other points: ``speed`` [rad/s] and ``torque`` [N m], (operating,).
 
-        ``gearbox`` in place of the case's own; ``from_hot`` seeks a second steady state too.
+        ``gearbox`` in place of the case's own; ``varied`` of the pair at these points;
+        ``from_hot`` seeks a second steady state too.
         """
         at = self.stated
         return heat_balance(
@@ -236,6 +268,7 @@ class GearCase(Case):
             at.lubricant,
             at.half_backlash,
             model,
+            varied=varied,
             gearbox=gearbox or self.gearbox,
             reference=at.temperatures.reference,
             housing=at.housing,
@@ -249,8 +282,10 @@ class GearCase(Case):
         (i1, i2), r1, r2 = self.inertias, self.pair.pinion.base_radius, self.pair.wheel.base_radius
         return i1 * i2 / (i1 * r2**2 + i2 * r1**2)
 
-    def operating_at(self, gear_temperature: float, model: MeshModel | None = None) -> Operating:
-        """The operating points with both addenda at ``gear_temperature`` [K].
+    def operating_at(
+        self, gear_temperature: ArrayLike, model: MeshModel | None = None
+    ) -> Operating:
+        """The operating points with both addenda at ``gear_temperature`` [K], one or for each.
 
         ``follow`` "proportional": every excess over the drawing temperature keeps its proportion
         to the gears' in the hot state under ``model`` (default: the first), so that at the drawing
@@ -272,7 +307,7 @@ class GearCase(Case):
         )
 
 
-def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
+def _in_proportion(hot: Operating, gear_temperature: ArrayLike) -> Operating:
     """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
     try:
         return hot.with_gears_at(gear_temperature)
@@ -283,7 +318,7 @@ def _in_proportion(hot: Operating, gear_temperature: float) -> Operating:
             why = f"{name} in proportion to it would be at {error.got}; allowed {error.allowed}"
         raise InputError(
             "gear temperature",
-            shown(gear_temperature, "temperature"),
+            shown(float(np.ravel(gear_temperature)[0]), "temperature"),
             why=why,
             fix='give the addenda other temperatures, or write temperatures.follow = "fixed"',
         ) from error
@@ -321,13 +356,23 @@ def load_case(
     try:
         text = enclosed(text, data, folder or folder_of(source))
     except InputError as error:
-        raise _together([error], text, changes) from error
+        raise together([error], text, changes) from error
+    return case_of(data, text, changes)
+
+
+def case_of(
+    data: dict[str, Any], text: str, changes: tuple[tuple[str, str], ...], *, told: bool = True
+) -> GearCase | DimensionlessCase:
+    """The case of a file's tables ``data``, with ``changes`` in them; ``text`` as it was read.
+
+    ``told`` False leaves out its assumptions, for a case that nobody is shown.
+    """
     kind = data.get("kind", "gear")
     file = DimensionlessFile if kind == "dimensionless" else GearFile
     try:
         read: GearFile | DimensionlessFile = file.model_validate(data)
     except ValidationError as error:
-        raise _together(
+        raise together(
             [*complaints(error, file), *parts.unknown_names(data)], text, changes
         ) from error
     common: dict[str, Any] = {
@@ -341,10 +386,12 @@ def load_case(
         found = assumptions(data, read)
         return DimensionlessCase(points=points_of(read), base=base, assumptions=found, **common)
     try:
-        case = _gear_case(read, common)
+        case = replace(_gear_case(read, common), data=data)
     except InputError as error:
         others = [one for one in parts.faults(read) if str(one) != str(error)]
-        raise _together([error, *others], text, changes) from error
+        raise together([error, *others], text, changes) from error
+    if not told:
+        return case
     found = assumptions(data, read, _decided(case))
     if read.gears.face_width is not None:  # one for both is no default of each
         found = tuple(one for one in found if not one.field.endswith(".face_width"))
@@ -357,17 +404,6 @@ def _decided(case: GearCase) -> dict[str, str]:
     if len(case.charts) == 2:
         found["flanks.accuracy"] = found["flanks.seed"] = "none: both gears are measured"
     return found
-
-
-def _together(
-    errors: list[InputError], text: str, changes: tuple[tuple[str, str], ...]
-) -> InputError:
-    """Errors of one file as one, each with its line where the file's own text is at fault."""
-    changed = {path.partition(".")[0] for path, _ in changes}
-    for error in errors:
-        if error.field.partition(".")[0] not in changed:
-            error.line = line_of(text, error.field)
-    return errors[0] if len(errors) == 1 else InputErrors(errors)
 
 
 def _named(file: GearFile | DimensionlessFile) -> str:
@@ -408,7 +444,8 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     given = file.temperatures
     if rule is None or given.pinion_addendum is None or given.wheel_addendum is None:
         cold = given.reference
-        temperatures, oil = Temperatures.uniform(cold, reference=cold), file.oil.temperature or cold
+        temperatures = Temperatures.uniform(cold, reference=cold)
+        oil: ArrayLike = file.oil.temperature or cold
     else:
         temperatures = rule.at(
             pinion_addendum=given.pinion_addendum, wheel_addendum=given.wheel_addendum
@@ -462,23 +499,11 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         scuffing_load_stage=file.oil.scuffing_load_stage,
         computed=rule is None,
         follow=given.follow,
+        file=file,
         **common,
     )
     warn_of_torque(pair, torques)
     if case.computed:
         return case
-    warn_of_temperatures(pair, {"temperatures": case.stated} | _row_of(case))
+    warn_of_temperatures(pair, {"temperatures": case.stated} | row_of(case))
     return case
-
-
-def _row_of(case: GearCase) -> dict[str, Operating]:
-    """The operating points of every temperature of the row by its field, where it is drawn."""
-    found = {}
-    for place, temperature in enumerate(case.gear_temperatures):
-        field = f"temperatures.row[{place}]"
-        if "temperature" in case.pictures:
-            try:
-                found[field] = case.operating_at(temperature)
-            except InputError as error:
-                raise error.named(field) from error
-    return found

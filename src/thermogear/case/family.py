@@ -7,7 +7,7 @@ lanes, and what turns dimensionless results back into micrometres, hertz and new
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import product
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import ModelFamily
 from thermogear.base.errors import InputError, nearest
-from thermogear.base.excitation import Excitation
+from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
 from thermogear.case.allowed import (
     LANE,
@@ -28,28 +28,36 @@ from thermogear.case.allowed import (
     require_numbers,
     within,
 )
-from thermogear.case.case import Case, DimensionlessCase, GearCase, gear_case, load_case
+from thermogear.case.case import Case, DimensionlessCase, GearCase, gear_case
 from thermogear.case.points import Points, excitations, on_numbers, points_of
 from thermogear.case.ranges import warn_of_torque
+from thermogear.case.samples import (
+    GEARS_AT,
+    WIDTHS,
+    Columns,
+    fields_of,
+    quasi_static,
+    sampled,
+    takes,
+    with_error,
+)
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.tables import Lanes
+from thermogear.mesh.excite import EXCITES, NO_ERROR
 from thermogear.mesh.model import MeshModel
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-BATCH = 256
-"""Operating points in one mesh cycle."""
-FEW = 3
-"""Positions along the path of contact: what moves the teeth hangs on the mesh phase alone."""
 KEPT = 8
 """Mesh cycles a family remembers."""
 OF_A_POINT = (
-    "pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backlash", "damping_ratio",
-    *LANE,
+    "pinion_speed", "pinion_torque", GEARS_AT, "cold_half_backlash", "damping_ratio", *LANE,
 )  # fmt: skip
-"""What varies within one case; every value of another parameter is another case file."""
+"""What is checked by itself; every corner of other parameters is read as a case file."""
+BESIDE = ("operating.speed", "dynamics.damping_ratio", "error_amplitude")
+"""Columns that no mesh cycle of given heat knows."""
 
 
 def family(
@@ -133,15 +141,19 @@ def base_model(
 class GearFamily:
     """Gear parameters -> points, for one ``case``, one bundle of it and one state of its heat.
 
-    Beside a parameter gear_temperature the state is "hot". A parameter that is no other operating
-    point (a dotted field, the face width) reads the case again for each of its values.
+    Beside a parameter gear_temperature the state is "hot". Rows whose geometry is one share a mesh
+    cycle (:mod:`thermogear.case.samples`); every other value of a field that is no column makes a
+    case of its own.
     """
 
     case: GearCase
     names: tuple[str, ...]
     bundle: str = ""
     state: ThermalState = HOT
-    _kept: dict[tuple[object, ...], tuple[GearCase, list[Excitation | None]]] = field(
+    _cases: dict[tuple[float, ...], GearCase] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
+    _springs: dict[tuple[object, ...], Excitations] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
 
@@ -155,7 +167,7 @@ class GearFamily:
             object.__setattr__(self, "bundle", known[0])
         if self.bundle not in known:
             raise InputError("bundle", repr(self.bundle), fix=nearest(self.bundle, known))
-        if self.state != HOT and "gear_temperature" in names:
+        if self.state != HOT and GEARS_AT in names:
             raise InputError(
                 "state",
                 self.state.words,
@@ -181,29 +193,6 @@ class GearFamily:
             "state": self.state.stored,
         }
 
-    def __call__(self, points: Floats) -> Points:
-        rows = np.asarray(points, dtype=float)
-        made = points_of(self.excitations(rows))
-        numbers = {name: rows[:, i] for i, name in enumerate(self.names) if name in LANE}
-        return on_numbers(made, numbers) if numbers else made
-
-    def excitations(self, rows: Floats) -> list[Excitation | None]:
-        """The excitation of every row, in SI; None where the pair is jammed."""
-        read = [i for i, name in enumerate(self.names) if name not in OF_A_POINT]
-        if not read:
-            return self._excitations(self.case, self.names, rows)
-        # one case for each combination of file fields
-        plain = [i for i in range(len(self.names)) if i not in read]
-        names = tuple(self.names[i] for i in plain)
-        found: list[Excitation | None] = [None] * len(rows)
-        for values in np.unique(rows[:, read], axis=0):
-            chosen = np.flatnonzero((rows[:, read] == values).all(axis=1))
-            case = self._case_with(dict(zip((self.names[i] for i in read), values, strict=True)))
-            if not any(self.names[i].startswith("operating.") for i in read):
-                case = replace(case, speeds=self.case.speeds, torques=self.case.torques)
-            _put(found, chosen, self._excitations(case, names, rows[chosen][:, plain]))
-        return found
-
     def require(self, axes: Mapping[str, ArrayLike]) -> None:
         """Refuse ``axes`` (SI) that no case file could hold, before anything is computed.
 
@@ -217,117 +206,123 @@ class GearFamily:
         read = {name: np.asarray(values) for name, values in axes.items() if name not in OF_A_POINT}
         ends = ({float(v.min()), float(v.max())} for v in read.values())
         for corner in product(*ends):
-            self._case_with(dict(zip(read, corner, strict=True)))
+            if corner:
+                self.case.with_values(dict(zip(read, corner, strict=True)), told=False)
 
-    def _case_with(self, values: Mapping[str, float]) -> GearCase:
-        """The case with parameters of its file put to other ``values`` (SI)."""
-        fields = tuple(
-            (place, str(gear_reader(name).written(float(value))))
-            for name, value in values.items()
-            for place in gear_parameter(name).fields
-        )
-        return _case_with(self.case.text, self.case.overrides, fields) if fields else self.case
+    def __call__(self, points: Floats) -> Points:
+        rows = np.asarray(points, dtype=float)
+        made = points_of(self.excitations(rows))
+        numbers = {name: rows[:, i] for i, name in enumerate(self.names) if name in LANE}
+        return on_numbers(made, numbers) if numbers else made
 
-    def _excitations(
-        self, case: GearCase, names: tuple[str, ...], rows: Floats
-    ) -> list[Excitation | None]:
-        columns = dict(zip(names, rows.T, strict=True))
-        count = len(rows)
+    def excitations(self, rows: Floats) -> Excitations:
+        """The excitation of every row, in SI."""
+        groups = list(self._groups(np.asarray(rows, dtype=float)))
+        parts = [self._excited(group) for group in groups]
+        order = np.argsort(np.concatenate([group.index for group in groups]), kind="stable")
+        return Excitations.joined(parts).take(order)
 
-        def column(name: str, value: float) -> Floats:
-            return np.array(
-                np.broadcast_to(np.asarray(columns.get(name, value), dtype=float), (count,))
-            )
+    def quasi_static(self, rows: ArrayLike, want: Collection[str]) -> dict[str, NDArray[Any]]:
+        """Stored quantities of the mesh cycle of every row, in SI: name -> (row, ...).
 
-        speed = column("pinion_speed", case.speeds[0])
-        torque = column("pinion_torque", case.torques[0])
-        backlash = column("cold_half_backlash", case.stated.half_backlash)
-        damping = column("damping_ratio", case.damping_ratio)
-        found: list[Excitation | None] = [None] * count
-        for state, mine in self._states(columns.get("gear_temperature"), count):
-            for half in np.unique(backlash[mine]):
-                chosen = mine[backlash[mine] == half]
-                some = self._loaded(
-                    case, state, speed[chosen], torque[chosen], half_backlash=float(half)
+        ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`); only they are computed.
+        With them ``status``: a row that no case could have, or whose heat or mesh does not
+        settle, is "not_converged" and nan, and the others do not notice.
+        """
+        groups = list(self._groups(np.asarray(rows, dtype=float)))
+        parts = [self._cycled(group, tuple(want)) for group in groups]
+        order = np.argsort(np.concatenate([group.index for group in groups]), kind="stable")
+        return {name: np.concatenate([one[name] for one in parts])[order] for name in parts[0]}
+
+    def _groups(self, rows: Floats) -> Iterator[_Group]:
+        """Rows that share a case; what is no column of it is put into its file."""
+        varied = [i for i, name in enumerate(self.names) if name not in LANE]
+        read = [
+            i
+            for i in varied
+            if not all(takes(self.case, field) for field in fields_of(self.names[i]))
+        ]
+        plain = [i for i in varied if i not in read]
+        kinds, which = np.unique(rows[:, read], axis=0, return_inverse=True)
+        for kind, values in enumerate(kinds if read else np.empty((1, 0))):
+            index = np.flatnonzero(which == kind) if read else np.arange(len(rows))
+            columns = {
+                field: np.ascontiguousarray(rows[index, i])
+                for i in plain
+                for field in (
+                    (GEARS_AT,) if self.names[i] == GEARS_AT else fields_of(self.names[i])
                 )
-                _put(found, chosen, some)
-        return [
-            one if one is None else replace(one, damping_ratio=float(zeta))
-            for one, zeta in zip(found, damping, strict=True)
-        ]
+            }
+            names = [self.names[i] for i in read]
+            yield _Group(self._case_with(names, values), tuple(values), index, columns)
 
-    def _states(
-        self, temperature: Floats | None, count: int
-    ) -> Iterator[tuple[ThermalState, Whole]]:
-        """Every state of heat, and the rows that are in it."""
-        if temperature is None:
-            yield self.state, np.arange(count)
-            return
-        for kelvins in np.unique(temperature):
-            yield ThermalState.of(float(kelvins)), np.flatnonzero(temperature == kelvins)
+    def _case_with(self, names: Sequence[str], values: Floats) -> GearCase:
+        """The case with parameters of its file put to other ``values`` (SI)."""
+        if not names:
+            return self.case
+        key = tuple(values.tolist())
+        if key not in self._cases:
+            made = self.case.with_values(dict(zip(names, values, strict=True)), told=False)
+            if not any(name.startswith("operating.") for name in names):
+                made = replace(made, speeds=self.case.speeds, torques=self.case.torques)
+            _keep(self._cases, key, made)
+        return self._cases[key]
 
-    def _loaded(
-        self,
-        case: GearCase,
-        state: ThermalState,
-        speed: Floats,
-        torque: Floats,
-        *,
-        half_backlash: float,
-    ) -> list[Excitation | None]:
-        """The excitation of every row, those that share heat and load out of one mesh cycle."""
-        if state.hangs_on_the_load(case):
-            found: list[Excitation | None] = []
-            for first in range(0, speed.size, BATCH):
-                some = slice(first, first + BATCH)
-                found += self._cycle(case, state, speed[some], torque[some], half_backlash)
-            return found
-        # where the heat is given, springs and backlash do not know the speed
-        loads, which = np.unique(torque, return_inverse=True)
-        slow = float(speed.min())
-        key = (state.stored, half_backlash, *loads.tolist())
-        kept = self._kept.get(key)
-        if kept is None or kept[0] is not case or slow <= 0.0:
-            springs: list[Excitation | None] = []
-            for first in range(0, loads.size, BATCH):
-                load = loads[first : first + BATCH]
-                springs += self._cycle(case, state, np.full(load.size, slow), load, half_backlash)
-            while len(self._kept) >= KEPT:
-                self._kept.pop(next(iter(self._kept)), None)
-            self._kept[key] = kept = (case, springs)
-        teeth = case.pair.pinion.teeth
-        rows = (kept[1][place] for place in which.tolist())
-        return [
-            one if one is None else replace(one, mesh_frequency=teeth * float(omega))
-            for one, omega in zip(rows, speed, strict=True)
-        ]
+    def _excited(self, group: _Group) -> Excitations:
+        case, columns, count = group.case, group.columns, group.index.size
+        beside = {name: columns[name] for name in (*BESIDE, *WIDTHS) if name in columns}
+        samples = sampled(case, beside, count)
+        if self.state.hangs_on_the_load(case):
+            springs = self._meshed(group)
+        else:
+            # where the heat is given, springs and backlash know neither speed nor damping
+            known = {name: values for name, values in columns.items() if name not in BESIDE}
+            every = np.stack([*known.values(), np.zeros(count)])
+            _, first, which = np.unique(every, axis=1, return_index=True, return_inverse=True)
+            slow = float(samples.case.stated.speed.min())
+            key = (group.values, every[:, first].tobytes(), slow > 0.0)
+            if key not in self._springs:
+                some = {name: values[first] for name, values in known.items()}
+                some["operating.speed"] = np.full(first.size, slow)
+                _keep(self._springs, key, self._meshed(replace(group, columns=some, index=first)))
+            springs = self._springs[key].take(which.ravel())
+        error = Periodic.columns([case.transmission_error]) * samples.error[:, None]
+        return replace(
+            with_error(springs, error),
+            mesh_frequency=case.pair.pinion.teeth * samples.case.stated.speed,
+            damping_ratio=samples.damping_ratio,
+            inertias=samples.inertias,
+        )
 
-    def _cycle(
-        self,
-        case: GearCase,
-        state: ThermalState,
-        speed: Floats,
-        torque: Floats,
-        half_backlash: float,
-    ) -> list[Excitation | None]:
-        """The excitations of one mesh cycle."""
-        # by its place: a choice that varies changes the name
-        model = case.models[[m.name for m in self.case.models].index(self.bundle)]
-        stated = replace(case.stated, speed=speed, torque=torque, half_backlash=half_backlash)
-        here = replace(case, stated=stated)
-        return excitations(case, case.cycle(state.moving(here, model), model, FEW))
+    def _meshed(self, group: _Group) -> Excitations:
+        """Springs, backlash and load of a group, without the kinematic error."""
+        found = self._cycled(group, EXCITES)
+        return excitations(replace(group.case, transmission_error=NO_ERROR), found)
+
+    def _cycled(self, group: _Group, want: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """Quantities of the mesh cycle of every row of a group, and its status."""
+        case = group.case
+        # by its place where a choice that varies changes the name
+        known = [m.name for m in case.models]
+        names = known if self.bundle in known else [m.name for m in self.case.models]
+        model = case.models[names.index(self.bundle)]
+        return quasi_static(case, group.columns, group.index.size, model, self.state, want)
 
 
-@lru_cache(maxsize=64)
-def _case_with(
-    text: str, overrides: tuple[tuple[str, str], ...], fields: tuple[tuple[str, str], ...]
-) -> GearCase:
-    return gear_case(load_case(text, dict(overrides) | dict(fields)))
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Rows ``index`` of one ``case``, made of other ``values`` in its file; the rest in columns."""
+
+    case: GearCase
+    values: tuple[float, ...]
+    index: Whole
+    columns: Columns
 
 
-def _put(found: list[Excitation | None], places: Whole, some: Sequence[Excitation | None]) -> None:
-    for place, one in zip(places.tolist(), some, strict=True):
-        found[place] = one
+def _keep(kept: dict[Any, Any], key: object, value: object) -> None:
+    while len(kept) >= KEPT:
+        kept.pop(next(iter(kept)), None)
+    kept[key] = value
 
 
 def along(family: GearFamily | NumberFamily) -> Callable[[float], Points]:

@@ -87,7 +87,9 @@ class OnePoint:
         """k(t), e(t), backlash and force in SI; InputError where the pair is jammed."""
         _ = self.points
         whole = GearFamily(self.gears, (), state=self._held)
-        return next(one for one in whole.excitations(np.empty((1, 0))) if one is not None)
+        found = whole.excitations(np.empty((1, 0))).one(0)
+        assert found is not None  # the point moves
+        return found
 
     def along(self, parameter: str) -> Callable[[float], Points]:
         """value -> the point with ``parameter`` put to it; temperature is both addenda's."""

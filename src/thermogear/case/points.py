@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from thermogear.base.excitation import Excitation, Periodic
+from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
-from thermogear.dynamics.models import DeadZoneModel, TorsionalModel, from_excitation
+from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 from thermogear.dynamics.tables import Lanes
-from thermogear.mesh.excite import excitation
+from thermogear.mesh.excite import excitations as mesh_excitations
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -91,14 +92,14 @@ class Points:
 
 
 def excitations(
-    case: GearCase, cycle: xr.Dataset, harmonics: int | None = None
-) -> list[Excitation | None]:
-    """The excitation of every operating point of ``cycle``, of ``case``; None where it is jammed.
+    case: GearCase, cycle: xr.Dataset | Mapping[str, NDArray[Any]], harmonics: int | None = None
+) -> Excitations:
+    """The excitation of every operating point of ``cycle``, of ``case``.
 
     ``harmonics`` replaces the case's number.
     """
-    return excitation(
-        cycle.drop_dims("path_position", errors="ignore"),
+    return mesh_excitations(
+        cycle,
         case.pair,
         damping_ratio=case.damping_ratio,
         inertias=case.inertias,
@@ -107,13 +108,14 @@ def excitations(
     )
 
 
-def points_of(found: Sequence[Excitation | None]) -> Points:
-    """The points of excitations, those of a jammed pair as placeholders."""
-    jammed = np.array([one is None for one in found])
-    moving = [one for one in found if one is not None]
+def points_of(found: Excitations) -> Points:
+    """The points of excitations, those that do not move as placeholders.
+
+    The equation of :func:`~thermogear.dynamics.models.from_excitation`, all lanes at once.
+    """
+    still = found.status != STATUS.index("ok")
     count = len(found)
-    nan = np.full(count, np.nan)
-    if not moving:
+    if still.all():
         idle = TorsionalModel(
             damping_ratio=0.1,
             frequency=np.ones(count),
@@ -121,40 +123,42 @@ def points_of(found: Sequence[Excitation | None]) -> Points:
             mean_force=0.1,
             force_amplitude=0.0,
         ).lanes()
+        nan = np.full(count, np.nan)
         status = np.full(count, STATUS.index("jammed"), np.int8)
         none = np.full((count, 1), np.nan, complex)
         return Points(idle, status, nan, nan, nan, nan, none, nan, nan)
-    # a jammed point borrows the lane of a moving one; its status keeps it still
-    place = np.where(jammed, 0, np.cumsum(~jammed) - 1)
-    width = 1 + max(len(one.error.harmonics) for one in moving)
-    error = np.zeros((len(moving), width), complex)
-    for row, one in enumerate(moving):
-        error[row, 0] = one.error.mean
-        error[row, 1 : 1 + len(one.error.harmonics)] = one.error.harmonics
-    values = np.array(
-        [
-            (
-                one.reference_half_backlash,
-                one.natural_frequency,
-                one.stiffness.mean,
-                one.mean_force,
-                one.mesh_frequency,
-                one.half_backlash,
-            )
-            for one in moving
-        ]
-    )[place]
-    length, rate, stiffness, force, mesh, hot = values.T.copy()
+    if still.any():
+        # a jammed point borrows the lane of a moving one; its status keeps it still
+        found = found.take(np.where(still, int(np.argmin(still)), np.arange(count)))
+    length, mean = found.reference_half_backlash, found.stiffness[:, 0].real
+    rate = found.natural_frequency
+    frequency = found.mesh_frequency / rate
+    # d/dtau = (w/2 pi) d/dphi
+    ranks = np.arange(found.error.shape[1])
+    bent: NDArray[np.complex128] = found.error * (2j * np.pi * ranks) ** 2
+    scale = (frequency / (2.0 * np.pi)) ** 2 / length
+    force = (bent * scale[:, None] * -1.0).astype(complex)
+    force[:, 0] = found.mean_force / (mean * length)
+    none_at_all = (None,) * count
+    lanes = Lanes(
+        period=2.0 * np.pi / frequency,
+        damping=2.0 * found.damping_ratio,
+        half_backlash=found.half_backlash / length,
+        stiffness=found.stiffness * (1.0 / mean)[:, None],
+        force=force,
+        stiffness_pieces=none_at_all,
+        force_pieces=none_at_all,
+    )
     return Points(
-        from_excitation(moving).lanes().take(place),
-        np.where(jammed, STATUS.index("jammed"), 0).astype(np.int8),
+        lanes,
+        np.where(still, STATUS.index("jammed"), 0).astype(np.int8),
         length,
         rate,
-        stiffness,
-        force,
-        error[place],
-        mesh,
-        hot,
+        mean,
+        found.mean_force,
+        found.error,
+        found.mesh_frequency,
+        found.half_backlash,
     )
 
 

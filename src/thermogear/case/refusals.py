@@ -8,8 +8,9 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from thermogear.base.errors import InputError, nearest, short
+from thermogear.base.errors import InputError, InputErrors, nearest, short
 from thermogear.case.fields import Reader
+from thermogear.case.lines import line_of
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _RANK = {"extra_forbidden": 0, "missing": 2}  # a misspelt key explains the missing one
@@ -141,3 +142,14 @@ def reader_at(file: type[BaseModel], location: tuple[int | str, ...]) -> Reader 
     for inner in get_args(field.annotation):
         readers += [m for m in getattr(inner, "__metadata__", ()) if isinstance(m, Reader)]
     return readers[0] if readers else None
+
+
+def together(
+    errors: list[InputError], text: str, changes: tuple[tuple[str, str], ...]
+) -> InputError:
+    """Errors of one file as one, each with its line where the file's own text is at fault."""
+    changed = {path.partition(".")[0] for path, _ in changes}
+    for error in errors:
+        if error.field.partition(".")[0] not in changed:
+            error.line = line_of(text, error.field)
+    return errors[0] if len(errors) == 1 else InputErrors(errors)

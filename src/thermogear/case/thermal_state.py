@@ -87,9 +87,8 @@ class ThermalState:
         """Every operating point of ``case`` in this state under ``model``."""
         if self.held is not None:
             at = case.stated
-            return replace(
-                self.held, speed=at.speed, torque=at.torque, half_backlash=at.half_backlash
-            )
+            held = {n: getattr(at, n) for n in ("speed", "torque", "half_backlash", "varied")}
+            return replace(self.held, **held)
         if self.temperature is not None:
             return case.operating_at(self.temperature, model)
         hot = case.balance(model).operating if self == COMPUTED else case.operating_of(model)

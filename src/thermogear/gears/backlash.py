@@ -7,14 +7,19 @@ backlash j_n/2 stands to each side of a tooth that floats in the middle. Lengths
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.gears.geometry import involute
 from thermogear.gears.pair import GearPair
 
+_Lengths = TypeVar("_Lengths", float, NDArray[np.float64])
 
-def normal_from_circumferential(circumferential: float, pair: GearPair) -> float:
+
+def normal_from_circumferential(circumferential: _Lengths, pair: GearPair) -> _Lengths:
     """j_n = j_t cos(alpha_w) [m]: backlash on the operating pitch circle, on the line of action.
 
     Source: ISO 21771-1, spur gears.

@@ -28,7 +28,7 @@ from thermogear.mesh.friction_path import FrictionPath
 from thermogear.mesh.heat_loop import HOTTEST, Course, Response, asked, follow
 from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
@@ -124,6 +124,7 @@ def heat_balance(
     half_backlash: float,
     model: MeshModel | None = None,
     *,
+    varied: Varied = ALIKE,
     gearbox: Gearbox | None = None,
     reference: float = 293.15,
     housing: Material = MATERIALS["steel"],
@@ -143,7 +144,8 @@ def heat_balance(
     ``hot`` and ``several`` tell.
 
     ``speed`` [rad/s] and ``torque`` [N m] of the pinion, one axis or numbers that broadcast;
-    ``half_backlash`` [m] cold; ``reference`` [K] of the drawing; ``model`` gives friction law,
+    ``half_backlash`` [m] cold; ``varied``: what of the pair differs between the points, one width
+    for all; ``reference`` [K] of the drawing; ``model`` gives friction law,
     inlet and sharing. The tooth nodes become the addendum temperatures, the shaft nodes the bore
     temperatures of the radial fields, which pass through the body nodes. A point that does not
     settle keeps its last iterate with ``settled`` False, and so does one that would run above
@@ -168,6 +170,7 @@ def heat_balance(
         moment,
         lubricant,
         half_backlash,
+        varied,
         MeshModel.consistent() if model is None else model,
         box,
         reference,
@@ -239,6 +242,7 @@ class _Loop:
     torque: Floats
     lubricant: Lubricant
     half_backlash: float
+    varied: Varied
     model: MeshModel
     box: Gearbox
     reference: float
@@ -289,11 +293,12 @@ class _Loop:
         return Operating(
             self.speed[index],
             self.torque[index],
-            self.lubricant,
+            self.lubricant.part(index),
             t["oil"],
             node_temperatures(t, self.reference),
             self.half_backlash,
             self.housing,
+            varied=self.varied.part(index),
         )
 
     def network(self, nodes: Floats, index: Indices) -> tuple[ThermalNetwork, Losses, Flags]:
@@ -306,7 +311,7 @@ class _Loop:
             self.pair.wheel,
             here.speed,
             losses,
-            self.lubricant,
+            here.lubricant,
             here.oil_temperature,
             self.box.surroundings,
             {name: values[index] for name, values in self.measured.items()},

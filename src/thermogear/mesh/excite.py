@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.base.excitation import Excitation, Periodic
+from thermogear.base.excitation import (
+    Excitation,
+    Excitations,
+    Periodic,
+    fourier_rows,
+    padded,
+)
 from thermogear.base.vocabulary import STATUS
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
@@ -39,13 +48,42 @@ def excitation(
 ) -> list[Excitation | None]:
     """The excitation of every operating point of ``cycle``; None where the pair is jammed.
 
+    :func:`excitations` one by one.
+    """
+    found = excitations(
+        cycle,
+        pair,
+        damping_ratio=damping_ratio,
+        inertias=inertias,
+        transmission_error=transmission_error,
+        harmonics=harmonics,
+    )
+    return [found.one(place) for place in range(len(found))]
+
+
+EXCITES = ("mesh_stiffness", "spring_error", "half_backlash", "cold_half_backlash")
+"""What :func:`excitations` takes from a mesh cycle."""
+
+
+def excitations(
+    cycle: xr.Dataset | Mapping[str, NDArray[Any]],
+    pair: GearPair,
+    *,
+    damping_ratio: ArrayLike,
+    inertias: ArrayLike | None = None,
+    transmission_error: Periodic = NO_ERROR,
+    harmonics: int = 40,
+) -> Excitations:
+    """The excitation of every operating point of ``cycle``, in columns.
+
     k(t) keeps ``harmonics`` harmonics of the mesh stiffness (thermal stiffness included where
     the model has one). e(t) is the kinematic ``transmission_error`` [m] plus the cycle's
     ``spring_error``, the error that belongs to that stiffness (deviations and heat in it), both
     over the mesh phase; the loaded transmission error never enters, so that elasticity is not
     counted twice.
     The half backlash is its mean over the phase, the length scale the cold one. ``inertias``
-    [kg m^2] default to solid discs of pitch radius. Torques balance: T2 = T1 z2/z1.
+    [kg m^2], two or (operating, 2), default to solid discs of pitch radius; ``damping_ratio`` is a
+    number or one for each point. Torques balance: T2 = T1 z2/z1.
     Raises for a speed of 0, where no mesh frequency exists.
     """
     speeds = np.asarray(cycle["pinion_speed"], dtype=float)
@@ -62,27 +100,27 @@ def excitation(
             disc_inertia(pair.pinion, radius=pair.pinion.pitch_radius),
             disc_inertia(pair.wheel, radius=pair.wheel.pitch_radius),
         )
-    found: list[Excitation | None] = []
-    for point, speed in enumerate(speeds):
-        here = cycle.isel(operating=point)
-        if STATUS[int(here["status"])] != "ok":
-            found.append(None)
-            continue
-        torque = float(here["pinion_torque"])
-        stiffness = Periodic.from_samples(here["mesh_stiffness"].values, harmonics)
-        heat = Periodic.from_samples(here["spring_error"].values, harmonics)
-        found.append(
-            Excitation(
-                stiffness=stiffness,
-                error=transmission_error + heat,
-                half_backlash=float(here["half_backlash"]),
-                reference_half_backlash=float(here["cold_half_backlash"]),
-                mean_force=torque / pair.pinion.base_radius,
-                mesh_frequency=pair.pinion.teeth * float(speed),
-                inertias=inertias,
-                base_radii=(pair.pinion.base_radius, pair.wheel.base_radius),
-                torques=(torque, torque * pair.ratio),
-                damping_ratio=damping_ratio,
-            )
-        )
-    return found
+    count = speeds.size
+    status = np.asarray(cycle["status"], dtype=np.int8)
+    moving = status == STATUS.index("ok")
+    samples = {}
+    for name in ("mesh_stiffness", "spring_error"):
+        values = np.asarray(cycle[name], dtype=float)
+        samples[name] = fourier_rows(np.where(moving[:, None], values, 1.0), harmonics)
+    given = Periodic.columns([transmission_error])
+    heat = samples["spring_error"]
+    width = max(given.shape[1], heat.shape[1])
+    torque = np.asarray(cycle["pinion_torque"], dtype=float)
+    return Excitations(
+        status=status,
+        stiffness=samples["mesh_stiffness"],
+        error=padded(given, width) + padded(heat, width),
+        half_backlash=np.asarray(cycle["half_backlash"], dtype=float),
+        reference_half_backlash=np.asarray(cycle["cold_half_backlash"], dtype=float),
+        mean_force=torque / pair.pinion.base_radius,
+        mesh_frequency=pair.pinion.teeth * speeds,
+        inertias=np.broadcast_to(np.asarray(inertias, dtype=float), (count, 2)),
+        torques=np.stack([torque, torque * pair.ratio], axis=1),
+        damping_ratio=np.broadcast_to(np.asarray(damping_ratio, dtype=float), (count,)),
+        base_radii=np.broadcast_to([pair.pinion.base_radius, pair.wheel.base_radius], (count, 2)),
+    )

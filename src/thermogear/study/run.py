@@ -20,6 +20,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.excitation import Excitations
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATES, STATUS, attributes, dressed, label, labelled
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
@@ -200,7 +201,7 @@ def _motion(
     """Motion of every bundle, place on ``axis`` and operating point, in SI."""
     first = next(iter(cycles.values()))
     every = [c.isel({axis: k}) for c in cycles.values() for k in range(c.sizes[axis])]
-    points = points_of([one for cycle in every for one in excitations(case, cycle)])
+    points = points_of(Excitations.joined([excitations(case, cycle) for cycle in every]))
     stage = "motion" if axis == "state" else "motion over temperature"
     found = follow_gears(points, case.simulation, lambda done, total: progress(stage, done, total))
     dims = ("bundle", axis, "operating")

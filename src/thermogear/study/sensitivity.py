@@ -19,19 +19,18 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
-from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.parameters import PARAMETERS, Parameter
 from thermogear.base.progress import Progress, silent
+from thermogear.case.build import Follows, TemperatureRule
 from thermogear.case.case import GearCase
-from thermogear.case.points import excitations, points_of
-from thermogear.case.thermal_state import HOT, UNDEFORMED
+from thermogear.case.points import Points, points_of
+from thermogear.case.samples import fields_of, quasi_static, sampled
+from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
-from thermogear.gears.pair import GearPair
-from thermogear.heat.lubrication import grade
-from thermogear.mesh.excite import NO_ERROR, disc_inertia
+from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Operating, Temperatures
+from thermogear.mesh.operating import Temperatures
 from thermogear.results.result import Result, now
 
 Floats = NDArray[np.float64]
@@ -42,8 +41,11 @@ LANES = 1024
 ABOUT = "the ranges and the conclusions of this study"
 """What belongs to the thesis's rig alone."""
 
-FIXED = ("face_width", "viscosity", "roughness", "backlash")
-"""Inputs of which a mesh cycle takes one value for all its operating points."""
+OF_THE_PATH = (
+    "friction_coefficient_mixed", "flash_temperature_mixed", "flash_temperature_dry",
+    "deformation_sum",
+)  # fmt: skip
+"""What the outputs take along the path of contact."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,11 @@ INPUTS: tuple[Input, ...] = (
     Input("oil", PARAMETERS["oil_below_gears"], low=0.0, high=60.0),
 )
 """Every range is ours, as wide as rigs of this kind are; only the gear temperature's is stated."""
+
+FIELDS: dict[str, tuple[str, ...]] = {one.name: fields_of(one.parameter.name) for one in INPUTS} | {
+    "gear": ("temperatures.pinion_addendum", "temperatures.wheel_addendum")
+}
+"""The columns that an input stands for."""
 
 
 @dataclass(frozen=True)
@@ -286,143 +293,77 @@ def evaluate(
 ) -> tuple[dict[str, Floats], int]:
     """Every output at ``places`` (sample, input) of the unit cube, and how many pairs jam.
 
-    Samples that share what one mesh cycle cannot vary (:data:`FIXED`) are computed together.
+    One mesh cycle takes all samples at once (:mod:`thermogear.case.samples`).
     """
-    columns = {one.name: one.values(places[:, k]) for k, one in enumerate(plan.inputs)}
     count = len(places)
-    values = {output.name: np.zeros(count) for output in OUTPUTS}
-    together: dict[tuple[float, ...], list[int]] = {}
-    fixed = [columns[name] for name in FIXED if name in columns]
-    for sample in range(count):
-        together.setdefault(tuple(float(c[sample]) for c in fixed), []).append(sample)
-    waiting: list[tuple[int, Excitation, Excitation]] = []
-    done = 0
+    columns = {
+        field: one.values(places[:, k])
+        for k, one in enumerate(plan.inputs)
+        for field in FIELDS[one.name]
+    }
+    columns["operating.speed"] = np.full(count, _speed(case, plan))
+    held = _held(case)
+    consistent, thesis = MeshModel.consistent(), MeshModel.thesis()
+    stiffness = (*EXCITES, "mean_stiffness")
+
+    def cycle(model: MeshModel, state: ThermalState, want: Sequence[str]) -> dict[str, Floats]:
+        found = quasi_static(held, columns, count, model, state, want, path_positions=PATH)
+        done.append(state)
+        progress("sensitivity", len(done), 5)
+        return found
+
+    done: list[ThermalState] = []
+    progress("sensitivity", 0, 5)
     with warnings.catch_warnings():
         # corners of the ranges leave an oil's range; the ranges stand beside the results
         warnings.simplefilter("ignore", ValidityWarning)
-        for samples in together.values():
-            progress("sensitivity", done, count)
-            rows = np.array(samples)
-            at = {name: column[rows] for name, column in columns.items()}
-            found, pairs = _chain(case, _speed(case, plan), at, len(samples))
-            for name, row in found.items():
-                values[name][rows] = row
-            waiting += [
-                (sample, *pair)
-                for sample, pair in zip(samples, pairs, strict=True)
-                if pair is not None
-            ]
-            done += len(samples)
-    progress("sensitivity", count, count)
-    for start in range(0, len(waiting), LANES):
-        _vibrate(waiting[start : start + LANES], values)
-    return values, count - len(waiting)
-
-
-def _chain(
-    case: GearCase, speed: float, at: dict[str, Floats], count: int
-) -> tuple[dict[str, Floats], list[tuple[Excitation, Excitation] | None]]:
-    """The quasi-static outputs of samples of one pair and oil, and their excitations.
-
-    Undeformed and hot, by their places; a jammed pair has None.
-    """
-    here = _case_of(case, speed, at, count)
-    consistent, thesis = MeshModel.consistent(), MeshModel.thesis()
-    cold, hot = (
-        here.cycle(state.operating(here, consistent), consistent, PATH)
-        for state in (UNDEFORMED, HOT)
-    )
-    printed = (here.cycle(state.operating(here, thesis), thesis, 2) for state in (UNDEFORMED, HOT))
-    row: dict[str, Floats] = {}
-    for name, data in (("stiffness_change", (cold, hot)), ("stiffness_change_thesis", printed)):
-        before, after = (one["mean_stiffness"].values for one in data)
-        row[name] = after / before - 1.0
-    flash = {kind: hot[f"flash_temperature_{kind}"].values.max(axis=1) for kind in ("mixed", "dry")}
-    row |= {
-        "friction": hot["friction_coefficient_mixed"].values.mean(axis=1),
+        cold = cycle(consistent, UNDEFORMED, stiffness)
+        hot = cycle(consistent, HOT, (*stiffness, *OF_THE_PATH))
+        printed = [cycle(thesis, state, ("mean_stiffness",)) for state in (UNDEFORMED, HOT)]
+    flash = {kind: hot[f"flash_temperature_{kind}"].max(axis=1) for kind in ("mixed", "dry")}
+    values = {output.name: np.zeros(count) for output in OUTPUTS} | {
+        "stiffness_change": hot["mean_stiffness"] / cold["mean_stiffness"] - 1.0,
+        "stiffness_change_thesis": printed[1]["mean_stiffness"] / printed[0]["mean_stiffness"] - 1,
+        "friction": hot["friction_coefficient_mixed"].mean(axis=1),
         "flash": flash["mixed"],
         "dry_over_mixed": flash["dry"] / flash["mixed"],
-        "growth": hot["deformation_sum"].values.mean(axis=1),
-        "backlash_left": hot["half_backlash"].values / hot["cold_half_backlash"].values,
+        "growth": hot["deformation_sum"].mean(axis=1),
+        "backlash_left": hot["half_backlash"] / hot["cold_half_backlash"],
     }
-    found = zip(excitations(here, cold), excitations(here, hot), strict=True)
-    ratio = np.zeros(count)
-    pairs: list[tuple[Excitation, Excitation] | None] = []
-    for k, (drawn, warm) in enumerate(found):
-        if drawn is None or warm is None:
-            pairs.append(None)
-            continue
-        damping = float(at["damping"][k]) if "damping" in at else case.damping_ratio
-        error = _error(case, float(at["error"][k]) if "error" in at else None)
-        cold_one, hot_one = (
-            replace(x, error=x.error + error, damping_ratio=damping) for x in (drawn, warm)
-        )
-        ratio[k] = hot_one.mesh_frequency / hot_one.natural_frequency
-        pairs.append((cold_one, hot_one))
-    row["frequency_ratio"] = ratio
-    return row, pairs
+    samples = sampled(held, columns, count)
+    both = [points_of(samples.excited(found)) for found in (cold, hot)]
+    moving = np.flatnonzero(~(both[0].jammed | both[1].jammed))
+    values["frequency_ratio"][moving] = (both[1].mesh_frequency / both[1].rate)[moving]
+    for start in range(0, moving.size, LANES):
+        _vibrate(both, moving[start : start + LANES], values)
+    progress("sensitivity", 5, 5)
+    return values, count - moving.size
 
 
-def _case_of(case: GearCase, speed: float, at: dict[str, Floats], count: int) -> GearCase:
-    """The case of samples of one pair and oil: their own widths, loads, temperatures and backlash.
+def _held(case: GearCase) -> GearCase:
+    """The case as hot as it is, bores, housing and oil so far below the gears as they are."""
+    at = case.operating
+    given = at.temperatures
+    tip = _first(given.pinion_addendum)
 
-    Without its kinematic error, which each sample has to its own size.
-    """
-    one = {name: float(at[name][0]) for name in FIXED if name in at}
-    given = (case.pair.pinion, case.pair.wheel)
-    own: dict[str, Any] = {n: one[n] for n in ("face_width", "roughness") if n in one}
-    pinion, wheel = (replace(gear, **own) for gear in given)
-    # of discs that are as wide as the gears
-    first, second = (
-        disc_inertia(new, radius=new.pitch_radius) / disc_inertia(old, radius=old.pitch_radius)
-        for new, old in zip((pinion, wheel), given, strict=True)
+    def below(value: object) -> Follows:
+        return Follows(tip - _first(value), True)
+
+    rule = TemperatureRule(
+        given.reference,
+        pinion_bore=below(given.pinion_bore),
+        wheel_bore=below(given.wheel_bore),
+        housing=below(given.housing),
+        oil=below(at.oil_temperature),
     )
+    both = Temperatures.uniform(tip, reference=given.reference)
     return replace(
         case,
-        pair=GearPair(pinion, wheel, case.pair.centre_distance),
-        inertias=(case.inertias[0] * first, case.inertias[1] * second),
-        stated=_operating(case, speed, at, one, count),
         computed=False,
-        transmission_error=NO_ERROR,
+        temperature_rule=rule,
+        stated=replace(case.stated, temperatures=both),
         mesh_positions=PHASES,
         harmonics=HARMONICS,
-    )
-
-
-def _error(case: GearCase, amplitude: float | None) -> Periodic:
-    """The case's kinematic error, its first harmonic scaled to ``amplitude`` [m]."""
-    error = case.transmission_error
-    own = abs(error.harmonics[0]) if error.harmonics else 0.0
-    return error if amplitude is None or own == 0.0 else error * (amplitude / own)
-
-
-def _operating(
-    case: GearCase, speed: float, at: dict[str, Floats], one: dict[str, float], count: int
-) -> Operating:
-    """The samples as hot as their inputs say."""
-    given = case.operating.temperatures
-    own = _first(given.pinion_addendum)
-    tip = at.get("gear", np.full(count, own))
-
-    def below(name: str, value: object) -> Floats:
-        return np.asarray(tip - at.get(name, np.full(count, own - _first(value))))
-
-    bore, housing = below("shaft", given.pinion_bore), below("housing", given.housing)
-    return replace(
-        case.operating,
-        speed=np.full(count, speed),
-        torque=at.get("torque", np.full(count, float(case.torques[0]))),
-        lubricant=grade(one["viscosity"]) if "viscosity" in one else case.operating.lubricant,
-        oil_temperature=below("oil", case.operating.oil_temperature),
-        temperatures=Temperatures(
-            reference=given.reference,
-            pinion_addendum=tip,
-            pinion_bore=bore,
-            wheel_addendum=tip,
-            wheel_bore=bore,
-            housing=housing,
-        ),
-        half_backlash=0.5 * one["backlash"] if "backlash" in one else case.operating.half_backlash,
     )
 
 
@@ -430,13 +371,11 @@ def _first(values: object) -> float:
     return float(np.ravel(np.asarray(values, dtype=float))[0])
 
 
-def _vibrate(
-    waiting: Sequence[tuple[int, Excitation, Excitation]], values: dict[str, Floats]
-) -> None:
-    """Settled swing and loss of contact of many samples at once."""
+def _vibrate(both: list[Points], some: NDArray[np.int64], values: dict[str, Floats]) -> None:
+    """Settled swing and loss of contact of ``some`` samples at once, undeformed and hot."""
     swings = []
-    for lanes in ([cold for _, cold, _ in waiting], [hot for _, _, hot in waiting]):
-        points = points_of(lanes)
+    for whole in both:
+        points = whole.take(some)
         data = simulate(
             points,
             discard=DISCARD,
@@ -447,10 +386,9 @@ def _vibrate(
         swings.append(np.ptp(data["x"].values, axis=1) * points.length)
         lost = 1.0 - data["time_share"].sel(side="drive").values
     cold_swing, hot_swing = swings
-    places = [sample for sample, _, _ in waiting]
-    values["swing"][places] = hot_swing
-    values["swing_change"][places] = hot_swing / cold_swing - 1.0
-    values["out_of_contact"][places] = np.where(lost > 1e-9, lost, 0.0)
+    values["swing"][some] = hot_swing
+    values["swing_change"][some] = hot_swing / cold_swing - 1.0
+    values["out_of_contact"][some] = np.where(lost > 1e-9, lost, 0.0)
 
 
 def ranking(data: xr.Dataset, output: str) -> list[tuple[str, float, float]]:

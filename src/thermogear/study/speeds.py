@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.side_by_side import motions_along
-from thermogear.base.excitation import Excitation
+from thermogear.base.excitation import Excitations
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.case.points import points_of
@@ -100,18 +100,19 @@ def _valley(top: Floats, place: int, way: int) -> float:
     return float(side[: higher[0] if higher.size else side.size].min())
 
 
-def look(mesh: Excitation, *, teeth: int, own: Floats) -> Speeds:
-    """Motions of one ``mesh`` over the speed of its pinion of so many ``teeth``.
+def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
+    """Motions of a ``mesh`` of one point over the speed of its pinion of so many ``teeth``.
 
     Each of about a hundred speeds is started at rest in static contact, with a far throw, and on
     the back side. ``own``: the case's own speeds [rad/s], kept beside.
     """
-    natural = mesh.natural_frequency
+    natural = float(mesh.natural_frequency[0])
     ends = 0.9 * teeth * own.min() / natural, 1.1 * teeth * own.max() / natural
     low, high = max(min(LOWEST, ends[0]), DEEPEST), max(HIGHEST, min(ends[1], FARTHEST))
     count = int(np.ceil(np.log(high / low) / np.log1p(STEP)))
     ratio = np.geomspace(low, high, count + 1)
-    lanes = points_of([replace(mesh, mesh_frequency=natural * float(one)) for one in ratio])
+    along = mesh.take(np.zeros(ratio.size, int))
+    lanes = points_of(replace(along, mesh_frequency=natural * ratio))
     gap, force = float(lanes.flat.half_backlash[0]), float(lanes.flat.force[0, 0].real)
     starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0]]
     motions = motions_along(lanes.flat, starts)

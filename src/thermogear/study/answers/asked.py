@@ -108,8 +108,8 @@ class Asked:
             return None
         self.progress("speeds", 0, 1)
         here = self.hot.isel(operating=[self.hardest])
-        (mesh,) = excitations(self.case, here)
-        if mesh is None:
+        mesh = excitations(self.case, here)
+        if mesh.status[0] != STATUS.index("ok"):
             return None
         found = look(mesh, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
         self.progress("speeds", 1, 1)
