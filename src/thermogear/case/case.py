@@ -25,6 +25,7 @@ from thermogear.case import build as parts
 from thermogear.case.allowed import gear_parameter, gear_reader
 from thermogear.case.assumptions import Assumption, assumptions
 from thermogear.case.backlash import Backlash
+from thermogear.case.base import Case, Simulation
 from thermogear.case.build import TemperatureRule
 from thermogear.case.charts import Chart, charts, enclosed
 from thermogear.case.decided import decided
@@ -33,7 +34,7 @@ from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import accuracy, deviations
 from thermogear.case.gearbox import Reading, gearbox
-from thermogear.case.ranges import row_of, warn_of_temperatures, warn_of_torque
+from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
@@ -68,47 +69,6 @@ MOST_POINTS = 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Simulation:
-    """How long and how finely the motion is followed; periods are mesh periods.
-
-    ``initial_state`` is (X, X'), the displacement over the cold half backlash and its derivative
-    by omega_n t.
-    """
-
-    periods: int
-    discard: int
-    most_discarded: int
-    steps_per_period: int
-    samples: int
-    sample_periods: int
-    initial_state: tuple[float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Case:
-    """What every case has.
-
-    ``text`` is the file as it was read, with the files it names, without the ``overrides``.
-    """
-
-    title: str
-    text: str
-    simulation: Simulation
-    assumptions: tuple[Assumption, ...] = ()
-    overrides: tuple[tuple[str, str], ...] = ()
-
-    @property
-    def provenance(self) -> dict[str, Any]:
-        """What a result keeps of this case: the file as read, and what replaced its values."""
-        return {"case": self.text, "overrides": [list(pair) for pair in self.overrides]}
-
-    @property
-    def kind(self) -> str:
-        """``"gear"`` or ``"dimensionless"``."""
-        return "gear" if isinstance(self, GearCase) else "dimensionless"
-
-
-@dataclass(frozen=True, kw_only=True)
 class GearCase(Case):
     """A gear pair with its operating points, from friction to vibration (SI, K, rad).
 
@@ -126,6 +86,7 @@ class GearCase(Case):
     read in them.
     """
 
+    kind = "gear"
     pair: GearPair
     stated: Operating
     temperature_rule: TemperatureRule | None
@@ -331,6 +292,7 @@ class DimensionlessCase(Case):
     ``base``: the numbers that the rows start from, one or several of each.
     """
 
+    kind = "dimensionless"
     points: tuple[Point, ...]
     base: Mapping[str, tuple[float, ...]]
 
@@ -505,5 +467,18 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     warn_of_torque(pair, torques)
     if case.computed:
         return case
-    warn_of_temperatures(pair, {"temperatures": case.stated} | row_of(case))
+    warn_of_temperatures(pair, {"temperatures": case.stated} | _row_of(case))
     return case
+
+
+def _row_of(case: GearCase) -> dict[str, Operating]:
+    """The operating points of every temperature of the row by its field, where it is drawn."""
+    found = {}
+    for place, temperature in enumerate(case.gear_temperatures):
+        field = f"temperatures.row[{place}]"
+        if "temperature" in case.pictures:
+            try:
+                found[field] = case.operating_at(temperature)
+            except InputError as error:
+                raise error.named(field) from error
+    return found

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.operating import Operating
-
-if TYPE_CHECKING:
-    from thermogear.case.case import GearCase
 
 COLDEST = ZERO_CELSIUS - 60.0
 """Below it [K] the material data are an extrapolation."""
@@ -42,19 +38,6 @@ def warn_of_temperatures(pair: GearPair, states: dict[str, Operating]) -> None:
                 field = "oil.temperature" if where == "temperatures" else f"{where}, oil"
                 why = f"outside the viscosity fit of {state.lubricant.name}"
                 _say(field, float(oil), low, high, why)
-
-
-def row_of(case: GearCase) -> dict[str, Operating]:
-    """The operating points of every temperature of the row by its field, where it is drawn."""
-    found = {}
-    for place, temperature in enumerate(case.gear_temperatures):
-        field = f"temperatures.row[{place}]"
-        if "temperature" in case.pictures:
-            try:
-                found[field] = case.operating_at(temperature)
-            except InputError as error:
-                raise error.named(field) from error
-    return found
 
 
 def warn_of_torque(pair: GearPair, torques: ArrayLike) -> None:

@@ -48,7 +48,7 @@ def excitation(
 ) -> list[Excitation | None]:
     """The excitation of every operating point of ``cycle``; None where the pair is jammed.
 
-    :func:`excitations` one by one.
+    :func:`excitations` one by one: ``inertias`` [kg m^2], ``transmission_error`` e [m].
     """
     found = excitations(
         cycle,
