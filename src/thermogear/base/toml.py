@@ -51,14 +51,23 @@ def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str]
 
 
 def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> dict[str, Any]:
-    """``data`` with ``changes`` put in, in place; a table on the way is made where missing."""
+    """``data`` with ``changes`` put in; tables on the way are new, made where missing.
+
+    ``data`` itself stays as it is.
+    """
+    made = dict(data)
+    fresh: set[int] = set()
     for path, text in changes:
         if not _KEY.fullmatch(path):
             raise InputError("--set", short(path), allowed="a dotted path: gears.pinion.teeth")
         *way, last = path.split(".")
-        table: Any = data
+        table: Any = made
         for depth, key in enumerate(way):
-            above, table = table, table.setdefault(key, {})
+            above, table = table, table.get(key, {})
+            if isinstance(table, dict) and id(table) not in fresh:
+                table = dict(table)
+                fresh.add(id(table))
+            above[key] = table
             if isinstance(table, str) and ".".join(way[: depth + 1]) in NAMED:
                 table = above[key] = {NAMED[".".join(way[: depth + 1])]: table}
             if not isinstance(table, dict):
@@ -68,7 +77,7 @@ def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> di
                     why=f"{'.'.join(way[: depth + 1])} is a value, not a table",
                 )
         table[last] = _value(text)
-    return data
+    return made
 
 
 def _value(text: str) -> Any:

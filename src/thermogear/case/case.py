@@ -7,7 +7,6 @@ nothing of TOML, texts or units any more.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -132,7 +131,7 @@ class GearCase(Case):
             for name, value in values.items()
             for place in gear_parameter(name).fields
         )
-        data = overridden(deepcopy(self.data), changes)
+        data = overridden(self.data, changes)
         kept = tuple(pair for pair in self.overrides if pair[0] not in dict(changes))
         return gear_case(case_of(data, self.text, (*kept, *changes), told=told))
 
@@ -178,10 +177,17 @@ class GearCase(Case):
             want=want,
         )
 
-    def balance(self, model: MeshModel, gear_temperature: ArrayLike | None = None) -> HeatBalance:
+    def balance(
+        self,
+        model: MeshModel,
+        gear_temperature: ArrayLike | None = None,
+        *,
+        from_hot: bool = True,
+    ) -> HeatBalance:
         """The heat balance of every operating point, computed once.
 
-        ``gear_temperature`` [K] holds the teeth of both gears there.
+        ``gear_temperature`` [K] holds the teeth of both gears there; ``from_hot`` seeks a second
+        steady state too, as the first call says.
         """
         held = None if gear_temperature is None else np.asarray(gear_temperature, dtype=float)
         key = (model, None if held is None else held.tobytes())
@@ -192,7 +198,12 @@ class GearCase(Case):
                 box = replace(box, measured={**box.measured, **teeth})
             try:
                 self._balances[key] = self.balance_of(
-                    model, at.speed, at.torque, gearbox=box, varied=at.varied
+                    model,
+                    at.speed,
+                    at.torque,
+                    gearbox=box,
+                    varied=at.varied,
+                    from_hot=from_hot,
                 )
             except InputError as error:
                 if error.field != "prandtl":
@@ -327,7 +338,7 @@ def case_of(
 ) -> GearCase | DimensionlessCase:
     """The case of a file's tables ``data``, with ``changes`` in them; ``text`` as it was read.
 
-    ``told`` False leaves out its assumptions, for a case that nobody is shown.
+    ``told`` False leaves out its assumptions and warnings, for a case that nobody is shown.
     """
     kind = data.get("kind", "gear")
     file = DimensionlessFile if kind == "dimensionless" else GearFile
@@ -348,7 +359,9 @@ def case_of(
         found = assumptions(data, read)
         return DimensionlessCase(points=points_of(read), base=base, assumptions=found, **common)
     try:
-        case = replace(_gear_case(read, common), data=data)
+        case = _gear_case(read, common | {"data": data})
+        if told:
+            _warn_of(case)
     except InputError as error:
         others = [one for one in parts.faults(read) if str(one) != str(error)]
         raise together([error, *others], text, changes) from error
@@ -426,7 +439,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         )
     inertias, inertia_kind = parts.inertias(file, pair)
     measured = charts(file, pair)
-    case = GearCase(
+    return GearCase(
         pair=pair,
         stated=Operating(
             speed=np.repeat(speeds, len(torques)),
@@ -464,11 +477,13 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         file=file,
         **common,
     )
-    warn_of_torque(pair, torques)
-    if case.computed:
-        return case
-    warn_of_temperatures(pair, {"temperatures": case.stated} | _row_of(case))
-    return case
+
+
+def _warn_of(case: GearCase) -> None:
+    """Warn where the case leaves the range of its data."""
+    warn_of_torque(case.pair, case.torques)
+    if not case.computed:
+        warn_of_temperatures(case.pair, {"temperatures": case.stated} | _row_of(case))
 
 
 def _row_of(case: GearCase) -> dict[str, Operating]:

@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import ModelFamily
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.allowed import (
     LANE,
     gear_parameter,
@@ -216,11 +217,12 @@ class GearFamily:
         return on_numbers(made, numbers) if numbers else made
 
     def excitations(self, rows: Floats) -> Excitations:
-        """The excitation of every row, in SI."""
-        groups = list(self._groups(np.asarray(rows, dtype=float)))
-        parts = [self._excited(group) for group in groups]
-        order = np.argsort(np.concatenate([group.index for group in groups]), kind="stable")
-        return Excitations.joined(parts).take(order)
+        """The excitation of every row, in SI; a row that no case could have does not move."""
+        groups, place = self._placed(np.asarray(rows, dtype=float))
+        found = Excitations.joined([self._excited(group) for group in groups])
+        every = found.take(np.maximum(place, 0))
+        lost = np.int8(STATUS.index("not_converged"))
+        return replace(every, status=np.where(place < 0, lost, every.status))
 
     def quasi_static(self, rows: ArrayLike, want: Collection[str]) -> dict[str, NDArray[Any]]:
         """Stored quantities of the mesh cycle of every row, in SI: name -> (row, ...).
@@ -229,13 +231,41 @@ class GearFamily:
         With them ``status``: a row that no case could have, or whose heat or mesh does not
         settle, is "not_converged" and nan, and the others do not notice.
         """
-        groups = list(self._groups(np.asarray(rows, dtype=float)))
+        groups, place = self._placed(np.asarray(rows, dtype=float))
         parts = [self._cycled(group, tuple(want)) for group in groups]
-        order = np.argsort(np.concatenate([group.index for group in groups]), kind="stable")
-        return {name: np.concatenate([one[name] for one in parts])[order] for name in parts[0]}
+        found = {}
+        for name in parts[0]:
+            values = np.concatenate([one[name] for one in parts])[np.maximum(place, 0)]
+            if name == "status":
+                values[place < 0] = STATUS.index("not_converged")
+            elif np.any(place < 0):
+                values = np.array(values, dtype=float)
+                values[place < 0] = np.nan
+            found[name] = values
+        return found
 
-    def _groups(self, rows: Floats) -> Iterator[_Group]:
-        """Rows that share a case; what is no column of it is put into its file."""
+    def _placed(self, rows: Floats) -> tuple[list[_Group], Whole]:
+        """Groups of rows, and where each row stands in them, one after the other; -1: nowhere.
+
+        Raises what is wrong where no row has a case.
+        """
+        groups, place, done = [], np.full(len(rows), -1), 0
+        refused: list[ThermogearError] = []
+        for names, values, index, columns in self._kinds(rows):
+            try:
+                case = self._case_with(names, values)
+            except ThermogearError as error:
+                refused.append(error)
+                continue
+            groups.append(_Group(case, tuple(values), index, columns))
+            place[index] = done + np.arange(index.size)
+            done += index.size
+        if not groups:
+            raise refused[0]
+        return groups, place
+
+    def _kinds(self, rows: Floats) -> Iterator[tuple[list[str], Floats, Whole, Columns]]:
+        """Rows that share a case: what is put into its file, which rows, and their columns."""
         varied = [i for i, name in enumerate(self.names) if name not in LANE]
         read = [
             i
@@ -254,7 +284,7 @@ class GearFamily:
                 )
             }
             names = [self.names[i] for i in read]
-            yield _Group(self._case_with(names, values), tuple(values), index, columns)
+            yield names, values, index, columns
 
     def _case_with(self, names: Sequence[str], values: Floats) -> GearCase:
         """The case with parameters of its file put to other ``values`` (SI)."""

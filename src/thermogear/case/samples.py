@@ -341,13 +341,17 @@ def _cycle(
 ) -> dict[str, NDArray[Any]]:
     temperature = columns.get(GEARS_AT)
     if temperature is None:
+        balance = None
+        if state != UNDEFORMED and state.held is None:
+            balance = state.balance(case, model, from_hot=False)
         operating = state.moving(case, model)
-        balance = None if state == UNDEFORMED else state.balance(case, model)
     else:
         within("state", BODY, temperature)
+        fixed = case.follow != "proportional"
+        balance = None
+        if case.computed:
+            balance = case.balance(model, temperature if fixed else None, from_hot=False)
         operating = case.operating_at(temperature, model)
-        fixed = case.computed and case.follow != "proportional"
-        balance = case.balance(model, temperature) if fixed else None
     cycle = case.cycle(operating, model, path_positions, want)
     found = {name: cycle[name].values for name in (*want, "pinion_speed", "pinion_torque")}
     status = cycle["status"].values

@@ -104,11 +104,17 @@ class ThermalState:
             return False
         return case.computed or self == COMPUTED
 
-    def balance(self, case: GearCase, model: MeshModel) -> HeatBalance | None:
-        """The heat balance behind its temperatures; None where they are given."""
+    def balance(
+        self, case: GearCase, model: MeshModel, *, from_hot: bool = True
+    ) -> HeatBalance | None:
+        """The heat balance behind its temperatures; None where they are given.
+
+        ``from_hot`` as of :meth:`~thermogear.case.case.GearCase.balance`.
+        """
         if self != COMPUTED and not case.computed:
             return None
-        return case.balance(model, None if case.follow == "proportional" else self.temperature)
+        teeth = None if case.follow == "proportional" else self.temperature
+        return case.balance(model, teeth, from_hot=from_hot)
 
     def cycle(self, case: GearCase, model: MeshModel) -> xr.Dataset:
         """The mesh cycle of every operating point, nan where nothing is known of its temperatures.

@@ -21,6 +21,7 @@ Complexes = NDArray[np.complex128]
 
 HARMONICS = 1500
 _MATES = 6  # farthest coupled teeth, in pitches
+_FAR = 1e-20  # of the rim's motion reaches the bore: not a bit of it
 
 
 def rim_compliance(
@@ -65,10 +66,19 @@ def rim_compliance(
         u_bore[i, 2], v_bore[i, 2] = logarithm, -logarithm + d
         sigma[i, 2] = 1.0 + nu * d
         tau[i, 2] = -mu * (1.0 + d)
-    system = np.stack([u_bore, v_bore, sigma, tau], axis=1)
-    loads = np.zeros((n.size, 4, 2))
+    deep = np.asarray(ratio ** np.abs(n - 1.0) < _FAR)
+    weights = np.zeros((n.size, 4, 2))
+    near = ~deep
+    system = np.stack([u_bore[near], v_bore[near], sigma[near], tau[near]], axis=1)
+    loads = np.zeros((system.shape[0], 4, 2))
     loads[:, 2, 0] = loads[:, 3, 1] = 1.0 - nu**2
-    weights = np.linalg.solve(system, loads)
+    weights[near] = np.linalg.solve(system, loads)
+    # of high orders nothing reaches the bore: the two rising solutions of the full disc alone
+    s0, s1, t0, t1 = sigma[deep, 0], sigma[deep, 1], tau[deep, 0], tau[deep, 1]
+    scale = (1.0 - nu**2) / (s0 * t1 - s1 * t0)
+    weights[deep, :2] = (
+        np.stack([t1, -s1, -t0, s0], axis=1).reshape(-1, 2, 2) * scale[:, None, None]
+    )
     u = np.einsum("nk,nkl->nl", u_rim, weights)
     v = np.einsum("nk,nkl->nl", v_rim, weights)
     return u[:, 0], 0.5 * (u[:, 1] + v[:, 0]), v[:, 1]
@@ -101,12 +111,11 @@ def _foot_matrices(
     # sin(n phi) = Re(-i exp(i n phi)): the mixed terms turn by a right angle
     u = outer * (g_rr * radial + 1j * g_rt * shear)
     v = outer * (-1j * g_rt * radial + g_tt * shear)
-    pitch = 2.0 * np.pi / teeth
-    table = np.empty((2 * _MATES + 1, 3, 3))
-    for row, mate in enumerate(range(-_MATES, _MATES + 1)):
-        turn = np.exp(1j * n * mate * pitch)
-        energy = (np.conj(radial) * turn) @ u.T + (np.conj(shear) * turn) @ v.T
-        table[row] = 4.0 * np.pi * outer * energy.real
+    energy = np.conj(radial)[:, None] * u + np.conj(shear)[:, None] * v
+    angle = n * (2.0 * np.pi / teeth) * np.arange(_MATES + 1)[:, None]
+    even = np.einsum("mn,ijn->mij", np.cos(angle), energy.real)
+    odd = np.einsum("mn,ijn->mij", np.sin(angle), energy.imag)
+    table = 4.0 * np.pi * outer * np.concatenate([(even + odd)[:0:-1], even - odd])
     # order 0: radial breathing and torsion of the clamped ring
     mean = theta_f / np.pi / width
     ratio2 = (inner / outer) ** 2

@@ -8,6 +8,7 @@ SI stands in the formula.
 from __future__ import annotations
 
 import warnings
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -106,11 +107,19 @@ def grade(viscosity_40: float) -> Lubricant:
     Its viscosity at 100 °C follows the package's own mineral oils: nu_100 = c nu_40^p, fitted to
     them.
     """
+    warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
+    slope, level = _mineral_line()
+    at_100 = float(np.exp(level + slope * np.log(viscosity_40)))
+    name = f"mineral oil of {viscosity_40 * 1e6:.4g} mm2/s"
+    return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))
+
+
+@lru_cache(maxsize=1)
+def _mineral_line() -> tuple[float, float]:
+    """Slope and level of ln nu_100 over ln nu_40 of the package's own mineral oils."""
     known = [LUBRICANTS[name] for name in sorted(PUBLIC_MINERAL)]
     warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
     low = np.log([float(kinematic_viscosity(one, warm)) for one in known])
     high = np.log([float(kinematic_viscosity(one, hot)) for one in known])
     slope, level = np.polyfit(low, high, 1)
-    at_100 = float(np.exp(level + slope * np.log(viscosity_40)))
-    name = f"mineral oil of {viscosity_40 * 1e6:.4g} mm2/s"
-    return Lubricant.from_two_points(name, (warm, viscosity_40), (hot, at_100))
+    return float(slope), float(level)
