@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -31,6 +31,7 @@ from thermogear.base.plan import (
     Key,
     Progress,
     Variable,
+    every,
     gather,
     keep_going,
     ranges_of,
@@ -148,6 +149,12 @@ class BasinPlan:
             "used_periods": used,
             "status": status,
         }
+
+    def thinned(self, step: int) -> tuple[BasinPlan, Mapping[str, NDArray[np.int64]]]:
+        """The basins of every ``step``-th start of both axes."""
+        x, v = every(len(self.x), step=step), every(len(self.v), step=step)
+        thin = replace(self, x=tuple(self.x[i] for i in x), v=tuple(self.v[i] for i in v))
+        return thin, {"x": x, "v": v}
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         x = np.array(self.x)[ranges_of(self, key)["x"]]

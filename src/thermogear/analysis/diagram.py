@@ -6,8 +6,8 @@ branches behind the picture, unstable parts included, come from continuation.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from thermogear.base.plan import (
     Key,
     Progress,
     Variable,
+    every,
     gather,
     keep_going,
     ranges_of,
@@ -146,6 +147,14 @@ class DiagramPlan:
         small.compute((0, 0), None, keep_going)
         return len(chosen) * len(self.starts)
 
+    def thinned(self, step: int) -> tuple[DiagramPlan, Mapping[str, NDArray[np.int64]]]:
+        """The diagram of every ``step``-th value, in one chunk a direction."""
+        some = every(len(self.values), step=step)
+        values = tuple(self.values[i] for i in some)
+        whole = np.arange(len(DIRECTIONS))
+        thin = replace(self, values=values, block=len(values), branch_period=0)
+        return thin, {"direction": whole, self.parameter: some}
+
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[0] == 0
         values = np.array(self.values)[ranges_of(self, key)[self.parameter]]
@@ -202,6 +211,7 @@ def orbit_diagram(
     branch_period: int = BRANCH_PERIOD,
     threads: int | None = None,
     progress: Progress | None = None,
+    alive: Alive = keep_going,
 ) -> xr.Dataset:
     """The settled motion over ``values`` of a ``parameter``, up and down, from every start.
 
@@ -212,7 +222,7 @@ def orbit_diagram(
     periodic), with label, period, largest multiplier and Lyapunov exponent. Orbits of up to
     ``branch_period`` periods (0: none) are continued through the whole range, stable and
     unstable: ``branch_...`` over (branch, branch_point), and the bifurcations located on them,
-    ``bifurcation_...``.
+    ``bifurcation_...``. ``alive`` is called between rounds and raises to end the work.
     """
     plan = diagram_plan(
         model,
@@ -224,7 +234,7 @@ def orbit_diagram(
         block=block,
         branch_period=branch_period,
     )
-    return gather(plan, threads=threads, progress=progress)
+    return gather(plan, threads=threads, progress=progress, alive=alive)
 
 
 def diagram_plan(

@@ -26,6 +26,7 @@ from thermogear.base.plan import (
     Progress,
     Variable,
     axis_coordinates,
+    every,
     gather,
     keep_going,
     ranges_of,
@@ -105,6 +106,15 @@ class MapPlan:
         )
         small.compute((0, 0), None, keep_going)
         return int(some[0].size * some[1].size)
+
+    def thinned(self, step: int) -> tuple[MapPlan, Mapping[str, NDArray[np.int64]]]:
+        """The map of every ``step``-th value of both axes."""
+        some = [every(len(values), step=step) for values in self.axes]
+        one, two = (
+            tuple(values[i] for i in places) for values, places in zip(self.axes, some, strict=True)
+        )
+        names = self.family.names
+        return replace(self, axes=(one, two), refine=False), dict(zip(names, some, strict=True))
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         one, two = (
@@ -202,6 +212,7 @@ def parameter_map(
     stride: int = STRIDE,
     threads: int | None = None,
     progress: Progress | None = None,
+    alive: Alive = keep_going,
 ) -> xr.Dataset:
     """What the motion from one start settles on over two parameters.
 
@@ -217,7 +228,7 @@ def parameter_map(
     Returns label, period, largest multiplier, Lyapunov exponent and counts over the two
     parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The
     attributes tell the periods run and those of the full run. The result does not depend on
-    ``threads``.
+    ``threads``. ``alive`` is called between rounds and raises to end the work.
     """
     plan = map_plan(
         model,
@@ -228,7 +239,7 @@ def parameter_map(
         tile=tile,
         stride=stride,
     )
-    return gather(plan, threads=threads, progress=progress)
+    return gather(plan, threads=threads, progress=progress, alive=alive)
 
 
 def map_plan(

@@ -14,7 +14,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import xarray as xr
@@ -184,17 +184,19 @@ def computed(
     load: Callable[[Key], Arrays],
     *,
     threads: int | None = None,
+    alive: Alive = keep_going,
 ) -> Generator[tuple[Key, Arrays], None, None]:
     """Compute the ``wanted`` chunks on threads; yields each as it is ready.
 
     ``load`` gives a chunk that is already there, for chunks that need it. Closing the iterator
-    ends the work at the next pause of every thread.
+    ends the work at the next pause of every thread, and so does ``alive`` when it raises.
     """
     stop = threading.Event()
 
-    def alive() -> None:
+    def going() -> None:
         if stop.is_set():
             raise Stopped
+        alive()
 
     count = max(1, threads or os.cpu_count() or 1)
     waiting = Queue(plan, wanted)
@@ -215,7 +217,7 @@ def computed(
             while waiting or running:
                 for key, need in waiting.take(count - len(running)):
                     before = None if need is None else inherited(need)
-                    running[pool.submit(plan.compute, key, before, alive)] = key
+                    running[pool.submit(plan.compute, key, before, going)] = key
                 ended, _ = wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
                 for future in ended:
                     key = running.pop(future)
@@ -231,9 +233,13 @@ def computed(
 
 
 def gather(
-    plan: Plan, *, threads: int | None = None, progress: Progress | None = None
+    plan: Plan,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    alive: Alive = keep_going,
 ) -> xr.Dataset:
-    """Compute the whole plan in memory."""
+    """Compute the whole plan in memory; ``alive`` raises to end the work."""
     whole = empty_arrays(plan)
     keys = keys_of(plan)
     variables = plan.variables()
@@ -241,9 +247,64 @@ def gather(
     def load(key: Key) -> Arrays:
         return {n: whole[n][region_of(plan, key, v)] for n, v in variables.items()}
 
-    for done, (key, arrays) in enumerate(computed(plan, keys, load, threads=threads), start=1):
+    chunks = computed(plan, keys, load, threads=threads, alive=alive)
+    for done, (key, arrays) in enumerate(chunks, start=1):
         for name, variable in variables.items():
             whole[name][region_of(plan, key, variable)] = arrays[name]
         if progress is not None:
             progress(done, len(keys))
     return dataset_of(plan, whole)
+
+
+@dataclass(frozen=True, eq=False)
+class Slice:
+    """A part of a plan's result: ``arrays`` as stored, at the places ``where`` of each dimension
+    that is cut. A ``preview`` is of a coarser plan, and the slices that follow replace it.
+    """
+
+    where: Mapping[str, NDArray[np.int64]]
+    arrays: Arrays
+    preview: bool = False
+
+
+def slices(
+    plan: Plan,
+    *,
+    coarse: int = 0,
+    threads: int | None = None,
+    alive: Alive = keep_going,
+) -> Generator[Slice, None, None]:
+    """The result of ``plan`` part by part, as soon as each is there.
+
+    Together the slices are what the whole plan gives, to the last bit; a run-up's come in the order
+    in which it passes the speeds. ``coarse`` > 1: first the whole of every so many-th value, marked
+    as preview, where the plan can be thinned. ``alive`` is called often and raises to end the
+    work, as closing the generator does.
+    """
+    if coarse > 1 and isinstance(plan, Thinned):
+        thin, places = plan.thinned(coarse)
+        for one in slices(thin, threads=threads, alive=alive):
+            where = {
+                name: some[one.where[name]] if name in one.where else some
+                for name, some in places.items()
+            }
+            yield Slice(where, one.arrays, preview=True)
+    nothing: dict[Key, Arrays] = {}
+    keys = keys_of(plan)
+    for key, arrays in computed(plan, keys, nothing.__getitem__, threads=threads, alive=alive):
+        ranges = ranges_of(plan, key)
+        yield Slice({name: np.arange(r.start, r.stop) for name, r in ranges.items()}, arrays)
+
+
+@runtime_checkable
+class Thinned(Protocol):
+    """A plan that can look coarsely first."""
+
+    def thinned(self, step: int) -> tuple[Plan, Mapping[str, NDArray[np.int64]]]:
+        """The plan of every ``step``-th value, the last included, and which values these are."""
+        ...
+
+
+def every(count: int, *, step: int) -> NDArray[np.int64]:
+    """Every ``step``-th place of ``count``, the last included."""
+    return np.unique(np.append(np.arange(0, count, step), count - 1))

@@ -12,6 +12,16 @@ def silent(stage: str, done: int, total: int) -> None:
     """No progress wanted."""
 
 
+def asking(alive: Callable[[], None], progress: Progress) -> Progress:
+    """``progress`` that first asks whether to go on: ``alive`` raises to end the work."""
+
+    def told(stage: str, done: int, total: int) -> None:
+        alive()
+        progress(stage, done, total)
+
+    return told
+
+
 def duration(seconds: float) -> str:
     """Seconds as a person says them."""
     if not seconds < 1e9:

@@ -20,6 +20,7 @@ from thermogear.analysis.family import ModelFamily
 from thermogear.base.errors import InputError, ThermogearError, nearest
 from thermogear.base.excitation import Excitations, Periodic
 from thermogear.base.parameters import NUMBERS
+from thermogear.base.plan import Alive, keep_going
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.allowed import (
     LANE,
@@ -144,13 +145,14 @@ class GearFamily:
 
     Beside a parameter gear_temperature the state is "hot". Rows whose geometry is one share a mesh
     cycle (:mod:`thermogear.case.samples`); every other value of a field that is no column makes a
-    case of its own.
+    case of its own. ``alive`` is called between cycles and raises to end the work.
     """
 
     case: GearCase
     names: tuple[str, ...]
     bundle: str = ""
     state: ThermalState = HOT
+    alive: Alive = field(default=keep_going, repr=False, compare=False)
     _cases: dict[tuple[float, ...], GearCase] = field(
         init=False, repr=False, compare=False, default_factory=dict
     )
@@ -336,7 +338,8 @@ class GearFamily:
         known = [m.name for m in case.models]
         names = known if self.bundle in known else [m.name for m in self.case.models]
         model = case.models[names.index(self.bundle)]
-        return quasi_static(case, group.columns, group.index.size, model, self.state, want)
+        count, columns = group.index.size, group.columns
+        return quasi_static(case, columns, count, model, self.state, want, alive=self.alive)
 
 
 @dataclass(frozen=True, eq=False)

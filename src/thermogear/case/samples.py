@@ -18,6 +18,7 @@ from thermogear.base.errors import ThermogearError
 from thermogear.base.excitation import Excitations, Periodic, padded
 from thermogear.base.materials import Lubricant
 from thermogear.base.parameters import PARAMETERS
+from thermogear.base.plan import Alive, keep_going
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.allowed import within
@@ -294,18 +295,21 @@ def quasi_static(
     want: Sequence[str],
     *,
     path_positions: int = FEW,
+    alive: Alive = keep_going,
 ) -> dict[str, NDArray[Any]]:
     """Stored quantities of the mesh cycle of ``count`` samples, in SI: name -> (sample, ...).
 
     ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`); only they are computed, and
     with them ``pinion_speed``, ``pinion_torque`` and ``status``. A sample that no case could
     have, or whose heat or mesh does not settle, is "not_converged", the first with nan, and
-    no other one notices. Raises what is wrong where no sample is possible.
+    no other one notices. Raises what is wrong where no sample is possible. ``alive`` is called
+    before each cycle and raises to end the work.
     """
     refused: list[ThermogearError] = []
 
     def asked(places: Whole) -> list[tuple[Whole, dict[str, NDArray[Any]]]]:
         """The cycle of samples that do it, halved where one is refused until it stands alone."""
+        alive()
         some = {name: values[places] for name, values in columns.items()}
         try:
             here = sampled(case, some, places.size).case

@@ -16,10 +16,12 @@ import xarray as xr
 from thermogear.base.errors import InputError
 from thermogear.base.memory import SHARE, free_bytes
 from thermogear.base.plan import (
+    Alive,
     Plan,
     bytes_of,
     computed,
     gather,
+    keep_going,
     keys_of,
 )
 from thermogear.base.progress import duration
@@ -129,20 +131,22 @@ def carry_out(
     scheduler: str | None = None,
     report: Report | None = None,
     forced: bool = False,
+    alive: Alive = keep_going,
 ) -> xr.Dataset:
     """Compute ``plan`` and return it as one labelled Dataset.
 
     With a ``store`` directory every chunk is written as it is ready, and the same call goes on
     where an earlier one ended; without one it stays in memory. ``threads`` on this machine
     (default: all cores), or a dask ``scheduler`` address, whose workers compute while this
-    process writes. The result is the same to the last bit whoever computes. Ctrl+C keeps what
-    is stored.
+    process writes. The result is the same to the last bit whoever computes. Ctrl+C, and
+    ``alive`` when it raises, keep what is stored.
     """
     directory = None if store is None else Path(store)
     require_space(plan, directory, threads=threads, forced=forced)
     clock = _Clock(len(keys_of(plan)), report)
     if directory is None and scheduler is None:
-        return gather(plan, threads=threads, progress=lambda done, _: clock.step(done))
+        told = lambda done, _: clock.step(done)  # noqa: E731
+        return gather(plan, threads=threads, progress=told, alive=alive)
     if directory is None:
         raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
     link = nullcontext() if scheduler is None else cluster(scheduler)
@@ -152,12 +156,13 @@ def carry_out(
         wanted = [key for key in keys_of(plan) if key not in there]
         clock.step(len(there))
         if client is None:
-            source = computed(plan, wanted, kept.load, threads=threads)
+            source = computed(plan, wanted, kept.load, threads=threads, alive=alive)
         else:
             source = computed_on(client, plan, wanted, kept.load)
         done = len(there)
         try:
             for key, arrays in source:
+                alive()
                 kept.write(key, arrays)
                 done += 1
                 clock.step(done)

@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
-from thermogear.base.progress import Progress, silent
+from thermogear.base.plan import Alive, keep_going
+from thermogear.base.progress import Progress, asking, silent
 from thermogear.base.vocabulary import STATES, STATUS, attributes, dressed, label, labelled
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.case.citations import citations
@@ -42,13 +43,16 @@ from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
 
 
-def run(case: Case, *, progress: Progress = silent) -> Result:
+def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -> Result:
     """Everything that ``case`` asks for (SI, units as attributes).
+
+    ``alive`` is called wherever ``progress`` is and raises to end the work.
 
     A jammed operating point, one at whose temperatures a law has no value (nan), a motion that
     diverges or cannot be labelled is a status in the data, never an exception. Raises InputError
     where the case as a whole is impossible.
     """
+    progress = asking(alive, progress)
     if isinstance(case, DimensionlessCase):
         groups: dict[str, xr.Dataset] = {"points": _points(case, "motion", progress)}
         notices: Iterator[Notice] = run_notices.dimensionless_notices(groups["points"])

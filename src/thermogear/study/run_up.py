@@ -377,10 +377,7 @@ class _Run:
         for leap in leaps:
             if leap.period > LISTED_PERIOD:
                 continue
-            sizes = [
-                self._size(leap.value, leap.state),
-                self._size(leap.landed, leap.found),
-            ]
+            sizes = [self._size(leap.value, leap.state), self._size(leap.landed, leap.found)]
             if abs(sizes[1] - sizes[0]) < LISTED * min(sizes):
                 continue
             new = (*leap.found, leap.found_period)
@@ -425,8 +422,9 @@ def run_up_plan(
     torque: float | None = None,
     rule: Rule = RULE,
     branch_period: int = 2,
+    block: int = BLOCK,
 ) -> RunUpPlan:
-    """The plan of :func:`run_up`."""
+    """The plan of :func:`run_up`; ``block`` speeds are computed, and given out, together."""
     case = gear_case(case)
     axis = np.sort(axis_values("speeds", speeds))
     given = (UNDEFORMED, HOT) if temperatures is None else map(ThermalState.of, temperatures)
@@ -445,6 +443,7 @@ def run_up_plan(
         torque=load,
         rule=rule,
         branch_period=branch_period,
+        block=block,
     )
 
 
@@ -469,6 +468,7 @@ def run_up(
     threads: int | None = None,
     scheduler: str | None = None,
     report: Report | None = None,
+    alive: Alive = keep_going,
 ) -> Result:
     """Run the gears up and down over ``speeds`` [rad/s], undeformed and hot.
 
@@ -495,5 +495,5 @@ def run_up(
         rule=rule,
         branch_period=branch_period,
     )
-    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
+    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report, alive=alive)
     return finished(data, case.title)

@@ -26,6 +26,7 @@ from thermogear.base.plan import (
     Key,
     Variable,
     axis_coordinates,
+    every,
     keep_going,
     ranges_of,
 )
@@ -101,6 +102,14 @@ class SweepPlan:
         small._rows(rows.reshape(-1, len(some)), keep_going)
         return int(rows[..., 0].size)
 
+    def thinned(self, step: int) -> tuple[SweepPlan, Mapping[str, NDArray[np.int64]]]:
+        """The sweep over every ``step``-th value of each axis."""
+        some = [every(len(values), step=step) for values in self.axes]
+        axes = tuple(
+            tuple(values[i] for i in places) for values, places in zip(self.axes, some, strict=True)
+        )
+        return replace(self, axes=axes), dict(zip(self.family.names, some, strict=True))
+
     def _rows(self, rows: Floats, alive: Alive) -> Arrays:
         points = self.family(rows)
         start = np.broadcast_to(np.array(self.start), (len(rows), 2)).copy()
@@ -168,6 +177,7 @@ def sweep(
     threads: int | None = None,
     scheduler: str | None = None,
     report: Report | None = None,
+    alive: Alive = keep_going,
 ) -> Result:
     """Settled motion and its gear figures over any grid of gear parameters.
 
@@ -178,5 +188,5 @@ def sweep(
     same call resumes; ``scheduler`` is a dask address. Jammed and diverged points are a status.
     """
     plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
-    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report)
+    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report, alive=alive)
     return finished(data, case.title)
