@@ -7,10 +7,9 @@ import re
 import pytest
 
 from own_pair import OWN_PAIR
-from thermogear.base.errors import InputError
 from thermogear.case.case import load_case, load_example
 from thermogear.case.examples import EXAMPLES, OF_THE_THESIS, example_text
-from thermogear.case.thesis_cases import of_the_thesis, require_of_the_thesis
+from thermogear.case.thesis_cases import of_the_thesis
 
 
 @pytest.mark.parametrize("name", sorted(set(EXAMPLES) - set(OF_THE_THESIS)))
@@ -84,11 +83,3 @@ def test_other_values_make_another_case(changed: str) -> None:
 def test_somebody_elses_gears_are_not_the_thesis_s() -> None:
     assert not of_the_thesis(load_case(OWN_PAIR))
     assert not of_the_thesis(load_example("table-4.2", ["base.frequency=1.25"]))
-    require_of_the_thesis(load_example("rig"), "the ranges")
-    with pytest.raises(InputError) as caught:
-        require_of_the_thesis(load_case(OWN_PAIR), "the ranges")
-    assert str(caught.value) == (
-        "case: got 'Pair 19:47', a case with values of its own; allowed the ready-made rig, at any "
-        "of its speeds and temperatures; the ranges are those of the thesis's rig; `thermogear "
-        "example rig` prints it"
-    )

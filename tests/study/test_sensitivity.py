@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError, ThermogearError
-from thermogear.case.case import GearCase, load_example
+from thermogear.case.case import GearCase, gear_case, load_case, load_example
 from thermogear.heat.lubrication import grade, kinematic_viscosity
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.study import sensitivity as study
-from thermogear.study.sensitivity import INPUTS, OUTPUTS, Plan, evaluate, plain_words
+from thermogear.study.sensitivity import Plan, evaluate, plain_words
+from thermogear.study.watched import INPUTS, OUTPUTS, inputs_of, outputs_of
 
 BY_NAME = {one.name: one for one in INPUTS}
 
@@ -137,3 +138,39 @@ def test_a_missing_library_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study.importlib, "import_module", none)
     with pytest.raises(ThermogearError, match=r"needs the package SALib: pip install 'thermogear"):
         study.require_salib()
+
+
+OWN = """
+[gears]
+module = "2.5 mm"
+face_width = "28 mm"
+[gears.pinion]
+teeth = 21
+[gears.wheel]
+teeth = 44
+[operating]
+speed = ["1500 rpm", "2500 rpm"]
+torque = "60 N m"
+"""
+
+
+def test_any_gears_are_varied_around_their_own_values() -> None:
+    own = gear_case(load_case(OWN))
+    inputs = {one.name: one for one in inputs_of(own)}
+    # flanks of a class, no cosine: there is no amplitude to vary
+    assert set(inputs) == {one.name for one in INPUTS} - {"error"}
+    assert inputs["torque"].low == pytest.approx(30.0)
+    assert inputs["torque"].high == pytest.approx(120.0)
+    assert inputs["face_width"].low == pytest.approx(0.6 * 0.028)
+    assert inputs_of(gear_case(load_example("rig"))) == INPUTS
+    names = {one.name for one in outputs_of(own)}
+    assert names == {one.name for one in OUTPUTS} - {"stiffness_change_thesis"}
+
+    plan = Plan(samples=8, inputs=tuple(inputs[n] for n in ("backlash", "housing", "torque")))
+    data = study.sensitivity(own, plan).data
+    assert data.attrs["jammed"] == 0
+    assert data.attrs["speed"] == pytest.approx(2500.0 * np.pi / 30.0)
+    left = data.sel(output="backlash_left")
+    assert float(left["total"].sel(input="torque")) == pytest.approx(0.0, abs=1e-12)
+    assert np.isnan(data.sel(output="swing")["holds"])
+    assert not any("thesis" in text for text in data["sentence"].values)

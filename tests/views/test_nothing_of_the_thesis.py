@@ -38,6 +38,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "run": ("-o", "{out}"),
     "run all": ("-o", "{out}", "--pictures", "all"),
     "friction": ("-o", "{out}"),
+    "sensitivity": ("-o", "{out}", "--samples", "8"),
     "temperature": ("-o", "{out}", "--speeds", "1000,3000", "--torques", "80"),
     "warmup": ("-o", "{out}"),
     "relief": ("-o", "{out}"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from html import unescape
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ import xarray as xr
 
 from own_pair import OWN_PAIR
 from thermogear.case.case import GearCase, load_case, load_example
-from thermogear.front.cli import main
 from thermogear.results.result import Result
 from thermogear.study.contact import loaded_survey
 from thermogear.study.friction import friction_survey
@@ -195,17 +193,6 @@ def test_the_rigs_map_checks_the_thesis_where_there_is_something_to_compare() ->
         "verdict": "holds",
     }
     assert not any("torque" in row["claim"] or "correlated" in row["claim"] for row in two)
-
-
-def test_sensitivity_refuses_other_gears_in_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "own.toml"
-    path.write_text(OWN_PAIR, encoding="utf-8")
-    assert main(["sensitivity", str(path), "-o", str(tmp_path / "out")]) == 2
-    said = capsys.readouterr().err.splitlines()[-1]
-    assert said.startswith("error: case: got 'Pair 19:47', a case with values of its own; allowed ")
-    assert not (tmp_path / "out").exists()
 
 
 # --- regimes ------------------------------------------------------------------------------

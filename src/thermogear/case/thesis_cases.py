@@ -6,7 +6,7 @@ import warnings
 from functools import lru_cache
 from typing import Any
 
-from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.errors import ValidityWarning
 from thermogear.case.alike import same
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.case.schema import BASE_SETS
@@ -26,18 +26,6 @@ def of_the_thesis(case: Case) -> bool:
     return isinstance(case, DimensionlessCase) and any(
         same(case.points, _example(name).points) for name in BASE_SETS
     )
-
-
-def require_of_the_thesis(case: Case, what: str) -> None:
-    """Refuse a case of other values, in which ``what`` would speak of the thesis's rig."""
-    if not of_the_thesis(case):
-        raise InputError(
-            "case",
-            f"{case.title!r}, a case with values of its own",
-            allowed="the ready-made rig, at any of its speeds and temperatures",
-            why=f"{what} are those of the thesis's rig",
-            fix="`thermogear example rig` prints it",
-        )
 
 
 @lru_cache(maxsize=8)

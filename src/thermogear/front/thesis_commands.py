@@ -65,21 +65,23 @@ def sensitivity(
     overrides: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Which inputs that the thesis leaves unstated decide its conclusions (extra [sensitivity]).
+    """Which inputs decide which results (extra [sensitivity]).
 
-    Ranges and conclusions are those of the thesis's rig: CASE is the ready-made case `rig`, or a
-    copy of it with the same gears and values; any other is refused.
+    Widths, loads, oil, finish, backlash, damping, error and heat run through ranges around those of
+    CASE. Of the ready-made `rig` they are the inputs that the thesis leaves unstated, and its
+    conclusions are judged.
     """
-    from thermogear.case.thesis_cases import require_of_the_thesis
-    from thermogear.study.sensitivity import ABOUT, Plan, require_salib
+    from thermogear.study.sensitivity import Plan, require_salib
     from thermogear.study.sensitivity import sensitivity as study
+    from thermogear.study.watched import inputs_of
 
     require_salib()
     if speed is not None and not 0.0 < speed < 1e6:
         raise InputError("--speed", f"{speed:g} rpm", allowed="> 0, below 1e6 rpm")
-    plan = Plan(samples=samples, speed=None if speed is None else speed * RPM, seed=seed)
+    at = None if speed is None else speed * RPM
+    Plan(samples=samples, speed=at, seed=seed)
     read = delivery.load_gears(case, overrides)
-    require_of_the_thesis(read, ABOUT)
+    plan = Plan(samples=samples, speed=at, seed=seed, inputs=inputs_of(read))
 
     def make(report: Progress) -> Result:
         return study(read, plan, progress=report)

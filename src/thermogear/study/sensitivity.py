@@ -10,8 +10,8 @@ from __future__ import annotations
 import importlib
 import time
 import warnings
-from collections.abc import Callable, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,27 +19,33 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ThermogearError, ValidityWarning, nearest
-from thermogear.base.parameters import PARAMETERS, Parameter
 from thermogear.base.progress import Progress, silent
+from thermogear.base.vocabulary import STATUS
 from thermogear.case.build import Follows, TemperatureRule
 from thermogear.case.case import GearCase
 from thermogear.case.points import Points, points_of
 from thermogear.case.samples import fields_of, quasi_static, sampled
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
-from thermogear.case.thesis_cases import require_of_the_thesis
 from thermogear.dynamics.integrate import simulate
 from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
 from thermogear.results.result import Result, now
+from thermogear.study.watched import (
+    INPUTS,
+    OUTPUTS,
+    Input,
+    Output,
+    first,
+    inputs_of,
+    outputs_of,
+    state_of,
+)
 
 Floats = NDArray[np.float64]
 PATH, PHASES, HARMONICS = 41, 64, 16
 DISCARD, PERIODS, SAMPLES = 300, 8, 64
 LANES = 1024
-
-ABOUT = "the ranges and the conclusions of this study"
-"""What belongs to the thesis's rig alone."""
 
 OF_THE_PATH = (
     "friction_coefficient_mixed", "flash_temperature_mixed", "flash_temperature_dry",
@@ -48,90 +54,10 @@ OF_THE_PATH = (
 """What the outputs take along the path of contact."""
 
 
-@dataclass(frozen=True)
-class Input:
-    """An input without a stated value: its ``name`` in the results, what it is, its range in SI.
-
-    ``logarithmic``: all decades alike.
-    """
-
-    name: str
-    parameter: Parameter
-    _: KW_ONLY
-    low: float
-    high: float
-    logarithmic: bool = False
-
-    @property
-    def unit(self) -> str:
-        """The unit it is shown in."""
-        return self.parameter.shown or "–"
-
-    def values(self, unit_interval: Floats) -> Floats:
-        """The range's values at places 0..1."""
-        if self.logarithmic:
-            return np.asarray(self.low * (self.high / self.low) ** unit_interval)
-        return np.asarray(self.low + (self.high - self.low) * unit_interval)
-
-
-INPUTS: tuple[Input, ...] = (
-    Input("face_width", PARAMETERS["face_width"], low=0.015, high=0.040),
-    Input("torque", PARAMETERS["pinion_torque"], low=50.0, high=200.0),
-    Input("viscosity", PARAMETERS["oil_viscosity"], low=46e-6, high=320e-6, logarithmic=True),
-    Input("roughness", PARAMETERS["roughness"], low=0.2e-6, high=0.8e-6),
-    Input("backlash", PARAMETERS["cold_backlash"], low=0.20e-3, high=0.40e-3),
-    Input("damping", PARAMETERS["damping_ratio"], low=0.03, high=0.17),
-    Input("error", PARAMETERS["error_amplitude"], low=1e-6, high=10e-6),
-    Input("gear", PARAMETERS["gear_temperature"], low=373.15, high=433.15),
-    Input("housing", PARAMETERS["housing_below_gears"], low=0.0, high=60.0),
-    Input("shaft", PARAMETERS["shafts_below_gears"], low=0.0, high=40.0),
-    Input("oil", PARAMETERS["oil_below_gears"], low=0.0, high=60.0),
-)
-"""Every range is ours, as wide as rigs of this kind are; only the gear temperature's is stated."""
-
 FIELDS: dict[str, tuple[str, ...]] = {one.name: fields_of(one.parameter.name) for one in INPUTS} | {
     "gear": ("temperatures.pinion_addendum", "temperatures.wheel_addendum")
 }
 """The columns that an input stands for."""
-
-
-@dataclass(frozen=True)
-class Output:
-    """A figure that a conclusion rests on, and when the conclusion ``holds`` for it."""
-
-    name: str
-    words: str
-    unit: str
-    conclusion: str
-    holds: Callable[[Floats], NDArray[np.bool_]]
-    scale: float = 1.0
-
-
-OUTPUTS: tuple[Output, ...] = (
-    Output("friction", "mean mixed friction coefficient", "–",
-           "mixed friction stays below dry friction of 0.1", lambda y: y < 0.1),
-    Output("flash", "highest flash temperature, mixed", "K",
-           "the flash stays below 50 K", lambda y: y < 50.0),
-    Output("dry_over_mixed", "highest flash, dry over mixed", "–",
-           "mixed lubrication runs cooler than dry friction of 0.2", lambda y: y > 1.0),
-    Output("growth", "mean growth of both flanks", "µm",
-           "hot flanks grow", lambda y: y > 0.0, 1e6),
-    Output("backlash_left", "hot over cold half backlash, consistent", "–",
-           "heat reduces the backlash", lambda y: y < 1.0),
-    Output("stiffness_change", "change of the mean stiffness, consistent", "%",
-           "heat raises the mesh stiffness", lambda y: y > 0.0, 100.0),
-    Output("stiffness_change_thesis", "change of the mean stiffness, thesis", "%",
-           "heat raises the mesh stiffness", lambda y: y > 0.0, 100.0),
-    Output("frequency_ratio", "mesh over natural frequency, hot", "–",
-           "the tests lie below the range 1.1 to 1.3 of the diagrams", lambda y: y < 1.1),
-    Output("swing", "swing of the displacement, hot", "µm",
-           "the swing reaches the printed simulation's 2 x 15.9 µm", lambda y: y >= 31.8e-6, 1e6),
-    Output("swing_change", "change of the swing by heat, consistent", "%",
-           "heat raises the displacement", lambda y: y > 0.0, 100.0),
-    Output("out_of_contact", "share of time out of drive contact, hot", "–",
-           "the teeth lose contact", lambda y: y > 0.0),
-)  # fmt: skip
-"""What is watched; the conclusions are the thesis's, or what a reader would ask of it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,7 +114,7 @@ def require_salib() -> None:
 
 
 def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress = silent) -> Result:
-    """Sobol' indices of every output for every input of the thesis's rig, with their intervals.
+    """Sobol' indices of every output for every input of a gear case, with their intervals.
 
     Indices are shares [-]; inputs and outputs are in SI.
 
@@ -196,14 +122,15 @@ def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress 
     together with others. Inputs are independent and uniform in their ranges (viscosity in its
     logarithm). Each sample computes the chain cold and hot with the consistent bundle (and the
     thesis's for its stiffness) at one speed, and the settled vibration. A jammed pair has swing
-    0 and counts in ``jammed``.
+    0 and counts in ``jammed``. ``plan`` defaults to the ranges of :func:`inputs_of`. Raises
+    InputError where samples have no mesh at all: the ranges then reach too far.
 
     Returns a dataset over (output, input): ``first_order``, ``total`` with ``..._conf`` (half
     width), per output ``mean``, ``low``, ``high`` (5 and 95 % of the samples), ``holds`` (share
     of samples in which the conclusion holds) in shown units; attributes: evaluations, seconds.
     """
-    require_of_the_thesis(case, ABOUT)
-    chosen = Plan() if plan is None else plan
+    chosen = Plan(inputs=inputs_of(case)) if plan is None else plan
+    outputs = outputs_of(case)
     sampler, analyser = salib("sample.sobol"), salib("analyze.sobol")
     problem = {
         "num_vars": len(chosen.inputs),
@@ -214,9 +141,9 @@ def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress 
     places = sampler.sample(problem, chosen.samples, calc_second_order=False, seed=chosen.seed)
     values, jammed = evaluate(case, chosen, places, progress)
     seconds = time.perf_counter() - began
-    shape = (len(OUTPUTS), len(chosen.inputs))
+    shape = (len(outputs), len(chosen.inputs))
     indices = {name: np.zeros(shape) for name in ("S1", "S1_conf", "ST", "ST_conf")}
-    for row, output in enumerate(OUTPUTS):
+    for row, output in enumerate(outputs):
         y = values[output.name]
         if np.ptp(y) <= 1e-12 * max(float(np.abs(y).max()), 1e-300):
             continue  # nothing decides what never changes
@@ -230,7 +157,7 @@ def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress 
         )
         for name, table in indices.items():
             table[row] = found[name]
-    data = _dataset(case, chosen, values, indices, jammed, seconds)
+    data = _dataset(case, chosen, outputs, values, indices, jammed, seconds)
     words = data.assign(sentence=(("output",), plain_words(data)))
     return Result.of(
         "sensitivity", f"Sensitivity: {case.title}", {"sensitivity": words}, created=now()
@@ -240,6 +167,7 @@ def sensitivity(case: GearCase, plan: Plan | None = None, *, progress: Progress 
 def _dataset(
     case: GearCase,
     plan: Plan,
+    outputs: tuple[Output, ...],
     values: dict[str, Floats],
     indices: dict[str, Floats],
     jammed: int,
@@ -247,7 +175,7 @@ def _dataset(
 ) -> xr.Dataset:
     two = ("output", "input")
     one = ("output",)
-    shown = [values[o.name] * o.scale for o in OUTPUTS]
+    shown = [values[o.name] * o.scale for o in outputs]
     share = {"units": "1"}
     return xr.Dataset(
         {
@@ -258,17 +186,17 @@ def _dataset(
             "mean": (one, [float(y.mean()) for y in shown]),
             "low": (one, [float(np.quantile(y, 0.05)) for y in shown]),
             "high": (one, [float(np.quantile(y, 0.95)) for y in shown]),
-            "holds": (one, [float(o.holds(values[o.name]).mean()) for o in OUTPUTS], share),
-            "output_words": (one, [o.words for o in OUTPUTS]),
-            "output_unit": (one, [o.unit for o in OUTPUTS]),
-            "conclusion": (one, [o.conclusion for o in OUTPUTS]),
+            "holds": (one, [_holds(o, values[o.name]) for o in outputs], share),
+            "output_words": (one, [o.words for o in outputs]),
+            "output_unit": (one, [o.unit for o in outputs]),
+            "conclusion": (one, [o.conclusion for o in outputs]),
             "input_words": (("input",), [i.parameter.words for i in plan.inputs]),
             "input_unit": (("input",), [i.unit for i in plan.inputs]),
             "input_low": (("input",), [i.parameter.show(i.low) for i in plan.inputs]),
             "input_high": (("input",), [i.parameter.show(i.high) for i in plan.inputs]),
         },
         {
-            "output": [o.name for o in OUTPUTS],
+            "output": [o.name for o in outputs],
             "input": [i.name for i in plan.inputs],
         },
         {
@@ -282,6 +210,11 @@ def _dataset(
             "seed": plan.seed,
         },
     )
+
+
+def _holds(output: Output, y: Floats) -> float:
+    """Share of samples in which the conclusion holds; nan without one."""
+    return float(output.holds(y).mean()) if output.conclusion else float("nan")
 
 
 def _speed(case: GearCase, plan: Plan) -> float:
@@ -319,6 +252,14 @@ def evaluate(
         warnings.simplefilter("ignore", ValidityWarning)
         cold = cycle(consistent, UNDEFORMED, stiffness)
         hot = cycle(consistent, HOT, (*stiffness, *OF_THE_PATH))
+        lost = int(np.count_nonzero(hot["status"] == STATUS.index("not_converged")))
+        if lost:
+            raise InputError(
+                "inputs",
+                f"ranges in which {lost} of {count} samples have no mesh",
+                why="no case could have these values, or the loaded contact does not settle",
+                fix="take narrower ranges",
+            )
         printed = [cycle(thesis, state, ("mean_stiffness",)) for state in (UNDEFORMED, HOT)]
     flash = {kind: hot[f"flash_temperature_{kind}"].max(axis=1) for kind in ("mixed", "dry")}
     values = {output.name: np.zeros(count) for output in OUTPUTS} | {
@@ -342,12 +283,12 @@ def evaluate(
 
 def _held(case: GearCase) -> GearCase:
     """The case as hot as it is, bores, housing and oil so far below the gears as they are."""
-    at = case.operating
+    at = state_of(case)
     given = at.temperatures
-    tip = _first(given.pinion_addendum)
+    tip = first(given.pinion_addendum)
 
     def below(value: object) -> Follows:
-        return Follows(tip - _first(value), True)
+        return Follows(tip - first(value), True)
 
     rule = TemperatureRule(
         given.reference,
@@ -365,10 +306,6 @@ def _held(case: GearCase) -> GearCase:
         mesh_positions=PHASES,
         harmonics=HARMONICS,
     )
-
-
-def _first(values: object) -> float:
-    return float(np.ravel(np.asarray(values, dtype=float))[0])
 
 
 def _vibrate(both: list[Points], some: NDArray[np.int64], values: dict[str, Floats]) -> None:
@@ -423,8 +360,10 @@ def plain_words(data: xr.Dataset) -> list[str]:
             rest = [w for w, t, c in rows if t + c < 0.01]
             text = f"{here['output_words'].item()}: {span}; decided by {names}"
             text += f"; {len(rest)} of {len(rows)} inputs do not matter." if rest else "."
-        holds = 100.0 * float(here["holds"])
-        found.append(f"{text} That {here['conclusion'].item()} holds in {holds:.0f} % of cases.")
+        if here["conclusion"].item():
+            holds = 100.0 * float(here["holds"])
+            text += f" That {here['conclusion'].item()} holds in {holds:.0f} % of cases."
+        found.append(text)
     return found
 
 

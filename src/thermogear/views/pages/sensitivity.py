@@ -121,7 +121,7 @@ def _numbers(result: Result) -> dict[str, Any]:
             "high": float(here["high"]),
             "unit": str(here["output_unit"].item()),
             "conclusion": str(here["conclusion"].item()),
-            "holds": float(here["holds"]),
+            "holds": float(here["holds"]) if here["conclusion"].item() else None,
             "inputs": [
                 {
                     "input": str(name),
