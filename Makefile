@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-paths friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -55,6 +55,9 @@ $(DOCS_STAMP): $(STAMP) requirements/docs.txt
 
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
+
+bench-paths: $(STAMP)  ## what one answer costs, before and after; PATHS=--write for the page
+	$(BIN)/python bench/paths.py $(PATHS)
 
 $(BENCH_STAMP): $(STAMP) requirements/bench.txt requirements/bench-fortran.txt
 	test -x $(BENCH_BIN)/python || $(BIN)/python -m venv .bench-venv
