@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from math import factorial
+from math import factorial, prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,13 +80,44 @@ def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
 class ExactMaps:
     """Affine maps of lanes that share their sub-steps; made by :func:`prepare_maps`."""
 
-    maps: Floats
-    polys: Floats
+    steps: Floats
+    curves: Floats
     half: Floats
     reach: Floats
     backlash: Floats
     marks: NDArray[np.uint8]
     borders: Floats
+    order: int
+
+    @property
+    def maps(self) -> Floats:
+        """Values and rates at the end of every sub-step (N, 10, lane)."""
+        count, groups = self.steps.shape[:2]
+        rows = self.steps[:, :, :10].transpose(0, 2, 1, 3).reshape(count, 10, 8 * groups)
+        return rows[:, :, : self.backlash.size]
+
+    @property
+    def polys(self) -> Floats:
+        """Coefficients of phi, psi, nu and of the free psi, nu (N, lane, 5, order + 1)."""
+        width = self.order + 1
+        return self.curves[:, :, : 5 * width].reshape(*self.curves.shape[:2], 5, width)
+
+    def take(self, keep: Whole) -> ExactMaps:
+        """The maps of some lanes, in the order of ``keep``."""
+        steps = _aligned((self.steps.shape[0], -(-keep.size // 8), 12, 8))
+        by_lane = steps.transpose(0, 2, 1, 3)
+        for place, lane in enumerate(keep):
+            by_lane[:, :, place // 8, place % 8] = self.steps[:, lane // 8, :, lane % 8]
+        curves = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]))
+        curves[:] = self.curves[:, keep]
+        return replace(
+            self,
+            steps=steps,
+            curves=curves,
+            half=np.ascontiguousarray(self.half[:, keep]),
+            reach=self.reach[keep],
+            backlash=self.backlash[keep],
+        )
 
     @property
     def marked(self) -> int:
@@ -127,6 +158,13 @@ class State:
         self.tangent[0] = self.tangent[3] = 1.0
         self.counts[:] = 0
         self.spent[:] = 0.0
+
+
+def _aligned(shape: tuple[int, ...]) -> Floats:
+    """Zeros that start on a cache line."""
+    room = np.zeros(prod(shape) + 8)
+    first = -(room.ctypes.data // 8) % 8
+    return room[first : first + prod(shape)].reshape(shape)
 
 
 @lru_cache(maxsize=64)
@@ -174,26 +212,27 @@ def prepare_maps(
     width = np.diff(borders)
     centres = borders[:-1] + 0.5 * width
     half = 0.5 * width[:, None] * lanes.period
-    maps = np.empty((centres.size, 10, len(lanes)))
-    polys = np.empty((centres.size, len(lanes), 5, order + 1))
+    steps = _aligned((centres.size, -(-len(lanes) // 8), 12, 8))
+    curves = _aligned((centres.size, len(lanes), -(-5 * (order + 1) // 8) * 8))
     prepare(
         lanes.damping,
         half,
         _taylor(lanes, "stiffness", centres, 0.5 * width, order),
         _taylor(lanes, "force", centres, 0.5 * width, order),
-        maps,
-        polys,
+        steps,
+        curves,
     )
     size, rate = _bounds(lanes, "force")
     jerk = rate / lanes.period + lanes.damping * size
     return ExactMaps(
-        maps=maps,
-        polys=polys,
+        steps=steps,
+        curves=curves,
         half=half,
         reach=jerk * half.max(axis=0) ** 3,
         backlash=lanes.half_backlash,
         marks=marks,
         borders=borders,
+        order=order,
     )
 
 
@@ -204,8 +243,8 @@ def first_half(maps: ExactMaps) -> ExactMaps:
         raise InputError("sub-steps", maps.borders.size - 1, allowed="a border at phase 1/2")
     return replace(
         maps,
-        maps=maps.maps[:count],
-        polys=maps.polys[:count],
+        steps=maps.steps[:count],
+        curves=maps.curves[:count],
         half=maps.half[:count],
         marks=maps.marks[:count],
         borders=maps.borders[: count + 1],
@@ -285,9 +324,9 @@ def advance(
     stretch = np.empty((periods if normalise else 0, lanes))
     samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
     advance_exact(
-        maps.maps,
-        maps.polys,
-        maps.half,
+        maps.steps,
+        maps.curves,
+        maps.order + 1,
         maps.reach,
         maps.backlash,
         state.x,

@@ -11,9 +11,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
+from thermogear.dynamics.kernels.batch import HIGH, LOSSES, LOW, SHIFT, SPENT
 
 Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 MOST_CROSSINGS = 64
 
@@ -142,28 +142,80 @@ def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: 
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
+def combined(curves: Real, region: int, x0: float, y0: float, p: Real) -> None:
+    """The sub-step's polynomial of x, measured from the edge of its region; ``curves`` (5, K+1)."""
+    if region != 0:
+        for m in range(p.shape[0]):
+            p[m] = curves[PHI, m] * x0 + curves[PSI, m] * y0 + curves[NU, m]
+    else:
+        for m in range(p.shape[0]):
+            p[m] = curves[FREE_PSI, m] * y0 + curves[FREE_NU, m]
+        p[0] += x0
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def frame(curves: Real, region: int, u: float, h: float, out: Real) -> None:
+    """phi, psi, nu and their rates at ``u`` of one region into ``out`` (2, 3)."""
+    out[0, 0] = 1.0
+    out[1, 0] = 0.0
+    contact = region != 0
+    for q in range(0 if contact else 1, 3):
+        row = curves[q if contact else q + 2]
+        out[0, q] = value_of(row, u)
+        out[1, q] = slope(row, u) / h
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def next_edge(
+    p: Real, start: float, region: int, b: float, skip: int, found: Real, work: Real
+) -> tuple[float, int]:
+    """Where the path first leaves its region after ``start``, and by which edge.
+
+    0 the lower, 1 the upper, 2 none before the end; ``skip`` the edge just crossed, not to be
+    crossed in the first piece.
+    """
+    low = -np.inf if region < 0 else 0.0 if region > 0 else -b
+    high = np.inf if region > 0 else 0.0 if region < 0 else b
+    turns = turns_in(p, start, low, high, found, work)
+    a = start
+    for i in range(turns + 1):
+        e = found[i] if i < turns else 1.0
+        value = value_of(p, e)
+        edge = 0 if value < low else 1 if value > high else 2
+        if edge != 2 and edge != skip:
+            return root(p, low if edge == 0 else high, a, e), edge
+        skip = 2
+        a = e
+    return 1.0, 2
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
 def step_through(
-    polys: Real,
+    curves: Real,
     maps: Real,
-    lane: int,
-    h: float,
     b: float,
     state: Real,
-    region: int,
+    carried: Real,
     jacobian: Real,
-    counts: Whole,
-    spent: Real,
     scratch: Real,
     found: Real,
-) -> int:
+    here: Real,
+) -> None:
     """One sub-step of one lane with contact changes, turning points and grazing.
 
-    ``polys`` (lane, 5, K + 1) and ``maps`` (10, lane) of this sub-step; ``state`` (2,) in and
-    out; ``jacobian`` (4,) out: d end/d start row by row; ``counts`` losses of drive contact,
-    back-side impacts; ``spent`` (3,) net time in back, free, drive. Returns the last region.
+    ``curves`` and ``maps`` of this lane and sub-step, ``carried`` what the lane carries along:
+    its region, its times and counts follow; ``state`` (2,) in and out; ``jacobian`` (4,) out: d
+    end/d start row by row. Work space: ``scratch`` (2, K + 1), ``found`` (16,), ``here`` (3, 3).
     """
-    width = polys.shape[2]
-    p = scratch[0, :width]
+    width = scratch.shape[1]
+    polys = curves[: 5 * width].reshape((5, width))
+    p = scratch[0]
+    clock = here[2]
+    clock[:] = 0.0
+    h = maps[10]
+    shift = carried[SHIFT]
+    region = 1 if shift > 0.0 else -1 if shift < 0.0 else 0
+    before = region
     jacobian[0] = 1.0
     jacobian[1] = 0.0
     jacobian[2] = 0.0
@@ -171,66 +223,23 @@ def step_through(
     x0 = state[0] - region * b
     y0 = state[1]
     start = -1.0
-    skip = 2  # the edge just crossed (0 lower, 1 upper), not to be crossed in the first piece
+    skip = 2
     for _ in range(MOST_CROSSINGS):
-        if region != 0:
-            for m in range(width):
-                p[m] = polys[lane, PHI, m] * x0 + polys[lane, PSI, m] * y0 + polys[lane, NU, m]
-        else:
-            for m in range(width):
-                p[m] = polys[lane, FREE_PSI, m] * y0 + polys[lane, FREE_NU, m]
-            p[0] += x0
-        low = -np.inf
-        high = np.inf
-        if region == 1:
-            low = 0.0
-        elif region == 0:
-            low = -b
-            high = b
-        else:
-            high = 0.0
-        turns = turns_in(p, start, low, high, found, scratch[1])
-        a = start
-        at = 2.0
-        edge = 2
-        for i in range(turns + 1):
-            e = found[i] if i < turns else 1.0
-            value = value_of(p, e)
-            if value < low and skip != 0:
-                at = root(p, low, a, e)
-                edge = 0
-                break
-            if value > high and skip != 1:
-                at = root(p, high, a, e)
-                edge = 1
-                break
-            skip = 2
-            a = e
+        combined(polys, region, x0, y0, p)
+        at, edge = next_edge(p, start, region, b, skip, found, scratch[1])
         if edge == 2:
             break
         y = slope(p, at) / h
         # Phi of the region left behind, at the crossing
         time = h * at
-        spent[region + 1] += time
-        if region != 0:
-            f11 = value_of(polys[lane, PHI], at)
-            f12 = value_of(polys[lane, PSI], at)
-            f21 = slope(polys[lane, PHI], at) / h
-            f22 = slope(polys[lane, PSI], at) / h
-        else:
-            f11 = 1.0
-            f12 = value_of(polys[lane, FREE_PSI], at)
-            f21 = 0.0
-            f22 = slope(polys[lane, FREE_PSI], at) / h
-        j11 = f11 * jacobian[0] + f12 * jacobian[2]
-        j12 = f11 * jacobian[1] + f12 * jacobian[3]
-        j21 = f21 * jacobian[0] + f22 * jacobian[2]
-        j22 = f21 * jacobian[1] + f22 * jacobian[3]
+        clock[region + 1] += time
+        frame(polys, region, at, h, here)
+        j11 = here[0, 0] * jacobian[0] + here[0, 1] * jacobian[2]
+        j12 = here[0, 0] * jacobian[1] + here[0, 1] * jacobian[3]
+        j21 = here[1, 0] * jacobian[0] + here[1, 1] * jacobian[2]
+        j22 = here[1, 0] * jacobian[1] + here[1, 1] * jacobian[3]
         if edge == 0:
-            if region == 1:
-                counts[0] += 1
-            else:
-                counts[1] += 1
+            carried[LOSSES if region == 1 else LOSSES + 1] += 1.0
             # upper edge of the region below; contact is measured from its own edge
             x = b if region == 1 else 0.0
             region -= 1
@@ -239,21 +248,14 @@ def step_through(
             x = 0.0 if region == 0 else -b
             region += 1
             skip = 0
-        spent[region + 1] -= time
-        if region != 0:
-            f11 = value_of(polys[lane, PHI], at)
-            f12 = value_of(polys[lane, PSI], at)
-            f21 = slope(polys[lane, PHI], at) / h
-            f22 = slope(polys[lane, PSI], at) / h
-            x -= value_of(polys[lane, NU], at)
-            y -= slope(polys[lane, NU], at) / h
-        else:
-            f11 = 1.0
-            f12 = value_of(polys[lane, FREE_PSI], at)
-            f21 = 0.0
-            f22 = slope(polys[lane, FREE_PSI], at) / h
-            x -= value_of(polys[lane, FREE_NU], at)
-            y -= slope(polys[lane, FREE_NU], at) / h
+        clock[region + 1] -= time
+        frame(polys, region, at, h, here)
+        f11 = here[0, 0]
+        f12 = here[0, 1]
+        f21 = here[1, 0]
+        f22 = here[1, 1]
+        x -= here[0, 2]
+        y -= here[1, 2]
         det = f11 * f22 - f12 * f21
         x0 = (f22 * x - f12 * y) / det
         y0 = (f11 * y - f21 * x) / det
@@ -263,19 +265,19 @@ def step_through(
         jacobian[3] = (f11 * j22 - f21 * j12) / det
         start = at
     if region != 0:
-        f11 = maps[0, lane]
-        f21 = maps[1, lane]
-        f12 = maps[2, lane]
-        f22 = maps[3, lane]
-        state[0] = f11 * x0 + f12 * y0 + maps[4, lane] + region * b
-        state[1] = f21 * x0 + f22 * y0 + maps[5, lane]
+        f11 = maps[0]
+        f21 = maps[1]
+        f12 = maps[2]
+        f22 = maps[3]
+        state[0] = f11 * x0 + f12 * y0 + maps[4] + region * b
+        state[1] = f21 * x0 + f22 * y0 + maps[5]
     else:
         f11 = 1.0
         f21 = 0.0
-        f12 = maps[6, lane]
-        f22 = maps[7, lane]
-        state[0] = x0 + f12 * y0 + maps[8, lane]
-        state[1] = f22 * y0 + maps[9, lane]
+        f12 = maps[6]
+        f22 = maps[7]
+        state[0] = x0 + f12 * y0 + maps[8]
+        state[1] = f22 * y0 + maps[9]
     j11 = f11 * jacobian[0] + f12 * jacobian[2]
     j12 = f11 * jacobian[1] + f12 * jacobian[3]
     j21 = f21 * jacobian[0] + f22 * jacobian[2]
@@ -284,4 +286,12 @@ def step_through(
     jacobian[1] = j12
     jacobian[2] = j21
     jacobian[3] = j22
-    return region
+    for m in range(3):
+        carried[SPENT + m] += clock[m]
+    if region != before:
+        # the whole period is booked for the region at its end
+        carried[SPENT + before + 1] += maps[11] + h
+        carried[SPENT + region + 1] -= maps[11] + h
+        carried[SHIFT] = region * b
+        carried[LOW] = -np.inf if region < 0 else (region * 2 - 1) * b
+        carried[HIGH] = np.inf if region > 0 else (region * 2 + 1) * b

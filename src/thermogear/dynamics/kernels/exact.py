@@ -6,9 +6,24 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.batch import ROOM, cross_together, place
+from thermogear.dynamics.kernels.batch import (
+    CARRIED,
+    GAP,
+    HIGH,
+    LOSSES,
+    LOW,
+    NEXT_X,
+    NEXT_Y,
+    REACH,
+    SHIFT,
+    SPENT,
+    TANGENT,
+    X,
+    Y,
+    cross_eight,
+)
 from thermogear.dynamics.kernels.crossing import step_through
-from thermogear.dynamics.kernels.vector import EIGHT
+from thermogear.dynamics.kernels.vector import EIGHT, aligned, bits, choose, load, store
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -16,9 +31,9 @@ Whole = NDArray[np.int64]
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def advance_exact(
-    maps: Real,
-    polys: Real,
-    half: Real,
+    steps: Real,
+    curves: Real,
+    width: int,
     reach: Real,
     backlash: Real,
     x: Real,
@@ -35,171 +50,178 @@ def advance_exact(
 ) -> None:
     """Advance all lanes by ``len(sections)`` periods, in place.
 
-    ``reach`` (lane) how far a hidden turn can swing in a sub-step; ``columns`` 0, 1 or 2
-    tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22; with ``stretch`` (period,
-    lane) not empty the first column is normalised every period and its logarithm stored.
-    ``samples`` (period * marked, 2, lane): the state at the start of every sub-step that
-    ``marks`` names, when not empty. ``counts`` (2, lane) and ``spent`` (3, lane) accumulate
-    contact losses, back-side impacts, and the time in back, free and drive contact.
+    ``steps`` (N, group of eight lanes, 12, 8) and ``curves`` (N, lane, 5 width and more) as
+    ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a sub-step;
+    ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22; with
+    ``stretch`` (period, lane) not empty the first column is normalised every period and its
+    logarithm stored. ``samples`` (period * marked, 2, lane): the state at the start of every
+    sub-step that ``marks`` names, when not empty. ``counts`` (2, lane) and ``spent`` (3, lane)
+    accumulate contact losses, back-side impacts, and the time in back, free and drive contact.
     """
-    count = maps.shape[0]
+    count = steps.shape[0]
+    groups = steps.shape[1]
+    one = steps.shape[2] * EIGHT  # numbers of a group's sub-step
     lanes = x.shape[0]
+    stride = groups * EIGHT
+    carried = aligned(CARRIED * stride).reshape((CARRIED, stride))
+    # lanes that fill up the last group rest in the middle of a gap
+    carried[LOW] = -1.0
+    carried[HIGH] = 1.0
+    carried[GAP] = 1.0
+    for i in range(lanes):
+        b = backlash[i]
+        r = region[i]
+        carried[X, i] = x[i]
+        carried[Y, i] = y[i]
+        carried[SHIFT, i] = r * b
+        carried[LOW, i] = -np.inf if r < 0 else (r * 2 - 1) * b
+        carried[HIGH, i] = np.inf if r > 0 else (r * 2 + 1) * b
+        carried[REACH, i] = reach[i]
+        carried[GAP, i] = b
+        for m in range(3):
+            carried[SPENT + m, i] = spent[m, i]
+        for m in range(2):
+            carried[LOSSES + m, i] = counts[m, i]
+        for m in range(4):
+            carried[TANGENT + m, i] = tangent[m, i]
     taking = samples.shape[0] > 0
     normal = stretch.shape[0] > 0
     taken = 0
-    fresh_x = np.empty(lanes)
-    fresh_y = np.empty(lanes)
-    doubt = np.zeros(lanes, np.uint8)
-    queue = np.empty(lanes, np.int64)
-    frame = np.empty((4, lanes))
-    since = np.empty(lanes)
-    for i in range(lanes):
-        place(frame, i, region[i], backlash[i])
-    shift = frame[0]
-    touch = frame[1]
-    low = frame[2]
-    high = frame[3]
-    other = np.empty(lanes, np.int64)
-    lane = np.empty(EIGHT, np.int64)
-    room = np.ones((ROOM, EIGHT))
-    curve = np.ones((3, polys.shape[3], EIGHT))
-    basis = np.ones((3, polys.shape[3], EIGHT))
-    values = np.ones((6, 3, EIGHT))
+    queue = np.zeros(stride + EIGHT, np.int64)
+    lane = np.zeros((3, EIGHT), np.int64)
+    room = curves.shape[2]
+    table = aligned(room * EIGHT).reshape((room, EIGHT))
+    p = aligned(width * EIGHT).reshape((width, EIGHT))
     jacobian = np.empty(4)
     state = np.empty(2)
-    scratch = np.empty((2, polys.shape[3]))
+    scratch = np.empty((2, width))
     found = np.empty(16)
-    tally = np.zeros(2, np.int64)
-    clock = np.zeros(3)
+    here = np.empty((3, 3))
     for period in range(sections.shape[0]):
-        since[:] = 0.0
         for n in range(count):
             if taking and marks[n] != 0:
-                samples[taken, 0, :] = x
-                samples[taken, 1, :] = y
+                samples[taken, 0, :] = carried[X, :lanes]
+                samples[taken, 1, :] = carried[Y, :lanes]
                 taken += 1
-            for i in range(lanes):
-                # contact and free step both, then the choice: choosing the maps' entries instead
-                # would read them one by one
-                z = x[i] - shift[i]
-                w = y[i]
-                xn = maps[n, 0, i] * z + maps[n, 2, i] * w + maps[n, 4, i]
-                yn = maps[n, 1, i] * z + maps[n, 3, i] * w + maps[n, 5, i]
-                xf = z + maps[n, 6, i] * w + maps[n, 8, i]
-                yf = maps[n, 7, i] * w + maps[n, 9, i]
-                contact = touch[i] != 0.0
-                xn = (xn if contact else xf) + shift[i]
-                yn = yn if contact else yf
-                fresh_x[i] = xn
-                fresh_y[i] = yn
-                # can the path between the ends have left the region?
-                below = x[i] if x[i] < xn else xn
-                above = x[i] if x[i] > xn else xn
-                room_low = below - low[i]
-                room_high = high[i] - above
-                spare = room_low if room_low < room_high else room_high
-                # of a parabola, x turns at most h/2 times the smaller end speed beyond the ends
-                slow = abs(w) if abs(w) < abs(yn) else abs(yn)
-                swing = 2.0 * reach[i] + (half[n, i] * slow if w * yn <= 0.0 else 0.0)
-                doubt[i] = not (spare > swing)
             waiting = 0
-            for i in range(lanes):
-                queue[waiting] = i
-                waiting += doubt[i]
-            for c in range(columns):
-                for i in range(lanes):
-                    moves = doubt[i] == 0
-                    contact = touch[i] != 0.0
-                    a = tangent[c, i]
-                    b = tangent[2 + c, i]
-                    an = maps[n, 0, i] * a + maps[n, 2, i] * b
-                    bn = maps[n, 1, i] * a + maps[n, 3, i] * b
-                    af = a + maps[n, 6, i] * b
-                    bf = maps[n, 7, i] * b
-                    an = an if contact else af
-                    bn = bn if contact else bf
-                    tangent[c, i] = an if moves else a
-                    tangent[2 + c, i] = bn if moves else b
-            if waiting > 0:
-                waiting = cross_together(
-                    polys[n],
-                    maps[n],
-                    half[n],
-                    reach,
-                    backlash,
-                    x,
-                    y,
-                    region,
-                    fresh_x,
-                    fresh_y,
-                    frame,
-                    since,
-                    tangent,
-                    columns,
-                    queue,
-                    waiting,
-                    counts,
-                    spent,
-                    other,
-                    lane,
-                    room,
-                    curve,
-                    basis,
-                    values,
-                )
-            for w in range(waiting):
+            for g in range(groups):
+                # contact and free step both, then the choice
+                at = EIGHT * g
+                row = (n * groups + g) * one
+                x0 = load(carried, X * stride + at)
+                y0 = load(carried, Y * stride + at)
+                shift = load(carried, SHIFT * stride + at)
+                contact = shift != 0.0
+                z = x0 - shift
+                m11 = load(steps, row)
+                m21 = load(steps, row + EIGHT)
+                m12 = load(steps, row + 2 * EIGHT)
+                m22 = load(steps, row + 3 * EIGHT)
+                free12 = load(steps, row + 6 * EIGHT)
+                free22 = load(steps, row + 7 * EIGHT)
+                x1 = m11 * z + m12 * y0 + load(steps, row + 4 * EIGHT)
+                y1 = m21 * z + m22 * y0 + load(steps, row + 5 * EIGHT)
+                xf = z + free12 * y0 + load(steps, row + 8 * EIGHT)
+                yf = free22 * y0 + load(steps, row + 9 * EIGHT)
+                x1 = choose(contact, x1, xf) + shift
+                y1 = choose(contact, y1, yf)
+                # can the path between the ends have left the region?
+                rising = x0 < x1
+                room_low = choose(rising, x0, x1) - load(carried, LOW * stride + at)
+                room_high = load(carried, HIGH * stride + at) - choose(rising, x1, x0)
+                spare = choose(room_low < room_high, room_low, room_high)
+                # of a parabola, x turns at most h/2 times the smaller end speed beyond the ends
+                slow = choose(abs(y0) < abs(y1), abs(y0), abs(y1))
+                half = load(steps, row + 10 * EIGHT)
+                turning = choose(y0 * y1 <= 0.0, half * slow, 0.0)
+                sure = spare > 2.0 * load(carried, REACH * stride + at) + turning
+                store(carried, X * stride + at, choose(sure, x1, x0))
+                store(carried, Y * stride + at, choose(sure, y1, y0))
+                for c in range(columns):
+                    a = load(carried, (TANGENT + c) * stride + at)
+                    w = load(carried, (TANGENT + 2 + c) * stride + at)
+                    t1 = choose(contact, m11 * a + m12 * w, a + free12 * w)
+                    t2 = choose(contact, m21 * a + m22 * w, free22 * w)
+                    store(carried, (TANGENT + c) * stride + at, choose(sure, t1, a))
+                    store(carried, (TANGENT + 2 + c) * stride + at, choose(sure, t2, w))
+                doubt = bits(sure) ^ 255
+                if doubt != 0:
+                    store(carried, NEXT_X * stride + at, x1)
+                    store(carried, NEXT_Y * stride + at, y1)
+                    for k in range(EIGHT):
+                        queue[waiting] = at + k
+                        waiting += (doubt >> k) & 1
+            left = 0
+            for first in range(0, waiting, EIGHT):
+                many = min(EIGHT, waiting - first)
+                for k in range(EIGHT):
+                    i = queue[first + k] if k < many else queue[first]
+                    lane[0, k] = i
+                    lane[1, k] = (n * groups + i // EIGHT) * one + i % EIGHT
+                    lane[2, k] = (n * lanes + i) * room
+                undone = cross_eight(steps, curves, carried, columns, lane, table, p)
+                for k in range(many):
+                    if (undone >> k) & 1:
+                        queue[left] = lane[0, k]
+                        left += 1
+            for w in range(left):
                 i = queue[w]
-                if not (abs(x[i]) < np.inf):
+                if not (abs(carried[X, i]) < np.inf):
+                    carried[X, i] = np.nan
+                    carried[Y, i] = np.nan
                     continue
-                state[0] = x[i]
-                state[1] = y[i]
-                before = region[i]
-                now = step_through(
-                    polys[n],
-                    maps[n],
-                    i,
-                    half[n, i],
+                state[0] = carried[X, i]
+                state[1] = carried[Y, i]
+                step_through(
+                    curves[n, i],
+                    steps[n, i // EIGHT, :, i % EIGHT],
                     backlash[i],
                     state,
-                    before,
+                    carried[:, i],
                     jacobian,
-                    tally,
-                    clock,
                     scratch,
                     found,
+                    here,
                 )
-                fresh_x[i] = state[0]
-                fresh_y[i] = state[1]
-                for m in range(2):
-                    counts[m, i] += tally[m]
-                    tally[m] = 0
-                for m in range(3):
-                    spent[m, i] += clock[m]
-                    clock[m] = 0.0
-                if now != before:
-                    # the whole period is booked for the region at its end
-                    spent[before + 1, i] += since[i] + half[n, i]
-                    spent[now + 1, i] -= since[i] + half[n, i]
-                    region[i] = now
-                    place(frame, i, now, backlash[i])
+                carried[X, i] = state[0]
+                carried[Y, i] = state[1]
                 for m in range(columns):
-                    a = tangent[m, i]
-                    b = tangent[2 + m, i]
-                    tangent[m, i] = jacobian[0] * a + jacobian[1] * b
-                    tangent[2 + m, i] = jacobian[2] * a + jacobian[3] * b
+                    above = carried[TANGENT + m, i]
+                    below = carried[TANGENT + 2 + m, i]
+                    carried[TANGENT + m, i] = jacobian[0] * above + jacobian[1] * below
+                    carried[TANGENT + 2 + m, i] = jacobian[2] * above + jacobian[3] * below
+        sections[period, 0, :] = carried[X, :lanes]
+        sections[period, 1, :] = carried[Y, :lanes]
+        last = (count - 1) * groups * one
+        for g in range(groups):
+            at = EIGHT * g
+            half = load(steps, last + g * one + 10 * EIGHT)
+            whole = load(steps, last + g * one + 11 * EIGHT) + 2.0 * half
+            shift = load(carried, SHIFT * stride + at)
+            for m in range(3):
+                place = (SPENT + m) * stride + at
+                there = shift == (m - 1.0) * load(carried, GAP * stride + at)
+                store(carried, place, load(carried, place) + choose(there, whole, 0.0))
+            x0 = load(carried, X * stride + at)
+            y0 = load(carried, Y * stride + at)
+            within = abs(x0) <= 1e6 * load(carried, GAP * stride + at)
+            within = within & (abs(y0) < np.inf)
+            # out of every physical range: the lane stays NaN, its neighbours go on
+            store(carried, X * stride + at, choose(within, x0, np.nan))
+            store(carried, Y * stride + at, choose(within, y0, np.nan))
+        if normal:
             for i in range(lanes):
-                x[i] = fresh_x[i]
-                y[i] = fresh_y[i]
-                since[i] += 2.0 * half[n, i]
-        for i in range(lanes):
-            spent[region[i] + 1, i] += since[i]
-            sections[period, 0, i] = x[i]
-            sections[period, 1, i] = y[i]
-            if not (abs(x[i]) <= 1e6 * backlash[i] and abs(y[i]) < np.inf):
-                x[i] = np.nan
-                y[i] = np.nan
-            if normal:
-                size = np.sqrt(tangent[0, i] ** 2 + tangent[2, i] ** 2)
+                size = np.sqrt(carried[TANGENT, i] ** 2 + carried[TANGENT + 2, i] ** 2)
                 stretch[period, i] = np.log(size)
-                tangent[0, i] /= size
-                tangent[2, i] /= size
+                carried[TANGENT, i] /= size
+                carried[TANGENT + 2, i] /= size
+    for i in range(lanes):
+        x[i] = carried[X, i]
+        y[i] = carried[Y, i]
+        region[i] = np.int64(np.sign(carried[SHIFT, i]))
+        for m in range(3):
+            spent[m, i] = carried[SPENT + m, i]
+        for m in range(2):
+            counts[m, i] = np.int64(carried[LOSSES + m, i])
+        for m in range(4):
+            tangent[m, i] = carried[TANGENT + m, i]
