@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.kernels.affine import add_harmonics, prepare
+from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
 from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.kernels.sensitivity import sensitivity
 from thermogear.dynamics.tables import Lanes, Pieces
@@ -104,7 +104,7 @@ class ExactMaps:
 
     def take(self, keep: Whole) -> ExactMaps:
         """The maps of some lanes, in the order of ``keep``."""
-        steps = _aligned((self.steps.shape[0], -(-keep.size // 8), 12, 8))
+        steps = _aligned((self.steps.shape[0], -(-keep.size // 8), 11, 8))
         by_lane = steps.transpose(0, 2, 1, 3)
         for place, lane in enumerate(keep):
             by_lane[:, :, place // 8, place % 8] = self.steps[:, lane // 8, :, lane % 8]
@@ -212,23 +212,26 @@ def prepare_maps(
     width = np.diff(borders)
     centres = borders[:-1] + 0.5 * width
     half = 0.5 * width[:, None] * lanes.period
-    steps = _aligned((centres.size, -(-len(lanes) // 8), 12, 8))
-    curves = _aligned((centres.size, len(lanes), -(-5 * (order + 1) // 8) * 8))
+    size, rate = _bounds(lanes, "force")
+    jerk = rate / lanes.period + lanes.damping * size
+    reach = jerk * half.max(axis=0) ** 3
+    steps = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
+    curves = _aligned((centres.size, len(lanes), -(-(5 * (order + 1) + BEHIND) // 8) * 8))
     prepare(
         lanes.damping,
+        lanes.half_backlash,
+        reach,
         half,
         _taylor(lanes, "stiffness", centres, 0.5 * width, order),
         _taylor(lanes, "force", centres, 0.5 * width, order),
         steps,
         curves,
     )
-    size, rate = _bounds(lanes, "force")
-    jerk = rate / lanes.period + lanes.damping * size
     return ExactMaps(
         steps=steps,
         curves=curves,
         half=half,
-        reach=jerk * half.max(axis=0) ** 3,
+        reach=reach,
         backlash=lanes.half_backlash,
         marks=marks,
         borders=borders,

@@ -6,10 +6,9 @@ width h, u in [-1, 1],
 
     x(u) - r b = phi(u) (x_0 - r b) + psi(u) y_0 + nu(u),     y = dx/dt,
 
-with polynomials centred on the sub-step that depend on parameters only. ``curves`` holds their
-coefficients lane by lane, ``steps`` for eight lanes side by side what a sub-step needs: values and
-slopes at u = 1 of phi, psi, nu, then of psi and nu where k acts on nothing, the half width and the
-time from the start of the period.
+with polynomials centred on the sub-step that depend on parameters only. ``curves`` holds lane by
+lane their coefficients and what belongs to them, ``steps`` what a plain sub-step of eight lanes
+needs: values and rates of phi, psi, nu, free psi, free nu at u = 1, and the half width.
 """
 
 from __future__ import annotations
@@ -23,22 +22,28 @@ from thermogear.dynamics.kernels.vector import EIGHT, aligned, load, pick, store
 Real = NDArray[np.float64]
 
 PHI, PSI, NU, FREE_PSI, FREE_NU = 0, 1, 2, 3, 4
+# behind the polynomials of a lane's sub-step: their values and rates at u = 1, the half width, the
+# time since the period began, the half backlash, and how far a hidden turn can swing
+HALF, SINCE, GAP, REACH = 10, 11, 12, 13
+BEHIND = 14
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def prepare(
     damping: Real,
+    backlash: Real,
+    reach: Real,
     half: Real,
     stiffness: Real,
     force: Real,
     steps: Real,
     curves: Real,
 ) -> None:
-    """Fill ``steps`` (N, group, 12, 8) and ``curves`` (N, lane, 5 (K + 1) and more).
+    """Fill ``steps`` (N, group, 11, 8) and ``curves`` (N, lane, 5 (K + 1) + 14 and more).
 
-    ``damping`` (lane), ``half`` (N, lane) half widths in time, ``stiffness`` and ``force``
-    (N, lane, K + 1): Taylor coefficients in u of k and F about the centre of each sub-step.
-    Eight lanes are a group; what a last group has no lane for is zero.
+    ``damping``, ``backlash`` and ``reach`` (lane), ``half`` (N, lane) half widths in time,
+    ``stiffness`` and ``force`` (N, lane, K + 1): Taylor coefficients in u of k and F about the
+    centre of each sub-step. Eight lanes are a group; what a last group has no lane for is zero.
     """
     count, lanes, width = stiffness.shape
     groups = steps.shape[1]
@@ -59,7 +64,7 @@ def prepare(
         c = pick(damping, 0, at)
         elapsed = c * 0.0
         for n in range(count):
-            row = (n * groups + group) * 12 * EIGHT
+            row = (n * groups + group) * 11 * EIGHT
             h = pick(half, n * lanes, at)
             ch = c * h
             hh = h * h
@@ -144,10 +149,17 @@ def prepare(
                     part = load(table, q * full + EIGHT * m)
                     value = value + part
                     rate = rate + float(m) * part
-                store(steps, row + 2 * q * EIGHT, value + load(table, q * full))
-                store(steps, row + (2 * q + 1) * EIGHT, rate / h)
-            store(steps, row + 10 * EIGHT, h)
-            store(steps, row + 11 * EIGHT, elapsed)
+                value = value + load(table, q * full)
+                rate = rate / h
+                store(steps, row + 2 * q * EIGHT, value)
+                store(steps, row + (2 * q + 1) * EIGHT, rate)
+                store(table, 5 * full + 2 * q * EIGHT, value)
+                store(table, 5 * full + (2 * q + 1) * EIGHT, rate)
+            store(steps, row + HALF * EIGHT, h)
+            store(table, 5 * full + HALF * EIGHT, h)
+            store(table, 5 * full + SINCE * EIGHT, elapsed)
+            store(table, 5 * full + GAP * EIGHT, pick(backlash, 0, at))
+            store(table, 5 * full + REACH * EIGHT, pick(reach, 0, at))
             elapsed = elapsed + 2.0 * h
             for i in range(here, EIGHT):
                 steps[n, group, :, i] = 0.0

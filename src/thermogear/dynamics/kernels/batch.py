@@ -8,18 +8,26 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
+from thermogear.dynamics.kernels.affine import (
+    FREE_NU,
+    FREE_PSI,
+    GAP,
+    HALF,
+    NU,
+    PHI,
+    PSI,
+    REACH,
+    SINCE,
+)
 from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, drop, load, pick, store, turn
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# rows of what a lane carries along: state, origin and edges of its region, ends of the sub-step,
-# time spent in back, free and drive contact, contact losses and back-side impacts, tangent
-X, Y, SHIFT, LOW, HIGH, REACH, GAP, NEXT_X, NEXT_Y, SPENT, LOSSES, TANGENT = (
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 14,
-)  # fmt: skip
-CARRIED = 18
+# rows of what a lane carries along: state, origin and edges of its region, twice its reach, half
+# backlash, time spent in back, free and drive contact, contact losses and back-side impacts, tangent
+X, Y, SHIFT, LOW, HIGH, DOUBLE, OWN_GAP, SPENT, LOSSES, TANGENT = 0, 1, 2, 3, 4, 5, 6, 7, 10, 12
+CARRIED = 16
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -38,7 +46,6 @@ def runs_on(y0: Any, y1: Any, h: Any, reach: Any) -> Any:
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def cross_eight(
-    steps: Real,
     curves: Real,
     carried: Real,
     columns: int,
@@ -54,39 +61,45 @@ def cross_eight(
     on the exact polynomial, then the hand-over. The answer names the lanes, as bits, that are not
     done; a path that did stay inside is done too.
 
-    ``lane`` (3, 8): where each lane stands in a row of ``carried`` (CARRIED, lane), its sub-step's
-    first number in ``steps`` and in ``curves``. A lane may be named more than once. Work space:
-    ``table`` (5 (K + 1) and more, 8), ``p`` (K + 1, 8).
+    ``lane`` (2, 8): where each lane stands in a row of ``carried`` (CARRIED, lane), and the first
+    number of its sub-step in ``curves``. A lane may be named more than once. Work space:
+    ``table`` (as long as a row of ``curves``, 8), ``p`` (K + 1, 8).
     """
     width = p.shape[0]
     stride = carried.shape[1]
     own = lane[0]
-    step = lane[1]
     for m in range(0, table.shape[0], EIGHT):
-        turn(curves, m, lane[2], table)
-    b = pick(carried, GAP * stride, own)
-    reach = pick(carried, REACH * stride, own)
+        turn(curves, m, lane[1], table)
+    behind = 5 * width * EIGHT
+    b = load(table, behind + GAP * EIGHT)
+    reach = load(table, behind + REACH * EIGHT)
+    h = load(table, behind + HALF * EIGHT)
     shift = pick(carried, SHIFT * stride, own)
-    low = pick(carried, LOW * stride, own)
-    high = pick(carried, HIGH * stride, own)
-    h = pick(steps, 10 * EIGHT, step)
     x_old = pick(carried, X * stride, own)
-    x_new = pick(carried, NEXT_X * stride, own)
     y_old = pick(carried, Y * stride, own)
-    y_new = pick(carried, NEXT_Y * stride, own)
     contact = shift != 0.0
+    drive = shift > 0.0
+    # the whole sub-step in the region it begins in
+    s11 = choose(contact, load(table, behind), 1.0)
+    s21 = choose(contact, load(table, behind + EIGHT), 0.0)
+    s12 = choose(contact, load(table, behind + 2 * EIGHT), load(table, behind + 6 * EIGHT))
+    s22 = choose(contact, load(table, behind + 3 * EIGHT), load(table, behind + 7 * EIGHT))
+    n1 = choose(contact, load(table, behind + 4 * EIGHT), load(table, behind + 8 * EIGHT))
+    n2 = choose(contact, load(table, behind + 5 * EIGHT), load(table, behind + 9 * EIGHT))
+    z0 = x_old - shift
+    x_new = s11 * z0 + s12 * y_old + n1 + shift
+    y_new = s21 * z0 + s22 * y_old + n2
     straight = runs_on(y_old, y_new, h, reach)
     rising = x_old < x_new
-    below = choose(rising, x_old, x_new)
-    above = choose(rising, x_new, x_old)
-    inside = straight & (low < below) & (above < high)
-    z0 = x_old - shift
+    low = choose(contact, choose(drive, b, -np.inf), -b)
+    high = choose(contact, choose(drive, np.inf, -b), b)
+    inside = straight & (low < choose(rising, x_old, x_new))
+    inside = inside & (choose(rising, x_new, x_old) < high)
     z1 = x_new - shift
     level = choose(contact, 0.0, choose(z1 > 0.0, b, -b))
     d0 = z0 - level
     d1 = z1 - level
     near = choose(abs(d0) < abs(d1), abs(d0), abs(d1))
-    drive = shift > 0.0
     up = d1 > 0.0
     good = (straight | (near > reach)) & (d0 * d1 < 0.0) & (~contact | ~((d0 > 0.0) ^ drive))
     # the path, measured from the edge
@@ -165,12 +178,12 @@ def cross_eight(
     det = f11 * f22 - f12 * f21
     z = (f22 * dx - f12 * dy) / det
     s = (f11 * dy - f21 * dx) / det
-    m11 = choose(contact, 1.0, pick(steps, 0, step))
-    m21 = choose(contact, 0.0, pick(steps, EIGHT, step))
-    m12 = choose(contact, pick(steps, 6 * EIGHT, step), pick(steps, 2 * EIGHT, step))
-    m22 = choose(contact, pick(steps, 7 * EIGHT, step), pick(steps, 3 * EIGHT, step))
-    n1 = choose(contact, pick(steps, 8 * EIGHT, step), pick(steps, 4 * EIGHT, step))
-    n2 = choose(contact, pick(steps, 9 * EIGHT, step), pick(steps, 5 * EIGHT, step))
+    m11 = choose(contact, 1.0, load(table, behind))
+    m21 = choose(contact, 0.0, load(table, behind + EIGHT))
+    m12 = choose(contact, load(table, behind + 6 * EIGHT), load(table, behind + 2 * EIGHT))
+    m22 = choose(contact, load(table, behind + 7 * EIGHT), load(table, behind + 3 * EIGHT))
+    n1 = choose(contact, load(table, behind + 8 * EIGHT), load(table, behind + 4 * EIGHT))
+    n2 = choose(contact, load(table, behind + 9 * EIGHT), load(table, behind + 5 * EIGHT))
     z1 = m11 * z + m12 * s + n1
     y1 = m21 * z + m22 * s + n2
     # does the path stay in the next region, between its ends too?
@@ -190,7 +203,7 @@ def cross_eight(
     border = choose(contact, b, choose(up, np.inf, -b))
     drop(carried, HIGH * stride, own, choose(good, border, high))
     # the caller books the whole period for the region at its end
-    time = pick(steps, 11 * EIGHT, step) + (h * u + h)
+    time = load(table, behind + SINCE * EIGHT) + (h * u + h)
     time = choose(good, time, 0.0)
     for m in range(3):
         # back, free, drive: what is left gains, what is entered loses
@@ -220,10 +233,6 @@ def cross_eight(
         slope = slope / h
         za = (f22 * value - f12 * slope) / det
         zb = (f11 * slope - f21 * value) / det
-        s11 = choose(contact, pick(steps, 0, step), 1.0)
-        s21 = choose(contact, pick(steps, EIGHT, step), 0.0)
-        s12 = choose(contact, pick(steps, 2 * EIGHT, step), pick(steps, 6 * EIGHT, step))
-        s22 = choose(contact, pick(steps, 3 * EIGHT, step), pick(steps, 7 * EIGHT, step))
         stayed = choose(inside, s11 * a + s12 * w, a)
         drop(carried, one, own, choose(good, m11 * za + m12 * zb, stayed))
         stayed = choose(inside, s21 * a + s22 * w, w)

@@ -10,7 +10,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
+from thermogear.dynamics.kernels.affine import (
+    FREE_NU,
+    FREE_PSI,
+    GAP,
+    HALF,
+    NU,
+    PHI,
+    PSI,
+    SINCE,
+)
 from thermogear.dynamics.kernels.batch import HIGH, LOSSES, LOW, SHIFT, SPENT
 
 Real = NDArray[np.float64]
@@ -192,8 +201,6 @@ def next_edge(
 @njit(nogil=True, cache=True, error_model="numpy")
 def step_through(
     curves: Real,
-    maps: Real,
-    b: float,
     state: Real,
     carried: Real,
     jacobian: Real,
@@ -203,7 +210,7 @@ def step_through(
 ) -> None:
     """One sub-step of one lane with contact changes, turning points and grazing.
 
-    ``curves`` and ``maps`` of this lane and sub-step, ``carried`` what the lane carries along:
+    ``curves`` of this lane and sub-step, ``carried`` what the lane carries along:
     its region, its times and counts follow; ``state`` (2,) in and out; ``jacobian`` (4,) out: d
     end/d start row by row. Work space: ``scratch`` (2, K + 1), ``found`` (16,), ``here`` (3, 3).
     """
@@ -212,7 +219,9 @@ def step_through(
     p = scratch[0]
     clock = here[2]
     clock[:] = 0.0
-    h = maps[10]
+    maps = curves[5 * width :]
+    h = maps[HALF]
+    b = maps[GAP]
     shift = carried[SHIFT]
     region = 1 if shift > 0.0 else -1 if shift < 0.0 else 0
     before = region
@@ -290,8 +299,8 @@ def step_through(
         carried[SPENT + m] += clock[m]
     if region != before:
         # the whole period is booked for the region at its end
-        carried[SPENT + before + 1] += maps[11] + h
-        carried[SPENT + region + 1] -= maps[11] + h
+        carried[SPENT + before + 1] += maps[SINCE] + h
+        carried[SPENT + region + 1] -= maps[SINCE] + h
         carried[SHIFT] = region * b
         carried[LOW] = -np.inf if region < 0 else (region * 2 - 1) * b
         carried[HIGH] = np.inf if region > 0 else (region * 2 + 1) * b

@@ -6,15 +6,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.dynamics.kernels.affine import HALF, SINCE
 from thermogear.dynamics.kernels.batch import (
     CARRIED,
-    GAP,
+    DOUBLE,
     HIGH,
     LOSSES,
     LOW,
-    NEXT_X,
-    NEXT_Y,
-    REACH,
+    OWN_GAP,
     SHIFT,
     SPENT,
     TANGENT,
@@ -50,7 +49,7 @@ def advance_exact(
 ) -> None:
     """Advance all lanes by ``len(sections)`` periods, in place.
 
-    ``steps`` (N, group of eight lanes, 12, 8) and ``curves`` (N, lane, 5 width and more) as
+    ``steps`` (N, group of eight lanes, 11, 8) and ``curves`` (N, lane, 5 width + 14 and more) as
     ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a sub-step;
     ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22; with
     ``stretch`` (period, lane) not empty the first column is normalised every period and its
@@ -67,7 +66,7 @@ def advance_exact(
     # lanes that fill up the last group rest in the middle of a gap
     carried[LOW] = -1.0
     carried[HIGH] = 1.0
-    carried[GAP] = 1.0
+    carried[OWN_GAP] = 1.0
     for i in range(lanes):
         b = backlash[i]
         r = region[i]
@@ -76,19 +75,24 @@ def advance_exact(
         carried[SHIFT, i] = r * b
         carried[LOW, i] = -np.inf if r < 0 else (r * 2 - 1) * b
         carried[HIGH, i] = np.inf if r > 0 else (r * 2 + 1) * b
-        carried[REACH, i] = reach[i]
-        carried[GAP, i] = b
+        carried[DOUBLE, i] = 2.0 * reach[i]
+        carried[OWN_GAP, i] = b
         for m in range(3):
             carried[SPENT + m, i] = spent[m, i]
         for m in range(2):
             carried[LOSSES + m, i] = counts[m, i]
         for m in range(4):
             carried[TANGENT + m, i] = tangent[m, i]
+    # the period, summed as the sub-steps' own times are
+    wholes = aligned(stride)
+    for i in range(lanes):
+        last = curves[count - 1, i, 5 * width :]
+        wholes[i] = last[SINCE] + 2.0 * last[HALF]
     taking = samples.shape[0] > 0
     normal = stretch.shape[0] > 0
     taken = 0
     queue = np.zeros(stride + EIGHT, np.int64)
-    lane = np.zeros((3, EIGHT), np.int64)
+    lane = np.zeros((2, EIGHT), np.int64)
     room = curves.shape[2]
     table = aligned(room * EIGHT).reshape((room, EIGHT))
     p = aligned(width * EIGHT).reshape((width, EIGHT))
@@ -132,9 +136,9 @@ def advance_exact(
                 spare = choose(room_low < room_high, room_low, room_high)
                 # of a parabola, x turns at most h/2 times the smaller end speed beyond the ends
                 slow = choose(abs(y0) < abs(y1), abs(y0), abs(y1))
-                half = load(steps, row + 10 * EIGHT)
+                half = load(steps, row + HALF * EIGHT)
                 turning = choose(y0 * y1 <= 0.0, half * slow, 0.0)
-                sure = spare > 2.0 * load(carried, REACH * stride + at) + turning
+                sure = spare > load(carried, DOUBLE * stride + at) + turning
                 store(carried, X * stride + at, choose(sure, x1, x0))
                 store(carried, Y * stride + at, choose(sure, y1, y0))
                 for c in range(columns):
@@ -146,8 +150,6 @@ def advance_exact(
                     store(carried, (TANGENT + 2 + c) * stride + at, choose(sure, t2, w))
                 doubt = bits(sure) ^ 255
                 if doubt != 0:
-                    store(carried, NEXT_X * stride + at, x1)
-                    store(carried, NEXT_Y * stride + at, y1)
                     for k in range(EIGHT):
                         queue[waiting] = at + k
                         waiting += (doubt >> k) & 1
@@ -157,9 +159,8 @@ def advance_exact(
                 for k in range(EIGHT):
                     i = queue[first + k] if k < many else queue[first]
                     lane[0, k] = i
-                    lane[1, k] = (n * groups + i // EIGHT) * one + i % EIGHT
-                    lane[2, k] = (n * lanes + i) * room
-                undone = cross_eight(steps, curves, carried, columns, lane, table, p)
+                    lane[1, k] = (n * lanes + i) * room
+                undone = cross_eight(curves, carried, columns, lane, table, p)
                 for k in range(many):
                     if (undone >> k) & 1:
                         queue[left] = lane[0, k]
@@ -174,8 +175,6 @@ def advance_exact(
                 state[1] = carried[Y, i]
                 step_through(
                     curves[n, i],
-                    steps[n, i // EIGHT, :, i % EIGHT],
-                    backlash[i],
                     state,
                     carried[:, i],
                     jacobian,
@@ -192,19 +191,17 @@ def advance_exact(
                     carried[TANGENT + 2 + m, i] = jacobian[2] * above + jacobian[3] * below
         sections[period, 0, :] = carried[X, :lanes]
         sections[period, 1, :] = carried[Y, :lanes]
-        last = (count - 1) * groups * one
         for g in range(groups):
             at = EIGHT * g
-            half = load(steps, last + g * one + 10 * EIGHT)
-            whole = load(steps, last + g * one + 11 * EIGHT) + 2.0 * half
+            whole = load(wholes, at)
             shift = load(carried, SHIFT * stride + at)
             for m in range(3):
                 place = (SPENT + m) * stride + at
-                there = shift == (m - 1.0) * load(carried, GAP * stride + at)
+                there = shift == (m - 1.0) * load(carried, OWN_GAP * stride + at)
                 store(carried, place, load(carried, place) + choose(there, whole, 0.0))
             x0 = load(carried, X * stride + at)
             y0 = load(carried, Y * stride + at)
-            within = abs(x0) <= 1e6 * load(carried, GAP * stride + at)
+            within = abs(x0) <= 1e6 * load(carried, OWN_GAP * stride + at)
             within = within & (abs(y0) < np.inf)
             # out of every physical range: the lane stays NaN, its neighbours go on
             store(carried, X * stride + at, choose(within, x0, np.nan))
