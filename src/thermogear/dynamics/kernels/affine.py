@@ -166,7 +166,7 @@ def prepare(
             for first in range(0, room, EIGHT):
                 for i in range(EIGHT):
                     place[i] = EIGHT * (first + i)
-                turn(table, 0, place, turned)
+                turn(table, place, turned, EIGHT)
                 for i in range(here):
                     store(curves, (n * lanes + at[i]) * room + first, load(turned, EIGHT * i))
 

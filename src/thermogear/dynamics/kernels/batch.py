@@ -68,8 +68,7 @@ def cross_eight(
     width = p.shape[0]
     stride = carried.shape[1]
     own = lane[0]
-    for m in range(0, table.shape[0], EIGHT):
-        turn(curves, m, lane[1], table)
+    turn(curves, lane[1], table, table.shape[0])
     behind = 5 * width * EIGHT
     b = load(table, behind + GAP * EIGHT)
     reach = load(table, behind + REACH * EIGHT)

@@ -191,42 +191,46 @@ def _bits(_typing: Any, flag: Any) -> Any:
     return types.int64(flags), generate
 
 
-def _turn(_typing: Any, array: Any, base: Any, places: Any, out: Any) -> Any:
-    """Transpose: eight numbers from ``base`` + each of eight flat ``places`` -> ``out`` (8, 8).
+def _turn(_typing: Any, array: Any, places: Any, out: Any, count: Any) -> Any:
+    """Transpose ``count`` numbers, a multiple of eight, from each of eight flat ``places``.
 
-    Row m of ``out``, from its own flat index ``base``/8 * 64 on, is number m of all eight places.
+    Row m of ``out`` (count, 8) becomes number m of all eight places.
     """
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
-        start = builder.gep(_start(context, builder, array, given[0]), [given[1]])
-        index = _start(context, builder, places, given[2])
-        end = builder.gep(
-            _start(context, builder, out, given[3]), [builder.mul(given[1], _INDEX(EIGHT))]
-        )
-        rows = []
+        start = _start(context, builder, array, given[0])
+        index = _start(context, builder, places, given[1])
+        end = _start(context, builder, out, given[2])
+        lines = []
         for k in range(EIGHT):
             place = builder.load(builder.gep(index, [_INDEX(k)]))
-            rows.append(builder.load(_numbers_at(builder, start, place), align=8))
-        for width in (1, 2, 4):
-            # exchange blocks of this width between rows this far apart
-            low, high = [], []
-            for k in range(EIGHT):
-                taken = k & ~width
-                low.append(taken if not k & width else taken + EIGHT)
-                high.append((taken if not k & width else taken + EIGHT) + width)
-            fresh = list(rows)
-            for k in range(EIGHT):
-                if not k & width:
-                    pair = (rows[k], rows[k + width])
-                    for row, mask in ((k, low), (k + width, high)):
-                        kind = ir.VectorType(ir.IntType(32), EIGHT)
-                        fresh[row] = builder.shuffle_vector(*pair, ir.Constant(kind, mask))
-            rows = fresh
-        for k in range(EIGHT):
-            builder.store(rows[k], _numbers_at(builder, end, _INDEX(EIGHT * k)), align=8)
+            lines.append(builder.gep(start, [place]))
+        with _tools.for_range_slice(
+            builder, _INDEX(0), given[3], _INDEX(EIGHT), inc=True
+        ) as (first, _):
+            rows = [builder.load(_numbers_at(builder, line, first), align=8) for line in lines]
+            for row, numbers in enumerate(_transposed(builder, rows)):
+                at = builder.mul(builder.add(first, _INDEX(row)), _INDEX(EIGHT))
+                builder.store(numbers, _numbers_at(builder, end, at), align=8)
         return context.get_dummy_value()
 
-    return types.void(array, types.int64, places, out), generate
+    return types.void(array, places, out, types.int64), generate
+
+
+def _transposed(builder: Any, rows: list[Any]) -> list[Any]:
+    """Eight rows of eight numbers as their eight columns."""
+    kind = ir.VectorType(ir.IntType(32), EIGHT)
+    for width in (1, 2, 4):
+        # exchange blocks of this width between rows this far apart
+        low = [k if not k & width else k - width + EIGHT for k in range(EIGHT)]
+        high = [k + width if not k & width else k + EIGHT for k in range(EIGHT)]
+        for k in range(EIGHT):
+            if not k & width:
+                pair = (rows[k], rows[k + width])
+                rows[k], rows[k + width] = (
+                    builder.shuffle_vector(*pair, ir.Constant(kind, mask)) for mask in (low, high)
+                )
+    return rows
 
 
 load: Any = intrinsic(_load)
