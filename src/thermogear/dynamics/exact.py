@@ -267,10 +267,10 @@ def moved_by(
     state = State.start(x=start[:1], y=start[1:], backlash=maps.backlash)
     found = np.empty(3)
     sensitivity(
-        np.ascontiguousarray(maps.polys[:, 0]),
+        maps.polys[:, 0].ravel(),
         np.ascontiguousarray(maps.half[:, 0]),
         float(maps.backlash[0]),
-        np.ascontiguousarray(rates[0]),
+        rates[0].ravel(),
         np.ascontiguousarray(rates[1]),
         float(rates[2]),
         np.asarray(start, dtype=float),

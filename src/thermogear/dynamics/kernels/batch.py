@@ -49,7 +49,8 @@ def cross_eight(
     curves: Real,
     carried: Real,
     columns: int,
-    lane: Whole,
+    own: Whole,
+    rows: Whole,
     table: Real,
     p: Real,
 ) -> int:
@@ -61,14 +62,13 @@ def cross_eight(
     on the exact polynomial, then the hand-over. The answer names the lanes, as bits, that are not
     done; a path that did stay inside is done too.
 
-    ``lane`` (2, 8): where each lane stands in a row of ``carried`` (CARRIED, lane), and the first
-    number of its sub-step in ``curves``. A lane may be named more than once. Work space:
+    ``own`` (8,): where each lane stands in a row of ``carried`` (CARRIED, lane); ``rows`` (8,): the
+    first number of its sub-step in ``curves``. A lane may be named more than once. Work space:
     ``table`` (as long as a row of ``curves``, 8), ``p`` (K + 1, 8).
     """
     width = p.shape[0]
     stride = carried.shape[1]
-    own = lane[0]
-    turn(curves, lane[1], table, table.shape[0])
+    turn(curves, rows, table, table.shape[0])
     behind = 5 * width * EIGHT
     b = load(table, behind + GAP * EIGHT)
     reach = load(table, behind + REACH * EIGHT)

@@ -20,43 +20,48 @@ from thermogear.dynamics.kernels.affine import (
     PSI,
     SINCE,
 )
-from thermogear.dynamics.kernels.batch import HIGH, LOSSES, LOW, SHIFT, SPENT
+from thermogear.dynamics.kernels.batch import HIGH, LOSSES, LOW, SHIFT, SPENT, TANGENT, X, Y
 
 Real = NDArray[np.float64]
 
 MOST_CROSSINGS = 64
+TURNS = 16
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def value_of(p: Real, u: float) -> float:
+def value_of(p: Real, first: int, width: int, u: float) -> float:
+    """The polynomial whose ``width`` coefficients begin at ``first``.
+
+    Here and below no slice is taken: numba counts its users, which costs more than the sum.
+    """
     total = 0.0
-    for m in range(p.shape[0] - 1, -1, -1):
+    for m in range(first + width - 1, first - 1, -1):
         total = total * u + p[m]
     return total
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def slope(p: Real, u: float) -> float:
+def slope(p: Real, first: int, width: int, u: float) -> float:
     total = 0.0
-    for m in range(p.shape[0] - 1, 0, -1):
-        total = total * u + m * p[m]
+    for m in range(width - 1, 0, -1):
+        total = total * u + m * p[first + m]
     return total
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def root(p: Real, level: float, low: float, high: float) -> float:
+def root(p: Real, width: int, level: float, low: float, high: float) -> float:
     """The root of p(u) = level in a monotone piece [low, high]: Newton inside a bracket."""
-    at_low = value_of(p, low) - level
-    at_high = value_of(p, high) - level
+    at_low = value_of(p, 0, width, low) - level
+    at_high = value_of(p, 0, width, high) - level
     if at_low == 0.0 or (at_low > 0.0) == (at_high > 0.0):
         # both ends on one side: the start is on the edge but for rounding
         return low
     a = low
     b = high
     # cubic Hermite start from the two ends
-    width = high - low
-    s0 = slope(p, low) * width
-    s1 = slope(p, high) * width
+    span = high - low
+    s0 = slope(p, 0, width, low) * span
+    s1 = slope(p, 0, width, high) * span
     delta = at_high - at_low
     t = -at_low / delta
     for _ in range(2):
@@ -65,13 +70,13 @@ def root(p: Real, level: float, low: float, high: float) -> float:
         down = (3.0 * c3 * t + 2.0 * c2) * t + s0
         if down != 0.0:
             t -= (((c3 * t + c2) * t + s0) * t + at_low) / down
-    u = low + width * t
+    u = low + span * t
     if not (a < u < b):
-        u = low + width * (-at_low / delta)
+        u = low + span * (-at_low / delta)
     for _ in range(60):
         value = 0.0
         rate = 0.0
-        for m in range(p.shape[0] - 1, 0, -1):
+        for m in range(width - 1, 0, -1):
             value = value * u + p[m]
             rate = rate * u + m * p[m]
         value = value * u + p[0] - level
@@ -92,14 +97,15 @@ def root(p: Real, level: float, low: float, high: float) -> float:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: Real) -> int:
+def turns_in(
+    p: Real, width: int, start: float, low: float, high: float, found: Real, work: Real
+) -> int:
     """Roots of p' in (start, 1), ascending, into ``found``; their number.
 
     A single turn that stays between ``low`` and ``high`` need not be found and is not counted.
     Each derivative is monotone between the roots of the next one; the fourth is taken to keep
     its sign on the halves of a sub-step, which its width guarantees.
     """
-    width = p.shape[0]
     # quick exit: the straight part of the slope beats everything above it
     tail = 0.0
     for m in range(3, width):
@@ -113,36 +119,37 @@ def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: 
     for m in range(3, width):
         bend += m * (m - 1.0) * abs(p[m])
     if 2.0 * abs(p[2]) > bend:
-        first = slope(p, start)
-        if (first > 0.0) == (slope(p, 1.0) > 0.0):
+        first = slope(p, 0, width, start)
+        if (first > 0.0) == (slope(p, 0, width, 1.0) > 0.0):
             return 0
         swing = first * first / (2.0 * (2.0 * abs(p[2]) - bend))
-        value = value_of(p, start)
+        value = value_of(p, 0, width, start)
         if low < value - swing and value + swing < high:
             return 0
         for m in range(width - 1):
             work[m] = (m + 1.0) * p[m + 1]
-        found[0] = root(work[: width - 1], 0.0, start, 1.0)
+        found[0] = root(work, width - 1, 0.0, start, 1.0)
         return 1
     count = 1
     found[0] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
     for level in range(3, 0, -1):
         # work = level-th derivative
-        for m in range(width - level):
+        size = width - level
+        for m in range(size):
             factor = 1.0
             for i in range(level):
                 factor *= m + level - i
             work[m] = factor * p[m + level]
-        q = work[: width - level]
+        for i in range(count):
+            found[TURNS + i] = found[i]
         fresh = 0
         a = start
-        fa = value_of(q, a)
-        old = found[:count].copy()
+        fa = value_of(work, 0, size, a)
         for i in range(count + 1):
-            b = old[i] if i < count else 1.0
-            fb = value_of(q, b)
-            if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < found.shape[0]:
-                found[fresh] = root(q, 0.0, a, b)
+            b = found[TURNS + i] if i < count else 1.0
+            fb = value_of(work, 0, size, b)
+            if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < TURNS:
+                found[fresh] = root(work, size, 0.0, a, b)
                 fresh += 1
             a = b
             fa = fb
@@ -151,32 +158,52 @@ def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: 
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def combined(curves: Real, region: int, x0: float, y0: float, p: Real) -> None:
-    """The sub-step's polynomial of x, measured from the edge of its region; ``curves`` (5, K+1)."""
+def combined(
+    curves: Real, first: int, width: int, region: int, x0: float, y0: float, p: Real
+) -> None:
+    """The sub-step's polynomial of x, measured from the edge of its region.
+
+    Its five polynomials begin at ``first`` of the flat ``curves``.
+    """
     if region != 0:
-        for m in range(p.shape[0]):
-            p[m] = curves[PHI, m] * x0 + curves[PSI, m] * y0 + curves[NU, m]
+        for m in range(width):
+            p[m] = (
+                curves[first + PHI * width + m] * x0
+                + curves[first + PSI * width + m] * y0
+                + curves[first + NU * width + m]
+            )
     else:
-        for m in range(p.shape[0]):
-            p[m] = curves[FREE_PSI, m] * y0 + curves[FREE_NU, m]
+        for m in range(width):
+            p[m] = (
+                curves[first + FREE_PSI * width + m] * y0 + curves[first + FREE_NU * width + m]
+            )
         p[0] += x0
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def frame(curves: Real, region: int, u: float, h: float, out: Real) -> None:
+def frame(
+    curves: Real, first: int, width: int, region: int, u: float, h: float, out: Real
+) -> None:
     """phi, psi, nu and their rates at ``u`` of one region into ``out`` (2, 3)."""
     out[0, 0] = 1.0
     out[1, 0] = 0.0
     contact = region != 0
     for q in range(0 if contact else 1, 3):
-        row = curves[q if contact else q + 2]
-        out[0, q] = value_of(row, u)
-        out[1, q] = slope(row, u) / h
+        row = first + (q if contact else q + 2) * width
+        out[0, q] = value_of(curves, row, width, u)
+        out[1, q] = slope(curves, row, width, u) / h
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
 def next_edge(
-    p: Real, start: float, region: int, b: float, skip: int, found: Real, work: Real
+    p: Real,
+    width: int,
+    start: float,
+    region: int,
+    b: float,
+    skip: int,
+    found: Real,
+    work: Real,
 ) -> tuple[float, int]:
     """Where the path first leaves its region after ``start``, and by which edge.
 
@@ -185,14 +212,14 @@ def next_edge(
     """
     low = -np.inf if region < 0 else 0.0 if region > 0 else -b
     high = np.inf if region > 0 else 0.0 if region < 0 else b
-    turns = turns_in(p, start, low, high, found, work)
+    turns = turns_in(p, width, start, low, high, found, work)
     a = start
     for i in range(turns + 1):
         e = found[i] if i < turns else 1.0
-        value = value_of(p, e)
+        value = value_of(p, 0, width, e)
         edge = 0 if value < low else 1 if value > high else 2
         if edge != 2 and edge != skip:
-            return root(p, low if edge == 0 else high, a, e), edge
+            return root(p, width, low if edge == 0 else high, a, e), edge
         skip = 2
         a = e
     return 1.0, 2
@@ -201,54 +228,54 @@ def next_edge(
 @njit(nogil=True, cache=True, error_model="numpy")
 def step_through(
     curves: Real,
-    state: Real,
+    row: int,
+    width: int,
     carried: Real,
-    jacobian: Real,
-    scratch: Real,
+    i: int,
+    columns: int,
+    p: Real,
+    work: Real,
     found: Real,
     here: Real,
 ) -> None:
     """One sub-step of one lane with contact changes, turning points and grazing.
 
-    ``curves`` of this lane and sub-step, ``carried`` what the lane carries along:
-    its region, its times and counts follow; ``state`` (2,) in and out; ``jacobian`` (4,) out: d
-    end/d start row by row. Work space: ``scratch`` (2, K + 1), ``found`` (16,), ``here`` (3, 3).
+    ``curves`` (flat) holds its polynomials and what belongs to them from ``row`` on; column ``i``
+    of ``carried`` follows: state, region, times and counts, and ``columns`` of its tangent. Work
+    space: ``p`` and ``work`` (K + 1), ``found`` (2 TURNS), ``here`` (3, 3).
     """
-    width = scratch.shape[1]
-    polys = curves[: 5 * width].reshape((5, width))
-    p = scratch[0]
-    clock = here[2]
-    clock[:] = 0.0
-    maps = curves[5 * width :]
-    h = maps[HALF]
-    b = maps[GAP]
-    shift = carried[SHIFT]
+    maps = row + 5 * width
+    h = curves[maps + HALF]
+    b = curves[maps + GAP]
+    shift = carried[SHIFT, i]
     region = 1 if shift > 0.0 else -1 if shift < 0.0 else 0
     before = region
-    jacobian[0] = 1.0
-    jacobian[1] = 0.0
-    jacobian[2] = 0.0
-    jacobian[3] = 1.0
-    x0 = state[0] - region * b
-    y0 = state[1]
+    for m in range(3):
+        here[2, m] = 0.0
+    j11 = 1.0
+    j12 = 0.0
+    j21 = 0.0
+    j22 = 1.0
+    x0 = carried[X, i] - region * b
+    y0 = carried[Y, i]
     start = -1.0
     skip = 2
     for _ in range(MOST_CROSSINGS):
-        combined(polys, region, x0, y0, p)
-        at, edge = next_edge(p, start, region, b, skip, found, scratch[1])
+        combined(curves, row, width, region, x0, y0, p)
+        at, edge = next_edge(p, width, start, region, b, skip, found, work)
         if edge == 2:
             break
-        y = slope(p, at) / h
+        y = slope(p, 0, width, at) / h
         # Phi of the region left behind, at the crossing
         time = h * at
-        clock[region + 1] += time
-        frame(polys, region, at, h, here)
-        j11 = here[0, 0] * jacobian[0] + here[0, 1] * jacobian[2]
-        j12 = here[0, 0] * jacobian[1] + here[0, 1] * jacobian[3]
-        j21 = here[1, 0] * jacobian[0] + here[1, 1] * jacobian[2]
-        j22 = here[1, 0] * jacobian[1] + here[1, 1] * jacobian[3]
+        here[2, region + 1] += time
+        frame(curves, row, width, region, at, h, here)
+        e11 = here[0, 0] * j11 + here[0, 1] * j21
+        e12 = here[0, 0] * j12 + here[0, 1] * j22
+        e21 = here[1, 0] * j11 + here[1, 1] * j21
+        e22 = here[1, 0] * j12 + here[1, 1] * j22
         if edge == 0:
-            carried[LOSSES if region == 1 else LOSSES + 1] += 1.0
+            carried[LOSSES if region == 1 else LOSSES + 1, i] += 1.0
             # upper edge of the region below; contact is measured from its own edge
             x = b if region == 1 else 0.0
             region -= 1
@@ -257,8 +284,8 @@ def step_through(
             x = 0.0 if region == 0 else -b
             region += 1
             skip = 0
-        clock[region + 1] -= time
-        frame(polys, region, at, h, here)
+        here[2, region + 1] -= time
+        frame(curves, row, width, region, at, h, here)
         f11 = here[0, 0]
         f12 = here[0, 1]
         f21 = here[1, 0]
@@ -268,39 +295,33 @@ def step_through(
         det = f11 * f22 - f12 * f21
         x0 = (f22 * x - f12 * y) / det
         y0 = (f11 * y - f21 * x) / det
-        jacobian[0] = (f22 * j11 - f12 * j21) / det
-        jacobian[1] = (f22 * j12 - f12 * j22) / det
-        jacobian[2] = (f11 * j21 - f21 * j11) / det
-        jacobian[3] = (f11 * j22 - f21 * j12) / det
+        j11 = (f22 * e11 - f12 * e21) / det
+        j12 = (f22 * e12 - f12 * e22) / det
+        j21 = (f11 * e21 - f21 * e11) / det
+        j22 = (f11 * e22 - f21 * e12) / det
         start = at
-    if region != 0:
-        f11 = maps[0]
-        f21 = maps[1]
-        f12 = maps[2]
-        f22 = maps[3]
-        state[0] = f11 * x0 + f12 * y0 + maps[4] + region * b
-        state[1] = f21 * x0 + f22 * y0 + maps[5]
-    else:
-        f11 = 1.0
-        f21 = 0.0
-        f12 = maps[6]
-        f22 = maps[7]
-        state[0] = x0 + f12 * y0 + maps[8]
-        state[1] = f22 * y0 + maps[9]
-    j11 = f11 * jacobian[0] + f12 * jacobian[2]
-    j12 = f11 * jacobian[1] + f12 * jacobian[3]
-    j21 = f21 * jacobian[0] + f22 * jacobian[2]
-    j22 = f21 * jacobian[1] + f22 * jacobian[3]
-    jacobian[0] = j11
-    jacobian[1] = j12
-    jacobian[2] = j21
-    jacobian[3] = j22
+    free = region == 0
+    f11 = 1.0 if free else curves[maps]
+    f21 = 0.0 if free else curves[maps + 1]
+    f12 = curves[maps + 6] if free else curves[maps + 2]
+    f22 = curves[maps + 7] if free else curves[maps + 3]
+    carried[X, i] = f11 * x0 + f12 * y0 + curves[maps + (8 if free else 4)] + region * b
+    carried[Y, i] = f21 * x0 + f22 * y0 + curves[maps + (9 if free else 5)]
+    e11 = f11 * j11 + f12 * j21
+    e12 = f11 * j12 + f12 * j22
+    e21 = f21 * j11 + f22 * j21
+    e22 = f21 * j12 + f22 * j22
+    for m in range(columns):
+        one = carried[TANGENT + m, i]
+        two = carried[TANGENT + 2 + m, i]
+        carried[TANGENT + m, i] = e11 * one + e12 * two
+        carried[TANGENT + 2 + m, i] = e21 * one + e22 * two
     for m in range(3):
-        carried[SPENT + m] += clock[m]
+        carried[SPENT + m, i] += here[2, m]
     if region != before:
         # the whole period is booked for the region at its end
-        carried[SPENT + before + 1] += maps[SINCE] + h
-        carried[SPENT + region + 1] -= maps[SINCE] + h
-        carried[SHIFT] = region * b
-        carried[LOW] = -np.inf if region < 0 else (region * 2 - 1) * b
-        carried[HIGH] = np.inf if region > 0 else (region * 2 + 1) * b
+        carried[SPENT + before + 1, i] += curves[maps + SINCE] + h
+        carried[SPENT + region + 1, i] -= curves[maps + SINCE] + h
+        carried[SHIFT, i] = region * b
+        carried[LOW, i] = -np.inf if region < 0 else (region * 2 - 1) * b
+        carried[HIGH, i] = np.inf if region > 0 else (region * 2 + 1) * b

@@ -21,7 +21,7 @@ from thermogear.dynamics.kernels.batch import (
     Y,
     cross_eight,
 )
-from thermogear.dynamics.kernels.crossing import step_through
+from thermogear.dynamics.kernels.crossing import TURNS, step_through
 from thermogear.dynamics.kernels.vector import EIGHT, aligned, bits, choose, load, store
 
 Real = NDArray[np.float64]
@@ -92,14 +92,15 @@ def advance_exact(
     normal = stretch.shape[0] > 0
     taken = 0
     queue = np.zeros(stride + EIGHT, np.int64)
-    lane = np.zeros((2, EIGHT), np.int64)
+    own = np.empty(EIGHT, np.int64)
+    rows = np.empty(EIGHT, np.int64)
     room = curves.shape[2]
     table = aligned(room * EIGHT).reshape((room, EIGHT))
     p = aligned(width * EIGHT).reshape((width, EIGHT))
-    jacobian = np.empty(4)
-    state = np.empty(2)
-    scratch = np.empty((2, width))
-    found = np.empty(16)
+    flat = curves.reshape(curves.size)
+    path = np.empty(width)
+    work = np.empty(width)
+    found = np.empty(2 * TURNS)
     here = np.empty((3, 3))
     for period in range(sections.shape[0]):
         for n in range(count):
@@ -158,12 +159,12 @@ def advance_exact(
                 many = min(EIGHT, waiting - first)
                 for k in range(EIGHT):
                     i = queue[first + k] if k < many else queue[first]
-                    lane[0, k] = i
-                    lane[1, k] = (n * lanes + i) * room
-                undone = cross_eight(curves, carried, columns, lane, table, p)
+                    own[k] = i
+                    rows[k] = (n * lanes + i) * room
+                undone = cross_eight(curves, carried, columns, own, rows, table, p)
                 for k in range(many):
                     if (undone >> k) & 1:
-                        queue[left] = lane[0, k]
+                        queue[left] = own[k]
                         left += 1
             for w in range(left):
                 i = queue[w]
@@ -171,24 +172,9 @@ def advance_exact(
                     carried[X, i] = np.nan
                     carried[Y, i] = np.nan
                     continue
-                state[0] = carried[X, i]
-                state[1] = carried[Y, i]
                 step_through(
-                    curves[n, i],
-                    state,
-                    carried[:, i],
-                    jacobian,
-                    scratch,
-                    found,
-                    here,
+                    flat, (n * lanes + i) * room, width, carried, i, columns, path, work, found, here
                 )
-                carried[X, i] = state[0]
-                carried[Y, i] = state[1]
-                for m in range(columns):
-                    above = carried[TANGENT + m, i]
-                    below = carried[TANGENT + 2 + m, i]
-                    carried[TANGENT + m, i] = jacobian[0] * above + jacobian[1] * below
-                    carried[TANGENT + 2 + m, i] = jacobian[2] * above + jacobian[3] * below
         sections[period, 0, :] = carried[X, :lanes]
         sections[period, 1, :] = carried[Y, :lanes]
         for g in range(groups):

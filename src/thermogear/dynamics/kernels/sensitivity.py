@@ -17,27 +17,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
-from thermogear.dynamics.kernels.crossing import MOST_CROSSINGS, root, slope, turns_in, value_of
+from thermogear.dynamics.kernels.crossing import (
+    MOST_CROSSINGS,
+    TURNS,
+    combined,
+    frame,
+    next_edge,
+    slope,
+    value_of,
+)
 
 Real = NDArray[np.float64]
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def _frame(polys: Real, region: int, u: float, h: float, out: Real) -> None:
-    """phi, psi, nu and their rates at ``u`` of one region into ``out`` (2, 3)."""
-    if region != 0:
-        for q in range(3):
-            row = polys[(PHI, PSI, NU)[q]]
-            out[0, q] = value_of(row, u)
-            out[1, q] = slope(row, u) / h
-    else:
-        out[0, 0] = 1.0
-        out[1, 0] = 0.0
-        for q in range(2):
-            row = polys[(FREE_PSI, FREE_NU)[q]]
-            out[0, 1 + q] = value_of(row, u)
-            out[1, 1 + q] = slope(row, u) / h
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -55,13 +45,14 @@ def sensitivity(
 ) -> None:
     """Walk ``steps`` sub-steps from ``start`` (x, y) in ``region``; ``found`` (3,) out.
 
-    ``polys`` (N, 5, K + 1) and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...`` their
+    ``polys`` (N, 5, K + 1), flat, and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...`` their
     derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme of
     x comes to an edge of the backlash anywhere on the way.
     """
-    count, _, width = polys.shape
+    count = half.size
+    width = polys.size // (5 * count)
     p = np.empty(width)
-    turns_at = np.empty(16)
+    turns_at = np.empty(2 * TURNS)
     scratch = np.empty(width)
     here = np.empty((2, 3))
     moved = np.empty((2, 3))
@@ -72,6 +63,7 @@ def sensitivity(
     margin = np.inf
     for step in range(steps):
         n = step % count
+        row = 5 * width * n
         h = half[n]
         slower = d_half[n] / h
         x0 = x - region * b
@@ -81,36 +73,11 @@ def sensitivity(
         begin = -1.0
         skip = 2
         for _ in range(MOST_CROSSINGS):
-            _combined(polys[n], region, x0, y0, p)
-            low = -np.inf
-            high = np.inf
-            if region == 1:
-                low = 0.0
-            elif region == 0:
-                low = -b
-                high = b
-            else:
-                high = 0.0
-            turns = turns_in(p, begin, low, high, turns_at, scratch)
-            a = begin
-            at = 1.0
-            edge = 2
-            for i in range(turns + 1):
-                e = turns_at[i] if i < turns else 1.0
-                value = value_of(p, e)
-                if value < low and skip != 0:
-                    at = root(p, low, a, e)
-                    edge = 0
-                    break
-                if value > high and skip != 1:
-                    at = root(p, high, a, e)
-                    edge = 1
-                    break
-                skip = 2
-                a = e
+            combined(polys, row, width, region, x0, y0, p)
+            at, edge = next_edge(p, width, begin, region, b, skip, turns_at, scratch)
             margin = min(margin, _nearest_turn(p, begin, at, region * b, b))
-            _frame(polys[n], region, at, h, here)
-            _frame(d_polys[n], region, at, h, moved)
+            frame(polys, row, width, region, at, h, here)
+            frame(d_polys, row, width, region, at, h, moved)
             if region == 0:
                 moved[0, 0] = 0.0
             for q in range(3):
@@ -134,8 +101,8 @@ def sensitivity(
                 x = b if region == 0 else -b
                 region += 1
                 skip = 0
-            _frame(polys[n], region, at, h, here)
-            _frame(d_polys[n], region, at, h, moved)
+            frame(polys, row, width, region, at, h, here)
+            frame(d_polys, row, width, region, at, h, moved)
             if region == 0:
                 moved[0, 0] = 0.0
             for q in range(3):
@@ -156,23 +123,12 @@ def sensitivity(
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _combined(polys: Real, region: int, x0: float, y0: float, p: Real) -> None:
-    """The sub-step's polynomial of x, measured from the edge of its region."""
-    if region != 0:
-        for m in range(p.shape[0]):
-            p[m] = polys[PHI, m] * x0 + polys[PSI, m] * y0 + polys[NU, m]
-    else:
-        for m in range(p.shape[0]):
-            p[m] = polys[FREE_PSI, m] * y0 + polys[FREE_NU, m]
-        p[0] += x0
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
 def _nearest_turn(p: Real, begin: float, end: float, shift: float, b: float) -> float:
     """Distance from an edge to the extreme of x in a piece; infinite where x does not turn."""
-    first = slope(p, begin)
-    last = slope(p, end)
+    width = p.size
+    first = slope(p, 0, width, begin)
+    last = slope(p, 0, width, end)
     if first * last > 0.0 or first == last:
         return np.inf
-    x = value_of(p, begin + (end - begin) * first / (first - last)) + shift
+    x = value_of(p, 0, width, begin + (end - begin) * first / (first - last)) + shift
     return min(abs(x - b), abs(x + b))
