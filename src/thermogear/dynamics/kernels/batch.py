@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.affine import (
     FREE_NU,
     FREE_PSI,
@@ -30,7 +30,7 @@ X, Y, SHIFT, LOW, HIGH, DOUBLE, OWN_GAP, SPENT, LOSSES, TANGENT = 0, 1, 2, 3, 4,
 CARRIED = 16
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def runs_on(y0: Any, y1: Any, h: Any, reach: Any) -> Any:
     """Whether the velocity keeps its sign between ``y0`` and ``y1``, a sub-step or less apart.
 
@@ -44,7 +44,7 @@ def runs_on(y0: Any, y1: Any, h: Any, reach: Any) -> Any:
     return (y0 * y1 > 0.0) & (h * (slow - 0.125 * fast) > reach)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def cross_eight(
     curves: Real,
     carried: Real,

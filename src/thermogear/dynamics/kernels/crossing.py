@@ -7,9 +7,9 @@ polynomials of the next region. No fastmath: a lane gives the same bits in any c
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.affine import (
     FREE_NU,
     FREE_PSI,
@@ -28,7 +28,7 @@ MOST_CROSSINGS = 64
 TURNS = 16
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def value_of(p: Real, first: int, width: int, u: float) -> float:
     """The polynomial whose ``width`` coefficients begin at ``first``.
 
@@ -40,7 +40,7 @@ def value_of(p: Real, first: int, width: int, u: float) -> float:
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def slope(p: Real, first: int, width: int, u: float) -> float:
     total = 0.0
     for m in range(width - 1, 0, -1):
@@ -48,7 +48,7 @@ def slope(p: Real, first: int, width: int, u: float) -> float:
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def root(p: Real, width: int, level: float, low: float, high: float) -> float:
     """The root of p(u) = level in a monotone piece [low, high]: Newton inside a bracket."""
     at_low = value_of(p, 0, width, low) - level
@@ -96,7 +96,7 @@ def root(p: Real, width: int, level: float, low: float, high: float) -> float:
     return u
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def turns_in(
     p: Real, width: int, start: float, low: float, high: float, found: Real, work: Real
 ) -> int:
@@ -157,7 +157,7 @@ def turns_in(
     return count
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def combined(
     curves: Real, first: int, width: int, region: int, x0: float, y0: float, p: Real
 ) -> None:
@@ -180,7 +180,7 @@ def combined(
         p[0] += x0
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def frame(
     curves: Real, first: int, width: int, region: int, u: float, h: float, out: Real
 ) -> None:
@@ -194,7 +194,7 @@ def frame(
         out[1, q] = slope(curves, row, width, u) / h
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def next_edge(
     p: Real,
     width: int,
@@ -225,7 +225,7 @@ def next_edge(
     return 1.0, 2
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def step_through(
     curves: Real,
     row: int,
