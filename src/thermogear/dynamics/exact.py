@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
+from thermogear.dynamics.kernels.batch import CARRIED, QUEUE
+from thermogear.dynamics.kernels.crossing import SCRATCH
 from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.kernels.sensitivity import sensitivity
 from thermogear.dynamics.tables import Lanes, Pieces
@@ -104,11 +106,11 @@ class ExactMaps:
 
     def take(self, keep: Whole) -> ExactMaps:
         """The maps of some lanes, in the order of ``keep``."""
-        steps = _aligned((self.steps.shape[0], -(-keep.size // 8), 11, 8))
-        by_lane = steps.transpose(0, 2, 1, 3)
-        for place, lane in enumerate(keep):
-            by_lane[:, :, place // 8, place % 8] = self.steps[:, lane // 8, :, lane % 8]
-        curves = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]))
+        (steps,) = _aligned((self.steps.shape[0], -(-keep.size // 8), 11, 8))
+        place = np.arange(keep.size)
+        rows = self.steps[:, keep // 8, :, keep % 8]
+        steps[:, place // 8, :, place % 8] = rows
+        (curves,) = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]))
         curves[:] = self.curves[:, keep]
         return replace(
             self,
@@ -160,11 +162,16 @@ class State:
         self.spent[:] = 0.0
 
 
-def _aligned(shape: tuple[int, ...]) -> Floats:
-    """Zeros that start on a cache line."""
-    room = np.zeros(prod(shape) + 8)
-    first = -(room.ctypes.data // 8) % 8
-    return room[first : first + prod(shape)].reshape(shape)
+def _aligned(*shapes: tuple[int, ...]) -> list[Floats]:
+    """Zeros that start on a cache line: eight numbers then lie in one."""
+    sizes = [-(-prod(shape) // 8) * 8 for shape in shapes]
+    room = np.zeros(sum(sizes) + 8)
+    first = -(room.__array_interface__["data"][0] // 8) % 8
+    found = []
+    for shape, size in zip(shapes, sizes, strict=True):
+        found.append(room[first : first + prod(shape)].reshape(shape))
+        first += size
+    return found
 
 
 @lru_cache(maxsize=64)
@@ -209,23 +216,26 @@ def prepare_maps(
     lanes: Lanes, borders: Floats, marks: NDArray[np.uint8], order: int = ORDER
 ) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
-    width = np.diff(borders)
-    centres = borders[:-1] + 0.5 * width
-    half = 0.5 * width[:, None] * lanes.period
+    width_of = np.diff(borders)
+    centres = borders[:-1] + 0.5 * width_of
+    half = 0.5 * width_of[:, None] * lanes.period
     size, rate = _bounds(lanes, "force")
     jerk = rate / lanes.period + lanes.damping * size
     reach = jerk * half.max(axis=0) ** 3
-    steps = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
-    curves = _aligned((centres.size, len(lanes), -(-(5 * (order + 1) + BEHIND) // 8) * 8))
+    width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
+    (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
+    (curves,) = _aligned((centres.size, len(lanes), room))
     prepare(
         lanes.damping,
         lanes.half_backlash,
         reach,
-        half,
-        _taylor(lanes, "stiffness", centres, 0.5 * width, order),
-        _taylor(lanes, "force", centres, 0.5 * width, order),
-        steps,
-        curves,
+        half.ravel(),
+        _taylor(lanes, "stiffness", centres, 0.5 * width_of, order).ravel(),
+        _taylor(lanes, "force", centres, 0.5 * width_of, order).ravel(),
+        steps.ravel(),
+        curves.ravel(),
+        *_aligned((40 * width,), (16 * width,), (80,), (8 * room,), (64,)),
+        np.empty(16, np.int64),
     )
     return ExactMaps(
         steps=steps,
@@ -276,6 +286,8 @@ def moved_by(
         np.asarray(start, dtype=float),
         int(state.region[0]),
         steps,
+        np.empty(2 * (maps.order + 1) + SCRATCH),
+        np.empty(12),
         found,
     )
     return found[:2], float(found[2])
@@ -326,22 +338,38 @@ def advance(
     sections = np.empty((periods, 2, lanes))
     stretch = np.empty((periods if normalise else 0, lanes))
     samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
+    width, room = maps.order + 1, maps.curves.shape[2]
+    carried, table, p, scratch = _aligned(
+        (CARRIED * (-(-lanes // 8) * 8),), (8 * room,), (8 * width,), (2 * width + SCRATCH,)
+    )
+    # one layout for all: a kernel is compiled once
+    owned = (state.x, state.y, state.region, state.tangent, state.counts, state.spent)
+    x, y, region, tangent, counts, spent = flat = [np.ravel(array) for array in owned]
     advance_exact(
-        maps.steps,
-        maps.curves,
-        maps.order + 1,
+        maps.steps.ravel(),
+        maps.curves.ravel(),
+        width,
         maps.reach,
         maps.backlash,
-        state.x,
-        state.y,
-        state.region,
-        state.tangent,
+        x,
+        y,
+        region,
+        tangent,
         columns,
-        sections,
-        stretch,
-        samples,
+        normalise,
+        sections.ravel(),
+        stretch.ravel(),
+        samples.ravel(),
         maps.marks,
-        state.counts,
-        state.spent,
+        counts,
+        spent,
+        carried,
+        table,
+        p,
+        scratch,
+        np.empty(QUEUE + 16 + lanes, np.int64),
     )
+    for array, done in zip(owned, flat, strict=True):
+        if not np.may_share_memory(array, done):
+            array[...] = done.reshape(array.shape)
     return sections, stretch, samples

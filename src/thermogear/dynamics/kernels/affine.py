@@ -14,12 +14,13 @@ needs: values and rates of phi, psi, nu, free psi, free nu at u = 1, and the hal
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.vector import EIGHT, aligned, load, pick, store, turn
+from thermogear.dynamics.kernels.compiled import kernel
+from thermogear.dynamics.kernels.vector import EIGHT, load, pick, store, turn
 
 Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
 
 PHI, PSI, NU, FREE_PSI, FREE_NU = 0, 1, 2, 3, 4
 # behind the polynomials of a lane's sub-step: their values and rates at u = 1, the half width, the
@@ -28,7 +29,7 @@ HALF, SINCE, GAP, REACH = 10, 11, 12, 13
 BEHIND = 14
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def prepare(
     damping: Real,
     backlash: Real,
@@ -38,25 +39,28 @@ def prepare(
     force: Real,
     steps: Real,
     curves: Real,
+    work: Real,
+    tables: Real,
+    ends: Real,
+    table: Real,
+    turned: Real,
+    at: Whole,
 ) -> None:
     """Fill ``steps`` (N, group, 11, 8) and ``curves`` (N, lane, 5 (K + 1) + 14 and more).
 
     ``damping``, ``backlash`` and ``reach`` (lane), ``half`` (N, lane) half widths in time,
     ``stiffness`` and ``force`` (N, lane, K + 1): Taylor coefficients in u of k and F about the
-    centre of each sub-step. Eight lanes are a group; what a last group has no lane for is zero.
+    centre of each sub-step. Eight lanes are a group; what a last group has no lane for is zero. All
+    are flat. Work space: ``work`` (5 (K + 1), 8), ``tables`` (2 (K + 1), 8), ``ends`` (10, 8),
+    ``table`` (room, 8), ``turned`` (8, 8), ``at`` (2, 8).
     """
-    count, lanes, width = stiffness.shape
-    groups = steps.shape[1]
+    lanes = damping.size
+    count = half.size // lanes
+    full = work.size // 5
+    width = full // EIGHT
     order = width - 1
-    room = curves.shape[2]
-    full = width * EIGHT
-    work = aligned(5 * full)
-    table = aligned(room * EIGHT)
-    ends = aligned(10 * EIGHT)
-    tables = aligned(2 * full)
-    turned = aligned(EIGHT * EIGHT)
-    at = np.empty(EIGHT, np.int64)
-    place = np.empty(EIGHT, np.int64)
+    groups = steps.size // (11 * EIGHT * count)
+    room = table.size // EIGHT
     for group in range(groups):
         here = min(EIGHT, lanes - EIGHT * group)
         for i in range(EIGHT):
@@ -70,14 +74,13 @@ def prepare(
             hh = h * h
             for i in range(EIGHT):
                 for m in range(width):
-                    tables[EIGHT * m + i] = stiffness[n, at[i], m]
-                    tables[full + EIGHT * m + i] = force[n, at[i], m]
+                    tables[EIGHT * m + i] = stiffness[(n * lanes + at[i]) * width + m]
+                    tables[full + EIGHT * m + i] = force[(n * lanes + at[i]) * width + m]
             # from the centre: cosine-like, sine-like and forced solution, contact then free
+            zero = h * 0.0
             for q in range(5):
-                work[q * full : q * full + 2 * EIGHT] = 0.0
-            work[:EIGHT] = 1.0
-            work[full + EIGHT : full + 2 * EIGHT] = 1.0
-            work[3 * full + EIGHT : 3 * full + 2 * EIGHT] = 1.0
+                store(work, q * full, zero + (1.0 if q == 0 else 0.0))
+                store(work, q * full + EIGHT, zero + (1.0 if q == 1 or q == 3 else 0.0))
             for m in range(order - 1):
                 s0 = h * 0.0
                 s1 = s0
@@ -162,16 +165,17 @@ def prepare(
             store(table, 5 * full + REACH * EIGHT, pick(reach, 0, at))
             elapsed = elapsed + 2.0 * h
             for i in range(here, EIGHT):
-                steps[n, group, :, i] = 0.0
+                for q in range(11):
+                    steps[row + EIGHT * q + i] = 0.0
             for first in range(0, room, EIGHT):
                 for i in range(EIGHT):
-                    place[i] = EIGHT * (first + i)
-                turn(table, place, turned, EIGHT)
+                    at[EIGHT + i] = EIGHT * (first + i)
+                turn(table, at, EIGHT, turned, EIGHT)
                 for i in range(here):
                     store(curves, (n * lanes + at[i]) * room + first, load(turned, EIGHT * i))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def add_harmonics(real: Real, imag: Real, cosine: Real, sine: Real, reach: Real, out: Real) -> None:
     """Add the Taylor coefficients of harmonics to ``out`` (N, lane, K + 1).
 

@@ -25,9 +25,13 @@ Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 # rows of what a lane carries along: state, origin and edges of its region, twice its reach, half
-# backlash, time spent in back, free and drive contact, contact losses and back-side impacts, tangent
-X, Y, SHIFT, LOW, HIGH, DOUBLE, OWN_GAP, SPENT, LOSSES, TANGENT = 0, 1, 2, 3, 4, 5, 6, 7, 10, 12
-CARRIED = 16
+# backlash, period, time spent in back, free and drive contact, contact losses and back-side impacts, tangent
+X, Y, SHIFT, LOW, HIGH, DOUBLE, OWN_GAP, WHOLE, SPENT, LOSSES, TANGENT = (
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13,
+)  # fmt: skip
+CARRIED = 17
+# the queue of waiting lanes stands behind the eight that are taken and the places of their curves
+QUEUE = 16
 
 
 @part
@@ -48,11 +52,12 @@ def runs_on(y0: Any, y1: Any, h: Any, reach: Any) -> Any:
 def cross_eight(
     curves: Real,
     carried: Real,
+    stride: int,
     columns: int,
-    own: Whole,
-    rows: Whole,
+    taken: Whole,
     table: Real,
     p: Real,
+    width: int,
 ) -> int:
     """Take the plain contact changes of eight lanes through their sub-step.
 
@@ -62,20 +67,18 @@ def cross_eight(
     on the exact polynomial, then the hand-over. The answer names the lanes, as bits, that are not
     done; a path that did stay inside is done too.
 
-    ``own`` (8,): where each lane stands in a row of ``carried`` (CARRIED, lane); ``rows`` (8,): the
+    ``taken`` (2, 8): where each lane stands in a row of ``carried`` (CARRIED, ``stride``), and the
     first number of its sub-step in ``curves``. A lane may be named more than once. Work space:
-    ``table`` (as long as a row of ``curves``, 8), ``p`` (K + 1, 8).
+    ``table`` (as long as a row of ``curves``, 8), ``p`` (``width`` = K + 1, 8). All are flat.
     """
-    width = p.shape[0]
-    stride = carried.shape[1]
-    turn(curves, rows, table, table.shape[0])
+    turn(curves, taken, EIGHT, table, table.size // EIGHT)
     behind = 5 * width * EIGHT
     b = load(table, behind + GAP * EIGHT)
     reach = load(table, behind + REACH * EIGHT)
     h = load(table, behind + HALF * EIGHT)
-    shift = pick(carried, SHIFT * stride, own)
-    x_old = pick(carried, X * stride, own)
-    y_old = pick(carried, Y * stride, own)
+    shift = pick(carried, SHIFT * stride, taken)
+    x_old = pick(carried, X * stride, taken)
+    y_old = pick(carried, Y * stride, taken)
     contact = shift != 0.0
     drive = shift > 0.0
     # the whole sub-step in the region it begins in
@@ -194,13 +197,13 @@ def cross_eight(
     good = good & ((away > reach) | ((away > 0.0) & runs_on(y0, y1, h, reach)))
     good = good & (beyond > swing) & ~inside
     now = choose(contact, 0.0, choose(up, b, -b))
-    drop(carried, X * stride, own, choose(good, z1 + now, choose(inside, x_new, x_old)))
-    drop(carried, Y * stride, own, choose(good, y1, choose(inside, y_new, y_old)))
-    drop(carried, SHIFT * stride, own, choose(good, now, shift))
+    drop(carried, X * stride, taken, choose(good, z1 + now, choose(inside, x_new, x_old)))
+    drop(carried, Y * stride, taken, choose(good, y1, choose(inside, y_new, y_old)))
+    drop(carried, SHIFT * stride, taken, choose(good, now, shift))
     border = choose(contact, -b, choose(up, b, -np.inf))
-    drop(carried, LOW * stride, own, choose(good, border, low))
+    drop(carried, LOW * stride, taken, choose(good, border, low))
     border = choose(contact, b, choose(up, np.inf, -b))
-    drop(carried, HIGH * stride, own, choose(good, border, high))
+    drop(carried, HIGH * stride, taken, choose(good, border, high))
     # the caller books the whole period for the region at its end
     time = load(table, behind + SINCE * EIGHT) + (h * u + h)
     time = choose(good, time, 0.0)
@@ -208,17 +211,17 @@ def cross_eight(
         # back, free, drive: what is left gains, what is entered loses
         here = (m - 1.0) * b
         gain = choose(shift == here, time, 0.0) - choose(now == here, time, 0.0)
-        drop(carried, (SPENT + m) * stride, own, pick(carried, (SPENT + m) * stride, own) + gain)
+        drop(carried, (SPENT + m) * stride, taken, pick(carried, (SPENT + m) * stride, taken) + gain)
     lost = choose(good & drive, 1.0, 0.0)
     hit = choose(good & ~contact & ~up, 1.0, 0.0)
-    drop(carried, LOSSES * stride, own, pick(carried, LOSSES * stride, own) + lost)
-    drop(carried, (LOSSES + 1) * stride, own, pick(carried, (LOSSES + 1) * stride, own) + hit)
+    drop(carried, LOSSES * stride, taken, pick(carried, LOSSES * stride, taken) + lost)
+    drop(carried, (LOSSES + 1) * stride, taken, pick(carried, (LOSSES + 1) * stride, taken) + hit)
     for c in range(columns):
         # the tangent follows the same polynomials without the forced part
         one = (TANGENT + c) * stride
         two = (TANGENT + 2 + c) * stride
-        a = pick(carried, one, own)
-        w = pick(carried, two, own)
+        a = pick(carried, one, taken)
+        w = pick(carried, two, taken)
         value = a * 0.0
         slope = value
         for m in range(width - 1, -1, -1):
@@ -233,7 +236,7 @@ def cross_eight(
         za = (f22 * value - f12 * slope) / det
         zb = (f11 * slope - f21 * value) / det
         stayed = choose(inside, s11 * a + s12 * w, a)
-        drop(carried, one, own, choose(good, m11 * za + m12 * zb, stayed))
+        drop(carried, one, taken, choose(good, m11 * za + m12 * zb, stayed))
         stayed = choose(inside, s21 * a + s22 * w, w)
-        drop(carried, two, own, choose(good, m21 * za + m22 * zb, stayed))
+        drop(carried, two, taken, choose(good, m21 * za + m22 * zb, stayed))
     return bits(~(good | inside))

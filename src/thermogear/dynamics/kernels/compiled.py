@@ -7,11 +7,10 @@ from typing import Any
 
 from numba import njit
 
-kernel: Callable[..., Any] = njit(nogil=True, cache=True, error_model="numpy")
-"""A kernel that Python calls."""
+_OPTIONS = {"nogil": True, "cache": True, "error_model": "numpy", "_nrt": False}
 
-part: Callable[..., Any] = njit(
-    nogil=True, cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True,
-    no_cfunc_wrapper=True,
-)  # fmt: skip
-"""A part that only kernels call: it neither allocates nor counts the users of an array."""
+kernel: Callable[..., Any] = njit(no_cfunc_wrapper=True, **_OPTIONS)
+"""A kernel that Python calls. It neither allocates nor counts the users of an array."""
+
+part: Callable[..., Any] = njit(no_cfunc_wrapper=True, no_cpython_wrapper=True, **_OPTIONS)
+"""A part that only kernels call."""

@@ -26,6 +26,7 @@ Real = NDArray[np.float64]
 
 MOST_CROSSINGS = 64
 TURNS = 16
+SCRATCH = 2 * TURNS + 9  # beside two polynomials
 
 
 @part
@@ -49,10 +50,10 @@ def slope(p: Real, first: int, width: int, u: float) -> float:
 
 
 @part
-def root(p: Real, width: int, level: float, low: float, high: float) -> float:
+def root(p: Real, first: int, width: int, level: float, low: float, high: float) -> float:
     """The root of p(u) = level in a monotone piece [low, high]: Newton inside a bracket."""
-    at_low = value_of(p, 0, width, low) - level
-    at_high = value_of(p, 0, width, high) - level
+    at_low = value_of(p, first, width, low) - level
+    at_high = value_of(p, first, width, high) - level
     if at_low == 0.0 or (at_low > 0.0) == (at_high > 0.0):
         # both ends on one side: the start is on the edge but for rounding
         return low
@@ -60,8 +61,8 @@ def root(p: Real, width: int, level: float, low: float, high: float) -> float:
     b = high
     # cubic Hermite start from the two ends
     span = high - low
-    s0 = slope(p, 0, width, low) * span
-    s1 = slope(p, 0, width, high) * span
+    s0 = slope(p, first, width, low) * span
+    s1 = slope(p, first, width, high) * span
     delta = at_high - at_low
     t = -at_low / delta
     for _ in range(2):
@@ -77,9 +78,9 @@ def root(p: Real, width: int, level: float, low: float, high: float) -> float:
         value = 0.0
         rate = 0.0
         for m in range(width - 1, 0, -1):
-            value = value * u + p[m]
-            rate = rate * u + m * p[m]
-        value = value * u + p[0] - level
+            value = value * u + p[first + m]
+            rate = rate * u + m * p[first + m]
+        value = value * u + p[first] - level
         if value == 0.0:
             return u
         if (value > 0.0) == (at_high > 0.0):
@@ -97,41 +98,41 @@ def root(p: Real, width: int, level: float, low: float, high: float) -> float:
 
 
 @part
-def turns_in(
-    p: Real, width: int, start: float, low: float, high: float, found: Real, work: Real
-) -> int:
-    """Roots of p' in (start, 1), ascending, into ``found``; their number.
+def turns_in(s: Real, width: int, start: float, low: float, high: float) -> int:
+    """Roots of p' in (start, 1), ascending, behind twice ``width`` in the work space; their number.
 
     A single turn that stays between ``low`` and ``high`` need not be found and is not counted.
     Each derivative is monotone between the roots of the next one; the fourth is taken to keep
     its sign on the halves of a sub-step, which its width guarantees.
     """
+    work = width
+    found = 2 * width
     # quick exit: the straight part of the slope beats everything above it
     tail = 0.0
     for m in range(3, width):
-        tail += m * abs(p[m])
-    first = p[1] + 2.0 * p[2] * start
-    last = p[1] + 2.0 * p[2]
+        tail += m * abs(s[m])
+    first = s[1] + 2.0 * s[2] * start
+    last = s[1] + 2.0 * s[2]
     if (first > tail and last > tail) or (first < -tail and last < -tail):
         return 0
     # p'' keeps its sign: p' has one root at the most
     bend = 0.0
     for m in range(3, width):
-        bend += m * (m - 1.0) * abs(p[m])
-    if 2.0 * abs(p[2]) > bend:
-        first = slope(p, 0, width, start)
-        if (first > 0.0) == (slope(p, 0, width, 1.0) > 0.0):
+        bend += m * (m - 1.0) * abs(s[m])
+    if 2.0 * abs(s[2]) > bend:
+        first = slope(s, 0, width, start)
+        if (first > 0.0) == (slope(s, 0, width, 1.0) > 0.0):
             return 0
-        swing = first * first / (2.0 * (2.0 * abs(p[2]) - bend))
-        value = value_of(p, 0, width, start)
+        swing = first * first / (2.0 * (2.0 * abs(s[2]) - bend))
+        value = value_of(s, 0, width, start)
         if low < value - swing and value + swing < high:
             return 0
         for m in range(width - 1):
-            work[m] = (m + 1.0) * p[m + 1]
-        found[0] = root(work, width - 1, 0.0, start, 1.0)
+            s[work + m] = (m + 1.0) * s[m + 1]
+        s[found] = root(s, work, width - 1, 0.0, start, 1.0)
         return 1
     count = 1
-    found[0] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
+    s[found] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
     for level in range(3, 0, -1):
         # work = level-th derivative
         size = width - level
@@ -139,17 +140,17 @@ def turns_in(
             factor = 1.0
             for i in range(level):
                 factor *= m + level - i
-            work[m] = factor * p[m + level]
+            s[work + m] = factor * s[m + level]
         for i in range(count):
-            found[TURNS + i] = found[i]
+            s[found + TURNS + i] = s[found + i]
         fresh = 0
         a = start
-        fa = value_of(work, 0, size, a)
+        fa = value_of(s, work, size, a)
         for i in range(count + 1):
-            b = found[TURNS + i] if i < count else 1.0
-            fb = value_of(work, 0, size, b)
+            b = s[found + TURNS + i] if i < count else 1.0
+            fb = value_of(s, work, size, b)
             if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < TURNS:
-                found[fresh] = root(work, size, 0.0, a, b)
+                s[found + fresh] = root(s, work, size, 0.0, a, b)
                 fresh += 1
             a = b
             fa = fb
@@ -158,52 +159,41 @@ def turns_in(
 
 
 @part
-def combined(
-    curves: Real, first: int, width: int, region: int, x0: float, y0: float, p: Real
-) -> None:
-    """The sub-step's polynomial of x, measured from the edge of its region.
+def combined(curves: Real, row: int, width: int, region: int, x0: float, y0: float, s: Real) -> None:
+    """The sub-step's polynomial of x, measured from the edge of its region, to the front of ``s``.
 
-    Its five polynomials begin at ``first`` of the flat ``curves``.
+    Its five polynomials begin at ``row`` of the flat ``curves``.
     """
     if region != 0:
         for m in range(width):
-            p[m] = (
-                curves[first + PHI * width + m] * x0
-                + curves[first + PSI * width + m] * y0
-                + curves[first + NU * width + m]
+            s[m] = (
+                curves[row + PHI * width + m] * x0
+                + curves[row + PSI * width + m] * y0
+                + curves[row + NU * width + m]
             )
     else:
         for m in range(width):
-            p[m] = (
-                curves[first + FREE_PSI * width + m] * y0 + curves[first + FREE_NU * width + m]
-            )
-        p[0] += x0
+            s[m] = curves[row + FREE_PSI * width + m] * y0 + curves[row + FREE_NU * width + m]
+        s[0] += x0
 
 
 @part
 def frame(
-    curves: Real, first: int, width: int, region: int, u: float, h: float, out: Real
+    curves: Real, row: int, width: int, region: int, u: float, h: float, out: Real, place: int
 ) -> None:
-    """phi, psi, nu and their rates at ``u`` of one region into ``out`` (2, 3)."""
-    out[0, 0] = 1.0
-    out[1, 0] = 0.0
+    """phi, psi, nu and their rates at ``u`` of one region: six numbers of ``out`` at ``place``."""
+    out[place] = 1.0
+    out[place + 3] = 0.0
     contact = region != 0
     for q in range(0 if contact else 1, 3):
-        row = first + (q if contact else q + 2) * width
-        out[0, q] = value_of(curves, row, width, u)
-        out[1, q] = slope(curves, row, width, u) / h
+        first = row + (q if contact else q + 2) * width
+        out[place + q] = value_of(curves, first, width, u)
+        out[place + 3 + q] = slope(curves, first, width, u) / h
 
 
 @part
 def next_edge(
-    p: Real,
-    width: int,
-    start: float,
-    region: int,
-    b: float,
-    skip: int,
-    found: Real,
-    work: Real,
+    s: Real, width: int, start: float, region: int, b: float, skip: int
 ) -> tuple[float, int]:
     """Where the path first leaves its region after ``start``, and by which edge.
 
@@ -212,14 +202,14 @@ def next_edge(
     """
     low = -np.inf if region < 0 else 0.0 if region > 0 else -b
     high = np.inf if region > 0 else 0.0 if region < 0 else b
-    turns = turns_in(p, width, start, low, high, found, work)
+    turns = turns_in(s, width, start, low, high)
     a = start
     for i in range(turns + 1):
-        e = found[i] if i < turns else 1.0
-        value = value_of(p, 0, width, e)
+        e = s[2 * width + i] if i < turns else 1.0
+        value = value_of(s, 0, width, e)
         edge = 0 if value < low else 1 if value > high else 2
         if edge != 2 and edge != skip:
-            return root(p, width, low if edge == 0 else high, a, e), edge
+            return root(s, 0, width, low if edge == 0 else high, a, e), edge
         skip = 2
         a = e
     return 1.0, 2
@@ -231,51 +221,50 @@ def step_through(
     row: int,
     width: int,
     carried: Real,
+    stride: int,
     i: int,
     columns: int,
-    p: Real,
-    work: Real,
-    found: Real,
-    here: Real,
+    scratch: Real,
 ) -> None:
     """One sub-step of one lane with contact changes, turning points and grazing.
 
     ``curves`` (flat) holds its polynomials and what belongs to them from ``row`` on; column ``i``
-    of ``carried`` follows: state, region, times and counts, and ``columns`` of its tangent. Work
-    space: ``p`` and ``work`` (K + 1), ``found`` (2 TURNS), ``here`` (3, 3).
+    of ``carried`` (CARRIED, ``stride``) follows: state, region, times and counts, and ``columns``
+    of its tangent. Work space: ``scratch`` (2 (K + 1) + SCRATCH). All are flat.
     """
     maps = row + 5 * width
+    here = 2 * width + 2 * TURNS
     h = curves[maps + HALF]
     b = curves[maps + GAP]
-    shift = carried[SHIFT, i]
+    shift = carried[SHIFT * stride + i]
     region = 1 if shift > 0.0 else -1 if shift < 0.0 else 0
     before = region
     for m in range(3):
-        here[2, m] = 0.0
+        scratch[here + 6 + m] = 0.0
     j11 = 1.0
     j12 = 0.0
     j21 = 0.0
     j22 = 1.0
-    x0 = carried[X, i] - region * b
-    y0 = carried[Y, i]
+    x0 = carried[X * stride + i] - region * b
+    y0 = carried[Y * stride + i]
     start = -1.0
     skip = 2
     for _ in range(MOST_CROSSINGS):
-        combined(curves, row, width, region, x0, y0, p)
-        at, edge = next_edge(p, width, start, region, b, skip, found, work)
+        combined(curves, row, width, region, x0, y0, scratch)
+        at, edge = next_edge(scratch, width, start, region, b, skip)
         if edge == 2:
             break
-        y = slope(p, 0, width, at) / h
+        y = slope(scratch, 0, width, at) / h
         # Phi of the region left behind, at the crossing
         time = h * at
-        here[2, region + 1] += time
-        frame(curves, row, width, region, at, h, here)
-        e11 = here[0, 0] * j11 + here[0, 1] * j21
-        e12 = here[0, 0] * j12 + here[0, 1] * j22
-        e21 = here[1, 0] * j11 + here[1, 1] * j21
-        e22 = here[1, 0] * j12 + here[1, 1] * j22
+        scratch[here + 7 + region] += time
+        frame(curves, row, width, region, at, h, scratch, here)
+        e11 = scratch[here] * j11 + scratch[here + 1] * j21
+        e12 = scratch[here] * j12 + scratch[here + 1] * j22
+        e21 = scratch[here + 3] * j11 + scratch[here + 4] * j21
+        e22 = scratch[here + 3] * j12 + scratch[here + 4] * j22
         if edge == 0:
-            carried[LOSSES if region == 1 else LOSSES + 1, i] += 1.0
+            carried[(LOSSES if region == 1 else LOSSES + 1) * stride + i] += 1.0
             # upper edge of the region below; contact is measured from its own edge
             x = b if region == 1 else 0.0
             region -= 1
@@ -284,14 +273,14 @@ def step_through(
             x = 0.0 if region == 0 else -b
             region += 1
             skip = 0
-        here[2, region + 1] -= time
-        frame(curves, row, width, region, at, h, here)
-        f11 = here[0, 0]
-        f12 = here[0, 1]
-        f21 = here[1, 0]
-        f22 = here[1, 1]
-        x -= here[0, 2]
-        y -= here[1, 2]
+        scratch[here + 7 + region] -= time
+        frame(curves, row, width, region, at, h, scratch, here)
+        f11 = scratch[here]
+        f12 = scratch[here + 1]
+        f21 = scratch[here + 3]
+        f22 = scratch[here + 4]
+        x -= scratch[here + 2]
+        y -= scratch[here + 5]
         det = f11 * f22 - f12 * f21
         x0 = (f22 * x - f12 * y) / det
         y0 = (f11 * y - f21 * x) / det
@@ -305,23 +294,23 @@ def step_through(
     f21 = 0.0 if free else curves[maps + 1]
     f12 = curves[maps + 6] if free else curves[maps + 2]
     f22 = curves[maps + 7] if free else curves[maps + 3]
-    carried[X, i] = f11 * x0 + f12 * y0 + curves[maps + (8 if free else 4)] + region * b
-    carried[Y, i] = f21 * x0 + f22 * y0 + curves[maps + (9 if free else 5)]
+    carried[X * stride + i] = f11 * x0 + f12 * y0 + curves[maps + (8 if free else 4)] + region * b
+    carried[Y * stride + i] = f21 * x0 + f22 * y0 + curves[maps + (9 if free else 5)]
     e11 = f11 * j11 + f12 * j21
     e12 = f11 * j12 + f12 * j22
     e21 = f21 * j11 + f22 * j21
     e22 = f21 * j12 + f22 * j22
     for m in range(columns):
-        one = carried[TANGENT + m, i]
-        two = carried[TANGENT + 2 + m, i]
-        carried[TANGENT + m, i] = e11 * one + e12 * two
-        carried[TANGENT + 2 + m, i] = e21 * one + e22 * two
+        one = carried[(TANGENT + m) * stride + i]
+        two = carried[(TANGENT + 2 + m) * stride + i]
+        carried[(TANGENT + m) * stride + i] = e11 * one + e12 * two
+        carried[(TANGENT + 2 + m) * stride + i] = e21 * one + e22 * two
     for m in range(3):
-        carried[SPENT + m, i] += here[2, m]
+        carried[(SPENT + m) * stride + i] += scratch[here + 6 + m]
     if region != before:
         # the whole period is booked for the region at its end
-        carried[SPENT + before + 1, i] += curves[maps + SINCE] + h
-        carried[SPENT + region + 1, i] -= curves[maps + SINCE] + h
-        carried[SHIFT, i] = region * b
-        carried[LOW, i] = -np.inf if region < 0 else (region * 2 - 1) * b
-        carried[HIGH, i] = np.inf if region > 0 else (region * 2 + 1) * b
+        carried[(SPENT + before + 1) * stride + i] += curves[maps + SINCE] + h
+        carried[(SPENT + region + 1) * stride + i] -= curves[maps + SINCE] + h
+        carried[SHIFT * stride + i] = region * b
+        carried[LOW * stride + i] = -np.inf if region < 0 else (region * 2 - 1) * b
+        carried[HIGH * stride + i] = np.inf if region > 0 else (region * 2 + 1) * b

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.affine import HALF, SINCE
@@ -14,21 +13,24 @@ from thermogear.dynamics.kernels.batch import (
     LOSSES,
     LOW,
     OWN_GAP,
+    QUEUE,
     SHIFT,
     SPENT,
     TANGENT,
+    WHOLE,
     X,
     Y,
     cross_eight,
 )
-from thermogear.dynamics.kernels.crossing import TURNS, step_through
-from thermogear.dynamics.kernels.vector import EIGHT, aligned, bits, choose, load, store
+from thermogear.dynamics.kernels.compiled import kernel
+from thermogear.dynamics.kernels.crossing import step_through
+from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, load, store
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def advance_exact(
     steps: Real,
     curves: Real,
@@ -40,74 +42,67 @@ def advance_exact(
     region: Whole,
     tangent: Real,
     columns: int,
+    normalise: bool,
     sections: Real,
     stretch: Real,
     samples: Real,
     marks: NDArray[np.uint8],
     counts: Whole,
     spent: Real,
+    carried: Real,
+    table: Real,
+    p: Real,
+    scratch: Real,
+    queue: Whole,
 ) -> None:
     """Advance all lanes by ``len(sections)`` periods, in place.
 
-    ``steps`` (N, group of eight lanes, 11, 8) and ``curves`` (N, lane, 5 width + 14 and more) as
-    ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a sub-step;
-    ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22; with
-    ``stretch`` (period, lane) not empty the first column is normalised every period and its
-    logarithm stored. ``samples`` (period * marked, 2, lane): the state at the start of every
-    sub-step that ``marks`` names, when not empty. ``counts`` (2, lane) and ``spent`` (3, lane)
-    accumulate contact losses, back-side impacts, and the time in back, free and drive contact.
+    ``steps`` (N, group of eight lanes, 11, 8) and ``curves`` (N, lane, 5 ``width`` + 14 and more)
+    as ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a
+    sub-step; ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22;
+    with ``normalise`` the first column is normalised every period and its logarithm stored in
+    ``stretch`` (period, lane). ``sections`` (period, 2, lane). ``samples`` (period marked, 2,
+    lane): the state at the start of every sub-step that ``marks`` names, when not empty.
+    ``counts`` (2, lane) and ``spent`` (3, lane) accumulate contact losses, back-side impacts, and
+    the time in back, free and drive contact. All are flat. Work space: ``carried`` (CARRIED, lane
+    of full groups), ``table`` (room, 8), ``p`` (width, 8), ``scratch`` (2 width + SCRATCH),
+    ``queue`` (QUEUE + 8 and a place for every lane).
     """
-    count = steps.shape[0]
-    groups = steps.shape[1]
-    one = steps.shape[2] * EIGHT  # numbers of a group's sub-step
-    lanes = x.shape[0]
-    stride = groups * EIGHT
-    carried = aligned(CARRIED * stride).reshape((CARRIED, stride))
-    # lanes that fill up the last group rest in the middle of a gap
-    carried[LOW] = -1.0
-    carried[HIGH] = 1.0
-    carried[OWN_GAP] = 1.0
-    for i in range(lanes):
-        b = backlash[i]
-        r = region[i]
-        carried[X, i] = x[i]
-        carried[Y, i] = y[i]
-        carried[SHIFT, i] = r * b
-        carried[LOW, i] = -np.inf if r < 0 else (r * 2 - 1) * b
-        carried[HIGH, i] = np.inf if r > 0 else (r * 2 + 1) * b
-        carried[DOUBLE, i] = 2.0 * reach[i]
-        carried[OWN_GAP, i] = b
+    count = marks.size
+    lanes = x.size
+    stride = carried.size // CARRIED
+    groups = stride // EIGHT
+    one = 11 * EIGHT  # numbers of a group's sub-step
+    room = table.size // EIGHT
+    for i in range(stride):
+        # lanes that fill up the last group rest in the middle of a gap
+        real = i < lanes
+        b = backlash[i] if real else 1.0
+        r = region[i] if real else 0
+        carried[X * stride + i] = x[i] if real else 0.0
+        carried[Y * stride + i] = y[i] if real else 0.0
+        carried[SHIFT * stride + i] = r * b
+        carried[LOW * stride + i] = -np.inf if r < 0 else (r * 2 - 1) * b
+        carried[HIGH * stride + i] = np.inf if r > 0 else (r * 2 + 1) * b
+        carried[DOUBLE * stride + i] = 2.0 * reach[i] if real else 0.0
+        carried[OWN_GAP * stride + i] = b
+        # the period, summed as the sub-steps' own times are
+        last = ((count - 1) * lanes + (i if real else 0)) * room + 5 * width
+        carried[WHOLE * stride + i] = curves[last + SINCE] + 2.0 * curves[last + HALF]
         for m in range(3):
-            carried[SPENT + m, i] = spent[m, i]
+            carried[(SPENT + m) * stride + i] = spent[m * lanes + i] if real else 0.0
         for m in range(2):
-            carried[LOSSES + m, i] = counts[m, i]
+            carried[(LOSSES + m) * stride + i] = counts[m * lanes + i] if real else 0.0
         for m in range(4):
-            carried[TANGENT + m, i] = tangent[m, i]
-    # the period, summed as the sub-steps' own times are
-    wholes = aligned(stride)
-    for i in range(lanes):
-        last = curves[count - 1, i, 5 * width :]
-        wholes[i] = last[SINCE] + 2.0 * last[HALF]
-    taking = samples.shape[0] > 0
-    normal = stretch.shape[0] > 0
+            carried[(TANGENT + m) * stride + i] = tangent[m * lanes + i] if real else 0.0
     taken = 0
-    queue = np.zeros(stride + EIGHT, np.int64)
-    own = np.empty(EIGHT, np.int64)
-    rows = np.empty(EIGHT, np.int64)
-    room = curves.shape[2]
-    table = aligned(room * EIGHT).reshape((room, EIGHT))
-    p = aligned(width * EIGHT).reshape((width, EIGHT))
-    flat = curves.reshape(curves.size)
-    path = np.empty(width)
-    work = np.empty(width)
-    found = np.empty(2 * TURNS)
-    here = np.empty((3, 3))
-    for period in range(sections.shape[0]):
+    for period in range(sections.size // (2 * lanes)):
         for n in range(count):
-            if taking and marks[n] != 0:
-                samples[taken, 0, :] = carried[X, :lanes]
-                samples[taken, 1, :] = carried[Y, :lanes]
-                taken += 1
+            if samples.size > 0 and marks[n] != 0:
+                for i in range(lanes):
+                    samples[taken + i] = carried[X * stride + i]
+                    samples[taken + lanes + i] = carried[Y * stride + i]
+                taken += 2 * lanes
             waiting = 0
             for g in range(groups):
                 # contact and free step both, then the choice
@@ -143,68 +138,73 @@ def advance_exact(
                 store(carried, X * stride + at, choose(sure, x1, x0))
                 store(carried, Y * stride + at, choose(sure, y1, y0))
                 for c in range(columns):
-                    a = load(carried, (TANGENT + c) * stride + at)
-                    w = load(carried, (TANGENT + 2 + c) * stride + at)
+                    above = (TANGENT + c) * stride + at
+                    below = (TANGENT + 2 + c) * stride + at
+                    a = load(carried, above)
+                    w = load(carried, below)
                     t1 = choose(contact, m11 * a + m12 * w, a + free12 * w)
                     t2 = choose(contact, m21 * a + m22 * w, free22 * w)
-                    store(carried, (TANGENT + c) * stride + at, choose(sure, t1, a))
-                    store(carried, (TANGENT + 2 + c) * stride + at, choose(sure, t2, w))
+                    store(carried, above, choose(sure, t1, a))
+                    store(carried, below, choose(sure, t2, w))
                 doubt = bits(sure) ^ 255
                 if doubt != 0:
                     for k in range(EIGHT):
-                        queue[waiting] = at + k
+                        queue[QUEUE + waiting] = at + k
                         waiting += (doubt >> k) & 1
             left = 0
-            for first in range(0, waiting, EIGHT):
-                many = min(EIGHT, waiting - first)
+            for first in range(QUEUE, QUEUE + waiting, EIGHT):
+                many = min(EIGHT, QUEUE + waiting - first)
                 for k in range(EIGHT):
                     i = queue[first + k] if k < many else queue[first]
-                    own[k] = i
-                    rows[k] = (n * lanes + i) * room
-                undone = cross_eight(curves, carried, columns, own, rows, table, p)
+                    queue[k] = i
+                    queue[EIGHT + k] = (n * lanes + i) * room
+                undone = cross_eight(curves, carried, stride, columns, queue, table, p, width)
                 for k in range(many):
                     if (undone >> k) & 1:
-                        queue[left] = own[k]
+                        queue[QUEUE + left] = queue[k]
                         left += 1
-            for w in range(left):
+            for w in range(QUEUE, QUEUE + left):
                 i = queue[w]
-                if not (abs(carried[X, i]) < np.inf):
-                    carried[X, i] = np.nan
-                    carried[Y, i] = np.nan
-                    continue
-                step_through(
-                    flat, (n * lanes + i) * room, width, carried, i, columns, path, work, found, here
-                )
-        sections[period, 0, :] = carried[X, :lanes]
-        sections[period, 1, :] = carried[Y, :lanes]
-        for g in range(groups):
-            at = EIGHT * g
-            whole = load(wholes, at)
+                if abs(carried[X * stride + i]) < np.inf:
+                    step_through(
+                        curves, (n * lanes + i) * room, width, carried, stride, i, columns, scratch
+                    )
+                else:
+                    carried[X * stride + i] = np.nan
+                    carried[Y * stride + i] = np.nan
+        for i in range(lanes):
+            sections[2 * period * lanes + i] = carried[X * stride + i]
+            sections[(2 * period + 1) * lanes + i] = carried[Y * stride + i]
+        for at in range(0, stride, EIGHT):
+            whole = load(carried, WHOLE * stride + at)
             shift = load(carried, SHIFT * stride + at)
+            gap = load(carried, OWN_GAP * stride + at)
             for m in range(3):
                 place = (SPENT + m) * stride + at
-                there = shift == (m - 1.0) * load(carried, OWN_GAP * stride + at)
+                there = shift == (m - 1.0) * gap
                 store(carried, place, load(carried, place) + choose(there, whole, 0.0))
             x0 = load(carried, X * stride + at)
             y0 = load(carried, Y * stride + at)
-            within = abs(x0) <= 1e6 * load(carried, OWN_GAP * stride + at)
-            within = within & (abs(y0) < np.inf)
+            within = (abs(x0) <= 1e6 * gap) & (abs(y0) < np.inf)
             # out of every physical range: the lane stays NaN, its neighbours go on
             store(carried, X * stride + at, choose(within, x0, np.nan))
             store(carried, Y * stride + at, choose(within, y0, np.nan))
-        if normal:
+        if normalise:
             for i in range(lanes):
-                size = np.sqrt(carried[TANGENT, i] ** 2 + carried[TANGENT + 2, i] ** 2)
-                stretch[period, i] = np.log(size)
-                carried[TANGENT, i] /= size
-                carried[TANGENT + 2, i] /= size
+                above = TANGENT * stride + i
+                below = (TANGENT + 2) * stride + i
+                size = np.sqrt(carried[above] ** 2 + carried[below] ** 2)
+                stretch[period * lanes + i] = np.log(size)
+                carried[above] /= size
+                carried[below] /= size
     for i in range(lanes):
-        x[i] = carried[X, i]
-        y[i] = carried[Y, i]
-        region[i] = np.int64(np.sign(carried[SHIFT, i]))
+        x[i] = carried[X * stride + i]
+        y[i] = carried[Y * stride + i]
+        shift_now = carried[SHIFT * stride + i]
+        region[i] = 1 if shift_now > 0.0 else -1 if shift_now < 0.0 else 0
         for m in range(3):
-            spent[m, i] = carried[SPENT + m, i]
+            spent[m * lanes + i] = carried[(SPENT + m) * stride + i]
         for m in range(2):
-            counts[m, i] = np.int64(carried[LOSSES + m, i])
+            counts[m * lanes + i] = int(carried[(LOSSES + m) * stride + i])
         for m in range(4):
-            tangent[m, i] = carried[TANGENT + m, i]
+            tangent[m * lanes + i] = carried[(TANGENT + m) * stride + i]

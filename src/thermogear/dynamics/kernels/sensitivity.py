@@ -14,12 +14,11 @@ have another contact.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.dynamics.kernels.compiled import kernel, part
 from thermogear.dynamics.kernels.crossing import (
     MOST_CROSSINGS,
-    TURNS,
     combined,
     frame,
     next_edge,
@@ -30,7 +29,7 @@ from thermogear.dynamics.kernels.crossing import (
 Real = NDArray[np.float64]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def sensitivity(
     polys: Real,
     half: Real,
@@ -41,21 +40,19 @@ def sensitivity(
     start: Real,
     region: int,
     steps: int,
+    p: Real,
+    here: Real,
     found: Real,
 ) -> None:
     """Walk ``steps`` sub-steps from ``start`` (x, y) in ``region``; ``found`` (3,) out.
 
-    ``polys`` (N, 5, K + 1), flat, and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...`` their
-    derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme of
-    x comes to an edge of the backlash anywhere on the way.
+    ``polys`` (N, 5, K + 1), flat, and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...``
+    their derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme
+    of x comes to an edge of the backlash anywhere on the way. Work space: ``p`` (2 (K + 1) +
+    SCRATCH), ``here`` (12).
     """
     count = half.size
     width = polys.size // (5 * count)
-    p = np.empty(width)
-    turns_at = np.empty(2 * TURNS)
-    scratch = np.empty(width)
-    here = np.empty((2, 3))
-    moved = np.empty((2, 3))
     x = start[0]
     y = start[1]
     dx = 0.0
@@ -74,21 +71,21 @@ def sensitivity(
         skip = 2
         for _ in range(MOST_CROSSINGS):
             combined(polys, row, width, region, x0, y0, p)
-            at, edge = next_edge(p, width, begin, region, b, skip, turns_at, scratch)
-            margin = min(margin, _nearest_turn(p, begin, at, region * b, b))
-            frame(polys, row, width, region, at, h, here)
-            frame(d_polys, row, width, region, at, h, moved)
+            at, edge = next_edge(p, width, begin, region, b, skip)
+            margin = min(margin, _nearest_turn(p, width, begin, at, region * b, b))
+            frame(polys, row, width, region, at, h, here, 0)
+            frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
-                moved[0, 0] = 0.0
+                here[6] = 0.0
             for q in range(3):
                 # the rate is a slope over h, and h moves too
-                moved[1, q] -= here[1, q] * slower
-            x = here[0, 0] * x0 + here[0, 1] * y0 + here[0, 2]
-            y = here[1, 0] * x0 + here[1, 1] * y0 + here[1, 2]
-            dx = here[0, 0] * dx0 + here[0, 1] * dy0
-            dx += moved[0, 0] * x0 + moved[0, 1] * y0 + moved[0, 2]
-            dy = here[1, 0] * dx0 + here[1, 1] * dy0
-            dy += moved[1, 0] * x0 + moved[1, 1] * y0 + moved[1, 2]
+                here[9 + q] -= here[3 + q] * slower
+            x = here[0] * x0 + here[1] * y0 + here[2]
+            y = here[3] * x0 + here[4] * y0 + here[5]
+            dx = here[0] * dx0 + here[1] * dy0
+            dx += here[6] * x0 + here[7] * y0 + here[8]
+            dy = here[3] * dx0 + here[4] * dy0
+            dy += here[9] * x0 + here[10] * y0 + here[11]
             x += region * b
             dx += region * d_b
             if edge == 2:
@@ -101,31 +98,30 @@ def sensitivity(
                 x = b if region == 0 else -b
                 region += 1
                 skip = 0
-            frame(polys, row, width, region, at, h, here)
-            frame(d_polys, row, width, region, at, h, moved)
+            frame(polys, row, width, region, at, h, here, 0)
+            frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
-                moved[0, 0] = 0.0
+                here[6] = 0.0
             for q in range(3):
-                moved[1, q] -= here[1, q] * slower
-            det = here[0, 0] * here[1, 1] - here[0, 1] * here[1, 0]
-            right = x - region * b - here[0, 2]
-            below = y - here[1, 2]
-            x0 = (here[1, 1] * right - here[0, 1] * below) / det
-            y0 = (here[0, 0] * below - here[1, 0] * right) / det
-            right = dx - region * d_b - (moved[0, 0] * x0 + moved[0, 1] * y0 + moved[0, 2])
-            below = dy - (moved[1, 0] * x0 + moved[1, 1] * y0 + moved[1, 2])
-            dx0 = (here[1, 1] * right - here[0, 1] * below) / det
-            dy0 = (here[0, 0] * below - here[1, 0] * right) / det
+                here[9 + q] -= here[3 + q] * slower
+            det = here[0] * here[4] - here[1] * here[3]
+            right = x - region * b - here[2]
+            below = y - here[5]
+            x0 = (here[4] * right - here[1] * below) / det
+            y0 = (here[0] * below - here[3] * right) / det
+            right = dx - region * d_b - (here[6] * x0 + here[7] * y0 + here[8])
+            below = dy - (here[9] * x0 + here[10] * y0 + here[11])
+            dx0 = (here[4] * right - here[1] * below) / det
+            dy0 = (here[0] * below - here[3] * right) / det
             begin = at
     found[0] = dx
     found[1] = dy
     found[2] = margin
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _nearest_turn(p: Real, begin: float, end: float, shift: float, b: float) -> float:
+@part
+def _nearest_turn(p: Real, width: int, begin: float, end: float, shift: float, b: float) -> float:
     """Distance from an edge to the extreme of x in a piece; infinite where x does not turn."""
-    width = p.size
     first = slope(p, 0, width, begin)
     last = slope(p, 0, width, end)
     if first * last > 0.0 or first == last:

@@ -12,13 +12,11 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
-from numpy.typing import NDArray
 
 EIGHT = 8
 Emit = Callable[..., Any]
@@ -191,22 +189,23 @@ def _bits(_typing: Any, flag: Any) -> Any:
     return types.int64(flags), generate
 
 
-def _turn(_typing: Any, array: Any, places: Any, out: Any, count: Any) -> Any:
-    """Transpose ``count`` numbers, a multiple of eight, from each of eight flat ``places``.
+def _turn(_typing: Any, array: Any, places: Any, base: Any, out: Any, count: Any) -> Any:
+    """Transpose ``count`` numbers, a multiple of eight, from each of eight flat places.
 
-    Row m of ``out`` (count, 8) becomes number m of all eight places.
+    They stand in ``places`` from ``base`` on. Row m of ``out`` (count, 8) becomes number m of all eight places.
     """
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
         start = _start(context, builder, array, given[0])
         index = _start(context, builder, places, given[1])
-        end = _start(context, builder, out, given[2])
+        index = builder.gep(index, [given[2]])
+        end = _start(context, builder, out, given[3])
         lines = []
         for k in range(EIGHT):
             place = builder.load(builder.gep(index, [_INDEX(k)]))
             lines.append(builder.gep(start, [place]))
         with _tools.for_range_slice(
-            builder, _INDEX(0), given[3], _INDEX(EIGHT), inc=True
+            builder, _INDEX(0), given[4], _INDEX(EIGHT), inc=True
         ) as (first, _):
             rows = [builder.load(_numbers_at(builder, line, first), align=8) for line in lines]
             for row, numbers in enumerate(_transposed(builder, rows)):
@@ -214,7 +213,7 @@ def _turn(_typing: Any, array: Any, places: Any, out: Any, count: Any) -> Any:
                 builder.store(numbers, _numbers_at(builder, end, at), align=8)
         return context.get_dummy_value()
 
-    return types.void(array, places, out, types.int64), generate
+    return types.void(array, places, types.int64, out, types.int64), generate
 
 
 def _transposed(builder: Any, rows: list[Any]) -> list[Any]:
@@ -240,11 +239,3 @@ drop: Any = intrinsic(_drop)
 choose: Any = intrinsic(_choose)
 bits: Any = intrinsic(_bits)
 turn: Any = intrinsic(_turn)
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def aligned(size: int) -> NDArray[np.float64]:
-    """Zeros that start on a cache line: eight numbers then lie in one."""
-    room = np.zeros(size + EIGHT)
-    first = (-(room.ctypes.data // 8)) % EIGHT
-    return room[first : first + size]
