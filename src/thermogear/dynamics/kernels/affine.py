@@ -65,17 +65,19 @@ def prepare(
         here = min(EIGHT, lanes - EIGHT * group)
         for i in range(EIGHT):
             at[i] = EIGHT * group + min(i, here - 1)
-        c = pick(damping, 0, at)
+        c = pick(damping, 0, at, 0)
         elapsed = c * 0.0
         for n in range(count):
             row = (n * groups + group) * 11 * EIGHT
-            h = pick(half, n * lanes, at)
+            h = pick(half, n * lanes, at, 0)
             ch = c * h
             hh = h * h
             for i in range(EIGHT):
-                for m in range(width):
-                    tables[EIGHT * m + i] = stiffness[(n * lanes + at[i]) * width + m]
-                    tables[full + EIGHT * m + i] = force[(n * lanes + at[i]) * width + m]
+                at[EIGHT + i] = at[i] * width
+            for m in range(width):
+                base = n * lanes * width + m
+                store(tables, EIGHT * m, pick(stiffness, base, at, EIGHT))
+                store(tables, full + EIGHT * m, pick(force, base, at, EIGHT))
             # from the centre: cosine-like, sine-like and forced solution, contact then free
             zero = h * 0.0
             for q in range(5):
@@ -161,8 +163,8 @@ def prepare(
             store(steps, row + HALF * EIGHT, h)
             store(table, 5 * full + HALF * EIGHT, h)
             store(table, 5 * full + SINCE * EIGHT, elapsed)
-            store(table, 5 * full + GAP * EIGHT, pick(backlash, 0, at))
-            store(table, 5 * full + REACH * EIGHT, pick(reach, 0, at))
+            store(table, 5 * full + GAP * EIGHT, pick(backlash, 0, at, 0))
+            store(table, 5 * full + REACH * EIGHT, pick(reach, 0, at, 0))
             elapsed = elapsed + 2.0 * h
             for i in range(here, EIGHT):
                 for q in range(11):

@@ -76,9 +76,9 @@ def cross_eight(
     b = load(table, behind + GAP * EIGHT)
     reach = load(table, behind + REACH * EIGHT)
     h = load(table, behind + HALF * EIGHT)
-    shift = pick(carried, SHIFT * stride, taken)
-    x_old = pick(carried, X * stride, taken)
-    y_old = pick(carried, Y * stride, taken)
+    shift = pick(carried, SHIFT * stride, taken, 0)
+    x_old = pick(carried, X * stride, taken, 0)
+    y_old = pick(carried, Y * stride, taken, 0)
     contact = shift != 0.0
     drive = shift > 0.0
     # the whole sub-step in the region it begins in
@@ -211,17 +211,17 @@ def cross_eight(
         # back, free, drive: what is left gains, what is entered loses
         here = (m - 1.0) * b
         gain = choose(shift == here, time, 0.0) - choose(now == here, time, 0.0)
-        drop(carried, (SPENT + m) * stride, taken, pick(carried, (SPENT + m) * stride, taken) + gain)
+        drop(carried, (SPENT + m) * stride, taken, pick(carried, (SPENT + m) * stride, taken, 0) + gain)
     lost = choose(good & drive, 1.0, 0.0)
     hit = choose(good & ~contact & ~up, 1.0, 0.0)
-    drop(carried, LOSSES * stride, taken, pick(carried, LOSSES * stride, taken) + lost)
-    drop(carried, (LOSSES + 1) * stride, taken, pick(carried, (LOSSES + 1) * stride, taken) + hit)
+    drop(carried, LOSSES * stride, taken, pick(carried, LOSSES * stride, taken, 0) + lost)
+    drop(carried, (LOSSES + 1) * stride, taken, pick(carried, (LOSSES + 1) * stride, taken, 0) + hit)
     for c in range(columns):
         # the tangent follows the same polynomials without the forced part
         one = (TANGENT + c) * stride
         two = (TANGENT + 2 + c) * stride
-        a = pick(carried, one, taken)
-        w = pick(carried, two, taken)
+        a = pick(carried, one, taken, 0)
+        w = pick(carried, two, taken, 0)
         value = a * 0.0
         slope = value
         for m in range(width - 1, -1, -1):

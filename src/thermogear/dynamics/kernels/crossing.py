@@ -26,6 +26,9 @@ Real = NDArray[np.float64]
 
 MOST_CROSSINGS = 64
 TURNS = 16
+# numbers of one kind: a plain 0 would have numba compile a function for itself
+FRONT = np.int64(0)
+LOWER, UPPER, NEITHER = np.int64(0), np.int64(1), np.int64(2)
 SCRATCH = 2 * TURNS + 9  # beside two polynomials
 
 
@@ -120,11 +123,11 @@ def turns_in(s: Real, width: int, start: float, low: float, high: float) -> int:
     for m in range(3, width):
         bend += m * (m - 1.0) * abs(s[m])
     if 2.0 * abs(s[2]) > bend:
-        first = slope(s, 0, width, start)
-        if (first > 0.0) == (slope(s, 0, width, 1.0) > 0.0):
+        first = slope(s, FRONT, width, start)
+        if (first > 0.0) == (slope(s, FRONT, width, 1.0) > 0.0):
             return 0
         swing = first * first / (2.0 * (2.0 * abs(s[2]) - bend))
-        value = value_of(s, 0, width, start)
+        value = value_of(s, FRONT, width, start)
         if low < value - swing and value + swing < high:
             return 0
         for m in range(width - 1):
@@ -197,7 +200,7 @@ def next_edge(
 ) -> tuple[float, int]:
     """Where the path first leaves its region after ``start``, and by which edge.
 
-    0 the lower, 1 the upper, 2 none before the end; ``skip`` the edge just crossed, not to be
+    LOWER, UPPER, or NEITHER before the end; ``skip`` the edge just crossed, not to be
     crossed in the first piece.
     """
     low = -np.inf if region < 0 else 0.0 if region > 0 else -b
@@ -206,13 +209,13 @@ def next_edge(
     a = start
     for i in range(turns + 1):
         e = s[2 * width + i] if i < turns else 1.0
-        value = value_of(s, 0, width, e)
-        edge = 0 if value < low else 1 if value > high else 2
-        if edge != 2 and edge != skip:
-            return root(s, 0, width, low if edge == 0 else high, a, e), edge
-        skip = 2
+        value = value_of(s, FRONT, width, e)
+        edge = LOWER if value < low else UPPER if value > high else NEITHER
+        if edge != NEITHER and edge != skip:
+            return root(s, FRONT, width, low if edge == LOWER else high, a, e), edge
+        skip = NEITHER
         a = e
-    return 1.0, 2
+    return 1.0, NEITHER
 
 
 @part
@@ -248,13 +251,13 @@ def step_through(
     x0 = carried[X * stride + i] - region * b
     y0 = carried[Y * stride + i]
     start = -1.0
-    skip = 2
+    skip = NEITHER
     for _ in range(MOST_CROSSINGS):
         combined(curves, row, width, region, x0, y0, scratch)
         at, edge = next_edge(scratch, width, start, region, b, skip)
-        if edge == 2:
+        if edge == NEITHER:
             break
-        y = slope(scratch, 0, width, at) / h
+        y = slope(scratch, FRONT, width, at) / h
         # Phi of the region left behind, at the crossing
         time = h * at
         scratch[here + 7 + region] += time
@@ -263,16 +266,16 @@ def step_through(
         e12 = scratch[here] * j12 + scratch[here + 1] * j22
         e21 = scratch[here + 3] * j11 + scratch[here + 4] * j21
         e22 = scratch[here + 3] * j12 + scratch[here + 4] * j22
-        if edge == 0:
+        if edge == LOWER:
             carried[(LOSSES if region == 1 else LOSSES + 1) * stride + i] += 1.0
             # upper edge of the region below; contact is measured from its own edge
             x = b if region == 1 else 0.0
             region -= 1
-            skip = 1
+            skip = UPPER
         else:
             x = 0.0 if region == 0 else -b
             region += 1
-            skip = 0
+            skip = LOWER
         scratch[here + 7 + region] -= time
         frame(curves, row, width, region, at, h, scratch, here)
         f11 = scratch[here]

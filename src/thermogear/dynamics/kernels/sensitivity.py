@@ -18,7 +18,11 @@ from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.compiled import kernel, part
 from thermogear.dynamics.kernels.crossing import (
+    FRONT,
+    LOWER,
     MOST_CROSSINGS,
+    NEITHER,
+    UPPER,
     combined,
     frame,
     next_edge,
@@ -68,7 +72,7 @@ def sensitivity(
         dx0 = dx - region * d_b
         dy0 = dy
         begin = -1.0
-        skip = 2
+        skip = NEITHER
         for _ in range(MOST_CROSSINGS):
             combined(polys, row, width, region, x0, y0, p)
             at, edge = next_edge(p, width, begin, region, b, skip)
@@ -88,16 +92,16 @@ def sensitivity(
             dy += here[9] * x0 + here[10] * y0 + here[11]
             x += region * b
             dx += region * d_b
-            if edge == 2:
+            if edge == NEITHER:
                 break
-            if edge == 0:
+            if edge == LOWER:
                 x = b if region == 1 else -b
                 region -= 1
-                skip = 1
+                skip = UPPER
             else:
                 x = b if region == 0 else -b
                 region += 1
-                skip = 0
+                skip = LOWER
             frame(polys, row, width, region, at, h, here, 0)
             frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
@@ -122,9 +126,9 @@ def sensitivity(
 @part
 def _nearest_turn(p: Real, width: int, begin: float, end: float, shift: float, b: float) -> float:
     """Distance from an edge to the extreme of x in a piece; infinite where x does not turn."""
-    first = slope(p, 0, width, begin)
-    last = slope(p, 0, width, end)
+    first = slope(p, FRONT, width, begin)
+    last = slope(p, FRONT, width, end)
     if first * last > 0.0 or first == last:
         return np.inf
-    x = value_of(p, 0, width, begin + (end - begin) * first / (first - last)) + shift
+    x = value_of(p, FRONT, width, begin + (end - begin) * first / (first - last)) + shift
     return min(abs(x - b), abs(x + b))

@@ -138,12 +138,13 @@ def _store(_typing: Any, array: Any, at: Any, value: Any) -> Any:
     return types.void(array, types.int64, eight), generate
 
 
-def _pick(_typing: Any, array: Any, base: Any, places: Any) -> Any:
-    """The numbers of a contiguous array at ``base`` + each of eight flat ``places``."""
+def _pick(_typing: Any, array: Any, base: Any, places: Any, first: Any) -> Any:
+    """The numbers of a contiguous array at ``base`` + each of eight ``places`` from ``first``."""
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
         start = builder.gep(_start(context, builder, array, given[0]), [given[1]])
         index = _start(context, builder, places, given[2])
+        index = builder.gep(index, [given[3]])
         found = ir.Constant(_NUMBERS, ir.Undefined)
         for k in range(EIGHT):
             place = builder.load(builder.gep(index, [_INDEX(k)]))
@@ -151,7 +152,7 @@ def _pick(_typing: Any, array: Any, base: Any, places: Any) -> Any:
             found = builder.insert_element(found, number, _INDEX(k))
         return found
 
-    return eight(array, types.int64, places), generate
+    return eight(array, types.int64, places, types.int64), generate
 
 
 def _drop(_typing: Any, array: Any, base: Any, places: Any, value: Any) -> Any:
