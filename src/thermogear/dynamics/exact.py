@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import factorial, prod
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -216,25 +217,32 @@ def prepare_maps(
     lanes: Lanes, borders: Floats, marks: NDArray[np.uint8], order: int = ORDER
 ) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
-    width_of = np.diff(borders)
-    centres = borders[:-1] + 0.5 * width_of
-    half = 0.5 * width_of[:, None] * lanes.period
+    widths = np.diff(borders)
+    centres = borders[:-1] + 0.5 * widths
+    half = 0.5 * widths[:, None] * lanes.period
     size, rate = _bounds(lanes, "force")
     jerk = rate / lanes.period + lanes.damping * size
     reach = jerk * half.max(axis=0) ** 3
     width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
     (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
     (curves,) = _aligned((centres.size, len(lanes), room))
+    work, tables, ends, table, turned = _aligned(
+        (40 * width,), (16 * width,), (80,), (8 * room,), (64,)
+    )
     prepare(
         lanes.damping,
         lanes.half_backlash,
         reach,
         half.ravel(),
-        _taylor(lanes, "stiffness", centres, 0.5 * width_of, order).ravel(),
-        _taylor(lanes, "force", centres, 0.5 * width_of, order).ravel(),
+        _taylor(lanes, "stiffness", centres, 0.5 * widths, order).ravel(),
+        _taylor(lanes, "force", centres, 0.5 * widths, order).ravel(),
         steps.ravel(),
         curves.ravel(),
-        *_aligned((40 * width,), (16 * width,), (80,), (8 * room,), (64,)),
+        work,
+        tables,
+        ends,
+        table,
+        turned,
         np.empty(16, np.int64),
     )
     return ExactMaps(
@@ -343,8 +351,16 @@ def advance(
         (CARRIED * (-(-lanes // 8) * 8),), (8 * room,), (8 * width,), (2 * width + SCRATCH,)
     )
     # one layout for all: a kernel is compiled once
-    owned = (state.x, state.y, state.region, state.tangent, state.counts, state.spent)
-    x, y, region, tangent, counts, spent = flat = [np.ravel(array) for array in owned]
+    owned: tuple[NDArray[Any], ...] = (
+        state.x,
+        state.y,
+        state.region,
+        state.tangent,
+        state.counts,
+        state.spent,
+    )
+    flat: list[NDArray[Any]] = [np.ravel(array) for array in owned]
+    x, y, region, tangent, counts, spent = flat
     advance_exact(
         maps.steps.ravel(),
         maps.curves.ravel(),

@@ -15,7 +15,7 @@ it: nothing settles that is not a number.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
@@ -26,6 +26,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 MOST_STEPS = 200
 _TOLERANCE = 1e-12
+NOUGHT: Any = np.int64(0)  # a plain 0 would have numba compile what takes it for itself
 
 
 def _compiled(function: Function) -> Function:
@@ -35,9 +36,9 @@ def _compiled(function: Function) -> Function:
 
 def _part(function: Function) -> Function:
     """The same for what only compiled code calls: it needs no way in from Python."""
-    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    compiled = numba.njit(cache=True, **options)
-    return cast(Function, compiled(function))
+    compiled: Any = numba.njit
+    alone = compiled(cache=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return cast(Function, alone(function))
 
 
 @_part
@@ -140,7 +141,7 @@ def _share_one(
     force[first] = load
     least = 1e-14 * load
     for _ in range(MOST_STEPS):
-        size = np.int64(0)
+        size = NOUGHT
         for j in range(count):
             if active[j]:
                 index[size] = j

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.affine import (
     FREE_NU,
     FREE_PSI,
@@ -19,13 +18,14 @@ from thermogear.dynamics.kernels.affine import (
     REACH,
     SINCE,
 )
+from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, drop, load, pick, store, turn
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 # rows of what a lane carries along: state, origin and edges of its region, twice its reach, half
-# backlash, period, time spent in back, free and drive contact, contact losses and back-side impacts, tangent
+# backlash, period, time spent in back, free and drive contact, losses and impacts, tangent
 X, Y, SHIFT, LOW, HIGH, DOUBLE, OWN_GAP, WHOLE, SPENT, LOSSES, TANGENT = (
     0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13,
 )  # fmt: skip
@@ -111,7 +111,9 @@ def cross_eight(
         nu = load(table, EIGHT * (NU * width + m))
         free_psi = load(table, EIGHT * (FREE_PSI * width + m))
         free_nu = load(table, EIGHT * (FREE_NU * width + m))
-        store(p, EIGHT * m, choose(contact, phi * z0 + psi * y_old + nu, free_psi * y_old + free_nu))
+        store(
+            p, EIGHT * m, choose(contact, phi * z0 + psi * y_old + nu, free_psi * y_old + free_nu)
+        )
     first = load(p, 0)
     store(p, 0, choose(contact, first, first + z0) - level)
     # a cubic through both ends gives the start
@@ -211,11 +213,18 @@ def cross_eight(
         # back, free, drive: what is left gains, what is entered loses
         here = (m - 1.0) * b
         gain = choose(shift == here, time, 0.0) - choose(now == here, time, 0.0)
-        drop(carried, (SPENT + m) * stride, taken, pick(carried, (SPENT + m) * stride, taken, 0) + gain)
+        drop(
+            carried,
+            (SPENT + m) * stride,
+            taken,
+            pick(carried, (SPENT + m) * stride, taken, 0) + gain,
+        )
     lost = choose(good & drive, 1.0, 0.0)
     hit = choose(good & ~contact & ~up, 1.0, 0.0)
     drop(carried, LOSSES * stride, taken, pick(carried, LOSSES * stride, taken, 0) + lost)
-    drop(carried, (LOSSES + 1) * stride, taken, pick(carried, (LOSSES + 1) * stride, taken, 0) + hit)
+    drop(
+        carried, (LOSSES + 1) * stride, taken, pick(carried, (LOSSES + 1) * stride, taken, 0) + hit
+    )
     for c in range(columns):
         # the tangent follows the same polynomials without the forced part
         one = (TANGENT + c) * stride
@@ -239,4 +248,5 @@ def cross_eight(
         drop(carried, one, taken, choose(good, m11 * za + m12 * zb, stayed))
         stayed = choose(inside, s21 * a + s22 * w, w)
         drop(carried, two, taken, choose(good, m21 * za + m22 * zb, stayed))
-    return bits(~(good | inside))
+    undone: int = bits(~(good | inside))
+    return undone

@@ -6,10 +6,11 @@ polynomials of the next region. No fastmath: a lane gives the same bits in any c
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.affine import (
     FREE_NU,
     FREE_PSI,
@@ -21,14 +22,17 @@ from thermogear.dynamics.kernels.affine import (
     SINCE,
 )
 from thermogear.dynamics.kernels.batch import HIGH, LOSSES, LOW, SHIFT, SPENT, TANGENT, X, Y
+from thermogear.dynamics.kernels.compiled import part
 
 Real = NDArray[np.float64]
 
 MOST_CROSSINGS = 64
 TURNS = 16
 # numbers of one kind: a plain 0 would have numba compile a function for itself
-FRONT = np.int64(0)
-LOWER, UPPER, NEITHER = np.int64(0), np.int64(1), np.int64(2)
+FRONT: Any = np.int64(0)
+LOWER: Any = np.int64(0)
+UPPER: Any = np.int64(1)
+NEITHER: Any = np.int64(2)
 SCRATCH = 2 * TURNS + 9  # beside two polynomials
 
 
@@ -162,7 +166,9 @@ def turns_in(s: Real, width: int, start: float, low: float, high: float) -> int:
 
 
 @part
-def combined(curves: Real, row: int, width: int, region: int, x0: float, y0: float, s: Real) -> None:
+def combined(
+    curves: Real, row: int, width: int, region: int, x0: float, y0: float, s: Real
+) -> None:
     """The sub-step's polynomial of x, measured from the edge of its region, to the front of ``s``.
 
     Its five polynomials begin at ``row`` of the flat ``curves``.

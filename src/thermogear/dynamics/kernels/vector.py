@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
-from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.core.typing import templates
+from numba.extending import intrinsic, models, register_model
+from numba.extending import lower_builtin as _lower_builtin
 
 EIGHT = 8
 Emit = Callable[..., Any]
@@ -26,7 +27,10 @@ _NUMBERS = ir.VectorType(_DOUBLE, EIGHT)
 _BITS = ir.VectorType(ir.IntType(1), EIGHT)
 _INDEX = ir.IntType(64)
 _WORDS = ir.VectorType(_INDEX, EIGHT)
-_tools: Any = cgutils  # its functions carry no types
+# their functions carry no types
+_tools: Any = cgutils
+_typing: Any = templates
+_lower: Any = _lower_builtin
 
 
 class Eight(types.Type):
@@ -37,13 +41,16 @@ class Flags(types.Type):
     """Eight truth values side by side."""
 
 
-eight, flags = Eight("Eight"), Flags("Flags")
+_kind: Any = Eight
+eight = _kind("Eight")
+_kind = Flags
+flags = _kind("Flags")
 
 
 def _model(kind: type[types.Type], back: ir.Type) -> None:
     class Model(models.PrimitiveModel):
         def __init__(self, manager: Any, front: Any) -> None:
-            super().__init__(manager, front, back)
+            super().__init__(manager, front, back)  # type: ignore[no-untyped-call]
 
     register_model(kind)(Model)
 
@@ -68,10 +75,10 @@ def _operator(
 ) -> None:
     """Teach numba ``function`` of these operands."""
 
-    class Typing(ConcreteTemplate):
-        cases = [signature(result, *given) for given in operands]
+    class Typing(_typing.ConcreteTemplate):  # type: ignore[misc]
+        cases: ClassVar = [_typing.signature(result, *given) for given in operands]
 
-    infer_global(function)(Typing)
+    _typing.infer_global(function)(Typing)
 
     def lowered(_context: Any, builder: Any, sig: Any, given: Any) -> Any:
         if sig.args[0] is not flags:
@@ -79,7 +86,7 @@ def _operator(
         return emit(builder, *given)
 
     for kinds in operands:
-        lower_builtin(function, *kinds)(lowered)
+        _lower(function, *kinds)(lowered)
 
 
 _TWO = [(eight, eight), (eight, types.float64), (types.float64, eight)]
@@ -117,7 +124,7 @@ def _numbers_at(builder: Any, start: Any, at: Any) -> Any:
     return builder.bitcast(builder.gep(start, [at]), _NUMBERS.as_pointer())
 
 
-def _load(_typing: Any, array: Any, at: Any) -> Any:
+def _load(_context: Any, array: Any, at: Any) -> Any:
     """Eight numbers of a contiguous array from its flat index ``at``."""
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -127,7 +134,7 @@ def _load(_typing: Any, array: Any, at: Any) -> Any:
     return eight(array, types.int64), generate
 
 
-def _store(_typing: Any, array: Any, at: Any, value: Any) -> Any:
+def _store(_context: Any, array: Any, at: Any, value: Any) -> Any:
     """Put eight numbers into a contiguous array at its flat index ``at``."""
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -138,7 +145,7 @@ def _store(_typing: Any, array: Any, at: Any, value: Any) -> Any:
     return types.void(array, types.int64, eight), generate
 
 
-def _pick(_typing: Any, array: Any, base: Any, places: Any, first: Any) -> Any:
+def _pick(_context: Any, array: Any, base: Any, places: Any, first: Any) -> Any:
     """The numbers of a contiguous array at ``base`` + each of eight ``places`` from ``first``."""
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -155,7 +162,7 @@ def _pick(_typing: Any, array: Any, base: Any, places: Any, first: Any) -> Any:
     return eight(array, types.int64, places, types.int64), generate
 
 
-def _drop(_typing: Any, array: Any, base: Any, places: Any, value: Any) -> Any:
+def _drop(_context: Any, array: Any, base: Any, places: Any, value: Any) -> Any:
     """Put eight numbers into a contiguous array at ``base`` + each of eight flat ``places``."""
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -170,7 +177,7 @@ def _drop(_typing: Any, array: Any, base: Any, places: Any, value: Any) -> Any:
     return types.void(array, types.int64, places, eight), generate
 
 
-def _choose(_typing: Any, flag: Any, one: Any, other: Any) -> Any:
+def _choose(_context: Any, flag: Any, one: Any, other: Any) -> Any:
     """``one`` where the flag stands, else ``other``."""
 
     def generate(_context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -181,7 +188,7 @@ def _choose(_typing: Any, flag: Any, one: Any, other: Any) -> Any:
     return eight(flags, *kinds), generate
 
 
-def _bits(_typing: Any, flag: Any) -> Any:
+def _bits(_context: Any, flag: Any) -> Any:
     """The flags as the low eight bits of a whole number."""
 
     def generate(_context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -190,10 +197,11 @@ def _bits(_typing: Any, flag: Any) -> Any:
     return types.int64(flags), generate
 
 
-def _turn(_typing: Any, array: Any, places: Any, base: Any, out: Any, count: Any) -> Any:
+def _turn(_context: Any, array: Any, places: Any, base: Any, out: Any, count: Any) -> Any:
     """Transpose ``count`` numbers, a multiple of eight, from each of eight flat places.
 
-    They stand in ``places`` from ``base`` on. Row m of ``out`` (count, 8) becomes number m of all eight places.
+    They stand in ``places`` from ``base`` on. Row m of ``out`` (count, 8) becomes number m of all
+    eight places.
     """
 
     def generate(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
@@ -205,9 +213,10 @@ def _turn(_typing: Any, array: Any, places: Any, base: Any, out: Any, count: Any
         for k in range(EIGHT):
             place = builder.load(builder.gep(index, [_INDEX(k)]))
             lines.append(builder.gep(start, [place]))
-        with _tools.for_range_slice(
-            builder, _INDEX(0), given[4], _INDEX(EIGHT), inc=True
-        ) as (first, _):
+        with _tools.for_range_slice(builder, _INDEX(0), given[4], _INDEX(EIGHT), inc=True) as (
+            first,
+            _,
+        ):
             rows = [builder.load(_numbers_at(builder, line, first), align=8) for line in lines]
             for row, numbers in enumerate(_transposed(builder, rows)):
                 at = builder.mul(builder.add(first, _INDEX(row)), _INDEX(EIGHT))
