@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 ORDER = 12
-BLOCK = 256
+BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 
 
