@@ -386,6 +386,6 @@ def advance(
         np.empty(QUEUE + 16 + lanes, np.int64),
     )
     for array, done in zip(owned, flat, strict=True):
-        if not np.may_share_memory(array, done):
+        if not array.flags.c_contiguous:
             array[...] = done.reshape(array.shape)
     return sections, stretch, samples
