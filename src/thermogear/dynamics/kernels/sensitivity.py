@@ -14,33 +14,26 @@ have another contact.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
-from thermogear.dynamics.kernels.crossing import MOST_CROSSINGS, root, slope, turns_in, value_of
+from thermogear.dynamics.kernels.compiled import kernel, part
+from thermogear.dynamics.kernels.crossing import (
+    FRONT,
+    LOWER,
+    MOST_CROSSINGS,
+    NEITHER,
+    UPPER,
+    combined,
+    frame,
+    next_edge,
+    slope,
+    value_of,
+)
 
 Real = NDArray[np.float64]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _frame(polys: Real, region: int, u: float, h: float, out: Real) -> None:
-    """phi, psi, nu and their rates at ``u`` of one region into ``out`` (2, 3)."""
-    if region != 0:
-        for q in range(3):
-            row = polys[(PHI, PSI, NU)[q]]
-            out[0, q] = value_of(row, u)
-            out[1, q] = slope(row, u) / h
-    else:
-        out[0, 0] = 1.0
-        out[1, 0] = 0.0
-        for q in range(2):
-            row = polys[(FREE_PSI, FREE_NU)[q]]
-            out[0, 1 + q] = value_of(row, u)
-            out[1, 1 + q] = slope(row, u) / h
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def sensitivity(
     polys: Real,
     half: Real,
@@ -51,20 +44,19 @@ def sensitivity(
     start: Real,
     region: int,
     steps: int,
+    p: Real,
+    here: Real,
     found: Real,
 ) -> None:
     """Walk ``steps`` sub-steps from ``start`` (x, y) in ``region``; ``found`` (3,) out.
 
-    ``polys`` (N, 5, K + 1) and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...`` their
-    derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme of
-    x comes to an edge of the backlash anywhere on the way.
+    ``polys`` (N, 5, K + 1), flat, and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...``
+    their derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme
+    of x comes to an edge of the backlash anywhere on the way. Work space: ``p`` (2 (K + 1) +
+    SCRATCH), ``here`` (12).
     """
-    count, _, width = polys.shape
-    p = np.empty(width)
-    turns_at = np.empty(16)
-    scratch = np.empty(width)
-    here = np.empty((2, 3))
-    moved = np.empty((2, 3))
+    count = half.size
+    width = polys.size // (5 * count)
     x = start[0]
     y = start[1]
     dx = 0.0
@@ -72,6 +64,7 @@ def sensitivity(
     margin = np.inf
     for step in range(steps):
         n = step % count
+        row = 5 * width * n
         h = half[n]
         slower = d_half[n] / h
         x0 = x - region * b
@@ -79,100 +72,63 @@ def sensitivity(
         dx0 = dx - region * d_b
         dy0 = dy
         begin = -1.0
-        skip = 2
+        skip = NEITHER
         for _ in range(MOST_CROSSINGS):
-            _combined(polys[n], region, x0, y0, p)
-            low = -np.inf
-            high = np.inf
-            if region == 1:
-                low = 0.0
-            elif region == 0:
-                low = -b
-                high = b
-            else:
-                high = 0.0
-            turns = turns_in(p, begin, low, high, turns_at, scratch)
-            a = begin
-            at = 1.0
-            edge = 2
-            for i in range(turns + 1):
-                e = turns_at[i] if i < turns else 1.0
-                value = value_of(p, e)
-                if value < low and skip != 0:
-                    at = root(p, low, a, e)
-                    edge = 0
-                    break
-                if value > high and skip != 1:
-                    at = root(p, high, a, e)
-                    edge = 1
-                    break
-                skip = 2
-                a = e
-            margin = min(margin, _nearest_turn(p, begin, at, region * b, b))
-            _frame(polys[n], region, at, h, here)
-            _frame(d_polys[n], region, at, h, moved)
+            combined(polys, row, width, region, x0, y0, p)
+            at, edge = next_edge(p, width, begin, region, b, skip)
+            margin = min(margin, _nearest_turn(p, width, begin, at, region * b, b))
+            frame(polys, row, width, region, at, h, here, 0)
+            frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
-                moved[0, 0] = 0.0
+                here[6] = 0.0
             for q in range(3):
                 # the rate is a slope over h, and h moves too
-                moved[1, q] -= here[1, q] * slower
-            x = here[0, 0] * x0 + here[0, 1] * y0 + here[0, 2]
-            y = here[1, 0] * x0 + here[1, 1] * y0 + here[1, 2]
-            dx = here[0, 0] * dx0 + here[0, 1] * dy0
-            dx += moved[0, 0] * x0 + moved[0, 1] * y0 + moved[0, 2]
-            dy = here[1, 0] * dx0 + here[1, 1] * dy0
-            dy += moved[1, 0] * x0 + moved[1, 1] * y0 + moved[1, 2]
+                here[9 + q] -= here[3 + q] * slower
+            x = here[0] * x0 + here[1] * y0 + here[2]
+            y = here[3] * x0 + here[4] * y0 + here[5]
+            dx = here[0] * dx0 + here[1] * dy0
+            dx += here[6] * x0 + here[7] * y0 + here[8]
+            dy = here[3] * dx0 + here[4] * dy0
+            dy += here[9] * x0 + here[10] * y0 + here[11]
             x += region * b
             dx += region * d_b
-            if edge == 2:
+            if edge == NEITHER:
                 break
-            if edge == 0:
+            if edge == LOWER:
                 x = b if region == 1 else -b
                 region -= 1
-                skip = 1
+                skip = UPPER
             else:
                 x = b if region == 0 else -b
                 region += 1
-                skip = 0
-            _frame(polys[n], region, at, h, here)
-            _frame(d_polys[n], region, at, h, moved)
+                skip = LOWER
+            frame(polys, row, width, region, at, h, here, 0)
+            frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
-                moved[0, 0] = 0.0
+                here[6] = 0.0
             for q in range(3):
-                moved[1, q] -= here[1, q] * slower
-            det = here[0, 0] * here[1, 1] - here[0, 1] * here[1, 0]
-            right = x - region * b - here[0, 2]
-            below = y - here[1, 2]
-            x0 = (here[1, 1] * right - here[0, 1] * below) / det
-            y0 = (here[0, 0] * below - here[1, 0] * right) / det
-            right = dx - region * d_b - (moved[0, 0] * x0 + moved[0, 1] * y0 + moved[0, 2])
-            below = dy - (moved[1, 0] * x0 + moved[1, 1] * y0 + moved[1, 2])
-            dx0 = (here[1, 1] * right - here[0, 1] * below) / det
-            dy0 = (here[0, 0] * below - here[1, 0] * right) / det
+                here[9 + q] -= here[3 + q] * slower
+            det = here[0] * here[4] - here[1] * here[3]
+            right = x - region * b - here[2]
+            below = y - here[5]
+            x0 = (here[4] * right - here[1] * below) / det
+            y0 = (here[0] * below - here[3] * right) / det
+            right = dx - region * d_b - (here[6] * x0 + here[7] * y0 + here[8])
+            below = dy - (here[9] * x0 + here[10] * y0 + here[11])
+            dx0 = (here[4] * right - here[1] * below) / det
+            dy0 = (here[0] * below - here[3] * right) / det
             begin = at
     found[0] = dx
     found[1] = dy
     found[2] = margin
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _combined(polys: Real, region: int, x0: float, y0: float, p: Real) -> None:
-    """The sub-step's polynomial of x, measured from the edge of its region."""
-    if region != 0:
-        for m in range(p.shape[0]):
-            p[m] = polys[PHI, m] * x0 + polys[PSI, m] * y0 + polys[NU, m]
-    else:
-        for m in range(p.shape[0]):
-            p[m] = polys[FREE_PSI, m] * y0 + polys[FREE_NU, m]
-        p[0] += x0
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def _nearest_turn(p: Real, begin: float, end: float, shift: float, b: float) -> float:
+@part
+def _nearest_turn(p: Real, width: int, begin: float, end: float, shift: float, b: float) -> float:
     """Distance from an edge to the extreme of x in a piece; infinite where x does not turn."""
-    first = slope(p, begin)
-    last = slope(p, end)
+    first = slope(p, FRONT, width, begin)
+    last = slope(p, FRONT, width, end)
     if first * last > 0.0 or first == last:
         return np.inf
-    x = value_of(p, begin + (end - begin) * first / (first - last)) + shift
+    x = value_of(p, FRONT, width, begin + (end - begin) * first / (first - last)) + shift
     return min(abs(x - b), abs(x + b))
