@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-paths friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-paths friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -92,6 +92,9 @@ same: $(STAMP)  ## do all commands still store the same numbers? SAME="HEAD~1 --
 
 trial-damage: $(STAMP)  ## 300 single damages to finished files and stores, minutes; docs/trial_damage.md
 	@$(BIN)/python checks/trial_damage.py
+
+trial-long: $(STAMP)  ## the shortened tests with ten times the count, minutes; docs/trial_long.md
+	$(BIN)/python -m pytest -q --long=docs/trial_long.md tests
 
 trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an hour; docs/trial_pairs.md
 	@$(BIN)/python checks/trial_pairs.py
