@@ -88,7 +88,8 @@ class _Long:
                 "---\norphan: true\n---\n# Tests at length\n\n"
                 "Made by `make trial-long`: the same tests with the larger count, every claim and "
                 "bound alike. All held.\n\n"
-                "| of | test | count in `make test` | count here | took, s |\n|---|---|---:|---:|---:|\n"
+                "| of | test | count in `make test` | count here | took, s |\n"
+                "|---|---|---:|---:|---:|\n"
             )
             self.target.write_text(head + "\n".join(sorted(self.rows)) + "\n", "utf-8")
 
@@ -123,7 +124,7 @@ def compared(record_property: Callable[[str, object], None]) -> Compared:
 def at_length(
     request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
 ) -> AtLength:
-    """``at_length(usual, long, words)``: of how many a test makes sure; ``long`` by ``--long``."""
+    """``at_length(usual, long, words)``: how many a test tries; ``long`` with ``--long``."""
 
     def chosen(usual: int, long: int, words: str) -> int:
         record_property(AT_LENGTH, (usual, long, words))

@@ -121,7 +121,7 @@ def test_before_the_first_computation_numba_alone_is_heavy(study: str) -> None:
         "from thermogear.case.case import load_case\n"
         "load_case('rig')\n"
         f"importlib.import_module('thermogear.study.{study}')\n"
-        "heavy = ('scipy.linalg', 'scipy.special', 'xarray', 'pint', 'jinja2', 'h5py', 'matplotlib')\n"
+        "heavy = ('scipy.linalg', 'scipy.special', 'xarray', 'pint', 'jinja2', 'h5py')\n"
         "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

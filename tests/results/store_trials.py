@@ -17,6 +17,7 @@ import sys
 import time
 import traceback
 import warnings
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -171,10 +172,8 @@ def corruptions(directory: Path, count: int) -> dict:
     for _ in range(count):
         files = sorted(p for p in store.rglob("*") if p.is_file() and p.name != "lock")
         damage(draw.choice(files), draw)
-        try:
+        with suppress(InputError):
             tally["reader_silent"] += numbers(read_store(store)) != truth
-        except InputError:
-            pass
         try:
             same = numbers(carry_out(plan, store)) == truth == numbers(read_store(store))
             tally["repaired" if same else "silent"] += 1
