@@ -7,8 +7,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import synthetic_results
 import xarray as xr
-from tests.views import synthetic_results
 
 from thermogear.base.files import put_sealed
 from thermogear.base.netcdf import read_tree, write_tree
