@@ -103,6 +103,11 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
 # --- gear cases ---------------------------------------------------------------------------
 
 
+def gear_motion(case: GearCase) -> xr.Dataset:
+    """The group ``motion`` of :func:`run` alone, and nothing else computed."""
+    return _motion(case, _cycles(case, silent), "state", silent)
+
+
 def _gear_groups(
     case: GearCase, cycles: Mapping[str, xr.Dataset], progress: Progress
 ) -> dict[str, xr.Dataset]:
