@@ -17,7 +17,7 @@ demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear run .venv/rig.toml -o .demo
 
 test: $(STAMP) lint  ## every check, slow layer included
-	$(BIN)/python -m pytest -q -n auto --dist loadfile
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
 
 check: $(STAMP) lint unit  ## the fast checks
 
@@ -28,7 +28,7 @@ lint: $(STAMP)
 	$(BIN)/lint-imports
 
 unit: $(STAMP)
-	$(BIN)/python -m pytest -q -n auto --dist loadfile -m "not slow"
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder -m "not slow"
 
 $(STAMP): pyproject.toml requirements/boot.txt requirements/dev.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -46,7 +46,7 @@ docs: $(DOCS_STAMP)  ## the documentation site; a warning or a dead link is an e
 	$(BIN)/python docs/_site/check_html.py docs/_build/html
 
 validation: $(STAMP)  ## measure the numbers of the site's validation and thesis pages anew
-	$(BIN)/python -m pytest -q -n auto --dist loadfile --validation=docs/validation.json tests
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder --validation=docs/validation.json tests
 	$(BIN)/python docs/_site/collect.py docs/thesis.json
 
 $(DOCS_STAMP): $(STAMP) requirements/docs.txt

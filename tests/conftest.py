@@ -40,6 +40,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             others = [item for item in items if fixture not in getattr(item, "fixturenames", ())]
             config.hook.pytest_deselected(items=others)
             items[:] = [item for item in items if item not in others]
+    # one file is one worker's: the long ones first, so that no worker ends with one of them alone
+    long = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in long)
 
 
 class _Notes:
