@@ -81,15 +81,11 @@ def test_words_for_trends() -> None:
 
 
 def test_ctrl_c_keeps_what_is_judged(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    evidence: Evidence,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Evidence, "result", evidence.result)  # of the other tests
     monkeypatch.setattr(motions, "diagrams", stop)
     monkeypatch.setattr(motions, "flips", stop)
     monkeypatch.setattr(chain, "operating_grid", stop)
