@@ -14,11 +14,13 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Arrays = dict[str, NDArray[Any]]
 Key = tuple[int, ...]
@@ -128,6 +130,8 @@ def empty_arrays(plan: Plan) -> Arrays:
 
 def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
     """The finished, labelled result."""
+    import xarray as xr
+
     variables = plan.variables()
     data = xr.Dataset(
         {n: xr.Variable(v.dims, arrays[n], dict(v.attributes)) for n, v in variables.items()},

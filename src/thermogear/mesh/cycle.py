@@ -7,9 +7,9 @@ import warnings
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning, nearest
@@ -34,6 +34,9 @@ from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
