@@ -112,14 +112,20 @@ def add_harmonics(real: Real, imag: Real, cosine: Real, sine: Real, reach: Real,
     ``real``, ``imag`` (rank, lane) of their coefficients, ``cosine``, ``sine`` (rank, N) of their
     angles at the centres, ``reach`` (rank, N) half a sub-step in their angle.
     """
+    width = out.shape[2]
+    signed = np.empty(width)
     for k in range(real.shape[0]):
         for n in range(out.shape[0]):
+            if n == 0 or reach[k, n] != reach[k, n - 1]:
+                power = 1.0
+                signed[0] = 1.0
+                for m in range(1, width):
+                    power = power * reach[k, n] / m
+                    signed[m] = power if m % 4 in (0, 3) else -power
             for lane in range(out.shape[1]):
                 even = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
                 odd = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
-                power = 1.0
-                for m in range(out.shape[2]):
-                    if m > 0:
-                        power = power * reach[k, n] / m
-                    part = (odd if m % 2 else even) * power
-                    out[n, lane, m] += part if m % 4 in (0, 3) else -part
+                for m in range(0, width, 2):
+                    out[n, lane, m] += even * signed[m]
+                for m in range(1, width, 2):
+                    out[n, lane, m] += odd * signed[m]
