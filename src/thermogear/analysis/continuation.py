@@ -137,6 +137,7 @@ def continuation(
     family: Family | None = None,
     start: float | None = None,
     back_to: float | None = None,
+    span: float | None = None,
     most_points: int = 2000,
     stop_at: str | Collection[str] | None = None,
     direction: Floats | None = None,
@@ -157,13 +158,16 @@ def continuation(
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
     give ``family``, a function value -> model, and its present value ``start``. The range lies
     between ``to`` and ``back_to`` or, where that lies further back, ``start``, so that a doubled
-    branch may run back through a fold first. ``stop_at`` a kind of bifurcation (or several) to
+    branch may run back through a fold first. ``span`` of the parameter counts as much as a half
+    backlash in the length of a step (default: the whole range). ``stop_at`` a kind of bifurcation (or several) to
     stop at. ``progress`` is called with the points so far and the parameter. With
     ``keep_on_interrupt`` Ctrl+C returns what is done, ``ended`` "interrupted".
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
     """
+    if span is not None and not 0.0 < span < np.inf:
+        raise InputError("span", span, allowed="> 0, finite")
     family, start, behind = _range(orbit, parameter, to, family, start, back_to)
     mirrors, symmetric = _symmetry(orbit, family, start, to)
     curve = Curve(
@@ -171,7 +175,7 @@ def continuation(
         parameter,
         orbit.period,
         start=start,
-        span=abs(to - behind),
+        span=abs(to - behind) if span is None else span,
         mirrors=mirrors,
         symmetric=symmetric,
     )
