@@ -135,12 +135,19 @@ class State:
         self.spent[:] = 0.0
 
 
-@lru_cache(maxsize=64)
-def _turned(ranks: bytes, centres: bytes) -> tuple[Floats, Floats]:
-    """cos and sin of every harmonic's angle at the centres: alike for all lanes of a layout."""
-    turns = np.frombuffer(ranks, np.int64)[:, None] * np.frombuffer(centres)
-    angle = 2.0 * np.pi * np.mod(turns, 1.0)
-    return np.cos(angle), np.sin(angle)
+@lru_cache(maxsize=32)
+def _turned(ranks: bytes, centres: bytes, half: bytes, order: int) -> tuple[Floats | Whole, ...]:
+    """What a layout's harmonics have in common for all lanes, as ``add_harmonics`` reads it."""
+    rank = np.frombuffer(ranks, np.int64)
+    angle = 2.0 * np.pi * np.mod(rank[:, None] * np.frombuffer(centres), 1.0)
+    widths, which = np.unique(np.frombuffer(half), return_inverse=True)
+    reach = 2.0 * np.pi * rank * widths[:, None]
+    parts = np.zeros((2, *reach.shape, order + 1))
+    power = np.ones(reach.shape)
+    for m in range(order + 1):
+        power = power * reach / m if m > 0 else power
+        parts[m % 2, :, :, m] = power if m % 4 in (0, 3) else -power
+    return np.cos(angle), np.sin(angle), parts[0], parts[1], which.ravel()
 
 
 def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) -> Floats:
@@ -177,13 +184,10 @@ def _of_harmonics(
     out[:, :, 0] = coefficients[:, 0].real
     ranks = 1 + np.flatnonzero(np.any(coefficients[:, 1:], axis=0))
     if ranks.size:
-        cosine, sine = _turned(ranks.tobytes(), centres.tobytes())
         add_harmonics(
             np.ascontiguousarray(coefficients[:, ranks].real.T),
             np.ascontiguousarray(coefficients[:, ranks].imag.T),
-            cosine,
-            sine,
-            2.0 * np.pi * ranks[:, None] * half,
+            *_turned(ranks.tobytes(), centres.tobytes(), half.tobytes(), order),
             out,
         )
     return out

@@ -106,26 +106,29 @@ def prepare(
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def add_harmonics(real: Real, imag: Real, cosine: Real, sine: Real, reach: Real, out: Real) -> None:
+def add_harmonics(
+    real: Real,
+    imag: Real,
+    cosine: Real,
+    sine: Real,
+    even: Real,
+    odd: Real,
+    which: NDArray[np.int64],
+    out: Real,
+) -> None:
     """Add the Taylor coefficients of harmonics to ``out`` (N, lane, K + 1).
 
     ``real``, ``imag`` (rank, lane) of their coefficients, ``cosine``, ``sine`` (rank, N) of their
-    angles at the centres, ``reach`` (rank, N) half a sub-step in their angle.
+    angles at the centres; ``even``, ``odd`` (width, rank, K + 1) the derivatives of a cosine over
+    the factorials where half a sub-step is one of several widths, ``which`` (N) of them.
     """
-    width = out.shape[2]
-    signed = np.empty(width)
-    for k in range(real.shape[0]):
-        for n in range(out.shape[0]):
-            if n == 0 or reach[k, n] != reach[k, n - 1]:
-                power = 1.0
-                signed[0] = 1.0
-                for m in range(1, width):
-                    power = power * reach[k, n] / m
-                    signed[m] = power if m % 4 in (0, 3) else -power
-            for lane in range(out.shape[1]):
-                even = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
-                odd = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
-                for m in range(0, width, 2):
-                    out[n, lane, m] += even * signed[m]
-                for m in range(1, width, 2):
-                    out[n, lane, m] += odd * signed[m]
+    for n in range(out.shape[0]):
+        for lane in range(out.shape[1]):
+            row = out[n, lane]
+            for k in range(real.shape[0]):
+                whole = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
+                turned = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
+                some = even[which[n], k]
+                rest = odd[which[n], k]
+                for m in range(row.size):
+                    row[m] += whole * some[m] + turned * rest[m]
