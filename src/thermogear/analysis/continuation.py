@@ -289,7 +289,7 @@ def _walk(
     curve: Curve, first: Point, limits: tuple[float, float], most: int, step: float
 ) -> Iterator[Point | str]:
     """Points of the branch between two ``limits``, the end last; then the reason for its end."""
-    here = first
+    here, last = first, first
     behind, to = limits
     side = np.sign(to - behind)
     low, high = sorted((behind / curve.span, to / curve.span))
@@ -299,7 +299,12 @@ def _walk(
             point = None
             try:
                 point = curve.correct(
-                    guess, normal=here.tangent, old=here.tangent, reach=0.5 * step
+                    guess,
+                    normal=here.tangent,
+                    old=here.tangent,
+                    reach=0.5 * step,
+                    near=guess + _bend(last, here, step),
+                    slope=here.slope,
                 )
             except InputError:
                 # the step left what the parameter may be; the walk's end may lie right there
@@ -338,12 +343,22 @@ def _walk(
             yield REACHED if out else LEFT
             return
         yield point
-        here = point
+        last, here = here, point
         longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:2]))) / LARGE)
         if turn > 0.98:
             step = min(longest, LONGEST_STEP / max(abs(here.tangent[2]), 1e-9), 1.5 * step)
         elif turn < 0.95:
             step *= 0.7
+
+
+def _bend(last: Point, here: Point, step: float) -> Floats:
+    """How far the branch may bend off its tangent on a ``step``, as it did since ``last``."""
+    way = float(np.linalg.norm(here.scaled - last.scaled))
+    if way == 0.0:
+        return np.zeros(3)
+    bend = 0.5 * step**2 / way * (here.tangent - last.tangent)
+    bend -= float(bend @ here.tangent) * here.tangent
+    return np.asarray(bend * min(1.0, 0.2 * step / max(float(np.linalg.norm(bend)), 1e-300)))
 
 
 def _follows(a: Point, b: Point) -> bool:

@@ -22,6 +22,8 @@ Family = Callable[[float], object]
 NEWTON_TOLERANCE = 1e-14
 ROUNDING = 1e-10
 """A residual that no longer falls is rounding below this (scaled); a long orbit carries its own."""
+MOVED = 1e-6
+"""A step of the parameter (scaled) that is long enough to tell dG/dp."""
 ZERO = 1e-13
 """Scaled distance along the branch to which events are located."""
 SMALL = 1e-5
@@ -39,7 +41,8 @@ class Point:
     ``visit`` runs over the whole orbit, ``determinant`` is that of its Jacobian. ``trace`` and
     ``closing`` are trace and determinant of the map whose fixed point it is: the orbit's own, or
     of a symmetric orbit half of it with the sign reversed. ``margin``: how near an extreme of x
-    comes to an edge of the backlash, in half backlashes (inf: x does not turn).
+    comes to an edge of the backlash, in half backlashes (inf: x does not turn). ``slope`` (2,):
+    dG/dp.
     """
 
     scaled: Floats
@@ -49,6 +52,7 @@ class Point:
     trace: float
     closing: float
     margin: float
+    slope: Floats
 
     @property
     def fold(self) -> float:
@@ -175,11 +179,12 @@ class Curve:
         old: Floats | None = None,
         reach: float = np.inf,
         near: Floats | None = None,
+        slope: Floats | None = None,
     ) -> Point | None:
         """Newton onto the curve inside the plane through ``guess`` normal to ``normal``.
 
-        It begins at ``near``, a better guess in that plane, and stays within ``reach`` of
-        ``guess``. Done when the residual is below 1e-14, or no longer falls and is what rounding
+        It begins at ``near``, a better guess in that plane, with dG/dp as ``slope`` says, and
+        stays within ``reach`` of ``guess``. Done when the residual is below 1e-14, or no longer falls and is what rounding
         leaves.
         """
         scaled = guess.copy() if near is None else near.copy()
@@ -189,6 +194,7 @@ class Curve:
         best: tuple[float, Floats, Floats, ReturnMap] | None = None
         last = np.inf
         stalled = 0
+        step = before = np.zeros(3)
         for count in range(20):
             gap, jacobian, section = self.residual(scaled)
             size = float(np.max(np.abs(gap)))
@@ -204,10 +210,18 @@ class Curve:
                 or (stalled >= 2 and best[0] < ROUNDING)
             ):
                 break
-            matrix[:2, :2] = jacobian / two[:, None] * two - np.eye(2)
-            if count == 0 or (size > 0.01 * last and size > 1e-11):
+            flat = jacobian / two[:, None] * two - np.eye(2)
+            if count == 0 and slope is not None:
+                matrix[:2, 2] = slope
+            elif count > 0 and abs(step[2]) > MOVED:
+                # the mean of dG/dp over the last step, from what it did to the residual
+                mean = 0.5 * (matrix[:2, :2] + flat)
+                matrix[:2, 2] = (gap - before - mean @ step[:2]) / step[2]
+            elif count == 0 or (size > 0.01 * last and size > 1e-11):
                 # dear, and near enough from the last time while Newton falls fast
                 matrix[:2, 2] = self.in_parameter(scaled, section)[0]
+            matrix[:2, :2] = flat
+            before = gap
             last = size
             try:
                 step = np.linalg.solve(matrix, [-gap[0], -gap[1], -normal @ (scaled - guess)])
@@ -236,6 +250,7 @@ class Curve:
             trace=float(jacobian[0, 0] + jacobian[1, 1]),
             closing=float(np.sqrt(whole)) if self.symmetric else whole,
             margin=margin,
+            slope=matrix[:2, 2].copy(),
         )
 
     def orbit(self, point: Point) -> Orbit:
@@ -272,7 +287,11 @@ class Stretch:
         if found is None:
             a, curve = self.first, self.curve
             found = curve.correct(
-                a.scaled + step * a.tangent, normal=a.tangent, old=a.tangent, near=self._near(step)
+                a.scaled + step * a.tangent,
+                normal=a.tangent,
+                old=a.tangent,
+                near=self._near(step),
+                slope=a.slope,
             )
             if found is None:
                 raise ConvergenceError(
