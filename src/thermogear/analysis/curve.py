@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ Family = Callable[[float], object]
 NEWTON_TOLERANCE = 1e-14
 ROUNDING = 1e-10
 """A residual that no longer falls is rounding below this (scaled); a long orbit carries its own."""
+KEPT = 2
+"""Values of the parameter whose maps a curve remembers."""
 MOVED = 1e-6
 """A step of the parameter (scaled) that is long enough to tell dG/dp."""
 ZERO = 1e-13
@@ -114,12 +116,14 @@ class Curve:
         self.span = span
         self.symmetric = symmetric
         self.unit = np.append(scales(lanes_of(family(start))), span)
-        # many orbits at one value, as Newton's at a border, share what is prepared for it
-        self.map_at = lru_cache(maxsize=4)(self._map_at)
-        self._rates = lru_cache(maxsize=4)(self._rates_at)
+        self._maps: dict[float, ReturnMap] = {}
+        self._moved: dict[float, tuple[Floats, Floats, float]] = {}
 
-    def _map_at(self, value: float) -> ReturnMap:
-        return ReturnMap(lanes_of(self.family(value)))
+    def map_at(self, value: float) -> ReturnMap:
+        """The return map at a value, prepared once for all orbits looked at there in a row."""
+        if value not in self._maps:
+            _keep(self._maps, value, ReturnMap(lanes_of(self.family(value))))
+        return self._maps[value]
 
     def residual(self, scaled: Floats) -> tuple[Floats, Floats, ReturnMap]:
         """G (2,), the Jacobian (2, 2) of the closing map in units of the model, its maps."""
@@ -151,9 +155,11 @@ class Curve:
         sign = -1.0 if self.symmetric else 1.0
         return sign * moved * self.span / self.unit[:2], margin / section.backlash
 
-    def _rates_at(self, value: float) -> tuple[Floats, Floats, float]:
+    def _rates(self, value: float) -> tuple[Floats, Floats, float]:
         """Derivatives of the affine maps by the parameter, exact but for those of the equation's
         numbers: central differences, one-sided at the parameter's border."""
+        if value in self._moved:
+            return self._moved[value]
         section = self.map_at(value)
         small = SMALL * self.span
         for weights in (
@@ -169,7 +175,9 @@ class Curve:
         else:
             raise InputError(self.parameter, value, allowed="values with neighbours")
         rates = [(weight / small, around[k]) for k, weight in weights.items()]
-        return exact.maps_moved(section.maps, section.lanes, rates)
+        found = exact.maps_moved(section.maps, section.lanes, rates)
+        _keep(self._moved, value, found)
+        return found
 
     def correct(
         self,
@@ -184,8 +192,8 @@ class Curve:
         """Newton onto the curve inside the plane through ``guess`` normal to ``normal``.
 
         It begins at ``near``, a better guess in that plane, with dG/dp as ``slope`` says, and
-        stays within ``reach`` of ``guess``. Done when the residual is below 1e-14, or no longer falls and is what rounding
-        leaves.
+        stays within ``reach`` of ``guess``. Done when the residual is below 1e-14, or no longer
+        falls and is what rounding leaves.
         """
         scaled = guess.copy() if near is None else near.copy()
         matrix = np.empty((3, 3))
@@ -194,6 +202,7 @@ class Curve:
         best: tuple[float, Floats, Floats, ReturnMap] | None = None
         last = np.inf
         stalled = 0
+        upright = not normal[:2].any()
         step = before = np.zeros(3)
         for count in range(20):
             gap, jacobian, section = self.residual(scaled)
@@ -211,7 +220,9 @@ class Curve:
             ):
                 break
             flat = jacobian / two[:, None] * two - np.eye(2)
-            if count == 0 and slope is not None:
+            if upright:
+                matrix[:2, 2] = 0.0  # the parameter does not move
+            elif count == 0 and slope is not None:
                 matrix[:2, 2] = slope
             elif count > 0 and abs(step[2]) > MOVED:
                 # the mean of dG/dp over the last step, from what it did to the residual
@@ -257,6 +268,12 @@ class Curve:
         value = point.scaled * self.unit
         model = self.family(float(value[2]))
         return closed(ReturnMap(lanes_of(model)), value[:2], self.period, model=model)
+
+
+def _keep(kept: dict[float, Any], value: float, found: object) -> None:
+    while len(kept) >= KEPT:
+        del kept[next(iter(kept))]
+    kept[value] = found
 
 
 def _null(matrix: Floats) -> Floats:
