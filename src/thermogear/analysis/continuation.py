@@ -296,6 +296,7 @@ def _walk(
     for _ in range(most):
         while True:
             guess = here.scaled + step * here.tangent
+            near, slope = _ahead(last, here, step)
             point = None
             try:
                 point = curve.correct(
@@ -303,8 +304,8 @@ def _walk(
                     normal=here.tangent,
                     old=here.tangent,
                     reach=0.5 * step,
-                    near=guess + _bend(last, here, step),
-                    slope=here.slope,
+                    near=near,
+                    slope=slope,
                 )
             except InputError:
                 # the step left what the parameter may be; the walk's end may lie right there
@@ -351,14 +352,16 @@ def _walk(
             step *= 0.7
 
 
-def _bend(last: Point, here: Point, step: float) -> Floats:
-    """How far the branch may bend off its tangent on a ``step``, as it did since ``last``."""
+def _ahead(last: Point, here: Point, step: float) -> tuple[Floats, Floats]:
+    """A ``step`` on, where the branch bends off its tangent as it did since ``last``; dG/dp."""
+    guess = here.scaled + step * here.tangent
     way = float(np.linalg.norm(here.scaled - last.scaled))
     if way == 0.0:
-        return np.zeros(3)
+        return guess, here.slope
     bend = 0.5 * step**2 / way * (here.tangent - last.tangent)
     bend -= float(bend @ here.tangent) * here.tangent
-    return np.asarray(bend * min(1.0, 0.2 * step / max(float(np.linalg.norm(bend)), 1e-300)))
+    bend *= min(1.0, 0.2 * step / max(float(np.linalg.norm(bend)), 1e-300))
+    return guess + bend, here.slope + step / way * (here.slope - last.slope)
 
 
 def _follows(a: Point, b: Point) -> bool:

@@ -303,12 +303,13 @@ class Stretch:
         found = self.points.get(step)
         if found is None:
             a, curve = self.first, self.curve
+            near, slope = self._near(step)
             found = curve.correct(
                 a.scaled + step * a.tangent,
                 normal=a.tangent,
                 old=a.tangent,
-                near=self._near(step),
-                slope=a.slope,
+                near=near,
+                slope=slope,
             )
             if found is None:
                 raise ConvergenceError(
@@ -319,8 +320,8 @@ class Stretch:
             self.points[step] = found
         return found
 
-    def _near(self, step: float) -> Floats:
-        """The cubic through the neighbours on either side of ``step`` and their tangents."""
+    def _near(self, step: float) -> tuple[Floats, Floats]:
+        """On the cubic through the neighbours on either side and their tangents; dG/dp there."""
         low = max((s for s in self.points if s < step), default=0.0)
         high = min((s for s in self.points if s > step), default=self.length)
         width = high - low
@@ -331,7 +332,7 @@ class Stretch:
         begin = width / float(one.tangent @ along) * one.tangent
         end = width / float(other.tangent @ along) * other.tangent
         bent = t * (1.0 - t) * ((1.0 - t) * (begin - chord) - t * (end - chord))
-        return np.asarray(one.scaled + t * chord + bent)
+        return one.scaled + t * chord + bent, one.slope + t * (other.slope - one.slope)
 
     def zero(self, test: Callable[[Point], float], *, low: float, high: float) -> float:
         """Where ``test`` of the point, of different signs at both ends, vanishes between them."""
