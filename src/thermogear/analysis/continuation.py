@@ -159,8 +159,8 @@ def continuation(
     give ``family``, a function value -> model, and its present value ``start``. The range lies
     between ``to`` and ``back_to`` or, where that lies further back, ``start``, so that a doubled
     branch may run back through a fold first. ``span`` of the parameter counts as much as a half
-    backlash in the length of a step (default: the whole range). ``stop_at`` a kind of bifurcation (or several) to
-    stop at. ``progress`` is called with the points so far and the parameter. With
+    backlash in the length of a step (default: the whole range). ``stop_at`` a kind of bifurcation
+    (or several) to stop at. ``progress`` is called with the points so far and the parameter. With
     ``keep_on_interrupt`` Ctrl+C returns what is done, ``ended`` "interrupted".
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
@@ -325,6 +325,12 @@ def _walk(
                 and point.tangent @ here.tangent > 0.9
                 and (step < STRAIGHT or _follows(here, point))
                 and (step < 2e-4 or not passed_mother(curve, here, point))
+                # a branch that turns and leaves the range in one step shows no fold in it
+                and (
+                    step < STRAIGHT
+                    or low <= point.scaled[2] <= high
+                    or point.tangent[2] * here.tangent[2] > 0.0
+                )
             ):
                 break
             step *= 0.5

@@ -24,6 +24,8 @@ ROUNDING = 1e-10
 """A residual that no longer falls is rounding below this (scaled); a long orbit carries its own."""
 KEPT = 2
 """Values of the parameter whose maps a curve remembers."""
+ENOUGH = (0.0, 1e-2 * ROUNDING, ROUNDING)
+"""What a residual must be below that has not fallen for so many steps."""
 MOVED = 1e-6
 """A step of the parameter (scaled) that is long enough to tell dG/dp."""
 ZERO = 1e-13
@@ -213,11 +215,7 @@ class Curve:
                 best, stalled = (size, scaled, jacobian, section), 0
             else:
                 stalled += 1
-            if (
-                size <= NEWTON_TOLERANCE
-                or (stalled >= 1 and best[0] < 1e-2 * ROUNDING)
-                or (stalled >= 2 and best[0] < ROUNDING)
-            ):
+            if size <= NEWTON_TOLERANCE or best[0] < ENOUGH[min(stalled, 2)]:
                 break
             flat = jacobian / two[:, None] * two - np.eye(2)
             if upright:
@@ -243,25 +241,28 @@ class Curve:
                 return None
         if best is None or not best[0] < ROUNDING:
             return None
-        _, scaled, jacobian, section = best
-        matrix[:2, :2] = jacobian / two[:, None] * two - np.eye(2)
-        matrix[:2, 2], margin = self.in_parameter(scaled, section)
+        return self._point(*best[1:], direction=normal if old is None else old)
+
+    def _point(
+        self, scaled: Floats, jacobian: Floats, section: ReturnMap, *, direction: Floats
+    ) -> Point | None:
+        """The point at ``scaled``, its tangent along ``direction``; None without numbers."""
+        two = self.unit[:2]
+        slope, margin = self.in_parameter(scaled, section)
+        matrix = np.column_stack([jacobian / two[:, None] * two - np.eye(2), slope])
         if not np.all(np.isfinite(matrix)):
             return None
-        null = _null(matrix[:2])
-        direction = normal if old is None else old
-        if null @ direction < 0.0:
-            null = -null
+        null = _null(matrix)
         whole = section.determinant(self.period)
         return Point(
             scaled=scaled,
-            tangent=null,
+            tangent=-null if null @ direction < 0.0 else null,
             visit=section.visit(scaled[:2] * two, self.period),
             determinant=whole,
             trace=float(jacobian[0, 0] + jacobian[1, 1]),
             closing=float(np.sqrt(whole)) if self.symmetric else whole,
             margin=margin,
-            slope=matrix[:2, 2].copy(),
+            slope=slope,
         )
 
     def orbit(self, point: Point) -> Orbit:
@@ -336,6 +337,4 @@ class Stretch:
 
     def zero(self, test: Callable[[Point], float], *, low: float, high: float) -> float:
         """Where ``test`` of the point, of different signs at both ends, vanishes between them."""
-        return float(
-            brentq(lambda step: test(self.at(step)), low, high, xtol=ZERO, rtol=8.9e-16)
-        )
+        return float(brentq(lambda step: test(self.at(step)), low, high, xtol=ZERO, rtol=8.9e-16))

@@ -136,7 +136,9 @@ class State:
 
 
 @lru_cache(maxsize=32)
-def _turned(ranks: bytes, centres: bytes, half: bytes, order: int) -> tuple[Floats | Whole, ...]:
+def _turned(
+    ranks: bytes, centres: bytes, half: bytes, order: int
+) -> tuple[Floats, Floats, Floats, Floats, Whole]:
     """What a layout's harmonics have in common for all lanes, as ``add_harmonics`` reads it."""
     rank = np.frombuffer(ranks, np.int64)
     angle = 2.0 * np.pi * np.mod(rank[:, None] * np.frombuffer(centres), 1.0)
@@ -193,9 +195,7 @@ def _of_harmonics(
     return out
 
 
-def prepare_maps(
-    lanes: Lanes, borders: Floats, marks: Bytes, order: int = ORDER
-) -> ExactMaps:
+def prepare_maps(lanes: Lanes, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
     width = np.diff(borders)
     centres = borders[:-1] + 0.5 * width

@@ -69,10 +69,12 @@ def prepare_moved(
                 d_total = 0.0
                 for i in range(m + 1):
                     total += stiffness[n, i] * work[q, m - i]
-                    d_total += stiffness[n, i] * moved[q, m - i] + d_stiffness[n, i] * work[q, m - i]
+                    d_total += stiffness[n, i] * moved[q, m - i]
+                    d_total += d_stiffness[n, i] * work[q, m - i]
                 work[q, m + 2] = -(drag * work[q, m + 1] + hh * total) * scale
                 d_total = d_hh * total + hh * d_total
-                moved[q, m + 2] = -(d_drag * work[q, m + 1] + drag * moved[q, m + 1] + d_total) * scale
+                d_total += d_drag * work[q, m + 1] + drag * moved[q, m + 1]
+                moved[q, m + 2] = -d_total * scale
             for q in range(3, 5):
                 work[q, m + 2] = -drag * work[q, m + 1] * scale
                 moved[q, m + 2] = -(d_drag * work[q, m + 1] + drag * moved[q, m + 1]) * scale
