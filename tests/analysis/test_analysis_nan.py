@@ -110,6 +110,7 @@ def test_no_point_of_a_branch_without_numbers(
             part = "jacobian" if lost == "derivative of the map" else "points"
 
         monkeypatch.setattr("thermogear.analysis.curve.ReturnMap", Broken)
+        curve = Curve(family, "frequency", 1, start=start, span=0.2)
     # on the curve already, and a step beside it
     for away in (0.0, 1e-3):
         assert curve.correct(guess + np.array([away, 0.0, 0.0]), normal=heading) is None

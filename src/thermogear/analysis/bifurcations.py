@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from thermogear.analysis.curve import Curve, Family, Point
+from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch
 from thermogear.analysis.orbits import Orbit
 from thermogear.analysis.section import ReturnMap
 from thermogear.base.errors import ConvergenceError
@@ -71,48 +72,55 @@ class Bifurcation:
 
 def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
     """Bifurcations between two neighbouring points, in the order of the walk."""
-    length = float((b.scaled - a.scaled) @ a.tangent)
+    stretch = Stretch(curve, a, b)
+    length = stretch.length
     events: list[tuple[float, Bifurcation]] = []
-    nodes = {0.0: a, length: b}
-    for graze, note in _grazes(curve, a, b, length):
-        nodes[graze] = curve.between(a, graze)
-        events.append((graze, _bifurcation(curve, nodes[graze], GRAZING, note)))
+    nodes = {0.0, length}
+    for graze, note in _grazes(stretch):
+        nodes.add(graze)
+        events.append((graze, _bifurcation(curve, stretch.at(graze), GRAZING, note)))
         # multipliers turn sharply where contact changes: folds come in pairs close by
         for near in (1e-6, 1e-5, 1e-4, 1e-3):
-            for step in (graze - near, graze + near):
-                if 0.0 < step < length:
-                    nodes[step] = curve.between(a, step)
+            nodes |= {s for s in (graze - near, graze + near) if 0.0 < s < length}
     broken = PITCHFORK if curve.symmetric else FLIP
     for low, high in pairwise(sorted(nodes)):
         for name, kind in (("fold", FOLD), ("flip", broken)):
-            one, other = getattr(nodes[low], name), getattr(nodes[high], name)
+            test = attrgetter(name)
+            one, other = test(stretch.at(low)), test(stretch.at(high))
             if one * other < 0.0 and min(abs(one), abs(other)) > SILENT:
-                step = curve.zero(a, name, low=low, high=high)
-                events.append((step, _bifurcation(curve, curve.between(a, step), kind)))
+                step = stretch.zero(test, low=low, high=high)
+                events.append((step, _bifurcation(curve, stretch.at(step), kind)))
     return [event for _, event in sorted(events, key=lambda pair: pair[0])]
 
 
-def _grazes(curve: Curve, a: Point, b: Point, length: float) -> Iterator[tuple[float, str]]:
-    """Where contact changes on the ``length`` (scaled) from ``a`` to ``b``, and what does."""
+def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
+    """Where contact changes on a stretch, and what does.
+
+    There an extreme of x meets an edge of the backlash. Its distance from the edge, with the sign
+    of whether contact is still as it was, runs smoothly through 0.
+    """
 
     def counts(point: Point) -> tuple[int, int]:
         # both sides of a symmetric orbit graze at once, whichever rounding sees first
         losses, impacts = point.contacts
-        return losses, losses if curve.symmetric else impacts
+        return losses, losses if stretch.curve.symmetric else impacts
 
-    start, before = 0.0, counts(a)
-    while before != counts(b):
-        low, high = start, length
-        while high - low > 1e-13:
-            middle = 0.5 * (low + high)
-            if counts(curve.between(a, middle)) == before:
-                low = middle
-            else:
-                high = middle
-        after = counts(curve.between(a, high))
+    start, before = 0.0, counts(stretch.at(0.0))
+    while before != counts(stretch.at(stretch.length)):
+        known = before
+
+        def apart(point: Point, known: tuple[int, int] = known) -> float:
+            size = min(max(point.margin, 1e-300), 1.0)
+            return size if counts(point) == known else -size
+
+        found = stretch.zero(apart, low=start, high=stretch.length)
+        high = min(
+            step
+            for step, point in stretch.points.items()
+            if step > max(start, found - 2.0 * ZERO) and counts(point) != before
+        )
+        after = counts(stretch.at(high))
         yield high, _grazed(before, after)
-        if high == start:
-            break
         start, before = high, after
 
 
@@ -135,7 +143,7 @@ def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> lis
     length = float((b.scaled - a.scaled) @ a.tangent)
     if length <= LOOK_CLOSER or not _may_hide(before, a, b):
         return [b]
-    middle = curve.between(a, 0.5 * length, tangent=True)
+    middle = Stretch(curve, a, b).at(0.5 * length)
     return [
         *looked_closer(curve, b, a, middle),
         *looked_closer(curve, a, middle, b),
@@ -276,7 +284,7 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
         if not np.isfinite(value):
             return None
         guess = np.append(centre * units, value / curve.span)
-        return mother.correct(guess, normal=upright, tangent=False)
+        return mother.correct(guess, normal=upright)
 
     def flip(value: float) -> float:
         point = there(value)

@@ -137,6 +137,7 @@ def continuation(
     family: Family | None = None,
     start: float | None = None,
     back_to: float | None = None,
+    span: float | None = None,
     most_points: int = 2000,
     stop_at: str | Collection[str] | None = None,
     direction: Floats | None = None,
@@ -157,13 +158,16 @@ def continuation(
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
     give ``family``, a function value -> model, and its present value ``start``. The range lies
     between ``to`` and ``back_to`` or, where that lies further back, ``start``, so that a doubled
-    branch may run back through a fold first. ``stop_at`` a kind of bifurcation (or several) to
-    stop at. ``progress`` is called with the points so far and the parameter. With
+    branch may run back through a fold first. ``span`` of the parameter counts as much as a half
+    backlash in the length of a step (default: the whole range). ``stop_at`` a kind of bifurcation
+    (or several) to stop at. ``progress`` is called with the points so far and the parameter. With
     ``keep_on_interrupt`` Ctrl+C returns what is done, ``ended`` "interrupted".
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
     """
+    if span is not None and not 0.0 < span < np.inf:
+        raise InputError("span", span, allowed="> 0, finite")
     family, start, behind = _range(orbit, parameter, to, family, start, back_to)
     mirrors, symmetric = _symmetry(orbit, family, start, to)
     curve = Curve(
@@ -171,7 +175,7 @@ def continuation(
         parameter,
         orbit.period,
         start=start,
-        span=abs(to - behind),
+        span=abs(to - behind) if span is None else span,
         mirrors=mirrors,
         symmetric=symmetric,
     )
@@ -285,17 +289,23 @@ def _walk(
     curve: Curve, first: Point, limits: tuple[float, float], most: int, step: float
 ) -> Iterator[Point | str]:
     """Points of the branch between two ``limits``, the end last; then the reason for its end."""
-    here = first
+    here, last = first, first
     behind, to = limits
     side = np.sign(to - behind)
     low, high = sorted((behind / curve.span, to / curve.span))
     for _ in range(most):
         while True:
             guess = here.scaled + step * here.tangent
+            near, slope = _ahead(last, here, step)
             point = None
             try:
                 point = curve.correct(
-                    guess, normal=here.tangent, old=here.tangent, reach=0.5 * step
+                    guess,
+                    normal=here.tangent,
+                    old=here.tangent,
+                    reach=0.5 * step,
+                    near=near,
+                    slope=slope,
                 )
             except InputError:
                 # the step left what the parameter may be; the walk's end may lie right there
@@ -315,6 +325,12 @@ def _walk(
                 and point.tangent @ here.tangent > 0.9
                 and (step < STRAIGHT or _follows(here, point))
                 and (step < 2e-4 or not passed_mother(curve, here, point))
+                # a branch that turns and leaves the range in one step shows no fold in it
+                and (
+                    step < STRAIGHT
+                    or low <= point.scaled[2] <= high
+                    or point.tangent[2] * here.tangent[2] > 0.0
+                )
             ):
                 break
             step *= 0.5
@@ -334,12 +350,24 @@ def _walk(
             yield REACHED if out else LEFT
             return
         yield point
-        here = point
+        last, here = here, point
         longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:2]))) / LARGE)
         if turn > 0.98:
             step = min(longest, LONGEST_STEP / max(abs(here.tangent[2]), 1e-9), 1.5 * step)
         elif turn < 0.95:
             step *= 0.7
+
+
+def _ahead(last: Point, here: Point, step: float) -> tuple[Floats, Floats]:
+    """A ``step`` on, where the branch bends off its tangent as it did since ``last``; dG/dp."""
+    guess = here.scaled + step * here.tangent
+    way = float(np.linalg.norm(here.scaled - last.scaled))
+    if way == 0.0:
+        return guess, here.slope
+    bend = 0.5 * step**2 / way * (here.tangent - last.tangent)
+    bend -= float(bend @ here.tangent) * here.tangent
+    bend *= min(1.0, 0.2 * step / max(float(np.linalg.norm(bend)), 1e-300))
+    return guess + bend, here.slope + step / way * (here.slope - last.slope)
 
 
 def _follows(a: Point, b: Point) -> bool:

@@ -42,6 +42,8 @@ CLOSE = 0.05
 return may lie between."""
 REACH = 0.25
 """Half backlashes an orbit may move in one predicted step."""
+SPAN = 0.25
+"""Share of the parameter that counts as one half backlash where the branch is walked."""
 SHORTEST = 1.0 / 64.0
 SAME = 1e-8
 """Half backlashes between two points that are one."""
@@ -279,6 +281,7 @@ def _walked(family: Family, parameter: str, start: float, to: float, stand: _Sta
         family=family,
         start=at,
         back_to=at if beside is None else start,
+        span=max(abs(to - at), SPAN * abs(at)),
         stop_at=(FOLD, FLIP),
         direction=None if beside is None else beside.direction,
         most_points=600,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import factorial, prod
@@ -16,11 +16,12 @@ from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
 from thermogear.dynamics.kernels.batch import CARRIED, QUEUE
 from thermogear.dynamics.kernels.crossing import SCRATCH
 from thermogear.dynamics.kernels.exact import advance_exact
-from thermogear.dynamics.kernels.sensitivity import sensitivity
+from thermogear.dynamics.kernels.sensitivity import prepare_moved, sensitivity
 from thermogear.dynamics.tables import Lanes, Pieces
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
+Bytes = NDArray[np.uint8]
 
 ORDER = 12
 BLOCK = 128
@@ -41,6 +42,13 @@ def _bounds(lanes: Lanes, name: str) -> tuple[Floats, Floats]:
     return size, rate
 
 
+@lru_cache(maxsize=64)
+def _powers(width: int, order: int) -> Floats:
+    """(q pi/N)^(order - 1) of every harmonic q and every allowed count N of sub-steps."""
+    turn = np.pi / np.array(_COUNTS)
+    return np.asarray((np.arange(width)[:, None] * turn) ** (order - 1))
+
+
 def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
     """Sub-steps a period each lane needs so that a polynomial of ``order`` is exact.
 
@@ -58,14 +66,12 @@ def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
     scale = lanes.half_backlash + strongest / mean
     counts = np.array(_COUNTS)
     half = lanes.period[:, None] / (2.0 * counts)
-    turn = np.pi / counts
     allowed = 2e-17 * factorial(order + 1)
     good = half * np.maximum(np.sqrt(stiffest), lanes.damping)[:, None] <= 0.3
     for name, size in (("stiffness", np.ones(len(lanes))), ("force", scale)):
         coefficients = np.abs(getattr(lanes, name))
-        powers = (np.arange(coefficients.shape[1])[:, None] * turn) ** (order - 1)
         # summed rank by rank: no sum may depend on the other lanes
-        tail = np.sum(coefficients[:, :, None] * powers, axis=1)
+        tail = np.sum(coefficients[:, :, None] * _powers(coefficients.shape[1], order), axis=1)
         good &= half**2 * tail <= allowed * size[:, None]
     needed = np.where(good.any(axis=1), counts[np.argmax(good, axis=1)], 0)
     if np.all(needed):
@@ -88,7 +94,7 @@ class ExactMaps:
     half: Floats
     reach: Floats
     backlash: Floats
-    marks: NDArray[np.uint8]
+    marks: Bytes
     borders: Floats
     order: int
 
@@ -175,31 +181,30 @@ def _aligned(*shapes: tuple[int, ...]) -> list[Floats]:
     return found
 
 
-@lru_cache(maxsize=64)
-def _turned(ranks: bytes, centres: bytes) -> tuple[Floats, Floats]:
-    """cos and sin of every harmonic's angle at the centres: alike for all lanes of a layout."""
-    turns = np.frombuffer(ranks, np.int64)[:, None] * np.frombuffer(centres)
-    angle = 2.0 * np.pi * np.mod(turns, 1.0)
-    return np.cos(angle), np.sin(angle)
+@lru_cache(maxsize=32)
+def _turned(
+    ranks: bytes, centres: bytes, half: bytes, order: int
+) -> tuple[Floats, Floats, Floats, Floats, Whole]:
+    """What a layout's harmonics have in common for all lanes, as ``add_harmonics`` reads it."""
+    rank = np.frombuffer(ranks, np.int64)
+    angle = 2.0 * np.pi * np.mod(rank[:, None] * np.frombuffer(centres), 1.0)
+    widths, which = np.unique(np.frombuffer(half), return_inverse=True)
+    reach = 2.0 * np.pi * rank * widths[:, None]
+    parts = np.zeros((2, *reach.shape, order + 1))
+    power = np.ones(reach.shape)
+    for m in range(order + 1):
+        power = power * reach / m if m > 0 else power
+        parts[m % 2, :, :, m] = power if m % 4 in (0, 3) else -power
+    return np.cos(angle), np.sin(angle), parts[0], parts[1], which.ravel()
 
 
 def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) -> Floats:
     """Coefficients in u about the centre of every sub-step: (sub-step, lane, order + 1)."""
     coefficients = getattr(lanes, name)
-    out = np.zeros((centres.size, len(lanes), order + 1))
-    out[:, :, 0] = coefficients[:, 0].real
-    ranks = 1 + np.flatnonzero(np.any(coefficients[:, 1:], axis=0))
-    if ranks.size:
-        cosine, sine = _turned(ranks.tobytes(), centres.tobytes())
-        add_harmonics(
-            np.ascontiguousarray(coefficients[:, ranks].real.T),
-            np.ascontiguousarray(coefficients[:, ranks].imag.T),
-            cosine,
-            sine,
-            2.0 * np.pi * ranks[:, None] * half,
-            out,
-        )
     pieces: tuple[Pieces | None, ...] = getattr(lanes, name + "_pieces")
+    if len(lanes) == 1 and pieces[0] is None:
+        return _of_one(coefficients.tobytes(), centres.tobytes(), half.tobytes(), order)
+    out = _of_harmonics(coefficients, centres, half, order)
     done: dict[Pieces, Floats] = {}
     for lane, piece in enumerate(pieces):
         if piece is not None:
@@ -213,9 +218,30 @@ def _taylor(lanes: Lanes, name: str, centres: Floats, half: Floats, order: int) 
     return out
 
 
-def prepare_maps(
-    lanes: Lanes, borders: Floats, marks: NDArray[np.uint8], order: int = ORDER
-) -> ExactMaps:
+@lru_cache(maxsize=32)
+def _of_one(coefficients: bytes, centres: bytes, half: bytes, order: int) -> Floats:
+    """The table of one lane, kept: along a parameter one of the two often stays as it is."""
+    row = np.frombuffer(coefficients, complex)[None]
+    return _of_harmonics(row, np.frombuffer(centres), np.frombuffer(half), order)
+
+
+def _of_harmonics(
+    coefficients: NDArray[np.complex128], centres: Floats, half: Floats, order: int
+) -> Floats:
+    out = np.zeros((centres.size, len(coefficients), order + 1))
+    out[:, :, 0] = coefficients[:, 0].real
+    ranks = 1 + np.flatnonzero(np.any(coefficients[:, 1:], axis=0))
+    if ranks.size:
+        add_harmonics(
+            np.ascontiguousarray(coefficients[:, ranks].real.T),
+            np.ascontiguousarray(coefficients[:, ranks].imag.T),
+            *_turned(ranks.tobytes(), centres.tobytes(), half.tobytes(), order),
+            out,
+        )
+    return out
+
+
+def prepare_maps(lanes: Lanes, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
     widths = np.diff(borders)
     centres = borders[:-1] + 0.5 * widths
@@ -255,6 +281,44 @@ def prepare_maps(
         borders=borders,
         order=order,
     )
+
+
+def maps_moved(
+    maps: ExactMaps, lanes: Lanes, around: Sequence[tuple[float, Lanes]], order: int = ORDER
+) -> tuple[Floats, Floats, float]:
+    """Derivatives of the polynomials (N, 5, K + 1), half widths (N) and half backlash of one lane.
+
+    ``maps`` are those of ``lanes``. The numbers of the equation change at the rate
+    sum(weight * neighbour) over ``around``; how the maps change with them is exact.
+    """
+    width = np.diff(maps.borders)
+    centres = maps.borders[:-1] + 0.5 * width
+
+    def rate(name: str) -> float:
+        return float(sum(weight * getattr(one, name)[0] for weight, one in around))
+
+    def table(name: str) -> Floats:
+        if any(getattr(one, name + "_pieces")[0] is not None for _, one in around):
+            parts = [w * _taylor(one, name, centres, 0.5 * width, order) for w, one in around]
+        else:
+            moved = np.sum([w * getattr(one, name) for w, one in around], axis=0)
+            parts = [_of_harmonics(moved, centres, 0.5 * width, order)]
+        return np.asarray(np.sum(parts, axis=0)[:, 0])
+
+    half = 0.5 * width * rate("period")
+    polys = np.empty((centres.size, 5, order + 1))
+    prepare_moved(
+        float(lanes.damping[0]),
+        rate("damping"),
+        np.ascontiguousarray(maps.half[:, 0]),
+        half,
+        _taylor(lanes, "stiffness", centres, 0.5 * width, order)[:, 0],
+        table("stiffness"),
+        _taylor(lanes, "force", centres, 0.5 * width, order)[:, 0],
+        table("force"),
+        polys,
+    )
+    return polys, half, rate("half_backlash")
 
 
 def first_half(maps: ExactMaps) -> ExactMaps:
@@ -301,9 +365,21 @@ def moved_by(
     return found[:2], float(found[2])
 
 
+@lru_cache(maxsize=64)
+def _borders(count: int, jumps: tuple[float, ...], samples: int) -> tuple[Floats, Bytes]:
+    """The borders of ``count`` sub-steps and of jumps, and which of them are sampled."""
+    uniform = np.arange(count + 1) / count
+    borders = np.unique(np.concatenate([uniform, jumps]))
+    marks = np.zeros(borders.size - 1, np.uint8)
+    if samples > 0:
+        at = uniform[: -1 : count // samples]
+        marks[np.searchsorted(borders, at)] = 1
+    return borders, marks
+
+
 def layouts(
     lanes: Lanes, *, samples: int = 0, block: int = BLOCK, refine: int = 1
-) -> Iterator[tuple[Whole, Floats, NDArray[np.uint8]]]:
+) -> Iterator[tuple[Whole, Floats, Bytes]]:
     """Blocks of lanes with equal sub-steps: their indices, the borders, the sampled borders.
 
     The sub-steps of a lane depend on that lane alone, so results do not depend on company.
@@ -315,12 +391,7 @@ def layouts(
         count, jumps = key
         if samples > 0:
             count = -(-count // samples) * samples
-        uniform = np.arange(count + 1) / count
-        borders = np.unique(np.concatenate([uniform, jumps]))
-        marks = np.zeros(borders.size - 1, np.uint8)
-        if samples > 0:
-            at = uniform[: -1 : count // samples]
-            marks[np.searchsorted(borders, at)] = 1
+        borders, marks = _borders(count, jumps, samples)
         index = np.array([i for i, k in enumerate(keys) if k == key])
         parts = -(-index.size // block)
         for part in range(parts):

@@ -14,6 +14,7 @@ needs: values and rates of phi, psi, nu, free psi, free nu at u = 1, and the hal
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.compiled import kernel
@@ -177,21 +178,30 @@ def prepare(
                     store(curves, (n * lanes + at[i]) * room + first, load(turned, EIGHT * i))
 
 
-@kernel
-def add_harmonics(real: Real, imag: Real, cosine: Real, sine: Real, reach: Real, out: Real) -> None:
+@njit(nogil=True, cache=True, error_model="numpy")
+def add_harmonics(
+    real: Real,
+    imag: Real,
+    cosine: Real,
+    sine: Real,
+    even: Real,
+    odd: Real,
+    which: Whole,
+    out: Real,
+) -> None:
     """Add the Taylor coefficients of harmonics to ``out`` (N, lane, K + 1).
 
     ``real``, ``imag`` (rank, lane) of their coefficients, ``cosine``, ``sine`` (rank, N) of their
-    angles at the centres, ``reach`` (rank, N) half a sub-step in their angle.
+    angles at the centres; ``even``, ``odd`` (width, rank, K + 1) the derivatives of a cosine over
+    the factorials where half a sub-step is one of several widths, ``which`` (N) of them.
     """
-    for k in range(real.shape[0]):
-        for n in range(out.shape[0]):
-            for lane in range(out.shape[1]):
-                even = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
-                odd = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
-                power = 1.0
-                for m in range(out.shape[2]):
-                    if m > 0:
-                        power = power * reach[k, n] / m
-                    part = (odd if m % 2 else even) * power
-                    out[n, lane, m] += part if m % 4 in (0, 3) else -part
+    for n in range(out.shape[0]):
+        for lane in range(out.shape[1]):
+            row = out[n, lane]
+            for k in range(real.shape[0]):
+                whole = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
+                turned = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
+                some = even[which[n], k]
+                rest = odd[which[n], k]
+                for m in range(row.size):
+                    row[m] += whole * some[m] + turned * rest[m]

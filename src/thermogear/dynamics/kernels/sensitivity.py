@@ -14,8 +14,10 @@ have another contact.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
 from thermogear.dynamics.kernels.compiled import kernel, part
 from thermogear.dynamics.kernels.crossing import (
     FRONT,
@@ -31,6 +33,121 @@ from thermogear.dynamics.kernels.crossing import (
 )
 
 Real = NDArray[np.float64]
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _value(p: Real, u: float) -> float:
+    total = 0.0
+    for m in range(p.size - 1, -1, -1):
+        total = total * u + p[m]
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _slope(p: Real, u: float) -> float:
+    total = 0.0
+    for m in range(p.size - 1, 0, -1):
+        total = total * u + m * p[m]
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def prepare_moved(
+    damping: float,
+    d_damping: float,
+    half: Real,
+    d_half: Real,
+    stiffness: Real,
+    d_stiffness: Real,
+    force: Real,
+    d_force: Real,
+    d_polys: Real,
+) -> None:
+    """The derivative of :func:`~thermogear.dynamics.kernels.affine.prepare`'s polynomials.
+
+    Of one lane: ``half`` (N), ``stiffness`` and ``force`` (N, K + 1), ``d_...`` their derivatives
+    by the parameter; ``d_polys`` (N, 5, K + 1) is filled.
+    """
+    count, width = stiffness.shape
+    order = width - 1
+    work = np.empty((5, width))
+    moved = np.empty((5, width))
+    left = np.empty(5)
+    rise = np.empty(5)
+    d_left = np.empty(5)
+    d_rise = np.empty(5)
+    for n in range(count):
+        h = half[n]
+        dh = d_half[n]
+        ch = damping * h
+        d_ch = d_damping * h + damping * dh
+        hh = h * h
+        d_hh = 2.0 * h * dh
+        work[:] = 0.0
+        moved[:] = 0.0
+        work[0, 0] = 1.0
+        work[1, 1] = 1.0
+        work[3, 1] = 1.0
+        for m in range(order - 1):
+            scale = 1.0 / ((m + 2.0) * (m + 1.0))
+            drag = ch * (m + 1.0)
+            d_drag = d_ch * (m + 1.0)
+            for q in range(3):
+                total = 0.0
+                d_total = 0.0
+                for i in range(m + 1):
+                    total += stiffness[n, i] * work[q, m - i]
+                    d_total += stiffness[n, i] * moved[q, m - i]
+                    d_total += d_stiffness[n, i] * work[q, m - i]
+                work[q, m + 2] = -(drag * work[q, m + 1] + hh * total) * scale
+                d_total = d_hh * total + hh * d_total
+                d_total += d_drag * work[q, m + 1] + drag * moved[q, m + 1]
+                moved[q, m + 2] = -d_total * scale
+            for q in range(3, 5):
+                work[q, m + 2] = -drag * work[q, m + 1] * scale
+                moved[q, m + 2] = -(d_drag * work[q, m + 1] + drag * moved[q, m + 1]) * scale
+            push = hh * force[n, m] * scale
+            d_push = (d_hh * force[n, m] + hh * d_force[n, m]) * scale
+            for q in (2, 4):
+                work[q, m + 2] += push
+                moved[q, m + 2] += d_push
+        for q in range(5):
+            left[q] = _value(work[q], -1.0)
+            rise[q] = _slope(work[q], -1.0)
+            d_left[q] = _value(moved[q], -1.0)
+            d_rise[q] = _slope(moved[q], -1.0)
+        det = left[0] * rise[1] - left[1] * rise[0]
+        d_det = d_left[0] * rise[1] + left[0] * d_rise[1]
+        d_det -= d_left[1] * rise[0] + left[1] * d_rise[0]
+        a = rise[1] / det
+        d_a = (d_rise[1] - a * d_det) / det
+        b = -rise[0] / det
+        d_b = (-d_rise[0] - b * d_det) / det
+        c = -h * left[1] / det
+        d_c = (-dh * left[1] - h * d_left[1] - c * d_det) / det
+        d = h * left[0] / det
+        d_d = (dh * left[0] + h * d_left[0] - d * d_det) / det
+        e = (left[1] * rise[2] - rise[1] * left[2]) / det
+        d_e = d_left[1] * rise[2] + left[1] * d_rise[2] - d_rise[1] * left[2] - rise[1] * d_left[2]
+        d_e = (d_e - e * d_det) / det
+        f = (rise[0] * left[2] - left[0] * rise[2]) / det
+        d_f = d_rise[0] * left[2] + rise[0] * d_left[2] - d_left[0] * rise[2] - left[0] * d_rise[2]
+        d_f = (d_f - f * d_det) / det
+        g = h / rise[3]
+        d_g = (dh - g * d_rise[3]) / rise[3]
+        r = -rise[4] / rise[3]
+        d_r = (-d_rise[4] - r * d_rise[3]) / rise[3]
+        out = d_polys[n]
+        for m in range(width):
+            w0, w1, w3 = work[0, m], work[1, m], work[3, m]
+            v0, v1, v3 = moved[0, m], moved[1, m], moved[3, m]
+            out[PHI, m] = d_a * w0 + a * v0 + d_b * w1 + b * v1
+            out[PSI, m] = d_c * w0 + c * v0 + d_d * w1 + d * v1
+            out[NU, m] = moved[2, m] + d_e * w0 + e * v0 + d_f * w1 + f * v1
+            out[FREE_PSI, m] = d_g * w3 + g * v3
+            out[FREE_NU, m] = moved[4, m] + d_r * w3 + r * v3
+        out[FREE_PSI, 0] -= d_g * left[3] + g * d_left[3]
+        out[FREE_NU, 0] -= d_left[4] + d_r * left[3] + r * d_left[3]
 
 
 @kernel
@@ -130,5 +247,17 @@ def _nearest_turn(p: Real, width: int, begin: float, end: float, shift: float, b
     last = slope(p, FRONT, width, end)
     if first * last > 0.0 or first == last:
         return np.inf
-    x = value_of(p, FRONT, width, begin + (end - begin) * first / (first - last)) + shift
+    u = begin + (end - begin) * first / (first - last)
+    for _ in range(8):
+        bend = 0.0
+        for m in range(width - 1, 1, -1):
+            bend = bend * u + m * (m - 1.0) * p[FRONT + m]
+        new = u - slope(p, FRONT, width, u) / bend
+        if not begin <= new <= end:
+            break
+        close = abs(new - u) < 1e-9 * (end - begin)
+        u = new
+        if close:
+            break
+    x = value_of(p, FRONT, width, u) + shift
     return min(abs(x - b), abs(x + b))
