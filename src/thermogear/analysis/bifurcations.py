@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from operator import attrgetter
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
 from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch
-from thermogear.analysis.orbits import Orbit
+from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import ReturnMap
-from thermogear.base.errors import ConvergenceError
+from thermogear.base.errors import ConvergenceError, InputError
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +31,14 @@ VERTICAL = "vertical: linear until the contact changes"
 LONGEST_STEP = 0.05
 LOOK_CLOSER = 1e-3
 """Between points nearer than this no second event of a kind is looked for."""
+PROBE = 1e-6
+"""Scaled step of differences that Newton's method onto a bifurcation takes; rough ones do."""
+FARTHEST = 0.25
+"""Half backlashes, or shares of the parameter, in which it looks around."""
+MOST_STEPS = 8
+MOST_LOOKS = 30
+CARRIED = 1e-8
+"""It has settled where a step is shorter: the next would be shorter than rounding."""
 SILENT = 1e-11
 """A test function below this is rounding: of orbits that float in the gap it is 0 all along."""
 DOUBLED = (1e-4, 3e-5, 1e-3, 1e-5, 3e-4, 3e-3, 1e-2)
@@ -131,6 +139,108 @@ def _bifurcation(curve: Curve, point: Point, kind: str, note: str = "") -> Bifur
     if kind in (FLIP, PITCHFORK):
         found = replace(found, note=criticality(found, curve.family))
     return found
+
+
+def carried(bifurcation: Bifurcation, family: Family) -> Bifurcation:
+    """The same fold, period doubling or pitchfork of another ``family``, from where it was.
+
+    Newton on state (2,) and parameter at once, in the family's units: the orbit closes and
+    (1 - mu_1)(1 - mu_2) is 0 (of a period doubling (1 + mu_1)(1 + mu_2); a pitchfork is one of
+    the half orbit mirrored). Beside a grazing, where that fails, the branch is searched nearby.
+    ``family``, value -> model as :func:`~thermogear.analysis.continuation.continuation` takes
+    it, must be a near one. The value is good to 1e-10 of itself.
+
+    Raises InputError for a grazing or a birth, which have no multiplier of their own;
+    ConvergenceError where there is none nearby.
+    """
+    kind = bifurcation.kind
+    if kind not in (FOLD, FLIP, PITCHFORK):
+        raise InputError("bifurcation", kind, allowed=f"{FOLD} | {FLIP} | {PITCHFORK}")
+    curve = Curve(
+        family,
+        bifurcation.parameter,
+        bifurcation.period,
+        start=bifurcation.value,
+        span=max(abs(bifurcation.value), 1e-3),
+        mirrors=kind == PITCHFORK,
+        symmetric=kind == PITCHFORK,
+    )
+
+    scaled = _settled(curve, kind, np.append(bifurcation.state, bifurcation.value) / curve.unit)
+    if scaled is None:
+        raise ConvergenceError(
+            f"the {kind} at {curve.parameter} = {bifurcation.value!r} was not found again near "
+            "it; follow the branch instead"
+        )
+    state, value = scaled[:2] * curve.unit[:2], float(scaled[2] * curve.span)
+    orbit = closed(curve.map_at(value), state, curve.period, model=family(value))
+    found = Bifurcation(kind, curve.parameter, value, orbit)
+    return found if kind == FOLD else replace(found, note=criticality(found, family))
+
+
+def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
+    """Newton onto the bifurcation; where it wanders, a search along the branch beside ``guess``."""
+
+    def apart(scaled: Floats) -> Floats:
+        gap, jacobian, section = curve.residual(scaled)
+        whole = section.determinant(curve.period)
+        closing = float(np.sqrt(whole)) if curve.symmetric else whole
+        trace = float(jacobian[0, 0] + jacobian[1, 1])
+        return np.append(gap, 1.0 + closing + (-trace if kind == FOLD else trace))
+
+    scaled = guess
+    for _ in range(MOST_STEPS):
+        here = apart(scaled)
+        columns = [(apart(scaled + one) - here) / PROBE for one in PROBE * np.eye(3)]
+        matrix = np.array(columns).T
+        if not np.all(np.isfinite(matrix)) or np.linalg.matrix_rank(matrix) < 3:
+            break
+        step = np.linalg.solve(matrix, -here)
+        length = float(np.max(np.abs(step)))
+        scaled = scaled + step
+        if length < CARRIED:
+            return scaled
+        if not length < FARTHEST:
+            break
+    return _along(curve, attrgetter("fold" if kind == FOLD else "flip"), guess)
+
+
+def _along(curve: Curve, test: Callable[[Point], float], guess: Floats) -> Floats | None:
+    """The nearest zero of a test function on the branch through the neighbourhood of ``guess``.
+
+    Beside a grazing multipliers run as the root of the distance from it, which no Newton follows.
+    """
+    gap, jacobian, section = curve.residual(guess)
+    two = curve.unit[:2]
+    flat = np.column_stack(
+        [jacobian / two[:, None] * two - np.eye(2), curve.in_parameter(guess, section)[0]]
+    )
+    if not (np.all(np.isfinite(gap)) and np.all(np.isfinite(flat))):
+        return None
+    here = curve.correct(guess, normal=np.linalg.svd(flat)[2][2], reach=FARTHEST)
+    if here is None:
+        return None
+    ends, steps = {1.0: here, -1.0: here}, {1.0: 1e-4, -1.0: 1e-4}
+    for _ in range(MOST_LOOKS):
+        for way in [w for w in ends if steps[w] > 1e-8]:
+            last, step = ends[way], way * steps[way]
+            there = curve.correct(
+                last.scaled + step * last.tangent,
+                normal=last.tangent,
+                old=last.tangent,
+                reach=0.5 * steps[way],
+            )
+            if there is None or there.tangent @ last.tangent < 0.5:
+                steps[way] *= 0.25
+                continue
+            if test(last) * test(there) < 0.0:
+                stretch = Stretch(curve, *((last, there) if way > 0.0 else (there, last)))
+                zero = stretch.zero(test, low=0.0, high=stretch.length)
+                return stretch.at(zero).scaled
+            ends[way] = there
+            far = float(np.linalg.norm(there.scaled - here.scaled)) > FARTHEST
+            steps[way] = 0.0 if far else 2.0 * steps[way]
+    return None
 
 
 def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> list[Point]:
