@@ -10,14 +10,14 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-paths friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
 	$(BIN)/thermogear run .venv/rig.toml -o .demo
 
 test: $(STAMP) lint  ## every check, slow layer included
-	$(BIN)/python -m pytest -q -n auto --dist loadfile
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
 
 check: $(STAMP) lint unit  ## the fast checks
 
@@ -28,7 +28,7 @@ lint: $(STAMP)
 	$(BIN)/lint-imports
 
 unit: $(STAMP)
-	$(BIN)/python -m pytest -q -n auto --dist loadfile -m "not slow"
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder -m "not slow"
 
 $(STAMP): pyproject.toml requirements/boot.txt requirements/dev.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -46,7 +46,7 @@ docs: $(DOCS_STAMP)  ## the documentation site; a warning or a dead link is an e
 	$(BIN)/python docs/_site/check_html.py docs/_build/html
 
 validation: $(STAMP)  ## measure the numbers of the site's validation and thesis pages anew
-	$(BIN)/python -m pytest -q -n auto --dist loadfile --validation=docs/validation.json tests
+	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder --validation=docs/validation.json tests
 	$(BIN)/python docs/_site/collect.py docs/thesis.json
 
 $(DOCS_STAMP): $(STAMP) requirements/docs.txt
@@ -55,6 +55,9 @@ $(DOCS_STAMP): $(STAMP) requirements/docs.txt
 
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
+
+bench-paths: $(STAMP)  ## what one answer costs, before and after; PATHS=--write for the page
+	$(BIN)/python bench/paths.py $(PATHS)
 
 $(BENCH_STAMP): $(STAMP) requirements/bench.txt requirements/bench-fortran.txt
 	test -x $(BENCH_BIN)/python || $(BIN)/python -m venv .bench-venv
@@ -89,6 +92,9 @@ same: $(STAMP)  ## do all commands still store the same numbers? SAME="HEAD~1 --
 
 trial-damage: $(STAMP)  ## 300 single damages to finished files and stores, minutes; docs/trial_damage.md
 	@$(BIN)/python checks/trial_damage.py
+
+trial-long: $(STAMP)  ## the shortened tests with ten times the count, minutes; docs/trial_long.md
+	$(BIN)/python -m pytest -q --long=docs/trial_long.md tests
 
 trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an hour; docs/trial_pairs.md
 	@$(BIN)/python checks/trial_pairs.py

@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
 
-COMPARED = "compared"
+COMPARED, AT_LENGTH = "compared", "at_length"
 Compared = Callable[..., None]
+AtLength = Callable[[int, int, str], int]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -26,13 +27,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         metavar="FILE",
         help="run the tests that compare with something known, and write what they saw to FILE",
     )
+    parser.addoption(
+        "--long",
+        metavar="FILE",
+        help="run the tests that are shortened, at length, and write what they took to FILE",
+    )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if config.getoption("--validation"):
-        others = [item for item in items if COMPARED not in getattr(item, "fixturenames", ())]
-        config.hook.pytest_deselected(items=others)
-        items[:] = [item for item in items if item not in others]
+    for option, fixture in (("--validation", COMPARED), ("--long", AT_LENGTH)):
+        if config.getoption(option):
+            others = [item for item in items if fixture not in getattr(item, "fixturenames", ())]
+            config.hook.pytest_deselected(items=others)
+            items[:] = [item for item in items if item not in others]
+    # one file is one worker's: the long ones first, so that no worker ends with one of them alone
+    long = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in long)
 
 
 class _Notes:
@@ -60,10 +70,38 @@ class _Notes:
             self.target.write_text(text, "utf-8")
 
 
+class _Long:
+    """The page of the tests that were run at length."""
+
+    def __init__(self, target: Path) -> None:
+        self.target, self.rows = target, list[str]()
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "call" and report.passed:
+            test = report.nodeid.removeprefix("tests/").replace("::", " ")
+            for name, counts in report.user_properties:
+                if name == AT_LENGTH:
+                    usual, long, words = counts  # type: ignore[misc]
+                    took = f"{report.duration:.0f}"
+                    self.rows.append(f"| {words} | `{test}` | {usual} | {long} | {took} |")
+
+    def pytest_sessionfinish(self, exitstatus: int) -> None:
+        if exitstatus == 0:
+            head = (
+                "---\norphan: true\n---\n# Tests at length\n\n"
+                "Made by `make trial-long`: the same tests with the larger count, every claim and "
+                "bound alike. All held.\n\n"
+                "| of | test | count in `make test` | count here | took, s |\n"
+                "|---|---|---:|---:|---:|\n"
+            )
+            self.target.write_text(head + "\n".join(sorted(self.rows)) + "\n", "utf-8")
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    target = config.getoption("--validation")
-    if target and not hasattr(config, "workerinput"):
-        config.pluginmanager.register(_Notes(Path(target)), "validation-notes")
+    for option, notes in (("--validation", _Notes), ("--long", _Long)):
+        target = config.getoption(option)
+        if target and not hasattr(config, "workerinput"):
+            config.pluginmanager.register(notes(Path(target)), f"notes of {option}")
 
 
 @pytest.fixture
@@ -83,6 +121,19 @@ def compared(record_property: Callable[[str, object], None]) -> Compared:
         assert worst <= within, f"{quantity}: {worst:.3g} from {against}, allowed {within:.3g}"
 
     return compare
+
+
+@pytest.fixture
+def at_length(
+    request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
+) -> AtLength:
+    """``at_length(usual, long, words)``: how many a test tries; ``long`` with ``--long``."""
+
+    def chosen(usual: int, long: int, words: str) -> int:
+        record_property(AT_LENGTH, (usual, long, words))
+        return long if request.config.getoption("--long") else usual
+
+    return chosen
 
 
 @pytest.fixture(scope="session")

@@ -101,12 +101,27 @@ def started(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]
 
 
 # --- light ------------------------------------------------------------------------------
-def test_checking_a_case_loads_no_part_of_scipy_that_only_a_run_uses() -> None:
+def test_checking_a_case_loads_nothing_that_only_a_run_uses() -> None:
     code = (
         "import sys\n"
         "from thermogear.front.cli import main\n"
         "assert main(['check', 'rig']) == 0\n"
-        "heavy = ('scipy.optimize', 'scipy.integrate', 'scipy.interpolate', 'matplotlib')\n"
+        "heavy = ('scipy', 'xarray', 'pandas', 'numba', 'pint', 'jinja2', 'matplotlib')\n"
+        "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "[]"
+
+
+@pytest.mark.parametrize("study", ["answers.survey", "run"])
+def test_before_the_first_computation_numba_alone_is_heavy(study: str) -> None:
+    code = (
+        "import importlib, sys\n"
+        "import thermogear.front.cli, thermogear.front.progress, thermogear.results.files\n"
+        "from thermogear.case.case import load_case\n"
+        "load_case('rig')\n"
+        f"importlib.import_module('thermogear.study.{study}')\n"
+        "heavy = ('scipy.linalg', 'scipy.special', 'xarray', 'pint', 'jinja2', 'h5py')\n"
         "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

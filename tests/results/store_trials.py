@@ -1,6 +1,7 @@
 """Trials of the store in processes of their own: kills, a full disk, a cluster that loses workers.
 
-Run as ``python store_trials.py TRIAL DIRECTORY [COUNT]``; prints one JSON line.
+Run as ``python store_trials.py TRIAL DIRECTORY [COUNT]``; prints one JSON line. COUNT: how many
+kills or damages, or for a cluster the points of each axis of a map, in tiles of 6.
 """
 
 import hashlib
@@ -16,6 +17,7 @@ import sys
 import time
 import traceback
 import warnings
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +26,8 @@ import thermogear
 from thermogear.analysis.maps import MapPlan, map_plan
 from thermogear.analysis.settle import Rule
 from thermogear.base.errors import InputError, WorkerWarning
-from thermogear.base.stores import read_journal
+from thermogear.base.plan import keys_of
+from thermogear.base.stores import read_journal, read_store
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.results.fingerprint import code_version
 from thermogear.results.store import QUARANTINE
@@ -36,7 +39,7 @@ MODEL = TorsionalModel(
 
 
 def small_plan(count: int = 30, tile: int = 6) -> MapPlan:
-    """25 chunks of a few milliseconds."""
+    """Chunks of a few milliseconds: 25, or what ``count`` points of an axis make of ``tile``."""
     axes = {
         "frequency": np.linspace(0.4, 2.2, count),
         "stiffness_amplitude": np.linspace(0.05, 0.9, count),
@@ -144,7 +147,44 @@ def full(directory: Path, _: int) -> dict:
     }
 
 
-def cluster(directory: Path, _: int) -> dict:
+def damage(path: Path, draw: random.Random) -> None:
+    """Flip a bit, cut, empty, delete or overwrite a file."""
+    raw = bytearray(path.read_bytes())
+    way = draw.choice(["flip", "cut", "empty", "delete", "noise"])
+    if way == "flip" and raw:
+        raw[draw.randrange(len(raw))] ^= 1 << draw.randrange(8)
+        path.write_bytes(raw)
+    elif way == "cut":
+        path.write_bytes(raw[: len(raw) // 2])
+    elif way == "empty":
+        path.write_bytes(b"")
+    elif way == "delete":
+        path.unlink()
+    else:
+        path.write_bytes(draw.randbytes(max(len(raw), 1)))
+
+
+def corruptions(directory: Path, count: int) -> dict:
+    """Damage a finished store in one place at a time; repeat the command; compare."""
+    plan, store, draw = small_plan(12), directory / "store", random.Random(2)
+    truth = numbers(carry_out(plan, store))
+    tally = {"repaired": 0, "loud": 0, "silent": 0, "reader_silent": 0}
+    for _ in range(count):
+        files = sorted(p for p in store.rglob("*") if p.is_file() and p.name != "lock")
+        damage(draw.choice(files), draw)
+        with suppress(InputError):
+            tally["reader_silent"] += numbers(read_store(store)) != truth
+        try:
+            same = numbers(carry_out(plan, store)) == truth == numbers(read_store(store))
+            tally["repaired" if same else "silent"] += 1
+        except InputError:
+            tally["loud"] += 1
+        for old in (store / QUARANTINE).glob("*"):
+            old.unlink()
+    return tally
+
+
+def cluster(directory: Path, count: int) -> dict:
     """Two worker processes, against threads; one of them is killed twice."""
     import dask
     from distributed import Client, LocalCluster
@@ -156,7 +196,7 @@ def cluster(directory: Path, _: int) -> dict:
         }
     )
 
-    plan = small_plan(60, 6)
+    plan = small_plan(count)
     plan.pilot(16)
     with (
         LocalCluster(
@@ -172,7 +212,7 @@ def cluster(directory: Path, _: int) -> dict:
         killed: list[int] = []
 
         def watch(step) -> None:
-            if step.done in (10, 50) and len(killed) < 2:
+            if len(killed) < 2 and step.done >= step.total * (0.1, 0.5)[len(killed)]:
                 victim = min(client.run(os.getpid).values())
                 os.kill(victim, signal.SIGKILL)
                 killed.append(victim)
@@ -181,8 +221,9 @@ def cluster(directory: Path, _: int) -> dict:
     begun = time.perf_counter()
     threads = carry_out(plan, directory / "threads", threads=2)
     on_threads = time.perf_counter() - begun
-    chunks = 100
+    chunks = len(keys_of(plan))
     return {
+        "chunks": chunks,
         "killed": len(killed),
         "same_calm": numbers(calm) == numbers(threads),
         "same_rough": numbers(rough) == numbers(threads),
@@ -258,9 +299,9 @@ def loaded() -> None:
     introduced()
 
 
-def crowd(directory: Path, _: int) -> dict:
+def crowd(directory: Path, count: int) -> dict:
     """Good, old, bare and dying workers, then a scheduler that dies, then nobody of use."""
-    plan = small_plan(60, 6)
+    plan = small_plan(count)
     plan.pilot(16)
     threads = numbers(carry_out(plan, directory / "threads", threads=1))
     found: dict = {"dead": []}
@@ -271,7 +312,7 @@ def crowd(directory: Path, _: int) -> dict:
         names = one.names(4)
 
         def watch(step) -> None:
-            if step.done == 10 and not found["dead"]:
+            if step.done >= 0.1 * step.total and not found["dead"]:
                 one.workers["dying"].kill()
                 found["dead"].append("dying")
 
@@ -290,7 +331,7 @@ def crowd(directory: Path, _: int) -> dict:
         begun = [0.0]
 
         def cut(step) -> None:
-            if step.done == 20:
+            if step.done >= 0.5 * step.total and not begun[0]:
                 begun[0] = time.monotonic()
                 one.scheduler.kill()
 
@@ -330,7 +371,13 @@ def refusal(work) -> str:
     return "nothing"
 
 
-TRIALS = {"kills": kills, "full": full, "cluster": cluster, "crowd": crowd}
+TRIALS = {
+    "kills": kills,
+    "corruptions": corruptions,
+    "full": full,
+    "cluster": cluster,
+    "crowd": crowd,
+}
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from thermogear.front.cli import main
-from thermogear.thesis import chain, motions, section5
+from thermogear.thesis import chain, motions, report, section5
 from thermogear.thesis.claim import Verdict, rising, verdict_of
 from thermogear.thesis.evidence import Evidence, Size
 from thermogear.thesis.report import CLAIMS, build
@@ -104,7 +104,10 @@ def test_ctrl_c_keeps_what_is_judged(
 
 
 @pytest.mark.slow
-def test_report_holds_every_claim_with_verdict_and_working_links(tmp_path: Path) -> None:
+def test_report_holds_every_claim_with_verdict_and_working_links(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, evidence: Evidence
+) -> None:
+    monkeypatch.setattr(report, "Evidence", lambda size, progress: evidence)
     summary = save_results(build(SMALL), tmp_path)
     assert summary["claims"] == summary["claims_in_all"] == len(CLAIMS)
     assert summary["claims"] == sum(summary["verdicts"].values())

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFORK, Bifurcation
@@ -18,6 +18,9 @@ from thermogear.analysis.section import ReturnMap, lanes_of
 from thermogear.analysis.settle import PERIODIC, units_of
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.tables import Lanes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
@@ -13,6 +12,9 @@ from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
 from thermogear.dynamics.tables import Lanes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

@@ -129,14 +129,7 @@ class Settled:
 
 def part_of(maps: exact.ExactMaps, keep: Whole) -> exact.ExactMaps:
     """The maps of some lanes of a block."""
-    return replace(
-        maps,
-        maps=np.ascontiguousarray(maps.maps[:, :, keep]),
-        polys=np.ascontiguousarray(maps.polys[:, keep]),
-        half=np.ascontiguousarray(maps.half[:, keep]),
-        reach=maps.reach[keep],
-        backlash=maps.backlash[keep],
-    )
+    return maps.take(keep)
 
 
 def units_of(lanes: Lanes) -> Floats:

@@ -14,11 +14,13 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Arrays = dict[str, NDArray[Any]]
 Key = tuple[int, ...]
@@ -128,6 +130,8 @@ def empty_arrays(plan: Plan) -> Arrays:
 
 def dataset_of(plan: Plan, arrays: Arrays) -> xr.Dataset:
     """The finished, labelled result."""
+    import xarray as xr
+
     variables = plan.variables()
     data = xr.Dataset(
         {n: xr.Variable(v.dims, arrays[n], dict(v.attributes)) for n, v in variables.items()},
@@ -278,7 +282,8 @@ def slices(
 
     Together the slices are what the whole plan gives, to the last bit; a run-up's come in the order
     in which it passes the speeds. ``coarse`` > 1: first the whole of every so many-th value, marked
-    as preview, where the plan can be thinned. ``alive`` is called often and raises to end the
+    as preview, where the plan can be thinned (``coarse`` is a plain count, as is ``threads``);
+    values are in the units of the plan's variables. ``alive`` is called often and raises to end the
     work, as closing the generator does.
     """
     if coarse > 1 and isinstance(plan, Thinned):

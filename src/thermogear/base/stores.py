@@ -14,13 +14,15 @@ import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 RESULT = "result.zarr"
 MANIFEST = "manifest.json"
@@ -107,6 +109,8 @@ def read_store(directory: str | Path) -> xr.Dataset:
     Raises InputError where the directory is no store, is not finished, or is damaged, be it by a
     foreign array or changed units; the same command as before repairs it.
     """
+    import xarray as xr
+
     place = Path(directory)
     manifests = read_manifests(place)
     if not manifests:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.excitation import Excitations, Periodic
@@ -16,6 +15,9 @@ from thermogear.case.case import GearCase
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 from thermogear.dynamics.tables import Lanes
 from thermogear.mesh.excite import excitations as mesh_excitations
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -27,11 +27,14 @@ from thermogear.case.build import Follows, TemperatureRule
 from thermogear.case.case import GearCase
 from thermogear.case.fields import BODY
 from thermogear.case.thermal_state import UNDEFORMED, ThermalState
+from thermogear.gears.contact import path_of_contact
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import grade
+from thermogear.mesh.cycle import quantities
 from thermogear.mesh.excite import excitations
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Varied
+from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -356,9 +359,14 @@ def _cycle(
         if case.computed:
             balance = case.balance(model, temperature if fixed else None, from_hot=False)
         operating = case.operating_at(temperature, model)
-    cycle = case.cycle(operating, model, path_positions, want)
-    found = {name: cycle[name].values for name in (*want, "pinion_speed", "pinion_torque")}
-    status = cycle["status"].values
+    hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
+    s = path_of_contact(case.pair, path_positions)
+    phase = np.arange(case.mesh_positions) / case.mesh_positions
+    found = {
+        name: np.asarray(values)
+        for name, values in quantities(hot, case.deviations, s, phase, want).items()
+    }
     if balance is not None:
-        status = np.where(balance.settled, status, STATUS.index("not_converged"))
-    return found | {"status": status}
+        lost = STATUS.index("not_converged")
+        found["status"] = np.where(balance.settled, found["status"], lost)
+    return found | {"pinion_speed": operating.speed, "pinion_torque": operating.torque}

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from math import factorial
+from math import factorial, prod
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.kernels.affine import add_harmonics, prepare
+from thermogear.dynamics.kernels.affine import BEHIND, add_harmonics, prepare
+from thermogear.dynamics.kernels.batch import CARRIED, QUEUE
+from thermogear.dynamics.kernels.crossing import SCRATCH
 from thermogear.dynamics.kernels.exact import advance_exact
 from thermogear.dynamics.kernels.sensitivity import prepare_moved, sensitivity
 from thermogear.dynamics.tables import Lanes, Pieces
@@ -21,7 +24,7 @@ Whole = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 
 ORDER = 12
-BLOCK = 256
+BLOCK = 128
 _COUNTS = tuple(base * 2**k for k in range(11) for base in (32, 48))
 
 
@@ -86,13 +89,44 @@ def substeps(lanes: Lanes, order: int = ORDER) -> Whole:
 class ExactMaps:
     """Affine maps of lanes that share their sub-steps; made by :func:`prepare_maps`."""
 
-    maps: Floats
-    polys: Floats
+    steps: Floats
+    curves: Floats
     half: Floats
     reach: Floats
     backlash: Floats
     marks: Bytes
     borders: Floats
+    order: int
+
+    @property
+    def maps(self) -> Floats:
+        """Values and rates at the end of every sub-step (N, 10, lane)."""
+        count, groups = self.steps.shape[:2]
+        rows = self.steps[:, :, :10].transpose(0, 2, 1, 3).reshape(count, 10, 8 * groups)
+        return rows[:, :, : self.backlash.size]
+
+    @property
+    def polys(self) -> Floats:
+        """Coefficients of phi, psi, nu and of the free psi, nu (N, lane, 5, order + 1)."""
+        width = self.order + 1
+        return self.curves[:, :, : 5 * width].reshape(*self.curves.shape[:2], 5, width)
+
+    def take(self, keep: Whole) -> ExactMaps:
+        """The maps of some lanes, in the order of ``keep``."""
+        (steps,) = _aligned((self.steps.shape[0], -(-keep.size // 8), 11, 8))
+        place = np.arange(keep.size)
+        rows = self.steps[:, keep // 8, :, keep % 8]
+        steps[:, place // 8, :, place % 8] = rows
+        (curves,) = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]))
+        curves[:] = self.curves[:, keep]
+        return replace(
+            self,
+            steps=steps,
+            curves=curves,
+            half=np.ascontiguousarray(self.half[:, keep]),
+            reach=self.reach[keep],
+            backlash=self.backlash[keep],
+        )
 
     @property
     def marked(self) -> int:
@@ -133,6 +167,18 @@ class State:
         self.tangent[0] = self.tangent[3] = 1.0
         self.counts[:] = 0
         self.spent[:] = 0.0
+
+
+def _aligned(*shapes: tuple[int, ...]) -> list[Floats]:
+    """Zeros that start on a cache line: eight numbers then lie in one."""
+    sizes = [-(-prod(shape) // 8) * 8 for shape in shapes]
+    room = np.zeros(sum(sizes) + 8)
+    first = -(room.__array_interface__["data"][0] // 8) % 8
+    found = []
+    for shape, size in zip(shapes, sizes, strict=True):
+        found.append(room[first : first + prod(shape)].reshape(shape))
+        first += size
+    return found
 
 
 @lru_cache(maxsize=32)
@@ -197,29 +243,43 @@ def _of_harmonics(
 
 def prepare_maps(lanes: Lanes, borders: Floats, marks: Bytes, order: int = ORDER) -> ExactMaps:
     """The maps of ``lanes`` on the sub-steps between ``borders`` (phases from 0 to 1)."""
-    width = np.diff(borders)
-    centres = borders[:-1] + 0.5 * width
-    half = 0.5 * width[:, None] * lanes.period
-    maps = np.empty((centres.size, 10, len(lanes)))
-    polys = np.empty((centres.size, len(lanes), 5, order + 1))
-    prepare(
-        lanes.damping,
-        half,
-        _taylor(lanes, "stiffness", centres, 0.5 * width, order),
-        _taylor(lanes, "force", centres, 0.5 * width, order),
-        maps,
-        polys,
-    )
+    widths = np.diff(borders)
+    centres = borders[:-1] + 0.5 * widths
+    half = 0.5 * widths[:, None] * lanes.period
     size, rate = _bounds(lanes, "force")
     jerk = rate / lanes.period + lanes.damping * size
+    reach = jerk * half.max(axis=0) ** 3
+    width, room = order + 1, -(-(5 * (order + 1) + BEHIND) // 8) * 8
+    (steps,) = _aligned((centres.size, -(-len(lanes) // 8), 11, 8))
+    (curves,) = _aligned((centres.size, len(lanes), room))
+    work, tables, ends, table, turned = _aligned(
+        (40 * width,), (16 * width,), (80,), (8 * room,), (64,)
+    )
+    prepare(
+        lanes.damping,
+        lanes.half_backlash,
+        reach,
+        half.ravel(),
+        _taylor(lanes, "stiffness", centres, 0.5 * widths, order).ravel(),
+        _taylor(lanes, "force", centres, 0.5 * widths, order).ravel(),
+        steps.ravel(),
+        curves.ravel(),
+        work,
+        tables,
+        ends,
+        table,
+        turned,
+        np.empty(16, np.int64),
+    )
     return ExactMaps(
-        maps=maps,
-        polys=polys,
+        steps=steps,
+        curves=curves,
         half=half,
-        reach=jerk * half.max(axis=0) ** 3,
+        reach=reach,
         backlash=lanes.half_backlash,
         marks=marks,
         borders=borders,
+        order=order,
     )
 
 
@@ -256,6 +316,9 @@ def maps_moved(
         table("stiffness"),
         _taylor(lanes, "force", centres, 0.5 * width, order)[:, 0],
         table("force"),
+        np.empty(5 * (order + 1)),
+        np.empty(5 * (order + 1)),
+        np.empty(20),
         polys,
     )
     return polys, half, rate("half_backlash")
@@ -268,8 +331,8 @@ def first_half(maps: ExactMaps) -> ExactMaps:
         raise InputError("sub-steps", maps.borders.size - 1, allowed="a border at phase 1/2")
     return replace(
         maps,
-        maps=maps.maps[:count],
-        polys=maps.polys[:count],
+        steps=maps.steps[:count],
+        curves=maps.curves[:count],
         half=maps.half[:count],
         marks=maps.marks[:count],
         borders=maps.borders[: count + 1],
@@ -289,15 +352,17 @@ def moved_by(
     state = State.start(x=start[:1], y=start[1:], backlash=maps.backlash)
     found = np.empty(3)
     sensitivity(
-        np.ascontiguousarray(maps.polys[:, 0]),
+        maps.polys[:, 0].ravel(),
         np.ascontiguousarray(maps.half[:, 0]),
         float(maps.backlash[0]),
-        np.ascontiguousarray(rates[0]),
+        rates[0].ravel(),
         np.ascontiguousarray(rates[1]),
         float(rates[2]),
         np.asarray(start, dtype=float),
         int(state.region[0]),
         steps,
+        np.empty(2 * (maps.order + 1) + SCRATCH),
+        np.empty(12),
         found,
     )
     return found[:2], float(found[2])
@@ -355,22 +420,46 @@ def advance(
     sections = np.empty((periods, 2, lanes))
     stretch = np.empty((periods if normalise else 0, lanes))
     samples = np.empty((periods * maps.marked if sampled else 0, 2, lanes))
-    advance_exact(
-        maps.maps,
-        maps.polys,
-        maps.half,
-        maps.reach,
-        maps.backlash,
+    width, room = maps.order + 1, maps.curves.shape[2]
+    carried, table, p, scratch = _aligned(
+        (CARRIED * (-(-lanes // 8) * 8),), (8 * room,), (8 * width,), (2 * width + SCRATCH,)
+    )
+    # one layout for all: a kernel is compiled once
+    owned: tuple[NDArray[Any], ...] = (
         state.x,
         state.y,
         state.region,
         state.tangent,
-        columns,
-        sections,
-        stretch,
-        samples,
-        maps.marks,
         state.counts,
         state.spent,
     )
+    flat: list[NDArray[Any]] = [np.ravel(array) for array in owned]
+    x, y, region, tangent, counts, spent = flat
+    advance_exact(
+        maps.steps.ravel(),
+        maps.curves.ravel(),
+        width,
+        maps.reach,
+        maps.backlash,
+        x,
+        y,
+        region,
+        tangent,
+        columns,
+        normalise,
+        sections.ravel(),
+        stretch.ravel(),
+        samples.ravel(),
+        maps.marks,
+        counts,
+        spent,
+        carried,
+        table,
+        p,
+        scratch,
+        np.empty(QUEUE + 16 + lanes, np.int64),
+    )
+    for array, done in zip(owned, flat, strict=True):
+        if not array.flags.c_contiguous:
+            array[...] = done.reshape(array.shape)
     return sections, stretch, samples

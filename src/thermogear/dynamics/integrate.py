@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear import __version__
@@ -22,6 +21,9 @@ from thermogear.dynamics.models import ClearanceModel, PairModel
 from thermogear.dynamics.outcome import DIVERGED, Result, dataset
 from thermogear.dynamics.pair import four_of, simulate_pair, with_angles
 from thermogear.dynamics.tables import Lanes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
@@ -13,6 +13,9 @@ from thermogear.base.excitation import Excitation, Periodic
 from thermogear.base.pair_springs import PairSprings
 from thermogear.dynamics.kernels.shared import advance_shared
 from thermogear.dynamics.outcome import Result, dataset
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 NO_ERROR = Periodic(0.0)

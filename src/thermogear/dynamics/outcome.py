@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import STATUS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 
@@ -29,6 +33,8 @@ class Result:
 def dataset(
     result: Result, *, period: Floats, periods: int, discard: int, samples: int
 ) -> xr.Dataset:
+    import xarray as xr
+
     lanes = period.size
     good = np.all(np.isfinite(result.sections), axis=(1, 2))
     phase = np.arange(periods * samples) / samples if samples else np.empty(0)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
@@ -11,6 +12,9 @@ from thermogear.dynamics import adaptive
 from thermogear.dynamics.kernels.rk4 import advance_pair
 from thermogear.dynamics.models import PairModel
 from thermogear.dynamics.outcome import Result, dataset
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

@@ -66,13 +66,14 @@ def deliver(
     """
     from thermogear.front.progress import Stopped, progress
     from thermogear.results.files import claimed
-    from thermogear.views.write import clear_tables, page_of, write
 
     place = None if directory is None else Path(directory)
     written: list[Path] = []
     with nullcontext() if place is None else claimed(place) as folder:
         with progress(wanted=not as_json) as report:
             result = make(report)
+        from thermogear.views.write import clear_tables, page_of, write
+
         page = page_of(result)
         if folder is not None:
             result.put(folder)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from thermogear.base.errors import InputError
 from thermogear.gears.deviations import Deviation, Relief
@@ -93,6 +92,8 @@ def optimise_tip_relief(
             Relief("pinion", amount=float(amount[0]), length=float(length[0]), shape=shape),
             Relief("wheel", amount=float(amount[1]), length=float(length[1]), shape=shape),
         )
+
+    from scipy.optimize import minimize
 
     def full(x: Floats) -> Floats:
         return np.repeat(x, 2) if symmetric else x

@@ -15,7 +15,7 @@ it: nothing settles that is not a number.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
@@ -26,6 +26,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 MOST_STEPS = 200
 _TOLERANCE = 1e-12
+NOUGHT: Any = np.int64(0)  # a plain 0 would have numba compile what takes it for itself
 
 
 def _compiled(function: Function) -> Function:
@@ -33,7 +34,14 @@ def _compiled(function: Function) -> Function:
     return cast(Function, numba.njit(cache=True)(function))
 
 
-@_compiled
+def _part(function: Function) -> Function:
+    """The same for what only compiled code calls: it needs no way in from Python."""
+    compiled: Any = numba.njit
+    alone = compiled(cache=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return cast(Function, alone(function))
+
+
+@_part
 def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
     """Overwrite the two columns of ``right`` by matrix^-1 right (Cholesky, in place)."""
     for i in range(size):
@@ -58,7 +66,7 @@ def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
             right[i, column] = total / matrix[i, i]
 
 
-@_compiled
+@_part
 def _approach(force: float, first: float, second: float, law: Floats) -> tuple[float, float]:
     """delta_H [m] at ``force`` > 0 and its slope [m/N]; ``first``, ``second``: (h_i/a)^2 F [N].
 
@@ -82,14 +90,14 @@ def _approach(force: float, first: float, second: float, law: Floats) -> tuple[f
     return force * mean, slope
 
 
-@_compiled
+@_part
 def _unsettled(force: Floats) -> tuple[float, float, bool]:
     """What a position gives that has no answer."""
     force[:] = np.nan
     return np.nan, np.nan, False
 
 
-@_compiled
+@_part
 def _share_one(
     asked: float,
     by_load: bool,
@@ -133,7 +141,7 @@ def _share_one(
     force[first] = load
     least = 1e-14 * load
     for _ in range(MOST_STEPS):
-        size = 0
+        size = NOUGHT
         for j in range(count):
             if active[j]:
                 index[size] = j

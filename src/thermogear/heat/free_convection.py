@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.constants import g as GRAVITY
 
 from thermogear.base.materials import Lubricant
+from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.heat.gearbox import BodyLike, Surroundings, oil_prandtl
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import ThermalNetwork
@@ -46,7 +46,7 @@ def free_face_convection(
         np.asarray(a, dtype=float)
         for a in (difference, height, viscosity, conductivity, prandtl, expansion)
     )
-    rayleigh = GRAVITY * beta * np.abs(drop) * tall**3 * pr / nu**2
+    rayleigh = STANDARD_GRAVITY * beta * np.abs(drop) * tall**3 * pr / nu**2
     shape = (1.0 + (0.492 / pr) ** (9.0 / 16.0)) ** (8.0 / 27.0)
     return np.asarray(k / tall * (0.825 + 0.387 * rayleigh ** (1.0 / 6.0) / shape) ** 2)
 

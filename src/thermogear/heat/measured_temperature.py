@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.constants import Boltzmann, Planck, speed_of_light
 
 from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH, require_share
 from thermogear.base.errors import InputError
@@ -19,7 +18,8 @@ from thermogear.base.errors import InputError
 Floats = NDArray[np.float64]
 
 Band = tuple[float, float] | None
-_C2 = Planck * speed_of_light / Boltzmann  # m K
+_C2 = 6.62607015e-34 * 299792458.0 / 1.380649e-23
+"""h c/k [m K]; the three are exact by definition of the SI."""
 _LEAST, _GREATEST = 150.0, 3000.0  # K, where the inversion looks
 
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import OdeSolution, solve_ivp
 
 from thermogear.base.bounds import BODY
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.progress import Progress, silent
 from thermogear.heat.network import ThermalNetwork
+
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolution
 
 Floats = NDArray[np.float64]
 State = Mapping[str, Floats]
@@ -138,6 +141,8 @@ def follow(
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
     known = {name: np.atleast_1d(np.asarray(t, dtype=float)) for name, t in start.items()}
     first = stretches[0].network(known)
+    from scipy.integrate import solve_ivp
+
     nodes, capacity = first.free, _capacities(first)
     datum = min(float(start[name]) for name in nodes)
     whole = float(capacity.sum())

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.mesh.balance import HeatBalance
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LOSSES = ("mesh", "churning", "bearing_1", "bearing_2")
 
@@ -96,6 +98,8 @@ def blanked(
     """
     if not balance.lost:
         return data
+    import xarray as xr
+
     known = xr.DataArray(np.ones(balance.settled.size, np.bool_), dims="operating")
     known[list(balance.lost)] = False
     asked = set(map(str, data.data_vars) if names is None else names) - set(STATED)

@@ -7,9 +7,9 @@ import warnings
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning, nearest
@@ -34,6 +34,9 @@ from thermogear.mesh.mesh_heat import MeshHeat, mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, thesis_thermal_stiffness
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -96,9 +99,10 @@ def mesh_cycle(
     hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
     s = path_of_contact(pair, path_positions)
     phase = np.arange(mesh_positions) / mesh_positions
-    names = _asked(want)
-    computed = _Cycle(hot, tuple(deviations), s, phase)
-    variables = {name: (dims, of(computed)) for name, (dims, of) in TABLE.items() if name in names}
+    variables = {
+        name: (POINT if name == "status" else TABLE[name][0], values)
+        for name, values in quantities(hot, deviations, s, phase, want).items()
+    }
     coordinates: dict[str, tuple[tuple[str, ...], ArrayLike]] = {
         "pinion_speed": (POINT, operating.speed),
         "pinion_torque": (POINT, operating.torque),
@@ -109,7 +113,6 @@ def mesh_cycle(
         coordinates["wheel_radius"] = (ALONG, r2)
     if any("mesh_phase" in dims for dims, _ in variables.values()):
         coordinates["mesh_phase"] = (("mesh_phase",), phase)
-    variables["status"] = (POINT, computed.status(names))
     points = pair.path
     return label(
         variables,
@@ -121,6 +124,23 @@ def mesh_cycle(
             "contact_ratio": pair.contact_ratio,
         },
     )
+
+
+def quantities(
+    hot: HotPair,
+    deviations: Sequence[Deviation],
+    s: Floats,
+    phase: Floats,
+    want: Collection[str] = (),
+) -> dict[str, ArrayLike]:
+    """The bare arrays of :func:`mesh_cycle` at path positions ``s`` [m] and mesh ``phase``, SI.
+
+    In the order of :data:`TABLE`, then ``status``.
+    """
+    names = _asked(want)
+    computed = _Cycle(hot, tuple(deviations), s, phase)
+    found = {name: of(computed) for name, (_, of) in TABLE.items() if name in names}
+    return found | {"status": computed.status(names)}
 
 
 def _asked(want: Collection[str]) -> Collection[str]:

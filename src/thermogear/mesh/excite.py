@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
@@ -21,6 +20,9 @@ from thermogear.base.excitation import (
 from thermogear.base.vocabulary import STATUS
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NO_ERROR = Periodic(0.0)
 

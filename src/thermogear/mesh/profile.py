@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import label
@@ -12,6 +13,9 @@ from thermogear.heat.thesis_profile import deformed_profile, profile_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

@@ -8,13 +8,16 @@ as rank correlations and as the share of neighbouring points between which a qua
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
 from thermogear.base.vocabulary import label
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

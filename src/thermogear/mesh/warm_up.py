@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import minimize_scalar
 
 from thermogear.base import bounds
 from thermogear.base.errors import ConvergenceError, InputError, ValidityWarning, nearest
@@ -377,6 +376,8 @@ class _Chain:
 
     def worst(self, course: Course) -> Worst:
         """The least half backlash of the course, located between the stored moments."""
+        from scipy.optimize import minimize_scalar
+
         left, _ = self.clearance_of(course.temperatures, course.stretch)
         place = int(np.argmin(left))
         ends = course.time[max(place - 1, 0)], course.time[min(place + 1, left.size - 1)]

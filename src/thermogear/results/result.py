@@ -14,8 +14,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import xarray as xr
-
 import thermogear
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.netcdf import read_tree, write_tree
@@ -27,6 +25,7 @@ from thermogear.results.tables import frames
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 FILES = {"gear": RESULTS, "dimensionless": RESULTS, "thesis": RESULTS, "sensitivity": RESULTS}
 """The file of a kind; of every other kind it is ``KIND.nc``."""
@@ -151,6 +150,8 @@ class Result:
     @cached_property
     def tree(self) -> xr.DataTree:
         """The whole as an xarray DataTree; title, kind, notices and provenance as attributes."""
+        import xarray as xr
+
         found = xr.DataTree.from_dict({name or "/": data for name, data in self.groups.items()})
         found.attrs = self.attrs
         return found

@@ -17,10 +17,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-import xarray as xr
 import zarr
 from numpy.typing import NDArray
 from zarr.codecs import Crc32cCodec, ZstdCodec
@@ -42,6 +41,9 @@ from thermogear.base.stores import (
     read_vouched,
 )
 from thermogear.results.fingerprint import code_version, environment
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 QUARANTINE = "quarantine"
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 
 def frames(data: xr.Dataset) -> dict[tuple[str, ...], pd.DataFrame]:

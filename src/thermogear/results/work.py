@@ -10,8 +10,7 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from thermogear.base.errors import InputError
 from thermogear.base.memory import SHARE, free_bytes
@@ -27,6 +26,9 @@ from thermogear.base.plan import (
 from thermogear.base.progress import duration
 from thermogear.results.store import Store
 from thermogear.results.workers import cluster, computed_on
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""

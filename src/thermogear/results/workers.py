@@ -26,6 +26,8 @@ from thermogear.base.progress import duration
 from thermogear.results.fingerprint import code_version, environment
 from thermogear.results.store import first_difference
 
+ANSWER = 10.0
+"""Seconds until a scheduler that does not answer is none."""
 PAUSE = 5.0
 """Seconds after which a cluster is asked for its workers again."""
 
@@ -85,7 +87,7 @@ def cluster(scheduler: str) -> Iterator[Any]:
         handler.setLevel(logging.CRITICAL + 1)
     try:
         try:
-            client = distributed.Client(scheduler, timeout=10, set_as_default=False)
+            client = distributed.Client(scheduler, timeout=ANSWER, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             why = f"no dask scheduler answers there ({type(error).__name__})"
             raise InputError("scheduler", scheduler, why=why) from None

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import Branch, continuation, switch_branch
@@ -22,6 +21,9 @@ from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
 from thermogear.study.orbit import complex_rows, found, orbit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STEPS = 1000
 """Progress of a branch counts in thousandths of the parameter's way."""

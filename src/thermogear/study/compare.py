@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from thermogear.analysis.fit import Fit, fit
 from thermogear.base.errors import InputError, nearest
 from thermogear.case.allowed import gear_parameter
-from thermogear.case.case import Case, load_case
+from thermogear.case.case import Case, GearCase, gear_case, load_case
 from thermogear.measured.comparison import Comparison, compared, table_of
 from thermogear.measured.published import (
     PUBLISHED,
@@ -29,6 +29,9 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.results.result import Notice, Result
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 
@@ -169,6 +172,10 @@ def tree_lines(result: Result) -> dict[str, LineTable]:
     motion = result.group("motion")
     if motion is None:
         raise InputError("simulated", "no motion", fix='draw.pictures must hold "motion"')
+    return _motion_lines(motion)
+
+
+def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
     first = int(np.argmin(np.abs(motion["order"].values - 1.0)))
     speeds = np.asarray(motion["pinion_speed"].values, dtype=float)
     frequency = motion["line_frequency"].isel(order=first)
@@ -201,15 +208,15 @@ class _Runs:
     @classmethod
     def of(cls, case: Case | str | Path) -> _Runs:
         given = load_case(case) if isinstance(case, str | Path) else case
-        return cls(given.text, {**dict(given.overrides), "draw.pictures": '["motion"]'})
+        return cls(given.text, dict(given.overrides))
 
-    def case(self, changes: Mapping[str, str]) -> Case:
-        return load_case(self.text, {**self.kept, **changes})
+    def case(self, changes: Mapping[str, str]) -> GearCase:
+        return gear_case(load_case(self.text, {**self.kept, **changes}))
 
     def tables(self, changes: Mapping[str, str]) -> dict[str, LineTable]:
-        from thermogear.study.run import run  # stored lines and tables need none
+        from thermogear.study.run import gear_motion  # stored lines and tables need none
 
-        return tree_lines(run(self.case(changes)))
+        return _motion_lines(gear_motion(self.case(changes)))
 
     def scaled(self, factors: Mapping[str, float]) -> dict[str, LineTable]:
         """The lines with every named field times its factor."""

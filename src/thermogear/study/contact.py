@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
@@ -25,6 +24,9 @@ from thermogear.mesh.operating import Operating
 from thermogear.mesh.thermal import HotPair, ThermalDeviation
 from thermogear.results.result import Notice, Result
 from thermogear.study.relief import EDGE_WORDS, Seen, one_point
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 KIND = "contact"

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
@@ -18,6 +17,9 @@ from thermogear.analysis.maps import MapPlan, map_plan
 from thermogear.case.case import Case
 from thermogear.case.family import GearFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

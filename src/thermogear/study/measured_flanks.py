@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
@@ -15,6 +14,9 @@ from thermogear.gears.deviations import Relief, active_profile
 from thermogear.gears.geometry import Gear
 from thermogear.gears.pair import GearPair
 from thermogear.results.result import Notice
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def measured_flanks(case: GearCase) -> dict[str, xr.Dataset]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.settle import PERIODIC
@@ -16,6 +16,9 @@ from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
 from thermogear.results.result import Notice, Result, stored_dataset
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

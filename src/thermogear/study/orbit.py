@@ -7,10 +7,9 @@ tree carries metres, seconds and hertz.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponents
@@ -24,6 +23,9 @@ from thermogear.case.one_point import OnePoint
 from thermogear.dynamics.integrate import simulate
 from thermogear.results.result import Result
 from thermogear.signals.spectra import amplitude_spectrum
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SAMPLES = 256
 """Samples a mesh period of a stored orbit."""

@@ -10,20 +10,27 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitations
 from thermogear.base.plan import Alive, keep_going
 from thermogear.base.progress import Progress, asking, silent
-from thermogear.base.vocabulary import STATES, STATUS, attributes, dressed, label, labelled
+from thermogear.base.vocabulary import (
+    QUANTITIES,
+    STATES,
+    STATUS,
+    attributes,
+    dressed,
+    label,
+    labelled,
+)
 from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
 from thermogear.case.citations import citations
 from thermogear.case.points import excitations, points_of
@@ -41,6 +48,9 @@ from thermogear.study.answers.survey import answered
 from thermogear.study.answers.survey import notices as answer_notices
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -> Result:
@@ -93,13 +103,16 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
 # --- gear cases ---------------------------------------------------------------------------
 
 
+def gear_motion(case: GearCase) -> xr.Dataset:
+    """The group ``motion`` of :func:`run` alone, and nothing else computed."""
+    return _motion(case, _cycles(case, silent), "state", silent)
+
+
 def _gear_groups(
     case: GearCase, cycles: Mapping[str, xr.Dataset], progress: Progress
 ) -> dict[str, xr.Dataset]:
     groups: dict[str, xr.Dataset] = {}
-    groups |= _split(
-        xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
-    )
+    groups |= _split(_bundles(cycles))
     groups |= measured_flanks(case)
     if case.computed:
         groups["balance"] = balances(case)
@@ -118,9 +131,19 @@ def _gear_groups(
     return groups
 
 
-def _bundle_axis(case: GearCase) -> xr.DataArray:
-    names = [model.name for model in case.models]
-    return xr.DataArray(names, dims="bundle", name="bundle")
+def _joined(
+    parts: Sequence[xr.Dataset], name: str, places: ArrayLike, attrs: Any = "override"
+) -> xr.Dataset:
+    """``parts`` along a new axis; ``attrs`` says what becomes of attributes, as in xarray."""
+    import xarray as xr
+
+    axis = xr.DataArray(np.asarray(places), dims=name, name=name)
+    axis.attrs = attributes(name) if name in QUANTITIES else {}
+    return xr.concat(list(parts), axis, combine_attrs=attrs)
+
+
+def _bundles(cycles: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    return _joined(list(cycles.values()), "bundle", list(cycles), "drop_conflicts")
 
 
 def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
@@ -129,9 +152,7 @@ def _cycles(case: GearCase, progress: Progress) -> dict[str, xr.Dataset]:
     for number, model in enumerate(case.models):
         progress("mesh cycle", number, len(case.models))
         states = [state.cycle(case, model) for state in (UNDEFORMED, HOT)]
-        found[model.name] = _with_numbers(
-            case, xr.concat(states, xr.DataArray(list(STATES), dims="state", name="state"))
-        )
+        found[model.name] = _with_numbers(case, _joined(states, "state", list(STATES)))
     progress("mesh cycle", len(case.models), len(case.models))
     return found
 
@@ -283,13 +304,12 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
         row = [ThermalState.of(float(t)).cycle(case, model) for t in temperatures]
         drawn = case.cycle(UNDEFORMED.operating(case, model), model)
         reference = drawn["mean_stiffness"].values
-        axis = xr.DataArray(temperatures, dims="gear_temperature", name="gear_temperature")
-        axis.attrs = attributes("gear_temperature")
-        joined = xr.concat(row, axis).assign_attrs(cold_mean_stiffness=reference)
+        joined = _joined(row, "gear_temperature", temperatures)
+        joined.attrs["cold_mean_stiffness"] = reference
         cycles[model.name] = _with_numbers(case, joined)
     motion = _motion(case, cycles, "gear_temperature", progress)
     motion["gear_temperature"].attrs = attributes("gear_temperature")
-    figures = xr.concat(list(cycles.values()), _bundle_axis(case), combine_attrs="drop_conflicts")
+    figures = _bundles(cycles)
     scalars = [
         str(n)
         for n, v in figures.data_vars.items()
@@ -299,7 +319,7 @@ def _temperature_row(case: GearCase, progress: Progress) -> xr.Dataset:
         ["path_position", "mesh_phase", "pinion_radius", "wheel_radius"], errors="ignore"
     )
     kept.attrs = {}
-    joined = xr.merge([kept, motion], combine_attrs="override")
+    joined = kept.merge(motion, combine_attrs="override")
     return joined.assign_attrs(motion.attrs, housing=_housing(case))
 
 
@@ -317,7 +337,8 @@ def balances(case: GearCase) -> xr.Dataset:
     each = [balance_dataset(case.balance(model)) for model in case.models]
     why = [json.loads(data.attrs.pop("lost")) for data in each]
     lost = dict(zip((model.name for model in case.models), why, strict=True))
-    whole = xr.concat(each, _bundle_axis(case)).assign_attrs(lost=json.dumps(lost))
+    names = [model.name for model in case.models]
+    whole = _joined(each, "bundle", names).assign_attrs(lost=json.dumps(lost))
     readings = [
         {
             "node": one.node,

@@ -8,9 +8,9 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 import thermogear
@@ -27,6 +27,9 @@ from thermogear.mesh.model import CHOICES
 from thermogear.results.result import Notice
 from thermogear.study.measured_flanks import measured_notices
 from thermogear.study.notices import friction_notices, reasons, several_words
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

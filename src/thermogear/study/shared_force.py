@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Excitation
@@ -24,6 +23,9 @@ from thermogear.mesh.load_shared import contact_at, pair_springs
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
 from thermogear.study.orbit import found
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 POSITIONS = 240
 FACTORS = np.geomspace(0.01, 4.0, 25)

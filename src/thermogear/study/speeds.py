@@ -8,9 +8,9 @@ followed (:func:`~thermogear.study.run_up.run_up` does, with the heat of each sp
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.side_by_side import motions_along
@@ -19,6 +19,9 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.case.points import points_of
 from thermogear.case.response import Recording, respond
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

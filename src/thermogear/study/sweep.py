@@ -6,10 +6,9 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import axis_values
@@ -38,6 +37,9 @@ from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import finished, range_notices
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

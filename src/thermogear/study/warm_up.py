@@ -6,10 +6,9 @@ import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
@@ -26,6 +25,9 @@ from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
 from thermogear.mesh.warm_up_fit import Fit, fit_factors, require_factors, until
 from thermogear.results.result import Notice, Result
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 KIND = "warmup"

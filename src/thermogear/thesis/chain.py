@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.units import RPM
@@ -22,6 +22,9 @@ from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Temperatures
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

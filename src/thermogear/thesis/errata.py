@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.case.case import Case, GearCase
@@ -23,6 +22,9 @@ from thermogear.heat.thesis_profile import flank_growth_as_printed
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.thermal import HotPair
 from thermogear.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Row = dict[str, Any]
 

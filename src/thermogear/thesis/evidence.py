@@ -11,9 +11,9 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, ValidityWarning
@@ -27,6 +27,9 @@ from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
 from thermogear.thesis import chain, motions
 from thermogear.thesis.errata import with_errata
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

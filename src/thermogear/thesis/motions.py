@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import FLIP
@@ -22,6 +22,9 @@ from thermogear.base.vocabulary import label
 from thermogear.case.case import DimensionlessCase, Point
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

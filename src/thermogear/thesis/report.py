@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -17,6 +15,9 @@ from thermogear.thesis import section6
 from thermogear.thesis.claim import Finding, Verdict
 from thermogear.thesis.document import table
 from thermogear.thesis.evidence import STAGES, Evidence, Size
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 CLAIMS = section6.EARLIER + section6.CLAIMS
 """Every claim of sections 2 to 6, in the document's order."""

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 CURVES = {
     "path_position": "path",
@@ -84,6 +87,8 @@ def _place_name(data: xr.Dataset, dimension: str, place: int) -> str:
 
 def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
     """Every coordinate and variable of ``data``, stretched over ``dims`` and laid flat."""
+    import xarray as xr
+
     shape = tuple(data.sizes[d] for d in dims)
     found: list[Column] = []
     for dimension in dims:

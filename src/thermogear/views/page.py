@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jinja2
-import xarray as xr
 from markupsafe import Markup
 
 from thermogear.results.files import finite
@@ -16,6 +15,9 @@ from thermogear.results.result import Notice, Result
 from thermogear.views.picture import Picture
 from thermogear.views.svg import draw
 from thermogear.views.typesetting import prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Cell = str | Markup
 

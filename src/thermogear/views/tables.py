@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from markupsafe import Markup
 
 from thermogear.base.display import celsius, display, exactly, number, percent, span
@@ -15,6 +14,9 @@ from thermogear.base.vocabulary import DIMENSIONLESS, QUANTITIES, STATUS
 from thermogear.views.page import Cell, Table
 from thermogear.views.plots.rows import of_row, row_names, value_parts
 from thermogear.views.typesetting import html_symbol, jam_at, label_text, operating_names, prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 JAMMED = STATUS.index("jammed")
 _UNITS = {"um": "µm", "1": "", "deg": "°", "degC": "°C", "N m": "N m", "kg m2": "kg m²",

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
 from thermogear.base.display import celsius, display, exactly, raised
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import QUANTITIES, STATUS, told_labels
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

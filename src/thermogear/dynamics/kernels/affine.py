@@ -6,106 +6,178 @@ width h, u in [-1, 1],
 
     x(u) - r b = phi(u) (x_0 - r b) + psi(u) y_0 + nu(u),     y = dx/dt,
 
-with polynomials centred on the sub-step that depend on parameters only. ``maps`` holds their
-values at u = 1, ``polys`` the coefficients.
+with polynomials centred on the sub-step that depend on parameters only. ``curves`` holds lane by
+lane their coefficients and what belongs to them, ``steps`` what a plain sub-step of eight lanes
+needs: values and rates of phi, psi, nu, free psi, free nu at u = 1, and the half width.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from thermogear.dynamics.kernels.compiled import kernel
+from thermogear.dynamics.kernels.vector import EIGHT, load, pick, store, turn
+
 Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
 
 PHI, PSI, NU, FREE_PSI, FREE_NU = 0, 1, 2, 3, 4
+# behind the polynomials of a lane's sub-step: their values and rates at u = 1, the half width, the
+# time since the period began, the half backlash, and how far a hidden turn can swing
+HALF, SINCE, GAP, REACH = 10, 11, 12, 13
+BEHIND = 14
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def prepare(
     damping: Real,
+    backlash: Real,
+    reach: Real,
     half: Real,
     stiffness: Real,
     force: Real,
-    maps: Real,
-    polys: Real,
+    steps: Real,
+    curves: Real,
+    work: Real,
+    tables: Real,
+    ends: Real,
+    table: Real,
+    turned: Real,
+    at: Whole,
 ) -> None:
-    """Fill ``maps`` (N, 10, lane) and ``polys`` (N, lane, 5, K + 1).
+    """Fill ``steps`` (N, group, 11, 8) and ``curves`` (N, lane, 5 (K + 1) + 14 and more).
 
-    ``damping`` (lane), ``half`` (N, lane) half widths in time, ``stiffness`` and ``force``
-    (N, lane, K + 1): Taylor coefficients in u of k and F about the centre of each sub-step.
+    ``damping``, ``backlash`` and ``reach`` (lane), ``half`` (N, lane) half widths in time,
+    ``stiffness`` and ``force`` (N, lane, K + 1): Taylor coefficients in u of k and F about the
+    centre of each sub-step. Eight lanes are a group; what a last group has no lane for is zero. All
+    are flat. Work space: ``work`` (5 (K + 1), 8), ``tables`` (2 (K + 1), 8), ``ends`` (10, 8),
+    ``table`` (room, 8), ``turned`` (8, 8), ``at`` (2, 8).
     """
-    count, lanes, width = stiffness.shape
+    lanes = damping.size
+    count = half.size // lanes
+    full = work.size // 5
+    width = full // EIGHT
     order = width - 1
-    work = np.empty((5, width))
-    for n in range(count):
-        for lane in range(lanes):
-            h = half[n, lane]
-            ch = damping[lane] * h
+    groups = steps.size // (11 * EIGHT * count)
+    room = table.size // EIGHT
+    for group in range(groups):
+        here = min(EIGHT, lanes - EIGHT * group)
+        for i in range(EIGHT):
+            at[i] = EIGHT * group + min(i, here - 1)
+        c = pick(damping, 0, at, 0)
+        elapsed = c * 0.0
+        for n in range(count):
+            row = (n * groups + group) * 11 * EIGHT
+            h = pick(half, n * lanes, at, 0)
+            ch = c * h
             hh = h * h
+            for i in range(EIGHT):
+                at[EIGHT + i] = at[i] * width
+            for m in range(width):
+                base = n * lanes * width + m
+                store(tables, EIGHT * m, pick(stiffness, base, at, EIGHT))
+                store(tables, full + EIGHT * m, pick(force, base, at, EIGHT))
             # from the centre: cosine-like, sine-like and forced solution, contact then free
-            work[:] = 0.0
-            work[0, 0] = 1.0
-            work[1, 1] = 1.0
-            work[3, 1] = 1.0
+            zero = h * 0.0
+            for q in range(5):
+                store(work, q * full, zero + (1.0 if q == 0 else 0.0))
+                store(work, q * full + EIGHT, zero + (1.0 if q == 1 or q == 3 else 0.0))
             for m in range(order - 1):
-                s0 = 0.0
-                s1 = 0.0
-                s2 = 0.0
+                s0 = h * 0.0
+                s1 = s0
+                s2 = s0
                 for i in range(m + 1):
-                    k = stiffness[n, lane, i]
-                    s0 += k * work[0, m - i]
-                    s1 += k * work[1, m - i]
-                    s2 += k * work[2, m - i]
+                    k = load(tables, EIGHT * i)
+                    past = EIGHT * (m - i)
+                    s0 = s0 + k * load(work, past)
+                    s1 = s1 + k * load(work, full + past)
+                    s2 = s2 + k * load(work, 2 * full + past)
                 scale = 1.0 / ((m + 2.0) * (m + 1.0))
                 drag = ch * (m + 1.0)
-                push = hh * force[n, lane, m]
-                work[0, m + 2] = -(drag * work[0, m + 1] + hh * s0) * scale
-                work[1, m + 2] = -(drag * work[1, m + 1] + hh * s1) * scale
-                work[2, m + 2] = (push - (drag * work[2, m + 1] + hh * s2)) * scale
-                work[3, m + 2] = -drag * work[3, m + 1] * scale
-                work[4, m + 2] = (push - drag * work[4, m + 1]) * scale
+                push = hh * load(tables, full + EIGHT * m)
+                now = EIGHT * (m + 1)
+                new = now + EIGHT
+                store(work, new, -(drag * load(work, now) + hh * s0) * scale)
+                store(work, full + new, -(drag * load(work, full + now) + hh * s1) * scale)
+                pull = drag * load(work, 2 * full + now) + hh * s2
+                store(work, 2 * full + new, (push - pull) * scale)
+                store(work, 3 * full + new, -drag * load(work, 3 * full + now) * scale)
+                store(work, 4 * full + new, (push - drag * load(work, 4 * full + now)) * scale)
             # values and slopes at the left end u = -1
-            left = np.zeros(5)
-            slope = np.zeros(5)
             for q in range(5):
-                value = 0.0
-                rate = 0.0
+                value = h * 0.0
+                rate = value
                 for m in range(order, 0, -1):
                     sign = -1.0 if m % 2 else 1.0
-                    value += sign * work[q, m]
-                    rate -= sign * m * work[q, m]
-                left[q] = value + work[q, 0]
-                slope[q] = rate
+                    part = load(work, q * full + EIGHT * m)
+                    value = value + sign * part
+                    rate = rate - sign * m * part
+                store(ends, 2 * EIGHT * q, value + load(work, q * full))
+                store(ends, 2 * EIGHT * q + EIGHT, rate)
+            left0 = load(ends, 0)
+            left1 = load(ends, 2 * EIGHT)
+            left2 = load(ends, 4 * EIGHT)
+            slope0 = load(ends, EIGHT)
+            slope1 = load(ends, 3 * EIGHT)
+            slope2 = load(ends, 5 * EIGHT)
+            slope3 = load(ends, 7 * EIGHT)
             # hand the free constants to the left end: phi, psi, nu
-            det = left[0] * slope[1] - left[1] * slope[0]
-            a = slope[1] / det
-            b = -slope[0] / det
-            c = -h * left[1] / det
-            d = h * left[0] / det
-            e = (left[1] * slope[2] - slope[1] * left[2]) / det
-            f = (slope[0] * left[2] - left[0] * slope[2]) / det
-            g = h / slope[3]
-            r = -slope[4] / slope[3]
+            det = left0 * slope1 - left1 * slope0
+            a = slope1 / det
+            b = -slope0 / det
+            bent = -h * left1 / det
+            d = h * left0 / det
+            e = (left1 * slope2 - slope1 * left2) / det
+            f = (slope0 * left2 - left0 * slope2) / det
+            g = h / slope3
+            r = -load(ends, 9 * EIGHT) / slope3
             for m in range(width):
-                polys[n, lane, PHI, m] = a * work[0, m] + b * work[1, m]
-                polys[n, lane, PSI, m] = c * work[0, m] + d * work[1, m]
-                polys[n, lane, NU, m] = work[2, m] + (e * work[0, m] + f * work[1, m])
-                polys[n, lane, FREE_PSI, m] = g * work[3, m]
-                polys[n, lane, FREE_NU, m] = work[4, m] + r * work[3, m]
-            polys[n, lane, FREE_PSI, 0] -= g * left[3]
-            polys[n, lane, FREE_NU, 0] -= left[4] + r * left[3]
+                w0 = load(work, EIGHT * m)
+                w1 = load(work, full + EIGHT * m)
+                w3 = load(work, 3 * full + EIGHT * m)
+                store(table, PHI * full + EIGHT * m, a * w0 + b * w1)
+                store(table, PSI * full + EIGHT * m, bent * w0 + d * w1)
+                forced = load(work, 2 * full + EIGHT * m) + (e * w0 + f * w1)
+                store(table, NU * full + EIGHT * m, forced)
+                store(table, FREE_PSI * full + EIGHT * m, g * w3)
+                forced = load(work, 4 * full + EIGHT * m) + r * w3
+                store(table, FREE_NU * full + EIGHT * m, forced)
+            left3 = load(ends, 6 * EIGHT)
+            store(table, FREE_PSI * full, load(table, FREE_PSI * full) - g * left3)
+            shift = load(ends, 8 * EIGHT) + r * left3
+            store(table, FREE_NU * full, load(table, FREE_NU * full) - shift)
             for q in range(5):
-                value = 0.0
-                rate = 0.0
+                value = h * 0.0
+                rate = value
                 for m in range(order, 0, -1):
-                    value += polys[n, lane, q, m]
-                    rate += m * polys[n, lane, q, m]
-                maps[n, 2 * q, lane] = value + polys[n, lane, q, 0]
-                maps[n, 2 * q + 1, lane] = rate / h
+                    part = load(table, q * full + EIGHT * m)
+                    value = value + part
+                    rate = rate + float(m) * part
+                value = value + load(table, q * full)
+                rate = rate / h
+                store(steps, row + 2 * q * EIGHT, value)
+                store(steps, row + (2 * q + 1) * EIGHT, rate)
+                store(table, 5 * full + 2 * q * EIGHT, value)
+                store(table, 5 * full + (2 * q + 1) * EIGHT, rate)
+            store(steps, row + HALF * EIGHT, h)
+            store(table, 5 * full + HALF * EIGHT, h)
+            store(table, 5 * full + SINCE * EIGHT, elapsed)
+            store(table, 5 * full + GAP * EIGHT, pick(backlash, 0, at, 0))
+            store(table, 5 * full + REACH * EIGHT, pick(reach, 0, at, 0))
+            elapsed = elapsed + 2.0 * h
+            for i in range(here, EIGHT):
+                for q in range(11):
+                    steps[row + EIGHT * q + i] = 0.0
+            for first in range(0, room, EIGHT):
+                for i in range(EIGHT):
+                    at[EIGHT + i] = EIGHT * (first + i)
+                turn(table, at, EIGHT, turned, EIGHT)
+                for i in range(here):
+                    store(curves, (n * lanes + at[i]) * room + first, load(turned, EIGHT * i))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def add_harmonics(
     real: Real,
     imag: Real,
@@ -123,12 +195,10 @@ def add_harmonics(
     the factorials where half a sub-step is one of several widths, ``which`` (N) of them.
     """
     for n in range(out.shape[0]):
+        w = which[n]
         for lane in range(out.shape[1]):
-            row = out[n, lane]
             for k in range(real.shape[0]):
                 whole = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
                 turned = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
-                some = even[which[n], k]
-                rest = odd[which[n], k]
-                for m in range(row.size):
-                    row[m] += whole * some[m] + turned * rest[m]
+                for m in range(out.shape[2]):
+                    out[n, lane, m] += whole * even[w, k, m] + turned * odd[w, k, m]

@@ -6,48 +6,70 @@ polynomials of the next region. No fastmath: a lane gives the same bits in any c
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
+from thermogear.dynamics.kernels.affine import (
+    FREE_NU,
+    FREE_PSI,
+    GAP,
+    HALF,
+    NU,
+    PHI,
+    PSI,
+    SINCE,
+)
+from thermogear.dynamics.kernels.batch import HIGH, LOSSES, LOW, SHIFT, SPENT, TANGENT, X, Y
+from thermogear.dynamics.kernels.compiled import part
 
 Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 MOST_CROSSINGS = 64
+TURNS = 16
+# numbers of one kind: a plain 0 would have numba compile a function for itself
+FRONT: Any = np.int64(0)
+LOWER: Any = np.int64(0)
+UPPER: Any = np.int64(1)
+NEITHER: Any = np.int64(2)
+SCRATCH = 2 * TURNS + 9  # beside two polynomials
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def value_of(p: Real, u: float) -> float:
+@part
+def value_of(p: Real, first: int, width: int, u: float) -> float:
+    """The polynomial whose ``width`` coefficients begin at ``first``.
+
+    Here and below no slice is taken: numba counts its users, which costs more than the sum.
+    """
     total = 0.0
-    for m in range(p.shape[0] - 1, -1, -1):
+    for m in range(first + width - 1, first - 1, -1):
         total = total * u + p[m]
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def slope(p: Real, u: float) -> float:
+@part
+def slope(p: Real, first: int, width: int, u: float) -> float:
     total = 0.0
-    for m in range(p.shape[0] - 1, 0, -1):
-        total = total * u + m * p[m]
+    for m in range(width - 1, 0, -1):
+        total = total * u + m * p[first + m]
     return total
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def root(p: Real, level: float, low: float, high: float) -> float:
+@part
+def root(p: Real, first: int, width: int, level: float, low: float, high: float) -> float:
     """The root of p(u) = level in a monotone piece [low, high]: Newton inside a bracket."""
-    at_low = value_of(p, low) - level
-    at_high = value_of(p, high) - level
+    at_low = value_of(p, first, width, low) - level
+    at_high = value_of(p, first, width, high) - level
     if at_low == 0.0 or (at_low > 0.0) == (at_high > 0.0):
         # both ends on one side: the start is on the edge but for rounding
         return low
     a = low
     b = high
     # cubic Hermite start from the two ends
-    width = high - low
-    s0 = slope(p, low) * width
-    s1 = slope(p, high) * width
+    span = high - low
+    s0 = slope(p, first, width, low) * span
+    s1 = slope(p, first, width, high) * span
     delta = at_high - at_low
     t = -at_low / delta
     for _ in range(2):
@@ -56,16 +78,16 @@ def root(p: Real, level: float, low: float, high: float) -> float:
         down = (3.0 * c3 * t + 2.0 * c2) * t + s0
         if down != 0.0:
             t -= (((c3 * t + c2) * t + s0) * t + at_low) / down
-    u = low + width * t
+    u = low + span * t
     if not (a < u < b):
-        u = low + width * (-at_low / delta)
+        u = low + span * (-at_low / delta)
     for _ in range(60):
         value = 0.0
         rate = 0.0
-        for m in range(p.shape[0] - 1, 0, -1):
-            value = value * u + p[m]
-            rate = rate * u + m * p[m]
-        value = value * u + p[0] - level
+        for m in range(width - 1, 0, -1):
+            value = value * u + p[first + m]
+            rate = rate * u + m * p[first + m]
+        value = value * u + p[first] - level
         if value == 0.0:
             return u
         if (value > 0.0) == (at_high > 0.0):
@@ -82,58 +104,60 @@ def root(p: Real, level: float, low: float, high: float) -> float:
     return u
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: Real) -> int:
-    """Roots of p' in (start, 1), ascending, into ``found``; their number.
+@part
+def turns_in(s: Real, width: int, start: float, low: float, high: float) -> int:
+    """Roots of p' in (start, 1), ascending, behind twice ``width`` in the work space; their number.
 
     A single turn that stays between ``low`` and ``high`` need not be found and is not counted.
     Each derivative is monotone between the roots of the next one; the fourth is taken to keep
     its sign on the halves of a sub-step, which its width guarantees.
     """
-    width = p.shape[0]
+    work = width
+    found = 2 * width
     # quick exit: the straight part of the slope beats everything above it
     tail = 0.0
     for m in range(3, width):
-        tail += m * abs(p[m])
-    first = p[1] + 2.0 * p[2] * start
-    last = p[1] + 2.0 * p[2]
+        tail += m * abs(s[m])
+    first = s[1] + 2.0 * s[2] * start
+    last = s[1] + 2.0 * s[2]
     if (first > tail and last > tail) or (first < -tail and last < -tail):
         return 0
     # p'' keeps its sign: p' has one root at the most
     bend = 0.0
     for m in range(3, width):
-        bend += m * (m - 1.0) * abs(p[m])
-    if 2.0 * abs(p[2]) > bend:
-        first = slope(p, start)
-        if (first > 0.0) == (slope(p, 1.0) > 0.0):
+        bend += m * (m - 1.0) * abs(s[m])
+    if 2.0 * abs(s[2]) > bend:
+        first = slope(s, FRONT, width, start)
+        if (first > 0.0) == (slope(s, FRONT, width, 1.0) > 0.0):
             return 0
-        swing = first * first / (2.0 * (2.0 * abs(p[2]) - bend))
-        value = value_of(p, start)
+        swing = first * first / (2.0 * (2.0 * abs(s[2]) - bend))
+        value = value_of(s, FRONT, width, start)
         if low < value - swing and value + swing < high:
             return 0
         for m in range(width - 1):
-            work[m] = (m + 1.0) * p[m + 1]
-        found[0] = root(work[: width - 1], 0.0, start, 1.0)
+            s[work + m] = (m + 1.0) * s[m + 1]
+        s[found] = root(s, work, width - 1, 0.0, start, 1.0)
         return 1
     count = 1
-    found[0] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
+    s[found] = 0.0 if start < 0.0 else 0.5 * (start + 1.0)
     for level in range(3, 0, -1):
         # work = level-th derivative
-        for m in range(width - level):
+        size = width - level
+        for m in range(size):
             factor = 1.0
             for i in range(level):
                 factor *= m + level - i
-            work[m] = factor * p[m + level]
-        q = work[: width - level]
+            s[work + m] = factor * s[m + level]
+        for i in range(count):
+            s[found + TURNS + i] = s[found + i]
         fresh = 0
         a = start
-        fa = value_of(q, a)
-        old = found[:count].copy()
+        fa = value_of(s, work, size, a)
         for i in range(count + 1):
-            b = old[i] if i < count else 1.0
-            fb = value_of(q, b)
-            if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < found.shape[0]:
-                found[fresh] = root(q, 0.0, a, b)
+            b = s[found + TURNS + i] if i < count else 1.0
+            fb = value_of(s, work, size, b)
+            if fa != 0.0 and (fa > 0.0) != (fb > 0.0) and fresh < TURNS:
+                s[found + fresh] = root(s, work, size, 0.0, a, b)
                 fresh += 1
             a = b
             fa = fb
@@ -141,147 +165,161 @@ def turns_in(p: Real, start: float, low: float, high: float, found: Real, work: 
     return count
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
+def combined(
+    curves: Real, row: int, width: int, region: int, x0: float, y0: float, s: Real
+) -> None:
+    """The sub-step's polynomial of x, measured from the edge of its region, to the front of ``s``.
+
+    Its five polynomials begin at ``row`` of the flat ``curves``.
+    """
+    if region != 0:
+        for m in range(width):
+            s[m] = (
+                curves[row + PHI * width + m] * x0
+                + curves[row + PSI * width + m] * y0
+                + curves[row + NU * width + m]
+            )
+    else:
+        for m in range(width):
+            s[m] = curves[row + FREE_PSI * width + m] * y0 + curves[row + FREE_NU * width + m]
+        s[0] += x0
+
+
+@part
+def frame(
+    curves: Real, row: int, width: int, region: int, u: float, h: float, out: Real, place: int
+) -> None:
+    """phi, psi, nu and their rates at ``u`` of one region: six numbers of ``out`` at ``place``."""
+    out[place] = 1.0
+    out[place + 3] = 0.0
+    contact = region != 0
+    for q in range(0 if contact else 1, 3):
+        first = row + (q if contact else q + 2) * width
+        out[place + q] = value_of(curves, first, width, u)
+        out[place + 3 + q] = slope(curves, first, width, u) / h
+
+
+@part
+def next_edge(
+    s: Real, width: int, start: float, region: int, b: float, skip: int
+) -> tuple[float, int]:
+    """Where the path first leaves its region after ``start``, and by which edge.
+
+    LOWER, UPPER, or NEITHER before the end; ``skip`` the edge just crossed, not to be
+    crossed in the first piece.
+    """
+    low = -np.inf if region < 0 else 0.0 if region > 0 else -b
+    high = np.inf if region > 0 else 0.0 if region < 0 else b
+    turns = turns_in(s, width, start, low, high)
+    a = start
+    for i in range(turns + 1):
+        e = s[2 * width + i] if i < turns else 1.0
+        value = value_of(s, FRONT, width, e)
+        edge = LOWER if value < low else UPPER if value > high else NEITHER
+        if edge != NEITHER and edge != skip:
+            return root(s, FRONT, width, low if edge == LOWER else high, a, e), edge
+        skip = NEITHER
+        a = e
+    return 1.0, NEITHER
+
+
+@part
 def step_through(
-    polys: Real,
-    maps: Real,
-    lane: int,
-    h: float,
-    b: float,
-    state: Real,
-    region: int,
-    jacobian: Real,
-    counts: Whole,
-    spent: Real,
+    curves: Real,
+    row: int,
+    width: int,
+    carried: Real,
+    stride: int,
+    i: int,
+    columns: int,
     scratch: Real,
-    found: Real,
-) -> int:
+) -> None:
     """One sub-step of one lane with contact changes, turning points and grazing.
 
-    ``polys`` (lane, 5, K + 1) and ``maps`` (10, lane) of this sub-step; ``state`` (2,) in and
-    out; ``jacobian`` (4,) out: d end/d start row by row; ``counts`` losses of drive contact,
-    back-side impacts; ``spent`` (3,) net time in back, free, drive. Returns the last region.
+    ``curves`` (flat) holds its polynomials and what belongs to them from ``row`` on; column ``i``
+    of ``carried`` (CARRIED, ``stride``) follows: state, region, times and counts, and ``columns``
+    of its tangent. Work space: ``scratch`` (2 (K + 1) + SCRATCH). All are flat.
     """
-    width = polys.shape[2]
-    p = scratch[0, :width]
-    jacobian[0] = 1.0
-    jacobian[1] = 0.0
-    jacobian[2] = 0.0
-    jacobian[3] = 1.0
-    x0 = state[0] - region * b
-    y0 = state[1]
+    maps = row + 5 * width
+    here = 2 * width + 2 * TURNS
+    h = curves[maps + HALF]
+    b = curves[maps + GAP]
+    shift = carried[SHIFT * stride + i]
+    region = 1 if shift > 0.0 else -1 if shift < 0.0 else 0
+    before = region
+    for m in range(3):
+        scratch[here + 6 + m] = 0.0
+    j11 = 1.0
+    j12 = 0.0
+    j21 = 0.0
+    j22 = 1.0
+    x0 = carried[X * stride + i] - region * b
+    y0 = carried[Y * stride + i]
     start = -1.0
-    skip = 2  # the edge just crossed (0 lower, 1 upper), not to be crossed in the first piece
+    skip = NEITHER
     for _ in range(MOST_CROSSINGS):
-        if region != 0:
-            for m in range(width):
-                p[m] = polys[lane, PHI, m] * x0 + polys[lane, PSI, m] * y0 + polys[lane, NU, m]
-        else:
-            for m in range(width):
-                p[m] = polys[lane, FREE_PSI, m] * y0 + polys[lane, FREE_NU, m]
-            p[0] += x0
-        low = -np.inf
-        high = np.inf
-        if region == 1:
-            low = 0.0
-        elif region == 0:
-            low = -b
-            high = b
-        else:
-            high = 0.0
-        turns = turns_in(p, start, low, high, found, scratch[1])
-        a = start
-        at = 2.0
-        edge = 2
-        for i in range(turns + 1):
-            e = found[i] if i < turns else 1.0
-            value = value_of(p, e)
-            if value < low and skip != 0:
-                at = root(p, low, a, e)
-                edge = 0
-                break
-            if value > high and skip != 1:
-                at = root(p, high, a, e)
-                edge = 1
-                break
-            skip = 2
-            a = e
-        if edge == 2:
+        combined(curves, row, width, region, x0, y0, scratch)
+        at, edge = next_edge(scratch, width, start, region, b, skip)
+        if edge == NEITHER:
             break
-        y = slope(p, at) / h
+        y = slope(scratch, FRONT, width, at) / h
         # Phi of the region left behind, at the crossing
         time = h * at
-        spent[region + 1] += time
-        if region != 0:
-            f11 = value_of(polys[lane, PHI], at)
-            f12 = value_of(polys[lane, PSI], at)
-            f21 = slope(polys[lane, PHI], at) / h
-            f22 = slope(polys[lane, PSI], at) / h
-        else:
-            f11 = 1.0
-            f12 = value_of(polys[lane, FREE_PSI], at)
-            f21 = 0.0
-            f22 = slope(polys[lane, FREE_PSI], at) / h
-        j11 = f11 * jacobian[0] + f12 * jacobian[2]
-        j12 = f11 * jacobian[1] + f12 * jacobian[3]
-        j21 = f21 * jacobian[0] + f22 * jacobian[2]
-        j22 = f21 * jacobian[1] + f22 * jacobian[3]
-        if edge == 0:
-            if region == 1:
-                counts[0] += 1
-            else:
-                counts[1] += 1
+        scratch[here + 7 + region] += time
+        frame(curves, row, width, region, at, h, scratch, here)
+        e11 = scratch[here] * j11 + scratch[here + 1] * j21
+        e12 = scratch[here] * j12 + scratch[here + 1] * j22
+        e21 = scratch[here + 3] * j11 + scratch[here + 4] * j21
+        e22 = scratch[here + 3] * j12 + scratch[here + 4] * j22
+        if edge == LOWER:
+            carried[(LOSSES if region == 1 else LOSSES + 1) * stride + i] += 1.0
             # upper edge of the region below; contact is measured from its own edge
             x = b if region == 1 else 0.0
             region -= 1
-            skip = 1
+            skip = UPPER
         else:
             x = 0.0 if region == 0 else -b
             region += 1
-            skip = 0
-        spent[region + 1] -= time
-        if region != 0:
-            f11 = value_of(polys[lane, PHI], at)
-            f12 = value_of(polys[lane, PSI], at)
-            f21 = slope(polys[lane, PHI], at) / h
-            f22 = slope(polys[lane, PSI], at) / h
-            x -= value_of(polys[lane, NU], at)
-            y -= slope(polys[lane, NU], at) / h
-        else:
-            f11 = 1.0
-            f12 = value_of(polys[lane, FREE_PSI], at)
-            f21 = 0.0
-            f22 = slope(polys[lane, FREE_PSI], at) / h
-            x -= value_of(polys[lane, FREE_NU], at)
-            y -= slope(polys[lane, FREE_NU], at) / h
+            skip = LOWER
+        scratch[here + 7 + region] -= time
+        frame(curves, row, width, region, at, h, scratch, here)
+        f11 = scratch[here]
+        f12 = scratch[here + 1]
+        f21 = scratch[here + 3]
+        f22 = scratch[here + 4]
+        x -= scratch[here + 2]
+        y -= scratch[here + 5]
         det = f11 * f22 - f12 * f21
         x0 = (f22 * x - f12 * y) / det
         y0 = (f11 * y - f21 * x) / det
-        jacobian[0] = (f22 * j11 - f12 * j21) / det
-        jacobian[1] = (f22 * j12 - f12 * j22) / det
-        jacobian[2] = (f11 * j21 - f21 * j11) / det
-        jacobian[3] = (f11 * j22 - f21 * j12) / det
+        j11 = (f22 * e11 - f12 * e21) / det
+        j12 = (f22 * e12 - f12 * e22) / det
+        j21 = (f11 * e21 - f21 * e11) / det
+        j22 = (f11 * e22 - f21 * e12) / det
         start = at
-    if region != 0:
-        f11 = maps[0, lane]
-        f21 = maps[1, lane]
-        f12 = maps[2, lane]
-        f22 = maps[3, lane]
-        state[0] = f11 * x0 + f12 * y0 + maps[4, lane] + region * b
-        state[1] = f21 * x0 + f22 * y0 + maps[5, lane]
-    else:
-        f11 = 1.0
-        f21 = 0.0
-        f12 = maps[6, lane]
-        f22 = maps[7, lane]
-        state[0] = x0 + f12 * y0 + maps[8, lane]
-        state[1] = f22 * y0 + maps[9, lane]
-    j11 = f11 * jacobian[0] + f12 * jacobian[2]
-    j12 = f11 * jacobian[1] + f12 * jacobian[3]
-    j21 = f21 * jacobian[0] + f22 * jacobian[2]
-    j22 = f21 * jacobian[1] + f22 * jacobian[3]
-    jacobian[0] = j11
-    jacobian[1] = j12
-    jacobian[2] = j21
-    jacobian[3] = j22
-    return region
+    free = region == 0
+    f11 = 1.0 if free else curves[maps]
+    f21 = 0.0 if free else curves[maps + 1]
+    f12 = curves[maps + 6] if free else curves[maps + 2]
+    f22 = curves[maps + 7] if free else curves[maps + 3]
+    carried[X * stride + i] = f11 * x0 + f12 * y0 + curves[maps + (8 if free else 4)] + region * b
+    carried[Y * stride + i] = f21 * x0 + f22 * y0 + curves[maps + (9 if free else 5)]
+    e11 = f11 * j11 + f12 * j21
+    e12 = f11 * j12 + f12 * j22
+    e21 = f21 * j11 + f22 * j21
+    e22 = f21 * j12 + f22 * j22
+    for m in range(columns):
+        one = carried[(TANGENT + m) * stride + i]
+        two = carried[(TANGENT + 2 + m) * stride + i]
+        carried[(TANGENT + m) * stride + i] = e11 * one + e12 * two
+        carried[(TANGENT + 2 + m) * stride + i] = e21 * one + e22 * two
+    for m in range(3):
+        carried[(SPENT + m) * stride + i] += scratch[here + 6 + m]
+    if region != before:
+        # the whole period is booked for the region at its end
+        carried[(SPENT + before + 1) * stride + i] += curves[maps + SINCE] + h
+        carried[(SPENT + region + 1) * stride + i] -= curves[maps + SINCE] + h
+        carried[SHIFT * stride + i] = region * b
+        carried[LOW * stride + i] = -np.inf if region < 0 else (region * 2 - 1) * b
+        carried[HIGH * stride + i] = np.inf if region > 0 else (region * 2 + 1) * b

@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.batch import ROOM, cross_together, place
+from thermogear.dynamics.kernels.affine import HALF, SINCE
+from thermogear.dynamics.kernels.batch import (
+    CARRIED,
+    DOUBLE,
+    HIGH,
+    LOSSES,
+    LOW,
+    OWN_GAP,
+    QUEUE,
+    SHIFT,
+    SPENT,
+    TANGENT,
+    WHOLE,
+    X,
+    Y,
+    cross_eight,
+)
+from thermogear.dynamics.kernels.compiled import kernel
 from thermogear.dynamics.kernels.crossing import step_through
-from thermogear.dynamics.kernels.vector import EIGHT
+from thermogear.dynamics.kernels.vector import EIGHT, bits, choose, load, store
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def advance_exact(
-    maps: Real,
-    polys: Real,
-    half: Real,
+    steps: Real,
+    curves: Real,
+    width: int,
     reach: Real,
     backlash: Real,
     x: Real,
@@ -26,180 +42,169 @@ def advance_exact(
     region: Whole,
     tangent: Real,
     columns: int,
+    normalise: bool,
     sections: Real,
     stretch: Real,
     samples: Real,
     marks: NDArray[np.uint8],
     counts: Whole,
     spent: Real,
+    carried: Real,
+    table: Real,
+    p: Real,
+    scratch: Real,
+    queue: Whole,
 ) -> None:
     """Advance all lanes by ``len(sections)`` periods, in place.
 
-    ``reach`` (lane) how far a hidden turn can swing in a sub-step; ``columns`` 0, 1 or 2
-    tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22; with ``stretch`` (period,
-    lane) not empty the first column is normalised every period and its logarithm stored.
-    ``samples`` (period * marked, 2, lane): the state at the start of every sub-step that
-    ``marks`` names, when not empty. ``counts`` (2, lane) and ``spent`` (3, lane) accumulate
-    contact losses, back-side impacts, and the time in back, free and drive contact.
+    ``steps`` (N, group of eight lanes, 11, 8) and ``curves`` (N, lane, 5 ``width`` + 14 and more)
+    as ``affine.prepare`` fills them; ``reach`` (lane) how far a hidden turn can swing in a
+    sub-step; ``columns`` 0, 1 or 2 tangent columns of ``tangent`` (4, lane) = m11, m12, m21, m22;
+    with ``normalise`` the first column is normalised every period and its logarithm stored in
+    ``stretch`` (period, lane). ``sections`` (period, 2, lane). ``samples`` (period marked, 2,
+    lane): the state at the start of every sub-step that ``marks`` names, when not empty.
+    ``counts`` (2, lane) and ``spent`` (3, lane) accumulate contact losses, back-side impacts, and
+    the time in back, free and drive contact. All are flat. Work space: ``carried`` (CARRIED, lane
+    of full groups), ``table`` (room, 8), ``p`` (width, 8), ``scratch`` (2 width + SCRATCH),
+    ``queue`` (QUEUE + 8 and a place for every lane).
     """
-    count = maps.shape[0]
-    lanes = x.shape[0]
-    taking = samples.shape[0] > 0
-    normal = stretch.shape[0] > 0
+    count = marks.size
+    lanes = x.size
+    stride = carried.size // CARRIED
+    groups = stride // EIGHT
+    one = 11 * EIGHT  # numbers of a group's sub-step
+    room = table.size // EIGHT
+    for i in range(stride):
+        # lanes that fill up the last group rest in the middle of a gap
+        real = i < lanes
+        b = backlash[i] if real else 1.0
+        r = region[i] if real else 0
+        carried[X * stride + i] = x[i] if real else 0.0
+        carried[Y * stride + i] = y[i] if real else 0.0
+        carried[SHIFT * stride + i] = r * b
+        carried[LOW * stride + i] = -np.inf if r < 0 else (r * 2 - 1) * b
+        carried[HIGH * stride + i] = np.inf if r > 0 else (r * 2 + 1) * b
+        carried[DOUBLE * stride + i] = 2.0 * reach[i] if real else 0.0
+        carried[OWN_GAP * stride + i] = b
+        # the period, summed as the sub-steps' own times are
+        last = ((count - 1) * lanes + (i if real else 0)) * room + 5 * width
+        carried[WHOLE * stride + i] = curves[last + SINCE] + 2.0 * curves[last + HALF]
+        for m in range(3):
+            carried[(SPENT + m) * stride + i] = spent[m * lanes + i] if real else 0.0
+        for m in range(2):
+            carried[(LOSSES + m) * stride + i] = counts[m * lanes + i] if real else 0.0
+        for m in range(4):
+            carried[(TANGENT + m) * stride + i] = tangent[m * lanes + i] if real else 0.0
     taken = 0
-    fresh_x = np.empty(lanes)
-    fresh_y = np.empty(lanes)
-    doubt = np.zeros(lanes, np.uint8)
-    queue = np.empty(lanes, np.int64)
-    frame = np.empty((4, lanes))
-    since = np.empty(lanes)
-    for i in range(lanes):
-        place(frame, i, region[i], backlash[i])
-    shift = frame[0]
-    touch = frame[1]
-    low = frame[2]
-    high = frame[3]
-    other = np.empty(lanes, np.int64)
-    lane = np.empty(EIGHT, np.int64)
-    room = np.ones((ROOM, EIGHT))
-    curve = np.ones((3, polys.shape[3], EIGHT))
-    basis = np.ones((3, polys.shape[3], EIGHT))
-    values = np.ones((6, 3, EIGHT))
-    jacobian = np.empty(4)
-    state = np.empty(2)
-    scratch = np.empty((2, polys.shape[3]))
-    found = np.empty(16)
-    tally = np.zeros(2, np.int64)
-    clock = np.zeros(3)
-    for period in range(sections.shape[0]):
-        since[:] = 0.0
+    for period in range(sections.size // (2 * lanes)):
         for n in range(count):
-            if taking and marks[n] != 0:
-                samples[taken, 0, :] = x
-                samples[taken, 1, :] = y
-                taken += 1
-            for i in range(lanes):
-                # contact and free step both, then the choice: choosing the maps' entries instead
-                # would read them one by one
-                z = x[i] - shift[i]
-                w = y[i]
-                xn = maps[n, 0, i] * z + maps[n, 2, i] * w + maps[n, 4, i]
-                yn = maps[n, 1, i] * z + maps[n, 3, i] * w + maps[n, 5, i]
-                xf = z + maps[n, 6, i] * w + maps[n, 8, i]
-                yf = maps[n, 7, i] * w + maps[n, 9, i]
-                contact = touch[i] != 0.0
-                xn = (xn if contact else xf) + shift[i]
-                yn = yn if contact else yf
-                fresh_x[i] = xn
-                fresh_y[i] = yn
-                # can the path between the ends have left the region?
-                below = x[i] if x[i] < xn else xn
-                above = x[i] if x[i] > xn else xn
-                room_low = below - low[i]
-                room_high = high[i] - above
-                spare = room_low if room_low < room_high else room_high
-                # of a parabola, x turns at most h/2 times the smaller end speed beyond the ends
-                slow = abs(w) if abs(w) < abs(yn) else abs(yn)
-                swing = 2.0 * reach[i] + (half[n, i] * slow if w * yn <= 0.0 else 0.0)
-                doubt[i] = not (spare > swing)
-            waiting = 0
-            for i in range(lanes):
-                queue[waiting] = i
-                waiting += doubt[i]
-            for c in range(columns):
+            if samples.size > 0 and marks[n] != 0:
                 for i in range(lanes):
-                    moves = doubt[i] == 0
-                    contact = touch[i] != 0.0
-                    a = tangent[c, i]
-                    b = tangent[2 + c, i]
-                    an = maps[n, 0, i] * a + maps[n, 2, i] * b
-                    bn = maps[n, 1, i] * a + maps[n, 3, i] * b
-                    af = a + maps[n, 6, i] * b
-                    bf = maps[n, 7, i] * b
-                    an = an if contact else af
-                    bn = bn if contact else bf
-                    tangent[c, i] = an if moves else a
-                    tangent[2 + c, i] = bn if moves else b
-            if waiting > 0:
-                waiting = cross_together(
-                    polys[n],
-                    maps[n],
-                    half[n],
-                    reach,
-                    backlash,
-                    x,
-                    y,
-                    region,
-                    fresh_x,
-                    fresh_y,
-                    frame,
-                    since,
-                    tangent,
-                    columns,
-                    queue,
-                    waiting,
-                    counts,
-                    spent,
-                    other,
-                    lane,
-                    room,
-                    curve,
-                    basis,
-                    values,
-                )
-            for w in range(waiting):
+                    samples[taken + i] = carried[X * stride + i]
+                    samples[taken + lanes + i] = carried[Y * stride + i]
+                taken += 2 * lanes
+            waiting = 0
+            for g in range(groups):
+                # contact and free step both, then the choice
+                at = EIGHT * g
+                row = (n * groups + g) * one
+                x0 = load(carried, X * stride + at)
+                y0 = load(carried, Y * stride + at)
+                shift = load(carried, SHIFT * stride + at)
+                contact = shift != 0.0
+                z = x0 - shift
+                m11 = load(steps, row)
+                m21 = load(steps, row + EIGHT)
+                m12 = load(steps, row + 2 * EIGHT)
+                m22 = load(steps, row + 3 * EIGHT)
+                free12 = load(steps, row + 6 * EIGHT)
+                free22 = load(steps, row + 7 * EIGHT)
+                x1 = m11 * z + m12 * y0 + load(steps, row + 4 * EIGHT)
+                y1 = m21 * z + m22 * y0 + load(steps, row + 5 * EIGHT)
+                xf = z + free12 * y0 + load(steps, row + 8 * EIGHT)
+                yf = free22 * y0 + load(steps, row + 9 * EIGHT)
+                x1 = choose(contact, x1, xf) + shift
+                y1 = choose(contact, y1, yf)
+                # can the path between the ends have left the region?
+                rising = x0 < x1
+                room_low = choose(rising, x0, x1) - load(carried, LOW * stride + at)
+                room_high = load(carried, HIGH * stride + at) - choose(rising, x1, x0)
+                spare = choose(room_low < room_high, room_low, room_high)
+                # of a parabola, x turns at most h/2 times the smaller end speed beyond the ends
+                slow = choose(abs(y0) < abs(y1), abs(y0), abs(y1))
+                half = load(steps, row + HALF * EIGHT)
+                turning = choose(y0 * y1 <= 0.0, half * slow, 0.0)
+                sure = spare > load(carried, DOUBLE * stride + at) + turning
+                store(carried, X * stride + at, choose(sure, x1, x0))
+                store(carried, Y * stride + at, choose(sure, y1, y0))
+                for c in range(columns):
+                    above = (TANGENT + c) * stride + at
+                    below = (TANGENT + 2 + c) * stride + at
+                    a = load(carried, above)
+                    w = load(carried, below)
+                    t1 = choose(contact, m11 * a + m12 * w, a + free12 * w)
+                    t2 = choose(contact, m21 * a + m22 * w, free22 * w)
+                    store(carried, above, choose(sure, t1, a))
+                    store(carried, below, choose(sure, t2, w))
+                doubt = bits(sure) ^ 255
+                if doubt != 0:
+                    for k in range(EIGHT):
+                        queue[QUEUE + waiting] = at + k
+                        waiting += (doubt >> k) & 1
+            left = 0
+            for first in range(QUEUE, QUEUE + waiting, EIGHT):
+                many = min(EIGHT, QUEUE + waiting - first)
+                for k in range(EIGHT):
+                    i = queue[first + k] if k < many else queue[first]
+                    queue[k] = i
+                    queue[EIGHT + k] = (n * lanes + i) * room
+                undone = cross_eight(curves, carried, stride, columns, queue, table, p, width)
+                for k in range(many):
+                    if (undone >> k) & 1:
+                        queue[QUEUE + left] = queue[k]
+                        left += 1
+            for w in range(QUEUE, QUEUE + left):
                 i = queue[w]
-                if not (abs(x[i]) < np.inf):
-                    continue
-                state[0] = x[i]
-                state[1] = y[i]
-                before = region[i]
-                now = step_through(
-                    polys[n],
-                    maps[n],
-                    i,
-                    half[n, i],
-                    backlash[i],
-                    state,
-                    before,
-                    jacobian,
-                    tally,
-                    clock,
-                    scratch,
-                    found,
-                )
-                fresh_x[i] = state[0]
-                fresh_y[i] = state[1]
-                for m in range(2):
-                    counts[m, i] += tally[m]
-                    tally[m] = 0
-                for m in range(3):
-                    spent[m, i] += clock[m]
-                    clock[m] = 0.0
-                if now != before:
-                    # the whole period is booked for the region at its end
-                    spent[before + 1, i] += since[i] + half[n, i]
-                    spent[now + 1, i] -= since[i] + half[n, i]
-                    region[i] = now
-                    place(frame, i, now, backlash[i])
-                for m in range(columns):
-                    a = tangent[m, i]
-                    b = tangent[2 + m, i]
-                    tangent[m, i] = jacobian[0] * a + jacobian[1] * b
-                    tangent[2 + m, i] = jacobian[2] * a + jacobian[3] * b
-            for i in range(lanes):
-                x[i] = fresh_x[i]
-                y[i] = fresh_y[i]
-                since[i] += 2.0 * half[n, i]
+                if abs(carried[X * stride + i]) < np.inf:
+                    step_through(
+                        curves, (n * lanes + i) * room, width, carried, stride, i, columns, scratch
+                    )
+                else:
+                    carried[X * stride + i] = np.nan
+                    carried[Y * stride + i] = np.nan
         for i in range(lanes):
-            spent[region[i] + 1, i] += since[i]
-            sections[period, 0, i] = x[i]
-            sections[period, 1, i] = y[i]
-            if not (abs(x[i]) <= 1e6 * backlash[i] and abs(y[i]) < np.inf):
-                x[i] = np.nan
-                y[i] = np.nan
-            if normal:
-                size = np.sqrt(tangent[0, i] ** 2 + tangent[2, i] ** 2)
-                stretch[period, i] = np.log(size)
-                tangent[0, i] /= size
-                tangent[2, i] /= size
+            sections[2 * period * lanes + i] = carried[X * stride + i]
+            sections[(2 * period + 1) * lanes + i] = carried[Y * stride + i]
+        for at in range(0, stride, EIGHT):
+            whole = load(carried, WHOLE * stride + at)
+            shift = load(carried, SHIFT * stride + at)
+            gap = load(carried, OWN_GAP * stride + at)
+            for m in range(3):
+                place = (SPENT + m) * stride + at
+                there = shift == (m - 1.0) * gap
+                store(carried, place, load(carried, place) + choose(there, whole, 0.0))
+            x0 = load(carried, X * stride + at)
+            y0 = load(carried, Y * stride + at)
+            within = (abs(x0) <= 1e6 * gap) & (abs(y0) < np.inf)
+            # out of every physical range: the lane stays NaN, its neighbours go on
+            store(carried, X * stride + at, choose(within, x0, np.nan))
+            store(carried, Y * stride + at, choose(within, y0, np.nan))
+        if normalise:
+            for i in range(lanes):
+                above = TANGENT * stride + i
+                below = (TANGENT + 2) * stride + i
+                size = np.sqrt(carried[above] ** 2 + carried[below] ** 2)
+                stretch[period * lanes + i] = np.log(size)
+                carried[above] /= size
+                carried[below] /= size
+    for i in range(lanes):
+        x[i] = carried[X * stride + i]
+        y[i] = carried[Y * stride + i]
+        shift_now = carried[SHIFT * stride + i]
+        region[i] = 1 if shift_now > 0.0 else -1 if shift_now < 0.0 else 0
+        for m in range(3):
+            spent[m * lanes + i] = carried[(SPENT + m) * stride + i]
+        for m in range(2):
+            counts[m * lanes + i] = int(carried[(LOSSES + m) * stride + i])
+        for m in range(4):
+            tangent[m * lanes + i] = carried[(TANGENT + m) * stride + i]

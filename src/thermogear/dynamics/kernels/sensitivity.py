@@ -14,16 +14,27 @@ have another contact.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
-from thermogear.dynamics.kernels.crossing import MOST_CROSSINGS, root, slope, turns_in, value_of
+from thermogear.dynamics.kernels.compiled import kernel, part
+from thermogear.dynamics.kernels.crossing import (
+    FRONT,
+    LOWER,
+    MOST_CROSSINGS,
+    NEITHER,
+    UPPER,
+    combined,
+    frame,
+    next_edge,
+    slope,
+    value_of,
+)
 
 Real = NDArray[np.float64]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def prepare_moved(
     damping: float,
     d_damping: float,
@@ -33,21 +44,19 @@ def prepare_moved(
     d_stiffness: Real,
     force: Real,
     d_force: Real,
+    work: Real,
+    moved: Real,
+    ends: Real,
     d_polys: Real,
 ) -> None:
     """The derivative of :func:`~thermogear.dynamics.kernels.affine.prepare`'s polynomials.
 
     Of one lane: ``half`` (N), ``stiffness`` and ``force`` (N, K + 1), ``d_...`` their derivatives
-    by the parameter; ``d_polys`` (N, 5, K + 1) is filled.
+    by the parameter; ``d_polys`` (N, 5, K + 1) is filled. Work space: ``work`` and ``moved``
+    (5 (K + 1)), ``ends`` (20).
     """
     count, width = stiffness.shape
     order = width - 1
-    work = np.empty((5, width))
-    moved = np.empty((5, width))
-    left = np.empty(5)
-    rise = np.empty(5)
-    d_left = np.empty(5)
-    d_rise = np.empty(5)
     for n in range(count):
         h = half[n]
         dh = d_half[n]
@@ -55,11 +64,12 @@ def prepare_moved(
         d_ch = d_damping * h + damping * dh
         hh = h * h
         d_hh = 2.0 * h * dh
-        work[:] = 0.0
-        moved[:] = 0.0
-        work[0, 0] = 1.0
-        work[1, 1] = 1.0
-        work[3, 1] = 1.0
+        for i in range(5 * width):
+            work[i] = 0.0
+            moved[i] = 0.0
+        work[0] = 1.0
+        work[width + 1] = 1.0
+        work[3 * width + 1] = 1.0
         for m in range(order - 1):
             scale = 1.0 / ((m + 2.0) * (m + 1.0))
             drag = ch * (m + 1.0)
@@ -68,78 +78,61 @@ def prepare_moved(
                 total = 0.0
                 d_total = 0.0
                 for i in range(m + 1):
-                    total += stiffness[n, i] * work[q, m - i]
-                    d_total += stiffness[n, i] * moved[q, m - i]
-                    d_total += d_stiffness[n, i] * work[q, m - i]
-                work[q, m + 2] = -(drag * work[q, m + 1] + hh * total) * scale
+                    total += stiffness[n, i] * work[q * width + m - i]
+                    d_total += stiffness[n, i] * moved[q * width + m - i]
+                    d_total += d_stiffness[n, i] * work[q * width + m - i]
+                work[q * width + m + 2] = -(drag * work[q * width + m + 1] + hh * total) * scale
                 d_total = d_hh * total + hh * d_total
-                d_total += d_drag * work[q, m + 1] + drag * moved[q, m + 1]
-                moved[q, m + 2] = -d_total * scale
+                d_total += d_drag * work[q * width + m + 1] + drag * moved[q * width + m + 1]
+                moved[q * width + m + 2] = -d_total * scale
             for q in range(3, 5):
-                work[q, m + 2] = -drag * work[q, m + 1] * scale
-                moved[q, m + 2] = -(d_drag * work[q, m + 1] + drag * moved[q, m + 1]) * scale
+                work[q * width + m + 2] = -drag * work[q * width + m + 1] * scale
+                d_total = d_drag * work[q * width + m + 1] + drag * moved[q * width + m + 1]
+                moved[q * width + m + 2] = -d_total * scale
             push = hh * force[n, m] * scale
             d_push = (d_hh * force[n, m] + hh * d_force[n, m]) * scale
-            for q in (2, 4):
-                work[q, m + 2] += push
-                moved[q, m + 2] += d_push
+            for q in range(2, 5, 2):
+                work[q * width + m + 2] += push
+                moved[q * width + m + 2] += d_push
         for q in range(5):
-            left[q] = value_of(work[q], -1.0)
-            rise[q] = slope(work[q], -1.0)
-            d_left[q] = value_of(moved[q], -1.0)
-            d_rise[q] = slope(moved[q], -1.0)
-        det = left[0] * rise[1] - left[1] * rise[0]
-        d_det = d_left[0] * rise[1] + left[0] * d_rise[1]
-        d_det -= d_left[1] * rise[0] + left[1] * d_rise[0]
-        a = rise[1] / det
-        d_a = (d_rise[1] - a * d_det) / det
-        b = -rise[0] / det
-        d_b = (-d_rise[0] - b * d_det) / det
-        c = -h * left[1] / det
-        d_c = (-dh * left[1] - h * d_left[1] - c * d_det) / det
-        d = h * left[0] / det
-        d_d = (dh * left[0] + h * d_left[0] - d * d_det) / det
-        e = (left[1] * rise[2] - rise[1] * left[2]) / det
-        d_e = d_left[1] * rise[2] + left[1] * d_rise[2] - d_rise[1] * left[2] - rise[1] * d_left[2]
+            ends[q] = value_of(work, q * width, width, -1.0)
+            ends[5 + q] = slope(work, q * width, width, -1.0)
+            ends[10 + q] = value_of(moved, q * width, width, -1.0)
+            ends[15 + q] = slope(moved, q * width, width, -1.0)
+        det = ends[0] * ends[6] - ends[1] * ends[5]
+        d_det = ends[10] * ends[6] + ends[0] * ends[16]
+        d_det -= ends[11] * ends[5] + ends[1] * ends[15]
+        a = ends[6] / det
+        d_a = (ends[16] - a * d_det) / det
+        b = -ends[5] / det
+        d_b = (-ends[15] - b * d_det) / det
+        c = -h * ends[1] / det
+        d_c = (-dh * ends[1] - h * ends[11] - c * d_det) / det
+        d = h * ends[0] / det
+        d_d = (dh * ends[0] + h * ends[10] - d * d_det) / det
+        e = (ends[1] * ends[7] - ends[6] * ends[2]) / det
+        d_e = ends[11] * ends[7] + ends[1] * ends[17] - ends[16] * ends[2] - ends[6] * ends[12]
         d_e = (d_e - e * d_det) / det
-        f = (rise[0] * left[2] - left[0] * rise[2]) / det
-        d_f = d_rise[0] * left[2] + rise[0] * d_left[2] - d_left[0] * rise[2] - left[0] * d_rise[2]
+        f = (ends[5] * ends[2] - ends[0] * ends[7]) / det
+        d_f = ends[15] * ends[2] + ends[5] * ends[12] - ends[10] * ends[7] - ends[0] * ends[17]
         d_f = (d_f - f * d_det) / det
-        g = h / rise[3]
-        d_g = (dh - g * d_rise[3]) / rise[3]
-        r = -rise[4] / rise[3]
-        d_r = (-d_rise[4] - r * d_rise[3]) / rise[3]
-        out = d_polys[n]
+        g = h / ends[8]
+        d_g = (dh - g * ends[18]) / ends[8]
+        r = -ends[9] / ends[8]
+        d_r = (-ends[19] - r * ends[18]) / ends[8]
         for m in range(width):
-            w0, w1, w3 = work[0, m], work[1, m], work[3, m]
-            v0, v1, v3 = moved[0, m], moved[1, m], moved[3, m]
-            out[PHI, m] = d_a * w0 + a * v0 + d_b * w1 + b * v1
-            out[PSI, m] = d_c * w0 + c * v0 + d_d * w1 + d * v1
-            out[NU, m] = moved[2, m] + d_e * w0 + e * v0 + d_f * w1 + f * v1
-            out[FREE_PSI, m] = d_g * w3 + g * v3
-            out[FREE_NU, m] = moved[4, m] + d_r * w3 + r * v3
-        out[FREE_PSI, 0] -= d_g * left[3] + g * d_left[3]
-        out[FREE_NU, 0] -= d_left[4] + d_r * left[3] + r * d_left[3]
+            w0, w1, w3 = work[m], work[width + m], work[3 * width + m]
+            v0, v1, v3 = moved[m], moved[width + m], moved[3 * width + m]
+            d_polys[n, PHI, m] = d_a * w0 + a * v0 + d_b * w1 + b * v1
+            d_polys[n, PSI, m] = d_c * w0 + c * v0 + d_d * w1 + d * v1
+            d_polys[n, NU, m] = moved[2 * width + m] + d_e * w0 + e * v0 + d_f * w1 + f * v1
+            d_polys[n, FREE_PSI, m] = d_g * w3 + g * v3
+            d_polys[n, FREE_NU, m] = moved[4 * width + m] + d_r * w3 + r * v3
+        d_polys[n, FREE_PSI, 0] -= d_g * ends[3] + g * ends[13]
+        d_polys[n, FREE_NU, 0] -= ends[14] + d_r * ends[3] + r * ends[13]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _frame(polys: Real, region: int, u: float, h: float, out: Real) -> None:
-    """phi, psi, nu and their rates at ``u`` of one region into ``out`` (2, 3)."""
-    if region != 0:
-        for q in range(3):
-            row = polys[(PHI, PSI, NU)[q]]
-            out[0, q] = value_of(row, u)
-            out[1, q] = slope(row, u) / h
-    else:
-        out[0, 0] = 1.0
-        out[1, 0] = 0.0
-        for q in range(2):
-            row = polys[(FREE_PSI, FREE_NU)[q]]
-            out[0, 1 + q] = value_of(row, u)
-            out[1, 1 + q] = slope(row, u) / h
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def sensitivity(
     polys: Real,
     half: Real,
@@ -150,20 +143,19 @@ def sensitivity(
     start: Real,
     region: int,
     steps: int,
+    p: Real,
+    here: Real,
     found: Real,
 ) -> None:
     """Walk ``steps`` sub-steps from ``start`` (x, y) in ``region``; ``found`` (3,) out.
 
-    ``polys`` (N, 5, K + 1) and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...`` their
-    derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme of
-    x comes to an edge of the backlash anywhere on the way.
+    ``polys`` (N, 5, K + 1), flat, and ``half`` (N) of one lane, ``b`` its half backlash; ``d_...``
+    their derivatives by the parameter. ``found``: dx/dp, dy/dp at the end, and how near an extreme
+    of x comes to an edge of the backlash anywhere on the way. Work space: ``p`` (2 (K + 1) +
+    SCRATCH), ``here`` (12).
     """
-    count, _, width = polys.shape
-    p = np.empty(width)
-    turns_at = np.empty(16)
-    scratch = np.empty(width)
-    here = np.empty((2, 3))
-    moved = np.empty((2, 3))
+    count = half.size
+    width = polys.size // (5 * count)
     x = start[0]
     y = start[1]
     dx = 0.0
@@ -171,6 +163,7 @@ def sensitivity(
     margin = np.inf
     for step in range(steps):
         n = step % count
+        row = 5 * width * n
         h = half[n]
         slower = d_half[n] / h
         x0 = x - region * b
@@ -178,112 +171,75 @@ def sensitivity(
         dx0 = dx - region * d_b
         dy0 = dy
         begin = -1.0
-        skip = 2
+        skip = NEITHER
         for _ in range(MOST_CROSSINGS):
-            _combined(polys[n], region, x0, y0, p)
-            low = -np.inf
-            high = np.inf
-            if region == 1:
-                low = 0.0
-            elif region == 0:
-                low = -b
-                high = b
-            else:
-                high = 0.0
-            turns = turns_in(p, begin, low, high, turns_at, scratch)
-            a = begin
-            at = 1.0
-            edge = 2
-            for i in range(turns + 1):
-                e = turns_at[i] if i < turns else 1.0
-                value = value_of(p, e)
-                if value < low and skip != 0:
-                    at = root(p, low, a, e)
-                    edge = 0
-                    break
-                if value > high and skip != 1:
-                    at = root(p, high, a, e)
-                    edge = 1
-                    break
-                skip = 2
-                a = e
-            margin = min(margin, _nearest_turn(p, begin, at, region * b, b))
-            _frame(polys[n], region, at, h, here)
-            _frame(d_polys[n], region, at, h, moved)
+            combined(polys, row, width, region, x0, y0, p)
+            at, edge = next_edge(p, width, begin, region, b, skip)
+            margin = min(margin, _nearest_turn(p, width, begin, at, region * b, b))
+            frame(polys, row, width, region, at, h, here, 0)
+            frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
-                moved[0, 0] = 0.0
+                here[6] = 0.0
             for q in range(3):
                 # the rate is a slope over h, and h moves too
-                moved[1, q] -= here[1, q] * slower
-            x = here[0, 0] * x0 + here[0, 1] * y0 + here[0, 2]
-            y = here[1, 0] * x0 + here[1, 1] * y0 + here[1, 2]
-            dx = here[0, 0] * dx0 + here[0, 1] * dy0
-            dx += moved[0, 0] * x0 + moved[0, 1] * y0 + moved[0, 2]
-            dy = here[1, 0] * dx0 + here[1, 1] * dy0
-            dy += moved[1, 0] * x0 + moved[1, 1] * y0 + moved[1, 2]
+                here[9 + q] -= here[3 + q] * slower
+            x = here[0] * x0 + here[1] * y0 + here[2]
+            y = here[3] * x0 + here[4] * y0 + here[5]
+            dx = here[0] * dx0 + here[1] * dy0
+            dx += here[6] * x0 + here[7] * y0 + here[8]
+            dy = here[3] * dx0 + here[4] * dy0
+            dy += here[9] * x0 + here[10] * y0 + here[11]
             x += region * b
             dx += region * d_b
-            if edge == 2:
+            if edge == NEITHER:
                 break
-            if edge == 0:
+            if edge == LOWER:
                 x = b if region == 1 else -b
                 region -= 1
-                skip = 1
+                skip = UPPER
             else:
                 x = b if region == 0 else -b
                 region += 1
-                skip = 0
-            _frame(polys[n], region, at, h, here)
-            _frame(d_polys[n], region, at, h, moved)
+                skip = LOWER
+            frame(polys, row, width, region, at, h, here, 0)
+            frame(d_polys, row, width, region, at, h, here, 6)
             if region == 0:
-                moved[0, 0] = 0.0
+                here[6] = 0.0
             for q in range(3):
-                moved[1, q] -= here[1, q] * slower
-            det = here[0, 0] * here[1, 1] - here[0, 1] * here[1, 0]
-            right = x - region * b - here[0, 2]
-            below = y - here[1, 2]
-            x0 = (here[1, 1] * right - here[0, 1] * below) / det
-            y0 = (here[0, 0] * below - here[1, 0] * right) / det
-            right = dx - region * d_b - (moved[0, 0] * x0 + moved[0, 1] * y0 + moved[0, 2])
-            below = dy - (moved[1, 0] * x0 + moved[1, 1] * y0 + moved[1, 2])
-            dx0 = (here[1, 1] * right - here[0, 1] * below) / det
-            dy0 = (here[0, 0] * below - here[1, 0] * right) / det
+                here[9 + q] -= here[3 + q] * slower
+            det = here[0] * here[4] - here[1] * here[3]
+            right = x - region * b - here[2]
+            below = y - here[5]
+            x0 = (here[4] * right - here[1] * below) / det
+            y0 = (here[0] * below - here[3] * right) / det
+            right = dx - region * d_b - (here[6] * x0 + here[7] * y0 + here[8])
+            below = dy - (here[9] * x0 + here[10] * y0 + here[11])
+            dx0 = (here[4] * right - here[1] * below) / det
+            dy0 = (here[0] * below - here[3] * right) / det
             begin = at
     found[0] = dx
     found[1] = dy
     found[2] = margin
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _combined(polys: Real, region: int, x0: float, y0: float, p: Real) -> None:
-    """The sub-step's polynomial of x, measured from the edge of its region."""
-    if region != 0:
-        for m in range(p.shape[0]):
-            p[m] = polys[PHI, m] * x0 + polys[PSI, m] * y0 + polys[NU, m]
-    else:
-        for m in range(p.shape[0]):
-            p[m] = polys[FREE_PSI, m] * y0 + polys[FREE_NU, m]
-        p[0] += x0
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def _nearest_turn(p: Real, begin: float, end: float, shift: float, b: float) -> float:
+@part
+def _nearest_turn(p: Real, width: int, begin: float, end: float, shift: float, b: float) -> float:
     """Distance from an edge to the extreme of x in a piece; infinite where x does not turn."""
-    first = slope(p, begin)
-    last = slope(p, end)
+    first = slope(p, FRONT, width, begin)
+    last = slope(p, FRONT, width, end)
     if first * last > 0.0 or first == last:
         return np.inf
     u = begin + (end - begin) * first / (first - last)
     for _ in range(8):
         bend = 0.0
-        for m in range(p.shape[0] - 1, 1, -1):
-            bend = bend * u + m * (m - 1.0) * p[m]
-        new = u - slope(p, u) / bend
+        for m in range(width - 1, 1, -1):
+            bend = bend * u + m * (m - 1.0) * p[FRONT + m]
+        new = u - slope(p, FRONT, width, u) / bend
         if not begin <= new <= end:
             break
         close = abs(new - u) < 1e-9 * (end - begin)
         u = new
         if close:
             break
-    x = value_of(p, u) + shift
+    x = value_of(p, FRONT, width, u) + shift
     return min(abs(x - b), abs(x + b))

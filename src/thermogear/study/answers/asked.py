@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.analysis.outcome import settle_with_status
@@ -24,6 +23,9 @@ from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
 from thermogear.study.speeds import RECORD, Speeds, look
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 MOST_POINTS = 60

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
@@ -21,6 +20,9 @@ from thermogear.results.result import Notice, Result
 from thermogear.study.answers import moving, steady
 from thermogear.study.answers.asked import MOST_POINTS, Asked
 from thermogear.study.speeds import Speeds
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KIND = "answers"
 MAKERS = (

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.display import number, span
@@ -15,6 +14,9 @@ from thermogear.views.plots.curves import hot_state
 from thermogear.views.plots.path import BAND, own_law
 from thermogear.views.style import chosen, names_of, path_points
 from thermogear.views.typesetting import operating_names
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import exactly, number
 from thermogear.results.result import Result
@@ -19,6 +18,9 @@ from thermogear.views.pages.survey import (
 )
 from thermogear.views.plots import loaded
 from thermogear.views.typesetting import prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("contact",)
 

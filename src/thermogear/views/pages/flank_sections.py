@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Pictures, Section, Table
 from thermogear.views.plots import flanks
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FIGURES = ("profile_slope", "profile_form", "profile_total")
 

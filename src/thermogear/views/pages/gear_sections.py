@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import celsius
 from thermogear.results.result import Result
@@ -13,6 +14,9 @@ from thermogear.views.pages import captions
 from thermogear.views.plots import backlash, deformation, motion, path, stiffness, temperature
 from thermogear.views.style import chosen, names_of
 from thermogear.views.typesetting import jam_words, operating_names
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_SPEEDS = 3
 """Rows of a grid over temperature."""

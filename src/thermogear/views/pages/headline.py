@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import celsius, display, number, percent, span
 from thermogear.base.vocabulary import told_labels, told_operating
@@ -15,6 +15,9 @@ from thermogear.views.page import Tile
 from thermogear.views.style import names_of
 from thermogear.views.tables import JAMMED
 from thermogear.views.typesetting import jam_at
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STUDIED = "1.1 to 1.3"
 """Frequency ratios of the thesis's bifurcation study."""

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from thermogear.base.display import number
 from thermogear.results.result import Result
@@ -19,7 +17,10 @@ from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
 from thermogear.views.typesetting import prose
 
-Groups = Mapping[str, xr.Dataset]
+if TYPE_CHECKING:
+    import xarray as xr
+
+Groups = Mapping[str, "xr.Dataset"]
 Summary = dict[str, Any]
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from markupsafe import Markup
 
 from thermogear.base.display import number
@@ -15,6 +16,9 @@ from thermogear.views.pages import record_lines
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, WIDE
 from thermogear.views.typesetting import html_symbol, prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _SHOWN = 60  # lines of the table: the most prominent
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from thermogear.base.display import number
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Pictures, Section, Text
 from thermogear.views.plots import rows
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PREFIX = "base_sets/"
 

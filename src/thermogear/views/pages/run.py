@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from thermogear.results.result import Result
 from thermogear.views import tables
@@ -13,6 +12,9 @@ from thermogear.views.page import OPEN, Page, Pictures, Section, notice_lines
 from thermogear.views.pages import answers, flank_sections, gear_sections, headline, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ORDER = (
     flank_sections.measured,

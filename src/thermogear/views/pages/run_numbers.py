@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import DIMENSIONLESS, STATUS
 from thermogear.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def numbers(result: Result) -> dict[str, Any]:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import number
 from thermogear.base.units import RPM
@@ -15,6 +14,9 @@ from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, T
 from thermogear.views.pages.background import background
 from thermogear.views.plots import claims as plots
 from thermogear.views.typesetting import prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("sensitivity",)
 

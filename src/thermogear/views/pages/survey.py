@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.results.tables import frames
 from thermogear.views.page import Block, Code, Gallery, Page, Section, Shown, Table, notice_lines
 from thermogear.views.pages.background import case_file
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Lines = Sequence[str]
 

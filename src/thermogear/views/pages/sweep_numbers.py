@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.plots.parameters import shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 JUMPS_AT = ("fold", "subcritical period doubling")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import number
 from thermogear.base.units import ZERO_CELSIUS
@@ -18,7 +18,10 @@ from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
 from thermogear.views.plots.parameters import page_words, shown
 
-Words = Callable[[xr.Dataset], str]
+if TYPE_CHECKING:
+    import xarray as xr
+
+Words = Callable[["xr.Dataset"], str]
 TITLES = {
     "diagram": "Orbit diagram",
     "map": "Map of regimes",

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import exactly, number, reach
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -21,6 +20,9 @@ from thermogear.views.pages.survey import (
 )
 from thermogear.views.plots import thermal_map
 from thermogear.views.typesetting import prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("temperature",)
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from markupsafe import Markup
 
 from thermogear.base.display import celsius
@@ -20,6 +19,9 @@ from thermogear.views.pages.background import background
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
 from thermogear.views.typesetting import html_symbol, prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PREFIX = "diagrams/"
 SECTIONS = {

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import Display, display, number, percent
 from thermogear.base.vocabulary import STATUS
@@ -28,6 +27,9 @@ from thermogear.views.plots import versus as plots
 from thermogear.views.style import chosen
 from thermogear.views.tables import is_jammed
 from thermogear.views.typesetting import field_name, jam_at, operating_names, prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_POINTS = 3
 """At most so many operating points are drawn."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import exactly, number
 from thermogear.base.units import RPM, ZERO_CELSIUS
@@ -15,6 +14,9 @@ from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import warm_up as plots
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("warmup",)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import UNDEFORMED
@@ -11,6 +12,9 @@ from thermogear.views.picture import Panel, Picture, Text
 from thermogear.views.plots.curves import axis_of, draw_by_bundle
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET, STATES, bundle_line, names_of
 from thermogear.views.typesetting import FAR, plain, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def over_phase(data: xr.Dataset) -> Picture:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.views.picture import Axis, Panel
@@ -21,6 +20,9 @@ from thermogear.views.style import (
     ramp,
 )
 from thermogear.views.typesetting import axis_label, operating_names, plain, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

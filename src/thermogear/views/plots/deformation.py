@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, bundle_line, names_of
 from thermogear.views.typesetting import plain, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def growth(data: xr.Dataset) -> Picture:

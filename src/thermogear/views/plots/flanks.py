@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NEEDS = ("trace_deviation", "trace_flank", "diameter")
 SIDES = {"drive": "drive flank", "back": "back flank"}

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.views.picture import Axis, Picture
 from thermogear.views.plots.curves import along_path
 from thermogear.views.style import DRY, FAINT, INK, OKABE_ITO, QUIET, WIDE, chosen
 from thermogear.views.typesetting import operating_names, plain
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 REGIME_COLOURS = {
     "boundary": "#c0504d",

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, OKABE_ITO, WIDE, ramp
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 EDGE = OKABE_ITO[4]
 STATES: dict[str, tuple[str, tuple[float, ...]]] = {UNDEFORMED: (COLD, (5, 2)), "hot": (HOT, ())}

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.display import display, number
@@ -15,6 +15,9 @@ from thermogear.views.plots.orbits import SMOOTH, periods_to_draw, refined, thin
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, QUIET, STATES, WIDE, names_of
 from thermogear.views.typesetting import axis_label, label_text, plain
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

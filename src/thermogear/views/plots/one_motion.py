@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.views.picture import Axis, Panel, Picture, Top
@@ -15,6 +15,9 @@ from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, HOT, OKABE_ITO, QUIET, WIDE
 from thermogear.views.typesetting import plain
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

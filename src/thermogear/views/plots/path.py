@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import display
 from thermogear.views.picture import Axis, Panel, Picture
@@ -19,6 +20,9 @@ from thermogear.views.plots.curves import (
 )
 from thermogear.views.style import DRY, FAINT, HOT, INK, OKABE_ITO, chosen
 from thermogear.views.typesetting import axis_label, math_symbol, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 S = "path_position"
 FLASHES = {

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, names_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 COLOURS = {"unrelieved": COLD, "relieved": HOT}
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import CELSIUS
 from thermogear.base.vocabulary import QUANTITIES
@@ -13,6 +14,9 @@ from thermogear.views.plots.orbits import periods_to_draw, thinned
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET
 from thermogear.views.typesetting import math_symbol, plain
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 HIGHEST_ORDER = 4.0
 DENSE = 6000

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.units import RPM
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, QUIET, WIDE
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FORMS: dict[str, tuple[str, str, tuple[float, ...]]] = {
     "exact": ("exact loaded contact", INK, (5, 2)),

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import display
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, QUIET, WIDE
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KEPT = 1e-3
 """Share of time out of contact below which contact is kept."""

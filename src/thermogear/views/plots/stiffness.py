@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.curves import along_path, axis_of, draw_by_bundle, hot_state
 from thermogear.views.style import HOT, INK, OKABE_ITO, STATES, names_of
 from thermogear.views.typesetting import math_symbol, plain, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PARTS = {
     "hertz": ("contact", OKABE_ITO[4]),

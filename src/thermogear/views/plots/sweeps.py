@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.plots.parameters import axis_words, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

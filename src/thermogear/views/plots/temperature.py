@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import CELSIUS, celsius
 from thermogear.views.picture import Axis, Panel, Picture
@@ -11,6 +12,9 @@ from thermogear.views.plots.curves import axis_of, draw_by_both
 from thermogear.views.plots.motion import draw_loop, label_of, moving, orbit_of
 from thermogear.views.style import FAINT, INK, QUIET, WIDE, chosen, ramp
 from thermogear.views.typesetting import operating_names
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_COLUMNS = 6
 

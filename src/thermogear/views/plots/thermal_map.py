@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from thermogear.base.display import CELSIUS
@@ -13,6 +13,9 @@ from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import INK, OKABE_ITO, WIDE, scale
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Floats = NDArray[np.float64]
 

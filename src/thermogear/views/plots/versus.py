@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import display
 from thermogear.base.vocabulary import UNDEFORMED, label
@@ -15,6 +15,9 @@ from thermogear.views.plots.motion import HALF_ORDERS
 from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
 from thermogear.views.style import INK, OKABE_ITO, WIDE
 from thermogear.views.typesetting import axis_label, plain
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 DASHES: dict[str, tuple[float, ...]] = {UNDEFORMED: (4, 2), "hot": ()}
 HIGHEST_ORDER = 8.0

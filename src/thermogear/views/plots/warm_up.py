@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from thermogear.base.display import CELSIUS, number
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import HOT, INK, OKABE_ITO, QUIET, WIDE
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NODE_COLOURS: dict[str, tuple[str, tuple[float, ...]]] = {
     "pinion_tooth": (OKABE_ITO[1], ()),

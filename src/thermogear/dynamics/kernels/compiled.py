@@ -1,0 +1,28 @@
+"""How the kernels are compiled: no lock, no exceptions of division, kept on disk.
+
+They neither allocate nor count the users of an array: counting costs more than a short sum. So
+what they work on is given to them, flat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+_njit: Any = numba.njit
+_OPTIONS = {"nogil": True, "cache": True, "error_model": "numpy", "_nrt": False}
+
+
+def kernel(function: Function) -> Function:
+    """Compile what Python calls."""
+    return cast(Function, _njit(no_cfunc_wrapper=True, **_OPTIONS)(function))
+
+
+def part(function: Function) -> Function:
+    """Compile what only kernels call."""
+    alone = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+    return cast(Function, _njit(**alone, **_OPTIONS)(function))

@@ -1,0 +1,206 @@
+"""Run-ups of many samples of one pair side by side: every sample a lane, each speed from the last.
+
+Where one run-up follows its orbits between the speeds (:mod:`thermogear.study.run_up`), these go
+from speed to speed as a test rig does in steps: a jump is found where a step leads across it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.analysis.diagram import DIRECTIONS
+from thermogear.analysis.family import axis_values
+from thermogear.analysis.outcome import outcome_arrays, outcome_variables, settle_with_status
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Excitations
+from thermogear.base.plan import Alive, Arrays, Key, Variable, every, keep_going, ranges_of
+from thermogear.case.case import GearCase, gear_case
+from thermogear.case.family import GearFamily
+from thermogear.case.points import points_of
+from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
+from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.results.work import Report, carry_out
+
+Floats = NDArray[np.float64]
+
+LANES = 64
+"""Samples in one chunk."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunUpsPlan:
+    """Run-ups over ``speeds`` [rad/s] of the ``rows`` of ``family``; see :func:`run_ups`."""
+
+    family: GearFamily
+    speeds: tuple[float, ...]
+    rows: tuple[tuple[float, ...], ...]
+    rule: Rule = RULE
+    record: Recording = RECORD
+    kind: str = "run-ups"
+    _kept: dict[int, Excitations] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        return {
+            "direction": len(DIRECTIONS),
+            "sample": len(self.rows),
+            "pinion_speed": len(self.speeds),
+        }
+
+    @property
+    def cuts(self) -> dict[str, int]:
+        return {"direction": 1, "sample": min(LANES, len(self.rows))}
+
+    def inputs(self) -> dict[str, Any]:
+        return {
+            "model": self.family.inputs(),
+            "names": list(self.family.names),
+            "rows": [list(row) for row in self.rows],
+            "speeds": list(self.speeds),
+            "rule": asdict(self.rule),
+            "record": asdict(self.record),
+        }
+
+    def variables(self) -> dict[str, Variable]:
+        dims = ("direction", "sample", "pinion_speed")
+        return outcome_variables(dims) | response_variables(dims, lines=False)
+
+    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+        table = np.array(self.rows)
+        found: dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]] = {
+            name: (("sample",), table[:, place], {"units": unit})
+            for place, (name, unit) in enumerate(
+                zip(self.family.names, self.family.units, strict=True)
+            )
+        }
+        words = {"long_name": "direction of the run: 1 up, -1 down"}
+        found["direction"] = (("direction",), np.array(DIRECTIONS, np.int8), words)
+        told = {"units": "rad/s", "long_name": "pinion speed"}
+        found["pinion_speed"] = (("pinion_speed",), np.array(self.speeds), told)
+        return found
+
+    def needs(self, key: Key) -> Key | None:
+        return None
+
+    def pilot(self, points: int) -> int:
+        """Run about ``points`` speeds of the first samples; how many."""
+        lanes = min(len(self.rows), 8)
+        count = max(1, min(len(self.speeds), points // lanes))
+        small = replace(self, rows=self.rows[:lanes], speeds=self.speeds[:count])
+        small.compute((0, 0), None, keep_going)
+        return lanes * count
+
+    def thinned(self, step: int) -> tuple[RunUpsPlan, Mapping[str, NDArray[np.int64]]]:
+        """The run-ups of every ``step``-th sample over every ``step``-th speed."""
+        some = every(len(self.rows), step=step), every(len(self.speeds), step=step)
+        rows, speeds = tuple(self.rows[i] for i in some[0]), tuple(self.speeds[i] for i in some[1])
+        whole = np.arange(len(DIRECTIONS))
+        places = {"direction": whole, "sample": some[0], "pinion_speed": some[1]}
+        return replace(self, rows=rows, speeds=speeds), places
+
+    def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
+        mine = ranges_of(self, key)["sample"]
+        alive()
+        springs = self._springs(key[1], np.array(self.rows)[mine])
+        count, teeth = len(springs), self.family.case.pair.pinion.teeth
+        state = np.tile(np.array(self.family.case.simulation.initial_state), (count, 1))
+        found: Arrays = {
+            name: np.full((1, count, len(self.speeds)), one.fill, np.dtype(one.dtype))
+            for name, one in self.variables().items()
+        }
+        order = range(len(self.speeds))
+        for place in order if key[0] == 0 else reversed(order):
+            mesh = np.full(count, teeth * self.speeds[place])
+            points = points_of(replace(springs, mesh_frequency=mesh))
+            settled = settle_with_status(points.flat, points.status, state, self.rule, alive=alive)
+            arrays = outcome_arrays(settled, points.status)
+            arrays |= respond(points, settled.state, self.record, lines=False, alive=alive)
+            for name, values in arrays.items():
+                found[name][0, :, place] = values
+            there = np.asarray(np.isfinite(settled.state).all(axis=1))
+            state = np.where(there[:, None], settled.state, state)
+        return found
+
+    def _springs(self, chunk: int, rows: Floats) -> Excitations:
+        """What moves the samples; up and down share it."""
+        if chunk not in self._kept:
+            self._kept[chunk] = self.family.excitations(rows)
+        return self._kept[chunk]
+
+    def finish(self, data: xr.Dataset) -> xr.Dataset:
+        return data.assign_attrs(
+            bundle=self.family.bundle,
+            state=self.family.state.stored,
+            total_periods=int(data["used_periods"].values.astype(np.int64).sum()),
+        )
+
+
+def run_ups_plan(
+    case: GearCase,
+    speeds: ArrayLike,
+    samples: Mapping[str, ArrayLike],
+    *,
+    bundle: str = "",
+    state: StateLike = HOT,
+    rule: Rule = RULE,
+    record: Recording = RECORD,
+) -> RunUpsPlan:
+    """The plan of :func:`run_ups`."""
+    case = gear_case(case)
+    axis = np.sort(axis_values("speeds", speeds))
+    if not samples:
+        raise InputError("samples", "none", allowed="at least one field with its values")
+    columns = {name: np.atleast_1d(np.asarray(v, dtype=float)) for name, v in samples.items()}
+    sizes = {name: values.shape for name, values in columns.items()}
+    shape = next(iter(sizes.values()))
+    if len(shape) != 1 or any(size != shape for size in sizes.values()):
+        given = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise InputError("samples", given, allowed="one value of each field for each sample")
+    family = GearFamily(case, tuple(columns), bundle, ThermalState.of(state))
+    if "pinion_speed" in family.names:
+        raise InputError("samples", "the speed", why="every sample runs over all speeds")
+    rows = np.stack(list(columns.values()), axis=1)
+    return RunUpsPlan(
+        family=family,
+        speeds=tuple(axis.tolist()),
+        rows=tuple(map(tuple, rows.tolist())),
+        rule=rule,
+        record=record,
+    )
+
+
+def run_ups(
+    case: GearCase,
+    speeds: ArrayLike,
+    samples: Mapping[str, ArrayLike],
+    *,
+    bundle: str = "",
+    state: StateLike = HOT,
+    rule: Rule = RULE,
+    store: str | Path | None = None,
+    threads: int | None = None,
+    report: Report | None = None,
+    alive: Alive = keep_going,
+) -> xr.Dataset:
+    """Run every sample up and down over ``speeds`` [rad/s], all samples as lanes side by side.
+
+    ``samples`` map gear parameters or dotted fields of the case file to SI values, one for each
+    sample. The gears stay as hot as they are at the case's first operating point. Each speed starts
+    from the motion at the speed before it; the first from the case's initial state. Over
+    (direction, sample, pinion_speed): label, period, multiplier, dynamic transmission error
+    [m], mesh force [N], dynamic factor, contact loss. A jammed sample, and one that no case could
+    have, is a status. With a ``store`` directory the same call resumes; the result does not depend
+    on ``threads``, nor on the company of a sample. ``alive`` raises to end the work.
+    """
+    plan = run_ups_plan(case, speeds, samples, bundle=bundle, state=state, rule=rule)
+    return carry_out(plan, store, threads=threads, report=report, alive=alive)

@@ -1,0 +1,58 @@
+"""Run-ups of samples side by side: each as it runs alone, jumps where one run-up has them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thermogear.base.errors import InputError
+from thermogear.case.case import gear_case, load_example
+from thermogear.study.run_up import run_up
+from thermogear.study.run_ups import run_ups
+
+RPM = np.pi / 30.0
+SPEEDS = np.linspace(4200, 5200, 21) * RPM
+
+
+def rig():  # type: ignore[no-untyped-def]
+    return gear_case(load_example("rig"))
+
+
+def test_a_sample_runs_as_if_alone() -> None:
+    zeta = np.array([0.05, 0.07, 0.09])
+    torque = np.array([90.0, 100.0, 110.0])
+    samples = {"dynamics.damping_ratio": zeta, "torque": torque}
+    whole = run_ups(rig(), SPEEDS, samples, threads=2)
+    assert dict(whole.sizes)["sample"] == 3
+    for place in range(3):
+        alone = run_ups(rig(), SPEEDS, {n: v[[place]] for n, v in samples.items()}, threads=1)
+        for name in whole.data_vars:
+            one, many = alone[name].values[:, 0], whole[name].values[:, place]
+            assert np.array_equal(one, many, equal_nan=one.dtype.kind == "f"), name
+
+
+def test_jumps_lie_where_one_run_up_has_them() -> None:
+    """The rig at its own values, hot: the step over a jump holds the jump of the run-up."""
+    lanes = run_ups(rig(), SPEEDS, {"damping_ratio": [0.07]})
+    alone = run_up(rig(), SPEEDS, temperatures=["hot"], branch_period=0).data
+    for direction in (0, 1):
+        swing = lanes["dte_peak_to_peak"].values[direction, 0]
+        single = alone["dte_peak_to_peak"].values[0, direction]
+        quiet = np.isclose(swing, single, rtol=1e-6)
+        # where they differ, a jump lies within the step
+        assert (~quiet).sum() <= 2
+        place = int(np.argmax(np.abs(np.diff(single))))
+        mine = int(np.argmax(np.abs(np.diff(swing))))
+        assert abs(place - mine) <= 1
+
+
+def test_a_bad_sample_is_a_status_and_bad_words_are_refused() -> None:
+    some = run_ups(rig(), SPEEDS[:2], {"cold_half_backlash": [2e-6, 125e-6]})
+    assert (some["status"].values[:, 0] == 1).all()
+    assert (some["status"].values[:, 1] == 0).all()
+    with pytest.raises(InputError, match="samples: got none"):
+        run_ups(rig(), SPEEDS, {})
+    with pytest.raises(InputError, match=r"samples: got torque \(2,\), zeta \(3,\)"):
+        run_ups(rig(), SPEEDS, {"torque": [1.0, 2.0], "zeta": [0.1, 0.2, 0.3]})
+    with pytest.raises(InputError, match="samples: got the speed"):
+        run_ups(rig(), SPEEDS, {"rpm": [1.0]})
