@@ -316,6 +316,9 @@ def maps_moved(
         table("stiffness"),
         _taylor(lanes, "force", centres, 0.5 * width, order)[:, 0],
         table("force"),
+        np.empty(5 * (order + 1)),
+        np.empty(5 * (order + 1)),
+        np.empty(20),
         polys,
     )
     return polys, half, rate("half_backlash")

@@ -14,7 +14,6 @@ needs: values and rates of phi, psi, nu, free psi, free nu at u = 1, and the hal
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.compiled import kernel
@@ -178,7 +177,7 @@ def prepare(
                     store(curves, (n * lanes + at[i]) * room + first, load(turned, EIGHT * i))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def add_harmonics(
     real: Real,
     imag: Real,
@@ -186,7 +185,7 @@ def add_harmonics(
     sine: Real,
     even: Real,
     odd: Real,
-    which: Whole,
+    which: NDArray[np.int64],
     out: Real,
 ) -> None:
     """Add the Taylor coefficients of harmonics to ``out`` (N, lane, K + 1).
@@ -196,12 +195,10 @@ def add_harmonics(
     the factorials where half a sub-step is one of several widths, ``which`` (N) of them.
     """
     for n in range(out.shape[0]):
+        w = which[n]
         for lane in range(out.shape[1]):
-            row = out[n, lane]
             for k in range(real.shape[0]):
                 whole = real[k, lane] * cosine[k, n] - imag[k, lane] * sine[k, n]
                 turned = real[k, lane] * sine[k, n] + imag[k, lane] * cosine[k, n]
-                some = even[which[n], k]
-                rest = odd[which[n], k]
-                for m in range(row.size):
-                    row[m] += whole * some[m] + turned * rest[m]
+                for m in range(out.shape[2]):
+                    out[n, lane, m] += whole * even[w, k, m] + turned * odd[w, k, m]

@@ -14,7 +14,6 @@ have another contact.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.affine import FREE_NU, FREE_PSI, NU, PHI, PSI
@@ -35,23 +34,7 @@ from thermogear.dynamics.kernels.crossing import (
 Real = NDArray[np.float64]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _value(p: Real, u: float) -> float:
-    total = 0.0
-    for m in range(p.size - 1, -1, -1):
-        total = total * u + p[m]
-    return total
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def _slope(p: Real, u: float) -> float:
-    total = 0.0
-    for m in range(p.size - 1, 0, -1):
-        total = total * u + m * p[m]
-    return total
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
+@kernel
 def prepare_moved(
     damping: float,
     d_damping: float,
@@ -61,21 +44,19 @@ def prepare_moved(
     d_stiffness: Real,
     force: Real,
     d_force: Real,
+    work: Real,
+    moved: Real,
+    ends: Real,
     d_polys: Real,
 ) -> None:
     """The derivative of :func:`~thermogear.dynamics.kernels.affine.prepare`'s polynomials.
 
     Of one lane: ``half`` (N), ``stiffness`` and ``force`` (N, K + 1), ``d_...`` their derivatives
-    by the parameter; ``d_polys`` (N, 5, K + 1) is filled.
+    by the parameter; ``d_polys`` (N, 5, K + 1) is filled. Work space: ``work`` and ``moved``
+    (5 (K + 1)), ``ends`` (20).
     """
     count, width = stiffness.shape
     order = width - 1
-    work = np.empty((5, width))
-    moved = np.empty((5, width))
-    left = np.empty(5)
-    rise = np.empty(5)
-    d_left = np.empty(5)
-    d_rise = np.empty(5)
     for n in range(count):
         h = half[n]
         dh = d_half[n]
@@ -83,11 +64,12 @@ def prepare_moved(
         d_ch = d_damping * h + damping * dh
         hh = h * h
         d_hh = 2.0 * h * dh
-        work[:] = 0.0
-        moved[:] = 0.0
-        work[0, 0] = 1.0
-        work[1, 1] = 1.0
-        work[3, 1] = 1.0
+        for i in range(5 * width):
+            work[i] = 0.0
+            moved[i] = 0.0
+        work[0] = 1.0
+        work[width + 1] = 1.0
+        work[3 * width + 1] = 1.0
         for m in range(order - 1):
             scale = 1.0 / ((m + 2.0) * (m + 1.0))
             drag = ch * (m + 1.0)
@@ -96,58 +78,58 @@ def prepare_moved(
                 total = 0.0
                 d_total = 0.0
                 for i in range(m + 1):
-                    total += stiffness[n, i] * work[q, m - i]
-                    d_total += stiffness[n, i] * moved[q, m - i]
-                    d_total += d_stiffness[n, i] * work[q, m - i]
-                work[q, m + 2] = -(drag * work[q, m + 1] + hh * total) * scale
+                    total += stiffness[n, i] * work[q * width + m - i]
+                    d_total += stiffness[n, i] * moved[q * width + m - i]
+                    d_total += d_stiffness[n, i] * work[q * width + m - i]
+                work[q * width + m + 2] = -(drag * work[q * width + m + 1] + hh * total) * scale
                 d_total = d_hh * total + hh * d_total
-                d_total += d_drag * work[q, m + 1] + drag * moved[q, m + 1]
-                moved[q, m + 2] = -d_total * scale
+                d_total += d_drag * work[q * width + m + 1] + drag * moved[q * width + m + 1]
+                moved[q * width + m + 2] = -d_total * scale
             for q in range(3, 5):
-                work[q, m + 2] = -drag * work[q, m + 1] * scale
-                moved[q, m + 2] = -(d_drag * work[q, m + 1] + drag * moved[q, m + 1]) * scale
+                work[q * width + m + 2] = -drag * work[q * width + m + 1] * scale
+                d_total = d_drag * work[q * width + m + 1] + drag * moved[q * width + m + 1]
+                moved[q * width + m + 2] = -d_total * scale
             push = hh * force[n, m] * scale
             d_push = (d_hh * force[n, m] + hh * d_force[n, m]) * scale
-            for q in (2, 4):
-                work[q, m + 2] += push
-                moved[q, m + 2] += d_push
+            for q in range(2, 5, 2):
+                work[q * width + m + 2] += push
+                moved[q * width + m + 2] += d_push
         for q in range(5):
-            left[q] = _value(work[q], -1.0)
-            rise[q] = _slope(work[q], -1.0)
-            d_left[q] = _value(moved[q], -1.0)
-            d_rise[q] = _slope(moved[q], -1.0)
-        det = left[0] * rise[1] - left[1] * rise[0]
-        d_det = d_left[0] * rise[1] + left[0] * d_rise[1]
-        d_det -= d_left[1] * rise[0] + left[1] * d_rise[0]
-        a = rise[1] / det
-        d_a = (d_rise[1] - a * d_det) / det
-        b = -rise[0] / det
-        d_b = (-d_rise[0] - b * d_det) / det
-        c = -h * left[1] / det
-        d_c = (-dh * left[1] - h * d_left[1] - c * d_det) / det
-        d = h * left[0] / det
-        d_d = (dh * left[0] + h * d_left[0] - d * d_det) / det
-        e = (left[1] * rise[2] - rise[1] * left[2]) / det
-        d_e = d_left[1] * rise[2] + left[1] * d_rise[2] - d_rise[1] * left[2] - rise[1] * d_left[2]
+            ends[q] = value_of(work, q * width, width, -1.0)
+            ends[5 + q] = slope(work, q * width, width, -1.0)
+            ends[10 + q] = value_of(moved, q * width, width, -1.0)
+            ends[15 + q] = slope(moved, q * width, width, -1.0)
+        det = ends[0] * ends[6] - ends[1] * ends[5]
+        d_det = ends[10] * ends[6] + ends[0] * ends[16]
+        d_det -= ends[11] * ends[5] + ends[1] * ends[15]
+        a = ends[6] / det
+        d_a = (ends[16] - a * d_det) / det
+        b = -ends[5] / det
+        d_b = (-ends[15] - b * d_det) / det
+        c = -h * ends[1] / det
+        d_c = (-dh * ends[1] - h * ends[11] - c * d_det) / det
+        d = h * ends[0] / det
+        d_d = (dh * ends[0] + h * ends[10] - d * d_det) / det
+        e = (ends[1] * ends[7] - ends[6] * ends[2]) / det
+        d_e = ends[11] * ends[7] + ends[1] * ends[17] - ends[16] * ends[2] - ends[6] * ends[12]
         d_e = (d_e - e * d_det) / det
-        f = (rise[0] * left[2] - left[0] * rise[2]) / det
-        d_f = d_rise[0] * left[2] + rise[0] * d_left[2] - d_left[0] * rise[2] - left[0] * d_rise[2]
+        f = (ends[5] * ends[2] - ends[0] * ends[7]) / det
+        d_f = ends[15] * ends[2] + ends[5] * ends[12] - ends[10] * ends[7] - ends[0] * ends[17]
         d_f = (d_f - f * d_det) / det
-        g = h / rise[3]
-        d_g = (dh - g * d_rise[3]) / rise[3]
-        r = -rise[4] / rise[3]
-        d_r = (-d_rise[4] - r * d_rise[3]) / rise[3]
-        out = d_polys[n]
+        g = h / ends[8]
+        d_g = (dh - g * ends[18]) / ends[8]
+        r = -ends[9] / ends[8]
+        d_r = (-ends[19] - r * ends[18]) / ends[8]
         for m in range(width):
-            w0, w1, w3 = work[0, m], work[1, m], work[3, m]
-            v0, v1, v3 = moved[0, m], moved[1, m], moved[3, m]
-            out[PHI, m] = d_a * w0 + a * v0 + d_b * w1 + b * v1
-            out[PSI, m] = d_c * w0 + c * v0 + d_d * w1 + d * v1
-            out[NU, m] = moved[2, m] + d_e * w0 + e * v0 + d_f * w1 + f * v1
-            out[FREE_PSI, m] = d_g * w3 + g * v3
-            out[FREE_NU, m] = moved[4, m] + d_r * w3 + r * v3
-        out[FREE_PSI, 0] -= d_g * left[3] + g * d_left[3]
-        out[FREE_NU, 0] -= d_left[4] + d_r * left[3] + r * d_left[3]
+            w0, w1, w3 = work[m], work[width + m], work[3 * width + m]
+            v0, v1, v3 = moved[m], moved[width + m], moved[3 * width + m]
+            d_polys[n, PHI, m] = d_a * w0 + a * v0 + d_b * w1 + b * v1
+            d_polys[n, PSI, m] = d_c * w0 + c * v0 + d_d * w1 + d * v1
+            d_polys[n, NU, m] = moved[2 * width + m] + d_e * w0 + e * v0 + d_f * w1 + f * v1
+            d_polys[n, FREE_PSI, m] = d_g * w3 + g * v3
+            d_polys[n, FREE_NU, m] = moved[4 * width + m] + d_r * w3 + r * v3
+        d_polys[n, FREE_PSI, 0] -= d_g * ends[3] + g * ends[13]
+        d_polys[n, FREE_NU, 0] -= ends[14] + d_r * ends[3] + r * ends[13]
 
 
 @kernel
