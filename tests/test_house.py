@@ -62,7 +62,7 @@ UNIT = re.compile(r"\[[^\]]+\]|\bSI\b|units of the model|model's unit|half backl
 WITHOUT_NUMBERS = {
     "ThermogearError", "InputError", "GeometryError", "ConvergenceError", "ValidityWarning",
     "material", "lubricant", "friction_law", "MeshModel", "LoadedModel", "load_case",
-    "open_results", "save", "save_results", "write_report", "pictures",
+    "open_results", "save", "save_results", "write_report", "pictures", "slices",
 }  # fmt: skip
 """Public names that take and give words, files or choices alone."""
 

@@ -282,8 +282,7 @@ def slices(
 
     Together the slices are what the whole plan gives, to the last bit; a run-up's come in the order
     in which it passes the speeds. ``coarse`` > 1: first the whole of every so many-th value, marked
-    as preview, where the plan can be thinned (``coarse`` is a plain count, as is ``threads``);
-    values are in the units of the plan's variables. ``alive`` is called often and raises to end the
+    as preview, where the plan can be thinned. ``alive`` is called often and raises to end the
     work, as closing the generator does.
     """
     if coarse > 1 and isinstance(plan, Thinned):

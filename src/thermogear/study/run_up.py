@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +98,9 @@ class RunUpPlan:
     block: int = BLOCK
     branch_period: int = 2
     kind: str = "run-up"
+    _families: dict[int, GearFamily] = field(
+        init=False, repr=False, compare=False, default_factory=dict
+    )
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -128,8 +131,10 @@ class RunUpPlan:
 
     def family(self, state: int) -> GearFamily:
         """Speed -> lanes in one thermal state."""
-        case = replace(self.case, torques=(self.torque,))
-        return GearFamily(case, ("pinion_speed",), self.bundle, self.states[state])
+        if state not in self._families:
+            case, heat = replace(self.case, torques=(self.torque,)), self.states[state]
+            self._families[state] = GearFamily(case, ("pinion_speed",), self.bundle, heat)
+        return self._families[state]
 
     def variables(self) -> dict[str, Variable]:
         dims = ("state", "direction", "pinion_speed")
@@ -151,10 +156,8 @@ class RunUpPlan:
         return found | {"left_early": Variable(dims, "int8", 0, early)}
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        reference = self.case.stated.temperatures.reference
-        shown = np.array(
-            [reference if s.temperature is None else s.temperature for s in self.states]
-        )
+        cold = self.case.stated.temperatures.reference
+        shown = np.array([cold if s.temperature is None else s.temperature for s in self.states])
         return {
             "gear_temperature": (
                 ("state",),
@@ -185,12 +188,10 @@ class RunUpPlan:
         count = min(points, len(self.speeds), PILOT)
         places = max(1, count // 4)
         length = count // places
-        done = 0
         for first in np.linspace(0, len(self.speeds) - length, places).round().astype(int):
             some = self.speeds[first : first + length]
             replace(self, speeds=some, block=length).compute((0, 0, 0), None, keep_going)
-            done += length
-        return done
+        return places * length
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
         up = key[1] == 0
