@@ -34,14 +34,7 @@ def _compiled(function: Function) -> Function:
     return cast(Function, numba.njit(cache=True)(function))
 
 
-def _part(function: Function) -> Function:
-    """The same for what only compiled code calls: it needs no way in from Python."""
-    compiled: Any = numba.njit
-    alone = compiled(cache=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-    return cast(Function, alone(function))
-
-
-@_part
+@_compiled
 def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
     """Overwrite the two columns of ``right`` by matrix^-1 right (Cholesky, in place)."""
     for i in range(size):
@@ -66,7 +59,7 @@ def _solve_spd(matrix: Floats, size: int, right: Floats) -> None:
             right[i, column] = total / matrix[i, i]
 
 
-@_part
+@_compiled
 def _approach(force: float, first: float, second: float, law: Floats) -> tuple[float, float]:
     """delta_H [m] at ``force`` > 0 and its slope [m/N]; ``first``, ``second``: (h_i/a)^2 F [N].
 
@@ -90,14 +83,14 @@ def _approach(force: float, first: float, second: float, law: Floats) -> tuple[f
     return force * mean, slope
 
 
-@_part
+@_compiled
 def _unsettled(force: Floats) -> tuple[float, float, bool]:
     """What a position gives that has no answer."""
     force[:] = np.nan
     return np.nan, np.nan, False
 
 
-@_part
+@_compiled
 def _share_one(
     asked: float,
     by_load: bool,
