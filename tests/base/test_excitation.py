@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermogear import InputError, Periodic
+from thermogear.base.excitation import Excitation, Excitations
 
 
 def test_a_cosine_is_one_harmonic() -> None:
@@ -41,3 +44,30 @@ def test_non_finite_samples_are_refused() -> None:
         Periodic.from_samples([1.0, np.nan])
     with pytest.raises(InputError, match="periodic: got inf; allowed finite numbers"):
         Periodic(np.inf)
+
+
+def test_columns_hold_what_single_ones_hold() -> None:
+    one = Excitation(
+        stiffness=Periodic(3e8, (1e7 + 2e6j,)),
+        error=Periodic(0.0, (1e-6j, 2e-7)),
+        half_backlash=9e-5,
+        reference_half_backlash=1e-4,
+        mean_force=2e3,
+        mesh_frequency=5e3,
+        inertias=(1e-3, 4e-2),
+        base_radii=(0.03, 0.09),
+        torques=(60.0, 180.0),
+        damping_ratio=0.05,
+    )
+    other = replace(one, stiffness=Periodic(4e8, (1e7, 2e6, 3e5j)), error=Periodic(0.0))
+    both = Excitations.of([one, other])
+    for place, single in enumerate((one, other)):
+        again = both.one(place)
+        assert again is not None
+        assert both.natural_frequency[place] == single.natural_frequency
+        assert again.stiffness.samples(16) == pytest.approx(single.stiffness.samples(16), rel=1e-15)
+        assert again.error.samples(16) == pytest.approx(single.error.samples(16), abs=1e-21)
+        assert (again.torques, again.inertias) == (single.torques, single.inertias)
+    twice = Excitations.joined([both, Excitations.of([one])])
+    assert len(twice) == 3
+    assert twice.take([2, 0]).stiffness[0] == pytest.approx(twice.stiffness[0])

@@ -10,7 +10,7 @@ import pytest
 
 from thermogear.analysis.settle import settle
 from thermogear.analysis.side_by_side import RULE
-from thermogear.base.excitation import Excitation, Periodic
+from thermogear.base.excitation import Excitation, Excitations, Periodic
 from thermogear.base.units import RPM
 from thermogear.case.points import points_of
 from thermogear.case.response import respond
@@ -45,7 +45,7 @@ def mesh(
 def looked(one: Excitation, *own: float) -> Speeds:
     """The case's ``own`` speeds over the one where the mesh meets the natural frequency."""
     unit = one.natural_frequency / TEETH
-    return look(one, teeth=TEETH, own=unit * np.array(own or (1.0,)))
+    return look(Excitations.of([one]), teeth=TEETH, own=unit * np.array(own or (1.0,)))
 
 
 def test_peaks_stand_at_fractions_of_the_natural_frequency(compared: Callable[..., None]) -> None:
@@ -88,7 +88,7 @@ def test_a_look_is_the_motion_of_each_speed_itself() -> None:
     for name in there.data:
         assert np.array_equal(there.data[name].values, here.data[name].values)
     speed = float(there.data["pinion_speed"][40])
-    point = points_of([replace(one, mesh_frequency=TEETH * speed)])
+    point = points_of(Excitations.of([replace(one, mesh_frequency=TEETH * speed)]))
     rest = np.array([[float(point.flat.half_backlash[0] + point.flat.force[0, 0].real), 0.0]])
     alone = respond(point, settle(point.flat, rest, RULE).state, RECORD, lines=False)
     assert there.data["dynamic_factor"][40] == pytest.approx(alone["dynamic_factor"][0], rel=1e-6)

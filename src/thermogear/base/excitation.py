@@ -187,6 +187,27 @@ class Excitations:
         return replace(self, **{name: array[chosen] for name, array in arrays.items()})
 
     @classmethod
+    def of(cls, rows: Sequence[Excitation]) -> Excitations:
+        """Single ones side by side; all of them move."""
+
+        def column(name: str) -> Floats:
+            return np.array([getattr(one, name) for one in rows], dtype=float)
+
+        return cls(
+            status=np.zeros(len(rows), np.int8),
+            stiffness=Periodic.columns([one.stiffness for one in rows]),
+            error=Periodic.columns([one.error for one in rows]),
+            half_backlash=column("half_backlash"),
+            reference_half_backlash=column("reference_half_backlash"),
+            mean_force=column("mean_force"),
+            mesh_frequency=column("mesh_frequency"),
+            inertias=column("inertias"),
+            torques=column("torques"),
+            damping_ratio=column("damping_ratio"),
+            base_radii=column("base_radii"),
+        )
+
+    @classmethod
     def joined(cls, parts: Sequence[Excitations]) -> Excitations:
         """All points of ``parts``, one after the other."""
         if len(parts) == 1:
