@@ -134,8 +134,11 @@ whole = load_example("rig", KEPT)
 slow = family(whole, ("pinion_speed",))
 models = along(slow)
 start = 4000 * RPM
-orbit = periodic_orbit(models(start), 1, (1.5, 0.0))
-branch = continuation(orbit, "pinion_speed", 6000 * RPM, family=models)
+from thermogear.analysis.settle import settle
+from thermogear.case.response import RULE
+settled = settle(models(start).flat, np.array([[1.0, 0.0]]), RULE)
+orbit = periodic_orbit(models(start), 1, settled.state[0])
+branch = continuation(orbit, "pinion_speed", 5500 * RPM, family=models, start=start)
 fold = branch.of_kind(FOLD)[0]
 others = [along(family(whole.with_values({"torque": t}), ("pinion_speed",)))
           for t in rng.uniform(99.0, 101.0, 12)]
@@ -166,7 +169,7 @@ def cpu():
     with tempfile.TemporaryDirectory() as out:
         begun = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
-            [sys.executable, "-m", "thermogear", *{words}, "-o", out + "/r"], check=True,
+            [sys.executable, "-m", "thermogear", *[{words}], "-o", out + "/r"], check=True,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )
         ended = resource.getrusage(resource.RUSAGE_CHILDREN)
