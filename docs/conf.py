@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
+import inspect
 import logging
 import os
+import pkgutil
 import sys
 from pathlib import Path
 
@@ -13,6 +17,20 @@ sys.path.insert(0, str(HERE))
 from _site import pages  # noqa: E402
 
 import thermogear  # noqa: E402
+
+
+def _names_of_types() -> None:
+    """Give every module the names that it imports for type checkers alone: signatures need them."""
+    found = pkgutil.walk_packages(thermogear.__path__, "thermogear.")
+    names = [one.name for one in found if not one.name.endswith("__main__")]
+    for module in [importlib.import_module(name) for name in names]:
+        for part in ast.parse(inspect.getsource(module)).body:
+            if isinstance(part, ast.If) and ast.unparse(part.test) == "TYPE_CHECKING":
+                code = compile(ast.Module(part.body, []), module.__name__, "exec")
+                exec(code, module.__dict__)
+
+
+_names_of_types()
 
 project = "thermogear"
 author = "The thermogear developers"

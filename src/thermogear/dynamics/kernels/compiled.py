@@ -11,18 +11,18 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-Function = TypeVar("Function", bound=Callable[..., object])
+_Function = TypeVar("_Function", bound=Callable[..., object])
 
 _njit: Any = numba.njit
 _OPTIONS = {"nogil": True, "cache": True, "error_model": "numpy", "_nrt": False}
 
 
-def kernel(function: Function) -> Function:
+def kernel(function: _Function) -> _Function:
     """Compile what Python calls."""
-    return cast(Function, _njit(no_cfunc_wrapper=True, **_OPTIONS)(function))
+    return cast(_Function, _njit(no_cfunc_wrapper=True, **_OPTIONS)(function))
 
 
-def part(function: Function) -> Function:
+def part(function: _Function) -> _Function:
     """Compile what only kernels call."""
     alone = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True}
-    return cast(Function, _njit(**alone, **_OPTIONS)(function))
+    return cast(_Function, _njit(**alone, **_OPTIONS)(function))
