@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -246,3 +248,20 @@ def test_an_error_scales_with_its_column() -> None:
     case = given()
     made = sampled(case, {"error_amplitude": np.array([3e-6, 6e-6])}, 2)
     assert made.error == pytest.approx([1.0, 2.0], rel=1e-15)
+
+
+def test_a_half_backlash_put_in_is_one_whatever_the_file_gives() -> None:
+    put = given().with_values({"cold_half_backlash": 80e-6})
+    assert put.cold_backlash.half == pytest.approx(80e-6, rel=1e-12)
+    assert put.stated.half_backlash == pytest.approx(80e-6, rel=1e-12)
+    assert gear_case(load_case(put.text, dict(put.overrides))).cold_backlash == put.cold_backlash
+
+
+def test_threads_share_what_a_family_keeps() -> None:
+    """More keys than are kept, asked for by several threads at once."""
+    family = GearFamily(given(), ("pinion_torque",))
+    rows = np.linspace(20.0, 60.0, 40)[:, None]
+    alone = [GearFamily(given(), ("pinion_torque",))(row[None]).stiffness[0] for row in rows]
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda row: family(row[None]).stiffness[0], np.repeat(rows, 3, 0)))
+    assert np.array_equal(found, np.repeat(alone, 3))

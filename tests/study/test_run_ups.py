@@ -54,5 +54,6 @@ def test_a_bad_sample_is_a_status_and_bad_words_are_refused() -> None:
         run_ups(rig(), SPEEDS, {})
     with pytest.raises(InputError, match=r"samples: got torque \(2,\), zeta \(3,\)"):
         run_ups(rig(), SPEEDS, {"torque": [1.0, 2.0], "zeta": [0.1, 0.2, 0.3]})
-    with pytest.raises(InputError, match="samples: got the speed"):
-        run_ups(rig(), SPEEDS, {"rpm": [1.0]})
+    for name in ("rpm", "operating.speed"):
+        with pytest.raises(InputError, match="samples: got the speed"):
+            run_ups(rig(), SPEEDS, {name: [1.0]})

@@ -6,7 +6,7 @@ nothing of TOML, texts or units any more.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -127,9 +127,7 @@ class GearCase(Case):
         where no case file could hold a value.
         """
         changes = tuple(
-            (place, str(gear_reader(name).written(float(value))))
-            for name, value in values.items()
-            for place in gear_parameter(name).fields
+            (place, text) for name, value in values.items() for place, text in _written(name, value)
         )
         data = overridden(self.data, changes)
         kept = tuple(pair for pair in self.overrides if pair[0] not in dict(changes))
@@ -156,16 +154,11 @@ class GearCase(Case):
         return self.balance(model).operating if self.computed else self.stated
 
     def cycle(
-        self,
-        operating: Operating,
-        model: MeshModel,
-        path_positions: int | None = None,
-        want: Collection[str] = (),
+        self, operating: Operating, model: MeshModel, path_positions: int | None = None
     ) -> xr.Dataset:
         """The mesh cycle at ``operating`` under ``model``: the case's housing, flanks and grids.
 
-        ``path_positions`` replaces the case's number along the path of contact; ``want`` names the
-        quantities to compute, all without any.
+        ``path_positions`` replaces the case's number along the path of contact.
         """
         return mesh_cycle(
             self.pair,
@@ -174,7 +167,6 @@ class GearCase(Case):
             deviations=self.deviations,
             path_positions=path_positions or self.path_positions,
             mesh_positions=self.mesh_positions,
-            want=want,
         )
 
     def balance(
@@ -306,6 +298,14 @@ class DimensionlessCase(Case):
     kind = "dimensionless"
     points: tuple[Point, ...]
     base: Mapping[str, tuple[float, ...]]
+
+
+def _written(name: str, value: float) -> tuple[tuple[str, str], ...]:
+    """The fields of a parameter with its SI ``value`` as a file holds it."""
+    one, text = gear_parameter(name), str(gear_reader(name).written(float(value)))
+    if one.name == "cold_half_backlash":  # whatever kind the file gives
+        return (("backlash", f'{{value = "{text}", direction = "normal", extent = "half"}}'),)
+    return tuple((place, text) for place in one.fields)
 
 
 def load_case(

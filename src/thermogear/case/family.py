@@ -293,12 +293,13 @@ class GearFamily:
         if not names:
             return self.case
         key = tuple(values.tolist())
-        if key not in self._cases:
+        made = self._cases.get(key)
+        if made is None:
             made = self.case.with_values(dict(zip(names, values, strict=True)), told=False)
             if not any(name.startswith("operating.") for name in names):
                 made = replace(made, speeds=self.case.speeds, torques=self.case.torques)
             _keep(self._cases, key, made)
-        return self._cases[key]
+        return made
 
     def _excited(self, group: _Group) -> Excitations:
         case, columns, count = group.case, group.columns, group.index.size
@@ -313,11 +314,13 @@ class GearFamily:
             _, first, which = np.unique(every, axis=1, return_index=True, return_inverse=True)
             slow = float(samples.case.stated.speed.min())
             key = (group.values, every[:, first].tobytes(), slow > 0.0)
-            if key not in self._springs:
+            each = self._springs.get(key)
+            if each is None:
                 some = {name: values[first] for name, values in known.items()}
                 some["operating.speed"] = np.full(first.size, slow)
-                _keep(self._springs, key, self._meshed(replace(group, columns=some, index=first)))
-            springs = self._springs[key].take(which.ravel())
+                each = self._meshed(replace(group, columns=some, index=first))
+                _keep(self._springs, key, each)
+            springs = each.take(which.ravel())
         error = Periodic.columns([case.transmission_error]) * samples.error[:, None]
         return replace(
             with_error(springs, error),
@@ -353,8 +356,9 @@ class _Group:
 
 
 def _keep(kept: dict[Any, Any], key: object, value: object) -> None:
-    while len(kept) >= KEPT:
-        kept.pop(next(iter(kept)), None)
+    """Remember ``value``, the oldest forgotten; threads share what is kept."""
+    for old in list(kept)[: max(len(kept) - KEPT + 1, 0)]:
+        kept.pop(old, None)
     kept[key] = value
 
 

@@ -147,8 +147,7 @@ def carry_out(
     require_space(plan, directory, threads=threads, forced=forced)
     clock = _Clock(len(keys_of(plan)), report)
     if directory is None and scheduler is None:
-        told = lambda done, _: clock.step(done)  # noqa: E731
-        return gather(plan, threads=threads, progress=told, alive=alive)
+        return gather(plan, threads=threads, progress=lambda done, _: clock.step(done), alive=alive)
     if directory is None:
         raise InputError("scheduler", scheduler, why="a cluster needs a store", fix="name one")
     link = nullcontext() if scheduler is None else cluster(scheduler)

@@ -26,6 +26,7 @@ from thermogear.case.case import GearCase, gear_case
 from thermogear.case.family import GearFamily
 from thermogear.case.points import points_of
 from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
+from thermogear.case.samples import fields_of
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.work import Report, carry_out
 
@@ -167,7 +168,7 @@ def run_ups_plan(
         given = ", ".join(f"{name} {size}" for name, size in sizes.items())
         raise InputError("samples", given, allowed="one value of each field for each sample")
     family = GearFamily(case, tuple(columns), bundle, ThermalState.of(state))
-    if "pinion_speed" in family.names:
+    if any("operating.speed" in fields_of(name) for name in family.names):
         raise InputError("samples", "the speed", why="every sample runs over all speeds")
     rows = np.stack(list(columns.values()), axis=1)
     return RunUpsPlan(
@@ -195,7 +196,7 @@ def run_ups(
     """Run every sample up and down over ``speeds`` [rad/s], all samples as lanes side by side.
 
     ``samples`` map gear parameters or dotted fields of the case file to SI values, one for each
-    sample. The gears stay as hot as they are at the case's first operating point. Each speed starts
+    sample. The gears stay as hot as they are at the case's first speed. Each speed starts
     from the motion at the speed before it; the first from the case's initial state. Over
     (direction, sample, pinion_speed): label, period, multiplier, dynamic transmission error
     [m], mesh force [N], dynamic factor, contact loss. A jammed sample, and one that no case could
