@@ -100,6 +100,7 @@ nitpick_ignore_regex = [
     (r"py:.*", r"(?!thermogear\.).*"),
     (r"py:.*", r"thermogear\.(\w+\.)+_\w+"),
     (r"py:.*", r"thermogear\.case\.friction_schema\.\w+Table"),
+    (r"py:.*", r"thermogear\.case\.schema\.ModelTable"),
 ]
 copybutton_exclude = ".linenos, .gp, .go"
 copybutton_prompt_text = r"\$ |>>> "

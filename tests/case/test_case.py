@@ -16,7 +16,8 @@ from conftest import Compared
 from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.materials import ZERO_CELSIUS, material
 from thermogear.base.memory import free_bytes
-from thermogear.case.case import Case, DimensionlessCase, GearCase, load_case, load_example
+from thermogear.case.base import Case
+from thermogear.case.case import DimensionlessCase, GearCase, load_case, load_example
 from thermogear.case.derived import facts
 from thermogear.case.examples import EXAMPLES, example_text
 from thermogear.case.schema import ModelTable, json_schema

@@ -265,3 +265,16 @@ def test_threads_share_what_a_family_keeps() -> None:
     with ThreadPoolExecutor(4) as pool:
         found = list(pool.map(lambda row: family(row[None]).stiffness[0], np.repeat(rows, 3, 0)))
     assert np.array_equal(found, np.repeat(alone, 3))
+
+
+def test_a_balance_in_company_is_the_balance_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = computed()
+    columns = drawn(case, 9, seed=11)
+    want = ("mesh_stiffness", "half_backlash", "friction_coefficient")
+    whole = quasi_static(case, columns, 9, case.models[0], HOT, want)
+    order = np.random.default_rng(2).permutation(9)
+    monkeypatch.setattr(samples, "BATCH", 4)
+    turned = {name: values[order] for name, values in columns.items()}
+    again = quasi_static(case, turned, 9, case.models[0], HOT, want)
+    for name in want:
+        assert np.array_equal(whole[name][order], again[name]), name

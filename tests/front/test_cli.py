@@ -15,7 +15,8 @@ import pytest
 
 import thermogear
 from thermogear.base.errors import ThermogearError
-from thermogear.case.case import Case, load_case
+from thermogear.case.base import Case
+from thermogear.case.case import load_case
 from thermogear.case.examples import EXAMPLES, example_text
 from thermogear.front import cli as command_line
 from thermogear.front.cli import main

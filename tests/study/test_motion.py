@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermogear.case.case import Simulation
+from thermogear.case.base import Simulation
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.study.motion import PROOFS, follow
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.case.case import gear_case, load_example
+from thermogear.case.case import gear_case, load_case, load_example
 from thermogear.study.run_up import run_up
 from thermogear.study.run_ups import run_ups
 
@@ -57,3 +57,34 @@ def test_a_bad_sample_is_a_status_and_bad_words_are_refused() -> None:
     for name in ("rpm", "operating.speed"):
         with pytest.raises(InputError, match="samples: got the speed"):
             run_ups(rig(), SPEEDS, {name: [1.0]})
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+@pytest.mark.parametrize(
+    ("module", "angle", "teeth", "shift", "torque"),
+    [(1.5, 20.0, (31, 47), 0.1, 12.0), (6.0, 22.5, (19, 52), 0.3, 900.0)],
+)
+def test_somebody_elses_gears_run_as_one_run_up(module, angle, teeth, shift, torque) -> None:  # type: ignore[no-untyped-def]
+    """Flanks of a class, undeformed, over the resonance: lanes and the single run-up agree."""
+    text = f"""
+[gears]
+module = "{module} mm"
+pressure_angle = "{angle} deg"
+face_width = "{10 * module} mm"
+[gears.pinion]
+teeth = {teeth[0]}
+profile_shift = {shift}
+[gears.wheel]
+teeth = {teeth[1]}
+[operating]
+speed = "2000 rpm"
+torque = "{torque} N m"
+"""
+    case = gear_case(load_case(text))
+    probe = run_ups(case, [200.0], {"damping_ratio": [0.07]}, state="undeformed")
+    speeds = np.linspace(0.4, 1.1, 8) * 200.0 / float(probe["frequency_ratio"].values[0, 0, 0])
+    lanes = run_ups(case, speeds, {"damping_ratio": [0.07]}, state="undeformed")
+    alone = run_up(case, speeds, temperatures=["undeformed"], branch_period=0).data
+    for name in ("dte_peak_to_peak", "mesh_force_max"):
+        one, many = alone[name].values[0], lanes[name].values[:, 0]
+        assert many == pytest.approx(one, rel=1e-6), name

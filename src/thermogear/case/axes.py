@@ -15,7 +15,8 @@ from thermogear.case.allowed import (
     read_shown,
     read_value,
 )
-from thermogear.case.case import Case, GearCase
+from thermogear.case.base import Case
+from thermogear.case.case import GearCase
 
 Floats = NDArray[np.float64]
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from thermogear.case.case import Case, GearCase
+from thermogear.case.base import Case
+from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.friction import ConstantDry, LambdaBlend
 from thermogear.mesh.model import MeshModel

@@ -10,7 +10,8 @@ import numpy as np
 from thermogear.base.materials import LUBRICANT_KINDS, Lubricant
 from thermogear.base.parameters import NUMBERS
 from thermogear.base.units import RPM, ZERO_CELSIUS
-from thermogear.case.case import Case, DimensionlessCase, GearCase
+from thermogear.case.base import Case
+from thermogear.case.case import DimensionlessCase, GearCase
 from thermogear.case.charts import Chart
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear

@@ -30,7 +30,8 @@ from thermogear.case.allowed import (
     require_numbers,
     within,
 )
-from thermogear.case.case import Case, DimensionlessCase, GearCase, gear_case
+from thermogear.case.base import Case
+from thermogear.case.case import DimensionlessCase, GearCase, gear_case
 from thermogear.case.points import Points, excitations, on_numbers, points_of
 from thermogear.case.ranges import warn_of_torque
 from thermogear.case.samples import (

@@ -27,7 +27,8 @@ from thermogear.case.allowed import (
     read_value,
     require_numbers,
 )
-from thermogear.case.case import Case, DimensionlessCase, GearCase, Simulation, gear_case
+from thermogear.case.base import Case, Simulation
+from thermogear.case.case import DimensionlessCase, GearCase, gear_case
 from thermogear.case.dimensionless import Point
 from thermogear.case.family import GearFamily, NumberFamily, along, family, moving
 from thermogear.case.points import Points

@@ -5,7 +5,8 @@ from __future__ import annotations
 from thermogear.base.errors import InputError
 from thermogear.base.memory import SHARE, free_bytes
 from thermogear.base.vocabulary import STATES
-from thermogear.case.case import Case, DimensionlessCase, GearCase
+from thermogear.case.base import Case
+from thermogear.case.case import DimensionlessCase, GearCase
 
 _NUMBER = 8  # bytes of a float
 _PATH_CURVES = 30  # curves over the path of contact, working copies included

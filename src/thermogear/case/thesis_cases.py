@@ -8,7 +8,8 @@ from typing import Any
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.case.alike import same
-from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
+from thermogear.case.base import Case
+from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.schema import BASE_SETS
 
 RIG = "rig"

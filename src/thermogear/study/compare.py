@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from thermogear.analysis.fit import Fit, fit
 from thermogear.base.errors import InputError, nearest
 from thermogear.case.allowed import gear_parameter
-from thermogear.case.case import Case, GearCase, gear_case, load_case
+from thermogear.case.base import Case
+from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.measured.comparison import Comparison, compared, table_of
 from thermogear.measured.published import (
     PUBLISHED,

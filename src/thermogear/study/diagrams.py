@@ -14,7 +14,7 @@ from thermogear.analysis.branches import KINDS
 from thermogear.analysis.diagram import BRANCH_PERIOD, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
 from thermogear.analysis.maps import MapPlan, map_plan
-from thermogear.case.case import Case
+from thermogear.case.base import Case
 from thermogear.case.family import GearFamily, Tabulated, family, moving
 from thermogear.case.thermal_state import HOT, StateLike
 

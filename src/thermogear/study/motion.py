@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thermogear.analysis.labels import labels
 from thermogear.analysis.proof import Label
 from thermogear.base.vocabulary import STATUS
-from thermogear.case.case import Simulation
+from thermogear.case.base import Simulation
 from thermogear.case.points import Points
 from thermogear.case.response import lost_share
 from thermogear.dynamics.integrate import simulate

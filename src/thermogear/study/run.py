@@ -31,7 +31,8 @@ from thermogear.base.vocabulary import (
     label,
     labelled,
 )
-from thermogear.case.case import Case, DimensionlessCase, GearCase, load_example
+from thermogear.case.base import Case
+from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.citations import citations
 from thermogear.case.points import excitations, points_of
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.units import STANDARD_GRAVITY
-from thermogear.case.case import Case, GearCase
+from thermogear.case.base import Case
+from thermogear.case.case import GearCase
 from thermogear.case.thesis_cases import of_the_thesis
 from thermogear.heat.expansion import flank_growth
 from thermogear.heat.friction import benedict_kelley_as_printed
