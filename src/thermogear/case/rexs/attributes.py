@@ -223,11 +223,11 @@ def plain(number: float) -> str:
 
 
 class Reader:
-    """Values of one model's components; what it meets on the way stands in ``said``."""
+    """Values of one model's components; units it wonders at stand in ``said``."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.said: dict[str, None] = {}
+        self._doubts: dict[tuple[str, str], dict[str, None]] = {}
 
     def attribute(
         self, component: Component | None, name: str, over: dict[str, Attribute] | None = None
@@ -304,26 +304,35 @@ class Reader:
     def _converted(self, found: Attribute, value: float, means: Meaning, where: str) -> Read:
         schema = means.unit_in(self.model.after)
         unit = (found.unit or "").strip()
-        if found.id == EXACT:
-            unit = schema
         if not unit or (unit == "none" and means.kind != PURE):
             if schema != "none":
-                self.said[f"{where}: no unit; taken as {schema}, that of REXS"] = None
+                self._doubts.setdefault(("", schema), {})[where] = None
             unit = schema
         elif unit != schema:
-            self._judge(unit, schema, found, value, means, where)
+            self._judge(unit, schema, value, means, where)
         return in_si(value, unit, means, where)
 
-    def _judge(
-        self, unit: str, schema: str, found: Attribute, value: float, means: Meaning, where: str
-    ) -> None:
+    def _judge(self, unit: str, schema: str, value: float, means: Meaning, where: str) -> None:
         """Refuse a unit of another kind; say one that REXS has elsewhere."""
         in_si(value, unit, means, where)
         if not {unit, schema} <= {"%", "none", ""}:
-            self.said[
-                f"{where}: got {short(found.value)} {unit}; REXS {self.model.version} has "
-                f"{schema}; converted by the unit written"
-            ] = None
+            self._doubts.setdefault((unit, schema), {})[where] = None
+
+    @property
+    def said(self) -> list[str]:
+        """A line for each unit that is not the schema's."""
+        lines = []
+        for (unit, schema), where in self._doubts.items():
+            first = next(iter(where))
+            count = f" and {len(where) - 1} more" if len(where) > 1 else ""
+            if unit:
+                lines.append(
+                    f"{first}{count}: got the unit {short(unit)}; REXS {self.model.version} has "
+                    f"{schema!r}; converted by the unit written"
+                )
+            else:
+                lines.append(f"{first}{count}: got no unit; taken as {schema!r}, that of REXS")
+        return lines
 
 
 def finite(value: object, where: str) -> float:

@@ -146,20 +146,20 @@ class Drive:
         read: set[int] = set()
         unsure: set[int] = set()
         for own in (True, False):
-            for defines in (True, False):
-                new = self._given(over if own else {}, defines, only_over=own)
-                for shaft, speed in new.items():
-                    if shaft not in found:
-                        found[shaft] = speed
-                        read.add(shaft)
-                if new:
-                    self._spread(found, unsure)
+            table = over if own else {}
+            given = self._given(table, True, only_over=own)
+            given = {**self._given(table, False, only_over=own), **given}
+            for shaft, speed in given.items():
+                if shaft not in found:
+                    found[shaft] = speed
+                    read.add(shaft)
+            self._spread(found, unsure)
         return found, read, set(found) - unsure
 
     def _given(
         self, over: dict[int, dict[str, Attribute]], defines: bool, *, only_over: bool
     ) -> dict[int, float]:
-        found = {}
+        found: dict[int, float] = {}
         holders = [(one, one) for one in self.shafts]
         holders += [(gear, shaft) for gear, shaft in self.of_gear.items()]
         for holder, shaft in holders:

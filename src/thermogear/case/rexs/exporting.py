@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from thermogear import __version__
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, ThermogearError, ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase
@@ -260,40 +261,43 @@ class _Maker:
             self.relate("reference", ("origin", one), ("referenced", _OIL))
 
     # --- loads and results ----------------------------------------------------------------
+    def _computed(self) -> tuple[Any, Any] | None:
+        """Temperatures [K] of oil and addenda, (3, operating), and the mesh cycle.
+
+        None, with a warning, where the pair has no hot state to compute.
+        """
+        case, model = self.case, self.case.models[0]
+        try:
+            operating = case.operating_of(model)
+            cycle = case.cycle(operating, model)
+        except ThermogearError as error:
+            warnings.warn(f"written without results: {error}", ValidityWarning, stacklevel=2)
+            return None
+        at = operating.temperatures
+        rows = (operating.oil_temperature, at.pinion_addendum, at.wheel_addendum)
+        shape = case.stated.speed.shape
+        return np.stack([np.broadcast_to(row, shape) for row in rows]), cycle
+
     def _loads(self) -> None:
         """A load case for every operating point with what is computed there."""
         case, pair = self.case, self.case.pair
-        model = case.models[0]
-        operating = case.operating_of(model)
-        cycle = case.cycle(operating, model)
+        computed = self._computed()
         ratio = pair.ratio
         for k in range(case.stated.speed.size):
             speed, torque = float(case.stated.speed[k]), float(case.stated.torque[k])
-            hot = {
-                name: float(np.broadcast_to(values, case.stated.speed.shape)[k])
-                for name, values in (
-                    ("oil", operating.oil_temperature),
-                    ("pinion", operating.temperatures.pinion_addendum),
-                    ("wheel", operating.temperatures.wheel_addendum),
-                )
-            }
             parts = {
                 _SHAFTS[0]: self.exact("rotational_speed", speed),
                 _SHAFTS[1]: self.exact("rotational_speed", -speed / ratio),
                 _LOADS[0]: self.exact("torque_around_u_axis", torque),
                 _LOADS[1]: self.exact("torque_around_u_axis", torque * ratio),
-                _GEARS[0]: self.exact("bulk_temperature", hot["pinion"]),
-                _GEARS[1]: self.exact("bulk_temperature", hot["wheel"]),
-                _CASING: self.exact("temperature_lubricant", hot["oil"]),
-                _STAGE: _results(cycle.isel(operating=k), self.version),
             }
-            self.model.load(
-                LoadCase(
-                    k + 1,
-                    1,
-                    {found: {one.id: one for one in several} for found, several in parts.items()},
-                )
-            )
+            if computed is not None:
+                hot, cycle = computed
+                for found, attribute, kelvin in zip(_HOT, _TEMPERATURES, hot[:, k], strict=True):
+                    parts[found] = self.exact(attribute, float(kelvin))
+                parts[_STAGE] = _results(cycle.isel(operating=k), self.version)
+            tables = {found: {one.id: one for one in rows} for found, rows in parts.items()}
+            self.model.load(LoadCase(k + 1, 1, tables))
         length = 1e3 * (pair.path.e - pair.path.a)
         self.model.accumulation[_STAGE] = {
             one.id: one
@@ -304,6 +308,9 @@ class _Maker:
         }
 
 
+_HOT = (_CASING, *_GEARS)
+_TEMPERATURES = ("temperature_lubricant", "bulk_temperature", "bulk_temperature")
+"""Temperatures of a load case: the oil's, in the casing, and the addenda's."""
 _EXTREMES = {
     "hertz_pressure": "max",
     "flash_temperature": "max",
@@ -324,8 +331,8 @@ def _results(point: Any, version: str) -> list[Attribute]:
     found = []
     stiffness = np.asarray(point["mesh_stiffness"].values, dtype=float)
     if np.all(np.isfinite(stiffness)) and numbers(version) >= (1, 5):
-        values = [float(one) for one in 1e-3 * stiffness]
-        found.append(Attribute("meshing_stiffness_characteristic", "N / mm", values))
+        curve: list[object] = [float(one) for one in 1e-3 * stiffness]
+        found.append(Attribute("meshing_stiffness_characteristic", "N / mm", curve))
     for name, values in point.data_vars.items():
         if values.ndim == 0:
             number, called = float(values.values), str(name)

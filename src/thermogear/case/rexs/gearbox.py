@@ -97,7 +97,7 @@ def internal(field: str, teeth: int) -> InputError:
 
 def _planetary(model: Model) -> set[int]:
     """Cylindrical stages that are parts of planetary ones."""
-    found = set()
+    found: set[int] = set()
     for relation in model.related("assembly", "ordered_assembly"):
         whole = model.at(relation.role("assembly"))
         if whole is not None and whole.type == "planetary_stage":

@@ -64,7 +64,7 @@ def listed(model: Model) -> tuple[list[Found], list[str]]:
             found.append(Found(stage, f"{teeth[0]}:{teeth[1]} teeth{size}, spur", None))
         except InputError as error:
             found.append(Found(stage, "", error))
-    return found, list(reader.said)
+    return found, reader.said
 
 
 def shafts(model: Model) -> list[str]:
@@ -90,12 +90,19 @@ def shafts(model: Model) -> list[str]:
     return lines
 
 
-def left_out(model: Model, used: Iterable[Component] = ()) -> list[str]:
-    """What a model holds beyond what becomes a case: a line for each type of component."""
-    known = {one.id for one in used}
+def left_out(
+    model: Model, used: Iterable[Component] = (), told: Iterable[Component] = ()
+) -> list[str]:
+    """What a model holds beyond what becomes a case: a line for each type of component.
+
+    Of those ``used`` the attributes that are not, nothing of those ``told`` already.
+    """
+    known, silent = {one.id for one in used}, {one.id for one in told}
     parts: Counter[str] = Counter()
     names: dict[str, dict[str, None]] = {}
     for one in model.components.values():
+        if one.id in silent:
+            continue
         if one.id not in known:
             parts[one.type] += 1
             continue
@@ -157,8 +164,9 @@ def imported(
     reader = Reader(model)
     one = chosen(model, stage)
     made = draft(reader, one, speed, torque)
-    unused = [*made.unused, *_modifications(model, made)]
-    unused += left_out(model, _used(model, made))
+    shapes = _modifications(model, made)
+    unused = [*made.unused, *shapes]
+    unused += left_out(model, _used(model, made), told=shapes.values())
     data = _stored(model)
     if data is not None:
         text = _restored(data, made, _head(model, one, unused))
@@ -203,6 +211,8 @@ def _defaults(made: Draft, found: Iterable[Assumption]) -> list[tuple[str, str]]
         if one.default and one.field.startswith(_TOLD)
     ]
     has = {one.path for one in made.lines}
+    if any(path.startswith("backlash.") for path in has):
+        lines = [one for one in lines if not one[0].startswith("backlash.")]
     if "gears.centre_distance" not in has:
         lines.append(("gears.centre_distance", "that of the shifts without backlash"))
     if "oil.temperature" not in has:
@@ -245,7 +255,7 @@ def _restored(data: dict[str, Any], made: Draft, head: list[str]) -> str:
     for root in roots & {"backlash"}:
         data.pop(root, None)
     notes = {}
-    for one in dict.fromkeys(new):
+    for one in {one.path: one for one in new}.values():
         table = data
         *way, last = one.path.split(".")
         for key in way:
@@ -306,15 +316,14 @@ _MODIFICATIONS = (
 )
 
 
-def _modifications(model: Model, made: Draft) -> list[str]:
+def _modifications(model: Model, made: Draft) -> dict[str, Component]:
     """Modifications of the flanks that a case cannot hold: they change the mesh, so by name."""
-    lines: dict[str, None] = {}
+    found: dict[str, Component] = {}
     for name, gear in made.both:
         for flank in gearbox.flanks_of(model, gear).values():
             for one in model.referenced(flank.id, *_MODIFICATIONS):
-                said = f"{one.called} of the {name}: a case has no field for it"
-                lines[said] = None
-    return list(lines)
+                found.setdefault(f"{one.called} of the {name}: a case has no field for it", one)
+    return found
 
 
 def _duty(made: Draft) -> str:

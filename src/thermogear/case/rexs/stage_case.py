@@ -71,10 +71,11 @@ def draft(
         drives = f"; {why}" if name == "pinion" else ""
         made.put(f"gears.{name}.teeth", found, READ, f"number_of_teeth of {gear.called}{drives}")
         _gear(reader, made, name, gear, module, angle)
+    _one_rack(made)
     _widths(reader, made)
     _centre_distance(reader, made, module, angle)
     material_lines(reader, made)
-    oil_lines(reader, made)
+    oil_lines(reader, made, drive)
     sense = _sense(loads, driver)
     for name, gear in made.both:
         relief_lines(reader, made, name, gear, sense[name], (module, angle))
@@ -269,6 +270,21 @@ def _tool(
         made.put(f"{place}.fillet_radius", max(room, 0.0), DERIVED, "as round as the tool may be")
 
 
+def _one_rack(made: Draft) -> None:
+    """One rack for both gears where they are cut alike."""
+    racks = [
+        {one.path.rpartition(".")[2]: one for one in made.lines if f".{name}.rack." in one.path}
+        for name, _ in made.both
+    ]
+    values = [{key: one.value for key, one in rack.items()} for rack in racks]
+    if not values[0] or values[0] != values[1]:
+        return
+    made.lines = [one for one in made.lines if ".rack." not in one.path]
+    for key, one in racks[0].items():
+        both = one.changed or racks[1][key].changed
+        made.lines.append(replace(one, path=f"gears.rack.{key}", changed=both))
+
+
 # --- the pair -------------------------------------------------------------------------------
 
 
@@ -300,7 +316,7 @@ def _centre_distance(reader: Reader, made: Draft, module: float, angle: float) -
         value, text = apart, f"{plain(round(1e3 * apart, 9))} mm"
         origin, note = DERIVED, "distance of the axes by their support vectors"
     tight = tightest(made, module, angle)
-    if tight is not None and 0.0 < tight - value <= _ROUNDED * module:
+    if tight is not None and 1e-12 * value < tight - value <= _ROUNDED * module:
         made.put(
             "gears.centre_distance",
             f"{plain(1e3 * tight)} mm",

@@ -12,6 +12,7 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.rexs import gearbox
 from thermogear.case.rexs.attributes import Read, Reader, plain
 from thermogear.case.rexs.draft import Draft
+from thermogear.case.rexs.drive import Drive
 from thermogear.case.rexs.lines import DEFAULT, DERIVED, READ
 from thermogear.case.rexs.model import Component
 
@@ -25,22 +26,34 @@ _VALUES: tuple[tuple[str, str, Bounds, str], ...] = (
     ("thermal_expansion", "thermal_expansion_coefficient_plus", bounds.EXPANSION, "1/K"),
 )
 """Field of a material, attribute, what is allowed, unit of the default."""
+_HOT = "temperature_lubricant"
 
 
 def material_lines(reader: Reader, made: Draft) -> None:
     """The material of each gear: its values, those of steel where the file has none."""
     written: dict[int, str] = {}
     for name, gear in made.both:
-        materials = reader.model.referenced(gear.id, "material")
-        if not materials:
+        one, origin, note = _of(reader, gear)
+        if one is None:
             continue
-        one = materials[0]
         if one.id not in written:
             label = _label(reader, one, set(written.values()))
             if not _described(reader, made, one, label):
                 continue
             written[one.id] = label
-        made.put(f"gears.{name}.material", written[one.id], READ, one.called)
+        made.put(f"gears.{name}.material", written[one.id], origin, note)
+
+
+def _of(reader: Reader, gear: Component) -> tuple[Component | None, str, str]:
+    """The material of a gear, else that of its shaft; with its origin."""
+    own = reader.model.referenced(gear.id, "material")
+    if own:
+        return own[0], READ, own[0].called
+    shaft = gearbox.shafts_of_gears(reader.model).get(gear.id)
+    its = [] if shaft is None else reader.model.referenced(shaft, "material")
+    if its:
+        return its[0], DERIVED, f"{its[0].called} of its shaft; the gear has none of its own"
+    return None, "", ""
 
 
 def _label(reader: Reader, one: Component, taken: set[str]) -> str:
@@ -81,18 +94,23 @@ def _allowed(made: Draft, one: Component, attribute: str, value: Read, allowed: 
     return True
 
 
-def oil_lines(reader: Reader, made: Draft) -> None:
-    """The oil by its two viscosities, else by its grade; its temperature."""
+def oil_lines(reader: Reader, made: Draft, drive: Drive) -> None:
+    """The oil by its two viscosities, else by its grade; its temperature, of the load with the
+    greatest power where the loads have different ones."""
     oil = gearbox.lubricant_of(reader.model, made.stage.component)
     if oil is not None:
         _oil(reader, made, oil)
-    for holder in (made.stage.component, *reader.model.of_type("gear_casing")):
-        found = reader.number(holder, "temperature_lubricant")
-        if found is not None and _allowed(
-            made, holder, "temperature_lubricant", found, bounds.BODY
-        ):
-            made.read("oil.temperature", found, f"temperature_lubricant of {holder.called}")
-            return
+    cases = sorted(
+        zip(drive.loads_of(made.stage), reader.model.load_cases, strict=False),
+        key=lambda one: -abs((one[0].speed or 0.0) * (one[0].torque or 0.0)),
+    )
+    holders = (made.stage.component, *reader.model.of_type("gear_casing"))
+    for over in (*(case.components for _, case in cases[:1]), {}):
+        for holder in holders:
+            found = reader.number(holder, _HOT, over.get(holder.id))
+            if found is not None and _allowed(made, holder, _HOT, found, bounds.BODY):
+                made.read("oil.temperature", found, f"{_HOT} of {holder.called}")
+                return
 
 
 def _oil(reader: Reader, made: Draft, oil: Component) -> None:

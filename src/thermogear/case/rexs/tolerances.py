@@ -49,7 +49,7 @@ def backlash_lines(reader: Reader, made: Draft) -> None:
             mean = sum(known) / len(known)
             origin = DERIVED if len(known) > 1 else READ
             said = "middle of the least and the most" if len(known) > 1 else "of the stage"
-            made.put("backlash.value", f"{plain(mean)} m", origin, f"{direction} backlash, {said}")
+            made.put("backlash.value", _um(mean), origin, f"{direction} backlash, {said}")
             made.put("backlash.direction", kind, origin)
             made.put("backlash.extent", "total", origin)
             return
@@ -62,12 +62,12 @@ def backlash_lines(reader: Reader, made: Draft) -> None:
         limits, origin, note = thin[name] or ((), "", "")
         made.put(
             f"backlash.tolerances.{name}_tooth_thickness",
-            [f"{plain(one)} m" for one in limits],
+            [_um(one) for one in limits],
             origin,
             note,
         )
     play, origin, note = _distance(reader, made)
-    texts = [f"{plain(one)} m" for one in play]
+    texts = [_um(one) for one in play]
     made.put("backlash.tolerances.centre_distance", texts, origin, note)
 
 
@@ -94,11 +94,12 @@ def _thickness(
     except InputError as error:
         made.unused.append(f"{gear.called}.{_SERIES}: {error}")
         return None
-    return (_micrometres(lower), _micrometres(upper)), DERIVED, f"{series} of DIN 3967"
+    return (lower, upper), DERIVED, f"{series} of DIN 3967"
 
 
-def _micrometres(value: float) -> float:
-    return round(value, 9)
+def _um(value: float) -> str:
+    """A length [m] as a case file holds it, without the last digits of a conversion."""
+    return f"{plain(float(f'{1e6 * value:.14g}'))} um"
 
 
 def _distance(reader: Reader, made: Draft) -> tuple[tuple[float, ...], str, str]:
@@ -118,7 +119,7 @@ def _distance(reader: Reader, made: Draft) -> tuple[tuple[float, ...], str, str]
         apart = 1e-3 * float(str(texts[0]).split()[0]) if texts else None
     if says and apart:
         try:
-            play = _micrometres(centre_distance_tolerance(apart, int(says[1])))
+            play = centre_distance_tolerance(apart, int(says[1]))
             return (-play, play), DERIVED, f"js{says[1]} of DIN 3964"
         except InputError as error:
             made.unused.append(f"{stage.called}.{_FIELD}: {error}")
