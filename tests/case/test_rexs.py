@@ -14,6 +14,8 @@ import pytest
 from own_rexs import flank, json_text, one_stage, put, replaced, xml
 from thermogear import InputError, read_rexs
 from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.rexs.attributes import Reader
+from thermogear.case.rexs.drive import Drive
 from thermogear.case.rexs.importing import Imported, imported, listed
 from thermogear.case.rexs.model import VERSIONS
 
@@ -315,7 +317,7 @@ def test_a_relief_of_one_flank_counts_where_the_flank_carries(
 def test_shapes_that_a_case_does_not_know_are_told_and_left_out(tmp_path: Path) -> None:
     case, found = case_of(put(tmp_path, xml(*relieved("logarithmic", None))))
     assert case.file.gears.pinion.tip_relief is None
-    said = "tip_relief 40.shape_of_relief: got 'logarithmic'; allowed linear | parabolic"
+    said = "tip_relief 40.shape_of_relief: got 'logarithmic'; allowed linear | parabolic | circular"
     assert said in found.unused
     assert f"# not used: {said}" in found.text
 
@@ -351,6 +353,28 @@ def test_speed_and_torque_run_through_the_stages(tmp_path: Path) -> None:
         assert (case.pair.pinion.teeth, case.pair.wheel.teeth) == teeth
         assert case.stated.speed == pytest.approx([rpm * REVOLUTION], rel=1e-13)
         assert case.torques == pytest.approx([moment], rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("cones", "sense"), [(("positive", "negative"), 1), (("positive",) * 2, -1)]
+)
+def test_bevel_gears_turn_as_their_cones_point(
+    cones: tuple[str, str], sense: int, tmp_path: Path
+) -> None:
+    """Cone along +x on a shaft along x, cone along -z on one along z: omega x r at the contact."""
+    parts, links = two_stages()
+    parts.append((60, "bevel_stage", []))
+    for gear, cone, teeth, shaft in ((61, cones[0], 20, 14), (62, cones[1], 40, 11)):
+        rows = [("number_of_teeth", "none", teeth), ("bevel_cone_orientation", "none", cone)]
+        parts.append((gear, "bevel_gear", rows))
+        links.append(("assembly", [("assembly", shaft), ("part", gear)]))
+    parts.append((14, "shaft", [("rotational_speed", "1 / min", 2400.0)]))
+    parts = replaced(parts, 11, drop=("rotational_speed",))
+    links.append(("stage", [("stage", 60), ("gear_1", 61), ("gear_2", 62)]))
+    model = read_rexs(put(tmp_path, xml(parts, links)))
+    speeds, _, signed = Drive(Reader(model)).speeds({})
+    assert speeds[11] == pytest.approx(sense * 1200.0 * REVOLUTION, rel=1e-13)
+    assert signed == {11, 12, 13, 14}
 
 
 def test_a_load_at_the_output_drives_backwards_through_the_train(tmp_path: Path) -> None:

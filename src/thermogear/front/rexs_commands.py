@@ -124,7 +124,7 @@ def _list(model: Model, file: str, *, as_json: bool) -> None:
     if rest:
         click.echo("\nbeside them")
         for line in rest:
-            click.echo(f"  {line.removesuffix(' not used')}")
+            click.echo(f"  {line}")
     for note in notes:
         say("warning", note)
     able = [one.stage.number for one in found if one.why is None]

@@ -185,6 +185,7 @@ WORDS = (
     "defines_torque",
     "transmits_torque",
     "defines_speed",
+    "bevel_cone_orientation",
     "name",
     "material_designation",
     "reference_component_for_position",

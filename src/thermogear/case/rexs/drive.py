@@ -80,12 +80,22 @@ class Drive:
             any(one.type == "ring_gear" for one in (first, second))
             or min(t or 0 for t in teeth) < 0
         )
-        if stage.type != "cylindrical_stage":
-            self.crossed.add(stage.id)
         sense = 1 if inner else -1
-        if not self._parallel(first, second):
+        if stage.type != "cylindrical_stage":
+            sense = self._crossing(stage, first, second)
+        elif not self._parallel(first, second):
             sense = -sense
         self.meshes.append((stage, shafts[0] or 0, shafts[1] or 0, z1, sense * z2))
+
+    def _crossing(self, stage: Component, first: Component, second: Component) -> int:
+        """1 where both gears of crossed axes turn alike about their u axes, -1 where not.
+
+        Bevel cones that point both along or both against their u axes turn against each other.
+        """
+        cones = {self.reader.words(one, "bevel_cone_orientation") for one in (first, second)}
+        if not cones <= {"positive", "negative"}:
+            self.crossed.add(stage.id)
+        return -1 if len(cones) == 1 else 1
 
     def _parallel(self, first: Component, second: Component) -> bool:
         """Whether the u axes of both shafts point the same way; so where nothing is said."""

@@ -18,7 +18,9 @@ from thermogear.case.rexs.draft import Draft, tightest
 from thermogear.case.rexs.lines import DERIVED, Line
 from thermogear.case.rexs.model import Component
 
-_SHAPES = ("linear", "parabolic")
+_SHAPES = {"linear": "linear", "parabolic": "parabolic", "circular": "parabolic"}
+"""Shapes of REXS as a case has them: an arc that leaves the involute along its tangent is a
+parabola, but for (depth/length)^2."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +121,7 @@ def _relief(
             raise InputError(
                 f"{one.called}.shape_of_relief", repr(shape[:40]), allowed=" | ".join(_SHAPES)
             )
+        shape = _SHAPES[shape]
         limit = _end(reader, made, name, gear, end, basics)
         start = _start(reader, one, gear, end, basics)
         evaluated = reader.number(one, f"{end}_relief_evaluation_reference")

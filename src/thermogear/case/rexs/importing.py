@@ -110,14 +110,14 @@ def left_out(
         mine.update(
             dict.fromkeys(name for name in one.attributes if name not in USED and EXACT not in name)
         )
-    lines = [f"{short(kind).strip(chr(39))}: {count} not used" for kind, count in parts.items()]
+    lines = [f"{short(kind).strip(chr(39))}: {count}" for kind, count in parts.items()]
     for kind, several in names.items():
         if several:
             some = ", ".join(sorted(several)[:8])
             more = f" and {len(several) - 8} more" if len(several) > 8 else ""
-            lines.append(f"{kind}: {len(several)} attributes not used: {flat(some)}{more}"[:400])
+            lines.append(f"{kind}: {len(several)} attributes: {flat(some)}{more}"[:400])
     if model.accumulation:
-        lines.append("accumulation: results over all load cases not used")
+        lines.append("accumulation: results over all load cases")
     return lines
 
 

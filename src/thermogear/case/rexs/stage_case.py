@@ -115,11 +115,11 @@ def _sense(loads: list[Load], driver: int) -> dict[str, float]:
 
 
 def _title(reader: Reader, made: Draft) -> None:
-    names = [made.stage.component.name or made.stage.field]
-    for part in reader.model.of_type("gear_unit")[:1]:
-        names.insert(0, part.name)
-    text = ", ".join("".join(c if c.isprintable() else " " for c in one) for one in names if one)
-    made.put("title", text[:200], READ, "names in the file")
+    whole = [part.name for part in reader.model.of_type("gear_unit")[:1]]
+    names = [one for one in (*whole, made.stage.component.name) if one]
+    text = ", ".join("".join(c if c.isprintable() else " " for c in one) for one in names)
+    if text:
+        made.put("title", text[:200], READ, "names in the file")
 
 
 # --- teeth ----------------------------------------------------------------------------------

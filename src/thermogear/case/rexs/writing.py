@@ -34,9 +34,9 @@ def write_rexs(case: GearCase, path: str | Path, *, version: str = "1.7") -> Pat
     The name says the container: ``.rexs`` XML, ``.rexsj`` JSON, ``.rexsz`` XML in a zip;
     ``version`` "1.4" to "1.7" or "2.0.0". Gears, tools, materials, oil, reliefs, a load case for
     each operating point with speeds, torques, temperatures and results; values in the units of
-    REXS, exactly and in SI as ``custom_thermogear_*`` beside them. :func:`read_rexs` and ``thermogear import`` give
-    the same case, bit for bit. Raises InputError for a case without gears, more than 2000
-    operating points, another ending and a file that is there already.
+    REXS, exactly and in SI as ``custom_thermogear_*`` beside them. ``thermogear import`` gives the
+    same case, bit for bit. Raises InputError for a case without gears, more than 2000 operating
+    points, another ending and a file that is there already.
     Source: REXS specification (rexs.info).
     """
     place = Path(path)
