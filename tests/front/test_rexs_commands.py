@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from own_rexs import one_stage, put, replaced, xml
 
+from own_rexs import one_stage, put, replaced, xml
 from thermogear.case.case import load_case
 from thermogear.case.duty import read_duty
 from thermogear.front.cli import main

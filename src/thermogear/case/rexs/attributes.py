@@ -200,7 +200,7 @@ EXACT = "custom_thermogear_"
 """Begins attributes of ours; before the name of another, its exact value in SI."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Read:
     """A number as it was read: ``si``, and as a case file holds it, ``number`` ``unit``.
 
@@ -256,7 +256,9 @@ class Reader:
             return read
         kept = finite(exact.value, f"{component.called}.{exact.id}")
         same = math.isclose(read.si, kept, rel_tol=1e-9, abs_tol=1e-15)
-        return Read(kept if same else read.si, read.number, read.unit, changed=not same)
+        return Read(
+            si=kept if same else read.si, number=read.number, unit=read.unit, changed=not same
+        )
 
     def vector(self, component: Component | None, name: str) -> tuple[float, ...] | None:
         """Three numbers in SI; None where the file has none."""
@@ -357,7 +359,7 @@ def in_si(value: float, unit: str, means: Meaning, where: str) -> Read:
     if means.kind in (PURE, "power"):
         if ours != ("" if means.kind == PURE else "W"):
             raise InputError(where, f"{value:g} {unit}", allowed=f"a number in {means.unit!r}")
-        return Read(factor * value, factor * value, ours)
+        return Read(si=factor * value, number=factor * value, unit=ours)
     try:
         si = convert(factor * value, ours, KINDS[means.kind])
     except InputError as error:
@@ -367,7 +369,7 @@ def in_si(value: float, unit: str, means: Meaning, where: str) -> Read:
             allowed=f"a unit of {means.kind}, such as {means.then or means.unit!r}",
             why=f"{short(unit)} is none",
         ) from error
-    return Read(si, factor * value, ours)
+    return Read(si=si, number=factor * value, unit=ours)
 
 
 # --- writing --------------------------------------------------------------------------------

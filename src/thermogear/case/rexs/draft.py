@@ -13,7 +13,7 @@ from thermogear.case.rexs.model import Component
 from thermogear.gears.geometry import Gear, inverse_involute, involute
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Operating:
     """One load of the pinion: ``speed`` [rpm], ``torque`` [N m], both positive."""
 
@@ -50,7 +50,7 @@ class Draft:
         return (("pinion", self.pinion), ("wheel", self.wheel))
 
 
-def tightest(made: Draft, module: float, angle: float) -> float | None:
+def tightest(made: Draft, *, module: float, angle: float) -> float | None:
     """Centre distance [m] without backlash by the lines found so far; None where it has none."""
     values = {one.path: one.value for one in made.lines}
     both = []

@@ -25,17 +25,16 @@ _LOSSES = 0.1
 """Torques that a file gives may miss the balance without losses by as much of the greatest."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Load:
     """One load of a stage: ``speed`` [rad/s] with its sign and ``torque`` [N m] of gear_1 by the
-    mesh, as far as they are known; ``duration`` [s] or ``share`` of the time. ``read``: the speed
-    stands in the file; ``signed``: its sense is known."""
+    mesh, as far as they are known; ``duration`` [s] or ``share`` of the time. ``speed_read``: the
+    speed stands in the file; ``signed``: its sense is known."""
 
     name: str
     speed: float | None
     torque: float | None
     speed_read: bool = False
-    torque_read: bool = False
     duration: float | None = None
     share: float | None = None
     signed: bool = True
@@ -122,7 +121,7 @@ class Drive:
         first = stage.gears[0]
         shaft = self.of_gear.get(first.id)
         speed = speeds.get(shaft) if shaft is not None else None
-        torque, torque_read = self._torque(stage, over, speeds)
+        torque = self._torque(stage, over, speeds)
         unit = next(iter(self.model.of_type("gear_unit")), None)
         times: dict[str, float | None] = {}
         for name in ("operating_time", "operating_time_fraction"):
@@ -133,15 +132,14 @@ class Drive:
                 found = None if got is None else got.si
             times[name] = found
         return Load(
-            "the model" if case is None else f"load case {case.id}",
-            speed,
-            torque,
-            shaft in read,
-            torque_read,
-            times["operating_time"],
-            times["operating_time_fraction"],
-            shaft in signed,
-            speeds.get(self.of_gear.get(stage.gears[1].id, -1)),
+            name="the model" if case is None else f"load case {case.id}",
+            speed=speed,
+            torque=torque,
+            speed_read=shaft in read,
+            duration=times["operating_time"],
+            share=times["operating_time_fraction"],
+            signed=shaft in signed,
+            other_speed=speeds.get(self.of_gear.get(stage.gears[1].id, -1)),
         )
 
     # --- speeds ----------------------------------------------------------------------------
@@ -200,11 +198,11 @@ class Drive:
     # --- torques ---------------------------------------------------------------------------
     def _torque(
         self, stage: Stage, over: dict[int, dict[str, Attribute]], speeds: dict[int, float]
-    ) -> tuple[float | None, bool]:
+    ) -> float | None:
         """Torque [N m] on gear_1 by the mesh: from the loads of the shafts, else as given."""
         balanced = self._balance(over, speeds)
         if stage.component.id in balanced:
-            return balanced[stage.component.id], False
+            return balanced[stage.component.id]
         for place, gear in enumerate(stage.gears):
             data = gearbox.gear_data_of(self.model, stage.component, gear)
             found = None
@@ -213,8 +211,8 @@ class Drive:
             if found is not None:
                 teeth = [self.reader.whole(one, "number_of_teeth") or 1 for one in stage.gears]
                 scale = 1.0 if place == 0 else abs(teeth[0] / teeth[1])
-                return scale * found.si, place == 0
-        return None, False
+                return scale * found.si
+        return None
 
     def _balance(
         self, over: dict[int, dict[str, Attribute]], speeds: dict[int, float]

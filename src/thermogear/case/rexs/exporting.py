@@ -297,7 +297,7 @@ class _Maker:
                     parts[found] = self.exact(attribute, float(kelvin))
                 parts[_STAGE] = _results(cycle.isel(operating=k), self.version)
             tables = {found: {one.id: one for one in rows} for found, rows in parts.items()}
-            self.model.load(LoadCase(k + 1, 1, tables))
+            self.model.load(LoadCase(id=k + 1, spectrum=1, components=tables))
         length = 1e3 * (pair.path.e - pair.path.a)
         self.model.accumulation[_STAGE] = {
             one.id: one

@@ -187,7 +187,7 @@ def _end(
         return tip(name, gear)
     other, component = next(one for one in made.both if one[0] != name)
     given = reader.number(made.stage.component, "center_distance")
-    apart = given.si if given is not None else tightest(made, module, angle)
+    apart = given.si if given is not None else tightest(made, module=module, angle=angle)
     teeth = sum(reader.whole(one, "number_of_teeth") or 0 for _, one in made.both)
     base = 0.5 * module * teeth * math.cos(angle)
     if apart is None or apart <= base:

@@ -109,7 +109,7 @@ def _spectrum(spectrum: object, model: Model) -> None:
         raise InputError("load_spectrum", short(spectrum), allowed="a table of load cases")
     of = identity(spectrum.get("id", 0), "load_spectrum")
     for case in _list(spectrum, "load_cases"):
-        found = LoadCase(identity(case.get("id"), "load_case"), of, {})
+        found = LoadCase(id=identity(case.get("id"), "load_case"), spectrum=of, components={})
         for one in _list(case, "components"):
             place = identity(one.get("id"), "component")
             found.components.setdefault(place, {}).update(_attributes(one, model))

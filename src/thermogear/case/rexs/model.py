@@ -59,7 +59,7 @@ class Relation:
         return next((found for role, found in self.refs if role in names), None)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LoadCase:
     """What differs under one load: attributes by component. ``spectrum``: the id of its own."""
 

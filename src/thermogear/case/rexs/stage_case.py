@@ -315,7 +315,7 @@ def _centre_distance(reader: Reader, made: Draft, module: float, angle: float) -
             return
         value, text = apart, f"{plain(round(1e3 * apart, 9))} mm"
         origin, note = DERIVED, "distance of the axes by their support vectors"
-    tight = tightest(made, module, angle)
+    tight = tightest(made, module=module, angle=angle)
     if tight is not None and 1e-12 * value < tight - value <= _ROUNDED * module:
         made.put(
             "gears.centre_distance",
@@ -374,7 +374,13 @@ def _operating(
             turns = abs(load.speed * scale) / RPM
             moment = abs(load.torque * other)
             made.loads.append(
-                Operating(load.name, _tidy(turns), _tidy(moment), load.duration, load.share)
+                Operating(
+                    name=load.name,
+                    speed=_tidy(turns),
+                    torque=_tidy(moment),
+                    duration=load.duration,
+                    share=load.share,
+                )
             )
     if speed is None and torque is None and made.loads:
         _lists(made, loads)

@@ -107,7 +107,9 @@ class _Reader:
         elif name == "load_spectrum":
             self.spectrum = identity(given.get("id", "0"), name)
         elif name == "load_case":
-            self.case = LoadCase(identity(given.get("id"), name), self.spectrum, {})
+            self.case = LoadCase(
+                id=identity(given.get("id"), name), spectrum=self.spectrum, components={}
+            )
         elif name == "accumulation":
             self.accumulated = True
 
