@@ -441,6 +441,63 @@ def test_what_no_load_says_is_asked_for_and_may_be_given(tmp_path: Path) -> None
     assert 'torque = "15 N m"   # given: --torque' in found.text
 
 
+def test_couplings_turn_shafts_alike_in_their_gear(tmp_path: Path) -> None:
+    """Two loose gears on one shaft: which stage carries is told by gear_shift_index."""
+    rows = [("gear_shift_index", "none", 2), ("number_of_gears", "none", 2)]
+    parts = [(1, "gear_unit", rows)]
+    links = []
+    for k, (first, second) in enumerate(((20, 60), (40, 40))):
+        loose, stage, one, two = 12 + k, 3 + k, 21 + 2 * k, 22 + 2 * k
+        parts += [(stage, "cylindrical_stage", []), (loose, "shaft", [])]
+        for gear, teeth, shaft in ((one, first, 11), (two, second, loose)):
+            size = [("normal_module", "mm", 2.0), ("face_width", "mm", 15.0)]
+            parts.append((gear, "cylindrical_gear", [("number_of_teeth", "none", teeth), *size]))
+            links.append(("assembly", [("assembly", shaft), ("part", gear)]))
+        links.append(("stage", [("stage", stage), ("gear_1", one), ("gear_2", two)]))
+        parts.append((41 + k, "switchable_coupling", [("is_engaged", "none", f"GEAR{k}")]))
+        parts.append((51 + k, "rolling_bearing_with_detailed_geometry", []))
+        for by in (41 + k, 51 + k):
+            refs = [("inner_part", 14), ("outer_part", loose), ("assembly", by)]
+            links.append(("side", refs))
+    parts += [(14, "shaft", []), (11, "shaft", [("rotational_speed", "1 / min", 1500.0)])]
+    parts += [(31, "external_load", [("torque_around_u_axis", "N m", 10.0)])]
+    parts += [(32, "external_load", [("transmits_torque", "none", True)])]
+    links += [("assembly", [("assembly", 11), ("part", 31)])]
+    links += [("assembly", [("assembly", 14), ("part", 32)])]
+    text = xml(parts, links)
+    for k, states in enumerate(("<c>true</c><c>false</c>", "<c>false</c><c>true</c>")):
+        text = text.replace(f"GEAR{k}", f"<array>{states}</array>")
+    path = put(tmp_path, text)
+    case, _ = case_of(path, 2)
+    assert case.torques == pytest.approx([10.0], rel=1e-13)
+    assert "operating.torque: got nothing" in refused(path, 1)
+    path = put(tmp_path, text.replace('unit="none">2<', 'unit="none">1<', 1))
+    case, _ = case_of(path, 1)
+    assert (case.pair.pinion.teeth, case.torques[0]) == (20, pytest.approx(10.0, rel=1e-13))
+
+
+def test_a_load_case_where_the_other_gear_drives_is_told(tmp_path: Path) -> None:
+    loads = [
+        [(31, "external_load", [("torque_around_u_axis", "N m", torque)])]
+        for torque in (-5.0, 24.0, 12.0)
+    ]
+    case, found = case_of(put(tmp_path, xml(*two_stages(), loads=loads)), 1)
+    assert case.pair.pinion.teeth == 20
+    assert case.torques == pytest.approx([24.0, 12.0], rel=1e-13)
+    assert "load case 1: the other gear drives there" in found.unused
+
+
+def test_lengths_of_a_tool_are_in_its_modules(tmp_path: Path) -> None:
+    parts, links = one_stage()
+    rows = [("addendum_reference_profile", "mm", 3.25), ("tip_radius", "mm", 0.75)]
+    parts = replaced(
+        parts, 17, *rows, drop=("addendum_coefficient_reference_profile", "tip_radius_factor")
+    )
+    case, _ = case_of(put(tmp_path, xml(parts, links)))
+    assert case.pair.pinion.rack.dedendum == pytest.approx(1.3, rel=1e-13)
+    assert case.pair.pinion.rack.fillet_radius == pytest.approx(0.3, rel=1e-13)
+
+
 # --- no case ----------------------------------------------------------------------------------
 
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import random
 import subprocess
 import sys
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from own_rexs import json_text, one_stage, put, replaced, xml
 from thermogear import InputError, read_rexs
-from thermogear.case.rexs.importing import imported
+from thermogear.case.rexs.container import model_of
+from thermogear.case.rexs.importing import imported, listed, shafts
 from thermogear.front.cli import main
 
 Made = Callable[[Path], Path]
@@ -258,3 +261,40 @@ def test_a_thousand_stages_are_listed_in_little_time(tmp_path: Path) -> None:
     path = put(tmp_path, json_text(parts, links))
     assert main(["import", str(path)]) == 0
     assert json.loads(path.read_text())["model"]["version"] == "1.7"
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")
+def test_values_put_wrong_by_chance_are_a_case_or_one_line(tmp_path: Path) -> None:
+    """A seeded sample of models of which one or two values are something else."""
+    draw = random.Random(20260131)
+    wrong = [0, -1, 1e308, 1e-308, "", "x", None, [], [1, 2], "1,5", "nan", 10**400, True, "c99"]
+    keys = ("floating_point", "integer", "string", "boolean", "unit", "role", "id", "type")
+    cases = 0
+    for _ in range(150):
+        tree = json.loads(json_text(*one_stage()))
+        places = list(found(tree, keys))
+        for table, key in draw.sample(places, draw.randint(1, 2)):
+            table[key] = draw.choice(wrong)
+        raw = json.dumps(tree).encode()
+        said = ""
+        try:
+            model = model_of(raw)
+            listed(model)
+            shafts(model)
+            imported(model, 1)
+        except InputError as error:
+            said = str(error)
+        assert "\n" not in said
+        assert len(said) < 600
+        cases += not said
+    assert 20 < cases < 130
+
+
+def found(node: Any, keys: tuple[str, ...]) -> Iterator[tuple[dict[str, Any], str]]:
+    """Every table and key below ``node`` whose key is one of ``keys``."""
+    inside = node.items() if isinstance(node, dict) else enumerate(node)
+    for key, value in inside:
+        if key in keys:
+            yield node, str(key)
+        elif isinstance(value, dict | list):
+            yield from found(value, keys)

@@ -91,6 +91,8 @@ MEANINGS: dict[str, Meaning] = (
             "tip_diameter",
             "root_diameter",
             "addendum_modification",
+            "addendum_reference_profile",
+            "tip_radius",
             "chordal_tooth_thickness_upper_deviation",
             "chordal_tooth_thickness_lower_deviation",
             "center_distance",
@@ -186,6 +188,8 @@ WORDS = (
     "transmits_torque",
     "defines_speed",
     "bevel_cone_orientation",
+    "is_engaged",
+    "gear_shift_index",
     "name",
     "material_designation",
     "reference_component_for_position",
@@ -293,9 +297,11 @@ class Reader:
             raise InputError(where, short(found.value), allowed="true or false")
         return text in ("true", "1")
 
-    def whole(self, component: Component, name: str) -> int | None:
+    def whole(
+        self, component: Component, name: str, over: dict[str, Attribute] | None = None
+    ) -> int | None:
         """A whole number; None where the file has none."""
-        found = self.attribute(component, name)
+        found = self.attribute(component, name, over)
         if found is None:
             return None
         where = f"{component.called}.{found.id}"

@@ -19,6 +19,9 @@ from thermogear.case.rexs.model import Attribute, Component, LoadCase
 
 _UNIQUE = 1e-6
 """Share of a unit torque that the balance may leave open."""
+_IDLE = 1e-9
+"""Share of the greatest torque below which a stage carries none."""
+_MOST = 2_000_000
 _LARGEST = 10_000
 """Entries of the balance: a hundred shafts with a hundred torques."""
 _LOSSES = 0.1
@@ -51,11 +54,20 @@ class Drive:
         self.of_gear = gearbox.shafts_of_gears(model)
         self.loads = gearbox.loads_of_shafts(model)
         self.joined = gearbox.joined_shafts(model)
+        self.switched = gearbox.switched_shafts(model)
         self.meshes: list[tuple[Component, int, int, int, int]] = []
         self.crossed: set[int] = set()
         self.changed = False
         for stage, first, second in gearbox.meshes(model):
             self._mesh(stage, first, second)
+        size = len(model.load_cases) * (len(self.shafts) + len(self.of_gear) + len(self.meshes))
+        if size > _MOST:
+            raise InputError(
+                "load_spectrum",
+                f"{len(model.load_cases)} load cases of {len(self.of_gear)} gears",
+                allowed=f"at most {_MOST} together",
+                why="no gearbox has as many",
+            )
         self.neighbours: dict[int, list[tuple[int, float, bool]]] = {}
         links = [(one, other, 1.0, True) for one, other in self.joined]
         links += [
@@ -161,7 +173,7 @@ class Drive:
                 if shaft not in found:
                     found[shaft] = speed
                     read.add(shaft)
-            self._spread(found, unsure)
+            self._spread(found, unsure, over)
         return found, read, set(found) - unsure
 
     def _given(
@@ -182,12 +194,43 @@ class Drive:
                 found.setdefault(shaft, speed.si)
         return found
 
-    def _spread(self, found: dict[int, float], unsure: set[int]) -> None:
+    def _engaged(self, over: dict[int, dict[str, Attribute]]) -> list[tuple[int, int]]:
+        """Pairs of shafts that a coupling turns alike in the gear of a load case.
+
+        ``is_engaged`` is one truth, or one for each gear; ``gear_shift_index`` counts from 1.
+        """
+        if not self.switched:
+            return []
+        unit = next(iter(self.model.of_type("gear_unit")), None)
+        index = None
+        if unit is not None:
+            index = self.reader.whole(unit, "gear_shift_index", over.get(unit.id))
+        found = []
+        for one, other, coupling in self.switched:
+            engaged = self.reader.attribute(coupling, "is_engaged", over.get(coupling.id))
+            values = None if engaged is None else engaged.value
+            if isinstance(values, list):
+                place = 1 if index is None and len(values) == 1 else index or 0
+                values = values[place - 1] if 1 <= place <= len(values) else False  # type: ignore[assignment]
+            if str(values).strip().lower() in ("true", "1"):
+                found.append((one, other))
+        return found
+
+    def _spread(
+        self,
+        found: dict[int, float],
+        unsure: set[int],
+        over: dict[int, dict[str, Attribute]],
+    ) -> None:
         """Through stages and connections, as far as they reach."""
+        engaged: dict[int, list[tuple[int, float, bool]]] = {}
+        for one, other in self._engaged(over):
+            engaged.setdefault(one, []).append((other, 1.0, True))
+            engaged.setdefault(other, []).append((one, 1.0, True))
         waiting = list(found)
         while waiting:
             one = waiting.pop()
-            for other, ratio, sure in self.neighbours.get(one, ()):
+            for other, ratio, sure in (*self.neighbours.get(one, ()), *engaged.get(one, ())):
                 if other in found:
                     continue
                 found[other] = found[one] * ratio
@@ -231,7 +274,8 @@ class Drive:
             column = {first: 1.0}
             column[second] = column.get(second, 0.0) - z2 / z1
             columns.append(column)
-        columns += [{one: 1.0, other: -1.0} for one, other in self.joined]
+        alike = (*self.joined, *self._engaged(over))
+        columns += [{one: 1.0, other: -1.0} for one, other in alike]
         columns += [{shaft: 1.0} for shaft in unknown]
         ends = [
             {shaft: 1.0} for shaft in self.shafts if shaft not in self.loads and self._end(shaft)
@@ -261,7 +305,8 @@ class Drive:
         found: dict[int, float] = {}
         for k, (stage, *_) in enumerate(self.meshes):
             if not free.size or np.abs(free[:, k]).max() < _UNIQUE:
-                found[stage.id] = float(solution[k])
+                idle = abs(solution[k]) < _IDLE * np.abs(right).max()
+                found[stage.id] = 0.0 if idle else float(solution[k])
         return found
 
     def _external(

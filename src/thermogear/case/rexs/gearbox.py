@@ -9,7 +9,7 @@ from thermogear.base.errors import InputError
 from thermogear.case.rexs.model import Component, Model
 
 GEARS = ("cylindrical_gear", "ring_gear")
-_SWITCHED = ("switchable_coupling", "clutch", "brake", "synchronizer")
+_SWITCHED = "switchable_coupling"
 _JOINS = ("coupling", "connection", "fit", "spline", "feather_key")
 """Parts of the type names of what turns two shafts alike."""
 
@@ -124,28 +124,44 @@ def shafts_of_gears(model: Model) -> dict[int, int]:
             for role, part in relation.refs:
                 if role == "part":
                     found[part] = shaft.id
-    for inner, outer, _ in _sides(model):
+    for inner, outer, by in _sides(model):
+        if not _turns(by):
+            continue
         for mine, other in ((inner, outer), (outer, inner)):
-            if mine.type == "shaft" and other.type.endswith("gear") and other.type != "shaft":
+            if mine.type == "shaft" and other.type.endswith("gear"):
                 found.setdefault(other.id, mine.id)
     return found
 
 
 def joined_shafts(model: Model) -> list[tuple[int, int]]:
-    """Pairs of shafts that a connection turns alike; what is switched is left out."""
-    found = []
-    for inner, outer, by in _sides(model):
-        turns = by.type not in _SWITCHED and any(part in by.type for part in _JOINS)
-        if turns and inner.type == outer.type == "shaft":
-            found.append((inner.id, outer.id))
-    return found
+    """Pairs of shafts that a connection always turns alike."""
+    return [
+        (inner.id, outer.id)
+        for inner, outer, by in _sides(model)
+        if inner.type == outer.type == "shaft" and _turns(by)
+    ]
+
+
+def switched_shafts(model: Model) -> list[tuple[int, int, Component]]:
+    """Pairs of shafts that turn alike while a coupling between them is engaged."""
+    return [
+        (inner.id, outer.id, by)
+        for inner, outer, by in _sides(model)
+        if inner.type == outer.type == "shaft" and by.type == _SWITCHED
+    ]
+
+
+def _turns(by: Component) -> bool:
+    """Whether what is between two parts turns both alike: no bearing, no switched coupling."""
+    return by.type != _SWITCHED and any(part in by.type for part in _JOINS)
 
 
 def _sides(model: Model) -> Iterator[tuple[Component, Component, Component]]:
-    """(inner part, outer part, what is between them)."""
-    for relation in model.related("side"):
+    """(inner part, outer part, what is between them); "coupling" is REXS 1.0."""
+    for relation in model.related("side", "coupling"):
         by = model.at(relation.role("assembly"))
-        inner, outer = (model.at(relation.role(f"{side}_part")) for side in ("inner", "outer"))
+        inner = model.at(relation.role("inner_part", "side_1"))
+        outer = model.at(relation.role("outer_part", "side_2"))
         if by and inner and outer:
             yield inner, outer, by
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.case.rexs import gearbox
@@ -38,6 +39,8 @@ def require_spur(reader: Reader, stage: Stage) -> tuple[int, int]:
             raise InputError(f"{where}.number_of_teeth", "nothing", allowed="a whole number")
         if found < 0:
             raise gearbox.internal(where, found)
+        if found == 0:
+            raise InputError(f"{where}.number_of_teeth", 0, allowed=">= 1")
         teeth.append(found)
     for gear in stage.gears:
         angle = reader.number(gear, "helix_angle_reference_diameter")
@@ -90,14 +93,24 @@ def draft(
     return made
 
 
+def _greatest(loads: list[Load]) -> Load | None:
+    """The load of greatest power; None where none has a power."""
+    known = [one for one in loads if one.speed and one.torque]
+    return max(known, key=lambda one: abs((one.speed or 0.0) * (one.torque or 0.0)), default=None)
+
+
+def _drives(load: Load) -> int:
+    """The place of the gear that drives: the mesh acts against its speed."""
+    return 0 if (load.speed or 0.0) * (load.torque or 0.0) < 0.0 else 1
+
+
 def _driver(
     reader: Reader, stage: Stage, loads: list[Load], teeth: tuple[int, int]
 ) -> tuple[int, str]:
     """Place of the driving gear, and how it is known."""
-    for load in loads:
-        if load.speed and load.torque:
-            place = 0 if load.speed * load.torque < 0.0 else 1
-            return place, "it drives by the torques of the shafts"
+    most = _greatest(loads)
+    if most is not None:
+        return _drives(most), "it drives by the torques of the shafts"
     for place, gear in enumerate(stage.gears):
         data = gearbox.gear_data_of(reader.model, stage.component, gear)
         if reader.truth(data, "is_driving_gear"):
@@ -107,10 +120,10 @@ def _driver(
 
 def _sense(loads: list[Load], driver: int) -> dict[str, float]:
     """Sense of rotation of pinion and wheel about their u axes; 0 where it is not known."""
-    for load in loads:
-        if load.speed and load.other_speed and load.signed:
-            both = (load.speed, load.other_speed)
-            return {"pinion": both[driver], "wheel": both[1 - driver]}
+    load = _greatest(loads)
+    if load is not None and load.speed and load.other_speed and load.signed:
+        both = (load.speed, load.other_speed)
+        return {"pinion": both[driver], "wheel": both[1 - driver]}
     return {"pinion": 0.0, "wheel": 0.0}
 
 
@@ -171,12 +184,14 @@ def _rack_basics(reader: Reader, made: Draft) -> tuple[float, float]:
         raise InputError(
             f"{made.stage.field}.normal_module", "nothing", allowed="a length", why="needed"
         )
+    bounds.MODULE.require(f"{made.stage.field}.normal_module", module[1].si)
     for holders in (flanks, tools, gears):
         angle = _agreed(
             made, _all(reader, holders, "normal_pressure_angle"), "normal_pressure_angle"
         )
         if angle:
             made.read("gears.pressure_angle", angle[1], f"that of {angle[0].called}")
+            bounds.PRESSURE_ANGLE.require(f"{made.stage.field}.normal_pressure_angle", angle[1].si)
             return module[1].si, angle[1].si
     return module[1].si, math.radians(20.0)
 
@@ -236,7 +251,7 @@ def _tool(
     if own is not None:
         scale = own.si / module
     root = reader.number(gear, "root_diameter")
-    reach = reader.number(tool, "addendum_coefficient_reference_profile")
+    reach = _of_tool(reader, tool, "addendum_coefficient_reference_profile", module * scale)
     place = f"gears.{name}.rack"
     teeth = reader.whole(gear, "number_of_teeth") or 0
     if root is not None:
@@ -260,7 +275,11 @@ def _tool(
             made.read(f"{place}.dedendum", reach, f"addendum of {tool.called if tool else 'tool'}")
     else:
         return
-    radius = reader.number(tool, "tip_radius_factor")
+    radius = _of_tool(reader, tool, "tip_radius_factor", module * scale)
+    if radius is not None and scale != 1.0:
+        said = "tip radius of the tool in modules of the gear"
+        made.put(f"{place}.fillet_radius", radius.si * scale, DERIVED, said)
+        return
     if radius is not None:
         made.read(f"{place}.fillet_radius", radius, "tip radius of the tool")
         return
@@ -268,6 +287,25 @@ def _tool(
     usual = Rack().fillet_radius
     if room < usual:
         made.put(f"{place}.fillet_radius", max(room, 0.0), DERIVED, "as round as the tool may be")
+
+
+_LENGTHS = {
+    "addendum_coefficient_reference_profile": "addendum_reference_profile",
+    "tip_radius_factor": "tip_radius",
+}
+"""Sizes of a tool in modules, and the same as lengths."""
+
+
+def _of_tool(reader: Reader, tool: Component | None, name: str, module: float) -> Read | None:
+    """A size of a tool in its modules, read, else from the length."""
+    found = reader.number(tool, name)
+    if found is not None:
+        return found
+    length = reader.number(tool, _LENGTHS[name])
+    if length is None:
+        return None
+    size = _tidy(length.si / module)
+    return Read(si=size, number=size, unit="", changed=length.changed)
 
 
 def _one_rack(made: Draft) -> None:
@@ -370,7 +408,9 @@ def _operating(
     scale = 1.0 if driver == 0 else teeth[0] / teeth[1]
     other = 1.0 if driver == 0 else teeth[1] / teeth[0]
     for load in loads:
-        if load.speed and load.torque:
+        if load.speed and load.torque and _drives(load) != driver:
+            made.unused.append(f"{load.name}: the other gear drives there")
+        elif load.speed and load.torque:
             turns = abs(load.speed * scale) / RPM
             moment = abs(load.torque * other)
             made.loads.append(
@@ -382,6 +422,8 @@ def _operating(
                     share=load.share,
                 )
             )
+        elif len(loads) > 1:
+            made.unused.append(f"{load.name}: no speed or no torque at this stage")
     if speed is None and torque is None and made.loads:
         _lists(made, loads)
         return
