@@ -224,7 +224,7 @@ class Read:
 
 def plain(number: float) -> str:
     """A number to its last bit, whole ones without a point."""
-    return repr(int(number)) if number == int(number) and abs(number) < 1e15 else repr(number)
+    return repr(int(number)) if abs(number) < 1e15 and number == int(number) else repr(number)
 
 
 class Reader:
@@ -362,6 +362,8 @@ def finite(value: object, where: str) -> float:
 def in_si(value: float, unit: str, means: Meaning, where: str) -> Read:
     """``value`` in a REXS ``unit`` as SI; refused where the unit is of another kind."""
     factor, ours = _SPELLED.get(unit, (1.0, unit))
+    if not math.isfinite(factor * value):
+        raise InputError(where, f"{value:g} {unit}", allowed="a finite number")
     if means.kind in (PURE, "power"):
         if ours != ("" if means.kind == PURE else "W"):
             raise InputError(where, f"{value:g} {unit}", allowed=f"a number in {means.unit!r}")

@@ -30,6 +30,7 @@ from thermogear.case.rexs.model import (
     Relation,
     numbers,
 )
+from thermogear.case.units import KINDS
 from thermogear.gears.deviations import Relief
 from thermogear.gears.geometry import Gear
 from thermogear.heat.lubrication import kinematic_viscosity
@@ -74,11 +75,14 @@ class _Maker:
     def exact(self, name: str, si: float) -> list[Attribute]:
         """A number in the unit of REXS, and beside it as it is."""
         means = MEANINGS[name]
-        value, unit = from_si(float(si), means, numbers(self.version))
+        si = float(si)
+        value, unit = from_si(si, means, numbers(self.version))
         there = spelled(name, self.version)
         return [
             Attribute(there, unit, value),
-            Attribute(f"{EXACT}{there}", "none", float(si)),
+            Attribute(
+                f"{EXACT}{there}", KINDS[means.kind].si if means.kind in KINDS else "none", si
+            ),
         ]
 
     def add(self, found: int, kind: str, name: str, *parts: Any) -> None:

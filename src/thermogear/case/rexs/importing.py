@@ -115,7 +115,8 @@ def left_out(
         if several:
             some = ", ".join(sorted(several)[:8])
             more = f" and {len(several) - 8} more" if len(several) > 8 else ""
-            lines.append(f"{kind}: {len(several)} attributes: {flat(some)}{more}"[:400])
+            count = "1 attribute" if len(several) == 1 else f"{len(several)} attributes"
+            lines.append(f"{kind}: {count}: {flat(some)}{more}"[:400])
     if model.accumulation:
         lines.append("accumulation: results over all load cases")
     return lines
@@ -164,13 +165,14 @@ def imported(
     reader = Reader(model)
     one = chosen(model, stage)
     made = draft(reader, one, speed, torque)
-    shapes = _modifications(model, made)
-    unused = [*made.unused, *shapes]
-    unused += left_out(model, _used(model, made), told=shapes.values())
     data = _stored(model)
+    unused: list[str] = []
     if data is not None:
         text = _restored(data, made, _head(model, one, unused))
     else:
+        shapes = _modifications(model, made)
+        unused += [*made.unused, *shapes]
+        unused += left_out(model, _used(model, made), told=shapes.values())
         text = _fresh(made, _head(model, one, unused))
     return Imported(text, tuple(unused), tuple(reader.said), _duty(made))
 
