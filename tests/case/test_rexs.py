@@ -476,6 +476,29 @@ def test_couplings_turn_shafts_alike_in_their_gear(tmp_path: Path) -> None:
     assert (case.pair.pinion.teeth, case.torques[0]) == (20, pytest.approx(10.0, rel=1e-13))
 
 
+def test_a_stage_without_a_ratio_takes_what_it_takes(tmp_path: Path) -> None:
+    """A worm without teeth on the middle shaft: the first stage is known, the second is not."""
+    parts, links = two_stages()
+    parts += [(70, "worm_stage", []), (71, "worm_wheel", []), (72, "worm_gear", [])]
+    links += [("assembly", [("assembly", 12), ("part", 71)])]
+    links += [("stage", [("stage", 70), ("gear_1", 72), ("gear_2", 71)])]
+    path = put(tmp_path, xml(parts, links))
+    assert case_of(path, 1)[0].torques == pytest.approx([12.0], rel=1e-13)
+    assert "operating.torque: got nothing" in refused(path, 2)
+
+
+def test_a_planetary_stage_takes_what_it_takes(tmp_path: Path) -> None:
+    parts, links = two_stages()
+    parts += [(80, "planetary_stage", []), (81, "planet_carrier", [])]
+    links += [("central_shaft", [("planetary_stage", 80), ("shaft", 13)])]
+    path = put(tmp_path, xml(parts, links))
+    assert case_of(path, 2)[0].torques == pytest.approx([36.0], rel=1e-13)
+    links += [("assembly", [("assembly", 81), ("part", 12)])]
+    path = put(tmp_path, xml(parts, links))
+    assert case_of(path, 1)[0].torques == pytest.approx([12.0], rel=1e-13)
+    assert "operating.torque: got nothing" in refused(path, 2)
+
+
 def test_a_load_case_where_the_other_gear_drives_is_told(tmp_path: Path) -> None:
     loads = [
         [(31, "external_load", [("torque_around_u_axis", "N m", torque)])]

@@ -57,6 +57,7 @@ class Drive:
         self.switched = gearbox.switched_shafts(model)
         self.meshes: list[tuple[Component, int, int, int, int]] = []
         self.crossed: set[int] = set()
+        self.open = dict.fromkeys(sorted(gearbox.planetary_shafts(model)))
         self.changed = False
         for stage, first, second in gearbox.meshes(model):
             self._mesh(stage, first, second)
@@ -83,8 +84,9 @@ class Drive:
         try:
             teeth = [self.reader.whole(one, "number_of_teeth") for one in (first, second)]
         except InputError:
-            return
+            teeth = [None, None]
         if None in shafts or None in teeth or 0 in teeth:
+            self.open.update(dict.fromkeys(one for one in shafts if one is not None))
             return
         z1, z2 = (abs(t or 0) for t in teeth)
         inner = (
@@ -262,9 +264,9 @@ class Drive:
     ) -> dict[int, float]:
         """Stage -> torque on gear_1 by its mesh, where the balance of the shafts decides it.
 
-        Unknown are the torque of every stage, of every connection and of every load that defines
-        none: sum of the torques on a shaft = 0 for each shaft; on gear_2 T2 = T1 z2/z1 for
-        external gears, so that no power is lost.
+        Unknown are the torque of every stage, of every connection, of every load that defines none
+        and of gears whose stage has no ratio, planetary ones too: sum of the torques on a shaft = 0
+        for each shaft; on gear_2 T2 = T1 z2/z1 for external gears, so that no power is lost.
         """
         known, unknown = self._external(over, speeds)
         if not self.meshes or not any(known.values()):
@@ -276,7 +278,7 @@ class Drive:
             columns.append(column)
         alike = (*self.joined, *self._engaged(over))
         columns += [{one: 1.0, other: -1.0} for one, other in alike]
-        columns += [{shaft: 1.0} for shaft in unknown]
+        columns += [{shaft: 1.0} for shaft in (*unknown, *self.open)]
         ends = [
             {shaft: 1.0} for shaft in self.shafts if shaft not in self.loads and self._end(shaft)
         ]

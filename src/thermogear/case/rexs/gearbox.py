@@ -105,6 +105,24 @@ def _planetary(model: Model) -> set[int]:
     return found
 
 
+def planetary_shafts(model: Model) -> set[int]:
+    """Shafts that a planetary stage or its carrier may turn."""
+    found: set[int] = set()
+    for relation in model.related("central_shaft", "planet_shaft", "planet_carrier_shaft"):
+        found.update(i for role, i in relation.refs if role == "shaft")
+    carried = _planetary(model)
+    of_gear = shafts_of_gears(model)
+    for relation in model.related("stage"):
+        if relation.role("stage") in carried:
+            gears = (relation.role("gear_1"), relation.role("gear_2"))
+            found.update(of_gear[one] for one in gears if one in of_gear)
+    for relation in model.related("assembly", "ordered_assembly"):
+        whole = model.at(relation.role("assembly"))
+        if whole is not None and whole.type == "planet_carrier":
+            found.update(i for role, i in relation.refs if role == "part")
+    return found & {one.id for one in model.of_type("shaft")}
+
+
 def meshes(model: Model) -> Iterator[tuple[Component, Component, Component]]:
     """(stage, gear_1, gear_2) of every stage on fixed axes, of whatever type."""
     carried = _planetary(model)
@@ -128,7 +146,7 @@ def shafts_of_gears(model: Model) -> dict[int, int]:
         if not _turns(by):
             continue
         for mine, other in ((inner, outer), (outer, inner)):
-            if mine.type == "shaft" and other.type.endswith("gear"):
+            if mine.type == "shaft" and other.type.endswith(("gear", "wheel")):
                 found.setdefault(other.id, mine.id)
     return found
 
