@@ -7,6 +7,12 @@ from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
+import pytest
+
+from thermogear import InputError, read_rexs
+from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.rexs.importing import Imported, imported
+
 Row = tuple[str, str | None, Any]
 Part = tuple[int, str, list[Row]]
 Link = tuple[str, list[tuple[str, int]]]
@@ -130,6 +136,28 @@ def one_stage(version: str = "1.7") -> tuple[list[Part], list[Link]]:
     return parts, links
 
 
+def two_stages() -> tuple[list[Part], list[Link]]:
+    """20:60 and 25:50 in a row, 1200 rpm and 12 N m at the input, no load at the other end."""
+    parts: list[Part] = [(1, "gear_unit", []), (2, "gear_casing", [])]
+    links: list[Link] = []
+    for stage, gears in ((3, (21, 22)), (4, (23, 24))):
+        parts.append((stage, "cylindrical_stage", []))
+        links.append(("stage", [("stage", stage), ("gear_1", gears[0]), ("gear_2", gears[1])]))
+    for gear, teeth, shaft in ((21, 20, 11), (22, 60, 12), (23, 25, 12), (24, 50, 13)):
+        rows: list[Row] = [
+            ("number_of_teeth", "none", teeth),
+            ("normal_module", "mm", 2.0),
+            ("face_width", "mm", 15.0),
+        ]
+        parts.append((gear, "cylindrical_gear", rows))
+        links.append(("assembly", [("assembly", shaft), ("part", gear)]))
+    parts += [(shaft, "shaft", []) for shaft in (11, 12, 13)]
+    parts = replaced(parts, 11, ("rotational_speed", "1 / min", 1200.0))
+    parts.append((31, "external_load", [("torque_around_u_axis", "N m", 12.0)]))
+    links.append(("assembly", [("assembly", 11), ("part", 31)]))
+    return parts, links
+
+
 # --- containers -----------------------------------------------------------------------------
 
 
@@ -246,3 +274,18 @@ def replaced(parts: list[Part], found: int, *rows: Row, drop: tuple[str, ...] = 
         else:
             new.append((part, kind, old))
     return new
+
+
+# --- what becomes of them -----------------------------------------------------------------
+
+
+def case_of(path: Path, stage: int | None = None) -> tuple[GearCase, Imported]:
+    found = imported(read_rexs(path), stage)
+    return gear_case(load_case(found.text)), found
+
+
+def refused(path: Path, stage: int | None = None) -> str:
+    with pytest.raises(InputError) as error:
+        imported(read_rexs(path), stage)
+    assert "\n" not in str(error.value)
+    return str(error.value)
