@@ -7,6 +7,7 @@ that torque times speed above 0 drives (REXS).
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -279,14 +280,9 @@ class Drive:
         alike = (*self.joined, *self._engaged(over))
         columns += [{one: 1.0, other: -1.0} for one, other in alike]
         columns += [{shaft: 1.0} for shaft in (*unknown, *self.open)]
-        ends = [
-            {shaft: 1.0} for shaft in self.shafts if shaft not in self.loads and self._end(shaft)
-        ]
+        held = Counter(shaft for _, *both, _, _ in self.meshes for shaft in both)
+        ends = [{one: 1.0} for one in self.shafts if one not in self.loads and held[one] == 1]
         return self._solved(columns, known) or self._solved([*columns, *ends], known)
-
-    def _end(self, shaft: int) -> bool:
-        """Whether one stage alone holds a shaft."""
-        return sum(shaft in (first, second) for _, first, second, *_ in self.meshes) == 1
 
     def _solved(self, columns: list[dict[int, float]], known: dict[int, float]) -> dict[int, float]:
         rows = {shaft: k for k, shaft in enumerate(self.shafts)}
