@@ -280,7 +280,7 @@ CHOICES = (
     "friction=fernandes flash=exact heat_distribution=parabola inlet=oil sharing=equal",
 )
 COMMANDS = [
-    *("new", "answers", "run", "report", "check", "example", "schema"),
+    *("new", "import", "export", "answers", "run", "report", "check", "example", "schema"),
     *("friction", "temperature", "warmup", "relief", "contact"),
     *("orbit", "lyapunov", "continue", "shared-force"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
@@ -315,6 +315,16 @@ CASES = (
             "check five.toml",
             "answers five.toml -o answers",
         ),
+    ),
+    Case(
+        "rexs",
+        (
+            "export own.toml -o own.rexs",
+            "import own.rexs",
+            "import own.rexs --stage 1 -o again.toml",
+            "check again.toml --json",
+        ),
+        MINE,
     ),
     Case(
         "check",

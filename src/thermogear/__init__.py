@@ -59,6 +59,8 @@ _HOME = {
     "run_ups": "thermogear.study.run_ups",
     "sweep": "thermogear.study.sweep",
     "load_case": "thermogear.case.case",
+    "read_rexs": "thermogear.case.rexs.container",
+    "write_rexs": "thermogear.case.rexs.writing",
     "family": "thermogear.case.family",
     "run": "thermogear.study.run",
     "answers": "thermogear.study.answers.survey",

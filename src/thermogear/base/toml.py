@@ -1,7 +1,8 @@
-"""The nested tables of a TOML text, and dotted overrides put into them."""
+"""The nested tables of a TOML text, dotted overrides put into them, and TOML written."""
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -87,3 +88,44 @@ def _value(text: str) -> Any:
     except (ValueError, RecursionError):
         return text
     return parsed["value"] if set(parsed) == {"value"} else text
+
+
+# --- writing ----------------------------------------------------------------------------------
+
+
+def line(key: str, value: Any, comment: str = "") -> str:
+    """``key = value   # comment``, or nothing where there is no value."""
+    if value is None:
+        return ""
+    return f"{quoted(key)} = {literal(value)}" + (f"   # {flat(comment)}" if comment else "")
+
+
+def table(name: str, *lines: str) -> list[str]:
+    """A table of those lines that say something; none where none does."""
+    said = [one for one in lines if one]
+    return [*([heading(name)] if name else []), *said] if said else []
+
+
+def heading(name: str) -> str:
+    """``[a.b]`` of a dotted name."""
+    return f"[{name}]"
+
+
+def literal(value: Any) -> str:
+    """A text, number, truth, list or table as TOML, numbers to the last bit."""
+    if isinstance(value, dict):
+        inside = ", ".join(f"{quoted(key)} = {literal(one)}" for key, one in value.items())
+        return f"{{ {inside} }}" if inside else "{}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(literal(one) for one in value)}]"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def flat(text: str) -> str:
+    """``text`` as a comment may hold it: one line, printable."""
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
+
+
+def quoted(key: str) -> str:
+    """``key`` bare where TOML allows it, else in quotes."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else literal(key)

@@ -144,7 +144,7 @@ def unknown_names(data: Mapping[str, Any]) -> list[InputError]:
     return found
 
 
-def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
+def _under(prefix: str, make: Callable[[], _Made], *, own_rack: bool = False) -> _Made:
     """What ``make`` makes; its complaints speak of the field of the file."""
     try:
         return make()
@@ -153,7 +153,7 @@ def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
         for start in ("material.", "lubricant."):
             inner = inner.removeprefix(start)
         where = f"{prefix}.{inner}"
-        if inner in ("module", "pressure_angle") or inner.startswith("rack."):
+        if inner in ("module", "pressure_angle") or (inner.startswith("rack.") and not own_rack):
             where = f"gears.{inner}"
         if inner.endswith("tip_radius"):
             where = where.removesuffix("tip_radius") + "tip_diameter"
@@ -171,7 +171,8 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
     width = next((one for one in widths if one is not None), LEFT_OUT)
     material = named_material(table.material, f"{prefix}.material", known)
     # a rack left out is the gear's own to choose, with a fillet that fits its pressure angle
-    rack: dict[str, Any] = {} if gears.rack is None else {"rack": Rack(**gears.rack.model_dump())}
+    cut = table.rack or gears.rack
+    rack: dict[str, Any] = {} if cut is None else {"rack": Rack(**cut.model_dump())}
     drawn = partial(
         Gear,
         teeth=table.teeth,
@@ -187,8 +188,8 @@ def _gear(table: GearTable, file: GearFile, prefix: str, known: Mapping[str, Mat
     )
     bore = table.bore_radius
     if bore is None:
-        bore = BORE * _under(prefix, drawn).root_radius
-    return _under(prefix, partial(drawn, bore_radius=bore))
+        bore = BORE * _under(prefix, drawn, own_rack=table.rack is not None).root_radius
+    return _under(prefix, partial(drawn, bore_radius=bore), own_rack=table.rack is not None)
 
 
 def faults(file: GearFile) -> list[InputError]:

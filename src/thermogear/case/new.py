@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from thermogear.base.errors import InputError
+from thermogear.base.toml import line, table
 from thermogear.case.case import load_case
 
 
@@ -50,53 +49,39 @@ class NewCase:
 
     def _lines(self) -> list[str]:
         gears = (
-            _line("module", self.module),
-            _line("face_width", self.face_width),
-            _line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
+            line("module", self.module),
+            line("face_width", self.face_width),
+            line("centre_distance", self.centre_distance, "left out: the mesh without backlash"),
         )
         found = [
             '# A spur gear pair. A number with a unit is a text: "3 mm"; a pure number is bare.',
             "# What is left out has a default: `thermogear check FILE` lists each with its reason.",
         ]
-        found += _table("", _line("title", self.title))
-        found += _table("gears", *gears)
+        found += table("", line("title", self.title))
+        found += table("gears", *gears)
         for place, name in enumerate(("pinion", "wheel")):
             shift, material = self.profile_shift, self.material
-            found += _table(
+            found += table(
                 f"gears.{name}",
-                _line("teeth", self.teeth[place]),
-                _line("profile_shift", shift and shift[place], "in modules"),
-                _line("material", material and material[place]),
+                line("teeth", self.teeth[place]),
+                line("profile_shift", shift and shift[place], "in modules"),
+                line("material", material and material[place]),
             )
-        oil = _line("name", self.oil or "ISO VG 100")
+        oil = line("name", self.oil or "ISO VG 100")
         known = self.oil_temperature
-        temperature = _line("temperature", known)
-        found += _table("oil", oil, temperature if known else "# temperature: from the losses")
+        temperature = line("temperature", known)
+        found += table("oil", oil, temperature if known else "# temperature: from the losses")
         if self.backlash is not None:
-            value = _line("value", self.backlash, "of the whole gap, along the line of action")
-            found += _table("backlash", value, 'direction = "normal"', 'extent = "total"')
-        found += _table(
+            value = line("value", self.backlash, "of the whole gap, along the line of action")
+            found += table("backlash", value, 'direction = "normal"', 'extent = "total"')
+        found += table(
             "flanks",
-            _line("accuracy", self.accuracy, "class of ISO 1328-1"),
-            _line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
-            _line("wheel", self.wheel_flanks),
+            line("accuracy", self.accuracy, "class of ISO 1328-1"),
+            line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
+            line("wheel", self.wheel_flanks),
         )
-        return found + _table(
+        return found + table(
             "operating",
-            _line("speed", self.speed, "of the pinion, which drives"),
-            _line("torque", self.torque, "at the pinion"),
+            line("speed", self.speed, "of the pinion, which drives"),
+            line("torque", self.torque, "at the pinion"),
         )
-
-
-def _line(key: str, value: Any, comment: str = "") -> str:
-    """``key = value``, or nothing where there is no value."""
-    if value is None:
-        return ""
-    text = json.dumps(value, ensure_ascii=False)
-    return f"{key} = {text}" + (f"   # {comment}" if comment else "")
-
-
-def _table(name: str, *lines: str) -> list[str]:
-    """A table of those lines that say something; none where none does."""
-    said = [line for line in lines if line]
-    return [*([f"[{name}]"] if name else []), *said] if said else []

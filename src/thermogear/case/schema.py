@@ -100,6 +100,7 @@ class GearTable(Table):
         description="Ra of ground flanks (0.3 to 0.5 um are usual). Decides the "
         "film, the friction and with it the flash temperature",
     )
+    rack: RackTable | None = Field(default=None, title="of this gear alone; else [gears.rack]")
     tip_relief: ReliefTable | None = Field(default=None, title="no tip relief")
     root_relief: ReliefTable | None = Field(default=None, title="no root relief")
     pitch_errors: Annotated[
@@ -144,6 +145,8 @@ class GearsTable(Table):
             )
         if self.face_width is not None and None not in of_each:
             raise InputError("face_width", "one beside those of both gears", fix="leave one out")
+        if self.rack is not None and None not in (self.pinion.rack, self.wheel.rack):
+            raise InputError("rack", "one beside those of both gears", fix="leave one out")
         return self
 
 

@@ -24,6 +24,7 @@ from thermogear.front import (
     measure_commands,
     motion_commands,
     new_command,
+    rexs_commands,
     sweep_commands,
     thesis_commands,
     verify_commands,
@@ -214,6 +215,7 @@ def _put(text: str, output: str | None) -> None:
 
 for _list in (
     new_command,
+    rexs_commands,
     gear_commands,
     motion_commands,
     sweep_commands,

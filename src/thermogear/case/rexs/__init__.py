@@ -1,0 +1,1 @@
+"""REXS: gearbox models read into cases, cases written as models."""

@@ -1,0 +1,76 @@
+"""Fields of a case that come out of a REXS file, each with where it is from, as TOML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from thermogear.base.toml import heading, line, quoted
+
+READ, DERIVED, DEFAULT, GIVEN = "read", "derived", "default", "given"
+"""In the file as it is; computed from what is there; left to the package; said by the user."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A field of the case file: its dotted ``path``, the ``value`` a file holds, the origin.
+
+    ``note``: the attribute it was read from, or how it was derived. ``changed``: another program
+    changed it since it was exported.
+    """
+
+    path: str
+    value: Any
+    origin: str
+    note: str = ""
+    changed: bool = False
+
+
+def toml(lines: Iterable[Line], head: Iterable[str], defaults: Iterable[tuple[str, str]]) -> str:
+    """The case file: comment lines ``head``, then the tables.
+
+    ``defaults``: (dotted path, why) of fields left out, a comment in the table of each.
+    """
+    tables: dict[str, list[str]] = {"": []}
+    for one in lines:
+        table, _, key = one.path.rpartition(".")
+        said = f"{one.origin}: {one.note}" if one.note else one.origin
+        tables.setdefault(table, []).append(line(key, one.value, said))
+    for path, why in defaults:
+        table, _, key = path.rpartition(".")
+        tables.setdefault(table, []).append(f"# {key} left out; {DEFAULT}: {why}")
+    found = [f"# {text}" for text in head]
+    for name in sorted(tables, key=_rank):
+        if tables[name]:
+            found += ["", *([heading(name)] if name else []), *tables[name]]
+    return "\n".join(found) + "\n"
+
+
+def stored(data: dict[str, Any], head: Iterable[str], notes: Mapping[str, str]) -> str:
+    """The tables ``data`` of a case as they were exported; ``notes`` by dotted path for others."""
+    found = [f"# {text}" for text in head]
+    _walk(data, (), notes, found)
+    return "\n".join(found) + "\n"
+
+
+def _walk(
+    table: dict[str, Any], above: tuple[str, ...], notes: Mapping[str, str], found: list[str]
+) -> None:
+    plain = {k: v for k, v in table.items() if not isinstance(v, dict) or above == ("ours",)}
+    if above and (plain or not table):
+        found += ["", heading(".".join(quoted(key) for key in above))]
+    for key, value in plain.items():
+        note = notes.get(".".join((*above, key)), f"{READ}: as it was exported")
+        found.append(line(key, value, "" if above[:1] == ("ours",) else note))
+    for key, value in table.items():
+        if key not in plain:
+            _walk(value, (*above, key), notes, found)
+
+
+_ORDER = ("", "gears", "materials", "housing", "oil", "operating", "temperatures", "backlash")
+
+
+def _rank(table: str) -> tuple[int, str]:
+    first = table.split(".")[0]
+    return (_ORDER.index(first) if first in _ORDER else len(_ORDER), table)
