@@ -61,6 +61,7 @@ _HOME = {
     "load_case": "thermogear.case.case",
     "family": "thermogear.case.family",
     "run": "thermogear.study.run",
+    "drawing": "thermogear.study.drawing",
     "answers": "thermogear.study.answers.survey",
     "sensitivity": "thermogear.study.sensitivity",
     "Result": "thermogear.results.result",

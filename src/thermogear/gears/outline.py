@@ -146,3 +146,26 @@ def whole(points: NDArray[np.complex128], teeth: int) -> NDArray[np.complex128]:
     turns = np.exp(2j * math.pi * np.arange(teeth) / teeth)
     line = (turns[:, None] * points[None, :-1]).ravel()
     return np.concatenate([line, line[:1]])
+
+
+class Span(NamedTuple):
+    """What a caliper shows: ``length`` W_k [m] over ``teeth`` k, touching at ``radius`` [m]."""
+
+    length: float
+    teeth: int
+    radius: float
+
+
+def span_over_teeth(gear: Gear, set_back: float = 0.0, teeth: int | None = None) -> Span:
+    """Base tangent length W_k = (k - 1) p_b + 2 (r_b theta_b - set_back) [m].
+
+    ``set_back`` [m] of each flank; ``teeth`` k, left out the one that touches nearest to the middle
+    of the involute flank. The jaws touch at sqrt(r_b^2 + (W_k/2)^2). Source: ISO 21771-1.
+    """
+    thick = 2.0 * (gear.base_radius * gear.base_half_angle - set_back)
+    if teeth is None:
+        low, high = gear.form_radius, gear.tip_radius
+        middle = 2.0 * float(gear.curvature_radius(0.5 * (low + high)))
+        teeth = max(1, round(1.0 + (middle - thick) / gear.base_pitch))
+    length = (teeth - 1) * gear.base_pitch + thick
+    return Span(length, teeth, math.hypot(gear.base_radius, 0.5 * length))

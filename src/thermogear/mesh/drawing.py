@@ -23,13 +23,13 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.vocabulary import label
 from thermogear.gears.candidates import mesh_points
 from thermogear.gears.deviations import Deviation, FlankShape
 from thermogear.gears.geometry import Gear
-from thermogear.gears.outline import LAND, outline
+from thermogear.gears.outline import LAND, outline, span_over_teeth
 from thermogear.gears.pair import GearPair
 from thermogear.heat.thesis_profile import deformed_points
 from thermogear.mesh.clearance import Clearance
@@ -43,7 +43,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-PHASES = 48
+PHASES = tuple(k / 48 for k in range(48))
+"""Mesh phases of a drawing: a slider's steps over one mesh period."""
 NAMES = ("pinion", "wheel")
 
 
@@ -53,7 +54,7 @@ def drawn_gears(
     model: MeshModel,
     *,
     deviations: Sequence[Deviation] = (),
-    phases: int = PHASES,
+    phases: ArrayLike = PHASES,
     fineness: int = 1,
 ) -> xr.Dataset:
     """What both gears look like in mesh, over ``states`` of heat by name and operating points.
@@ -69,10 +70,11 @@ def drawn_gears(
     flanks, ``drive_gap`` and ``back_gap``, nan where the pair cannot touch.
 
     Growth is that of :func:`~thermogear.heat.expansion.flank_growth` whatever flank the ``model``
-    has; load share, body, housing and bore are the model's. ``fineness`` times as many points.
+    has; load share, body, housing and bore are the model's.
+    ``phases`` of the mesh period, one axis; ``fineness`` times as many points.
     """
     model = model.override(flank="growth")
-    phase = np.arange(phases) / phases
+    phase = np.asarray(phases, dtype=float)
     hots = {name: HotPair(pair, at, model) for name, at in states.items()}
     first = next(iter(hots.values()))
     half = first.half_backlash
@@ -107,6 +109,13 @@ def drawn_gears(
     def of_both(name: str) -> Floats:
         return np.array([float(getattr(gear, name)) for gear in (pair.pinion, pair.wheel)])
 
+    cut = 0.5 * float(half[0]) - 0.25 * pair.normal_backlash
+    spans = [span_over_teeth(gear, cut) for gear in (pair.pinion, pair.wheel)]
+    thick = [
+        2.0 * r * (float(gear.half_thickness_angle(r)) - cut / gear.base_radius)
+        for gear in (pair.pinion, pair.wheel)
+        for r in (gear.pitch_radius,)
+    ]
     circles = ("base", "pitch", "tip", "root", "form", "bore")
     angle = pair.operating_pressure_angle
     skipped = sorted({type(d).__name__ for d in deviations if not isinstance(d, FlankShape)})
@@ -131,6 +140,11 @@ def drawn_gears(
             "contact_y": (pairs, contact.imag, "m", "place of contact across it"),
             "start": ("gear", starts, "rad", "angle of the tooth that enters, at phase 0"),
             "teeth": ("gear", of_both("teeth").astype(np.int64), "1", "number of teeth"),
+            "span": ("gear", [one.length for one in spans], "m",
+                     "base tangent length over span_teeth, cold, without deviations"),
+            "span_teeth": ("gear", [one.teeth for one in spans], "1", "teeth of that length"),
+            "thickness": ("gear", thick, "m",
+                          "tooth thickness on the pitch circle, cold, without deviations"),
             **{
                 f"{name}_radius": ("gear", of_both(f"{name}_radius"), "m", f"{name} radius")
                 for name in circles

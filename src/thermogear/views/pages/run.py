@@ -9,7 +9,7 @@ from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.csv_files import curve_tables
 from thermogear.views.page import OPEN, Page, Pictures, Section, notice_lines
-from thermogear.views.pages import answers, flank_sections, gear_sections, headline, row_sections
+from thermogear.views.pages import answers, drawn, flank_sections, gear_sections, headline, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ORDER = (
+    drawn.section,
     flank_sections.measured,
     gear_sections.friction,
     gear_sections.heat,
@@ -36,6 +37,7 @@ FIRST = (
     ("flash-own", "flash-mixed", "friction"),
     ("stiffness-0",),
     ("motion-0-0",),
+    (drawn.NAME,),
 )
 """The pictures that carry the answers: speeds, gap, friction, stiffness, motion."""
 KINDS = ("gear", "dimensionless")
