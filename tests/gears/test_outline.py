@@ -128,9 +128,7 @@ def test_span_thickness_and_normals_are_those_of_a_gear(gear: Gear, compared: Co
 def test_a_deviation_turns_the_flank_by_what_it_takes_off() -> None:
     pair = GearPair(Gear(19, 3e-3, profile_shift=0.3), Gear(47, 3e-3))
     relief = Relief("pinion", amount=40e-6, length=3e-3)
-    bump = FlankTable(
-        "wheel", radius=[0.06, 0.09], added=[25e-6, 25e-6], flank="back"
-    )
+    bump = FlankTable("wheel", radius=[0.06, 0.09], added=[25e-6, 25e-6], flank="back")
     plain, relieved = (
         outline(pair.pinion, pair=pair, deviations=one) for one in ((), (relief, bump))
     )
@@ -139,9 +137,7 @@ def test_a_deviation_turns_the_flank_by_what_it_takes_off() -> None:
     assert moved[tip] == pytest.approx(40e-6, rel=1e-9)
     inner = plain.string < pair.path.e - 3e-3
     assert np.all(np.abs(moved[inner]) < 1e-15)
-    first, second = (
-        outline(pair.wheel, pair=pair, deviations=one) for one in ((), (relief, bump))
-    )
+    first, second = (outline(pair.wheel, pair=pair, deviations=one) for one in ((), (relief, bump)))
     more = (second.angle - first.angle) * pair.wheel.base_radius
     assert np.all(np.abs(more[on_flank(first, 1)]) < 1e-15)
     assert more[on_flank(first, -1)] == pytest.approx(-25e-6, rel=1e-9)

@@ -19,24 +19,34 @@ SHOWN = {"both": ("undeformed", "hot"), "cold": ("undeformed",), "hot": ("hot",)
 @click.command()
 @delivery.case
 @click.option(
-    "-o", "--output", default="gears.svg", metavar="FILE", show_default=True,
+    "-o",
+    "--output",
+    default="gears.svg",
+    metavar="FILE",
+    show_default=True,
     help="The file; its ending says what: svg, png, pdf, or dxf (extra [cad]).",
 )
-@click.option(
-    "--operating", type=int, help="Operating point, from 1 (speeds x torques) [1]."
-)
+@click.option("--operating", type=int, help="Operating point, from 1 (speeds x torques) [1].")
 @click.option("--bundle", metavar="NAME", help="Bundle of the case [the first].")
 @click.option("--state", help="hot | computed | the gears' temperature in degC [hot].")
 @click.option(
-    "--phase", type=float, default=0.25, show_default=True,
+    "--phase",
+    type=float,
+    default=0.25,
+    show_default=True,
     help="Part of the mesh period, 0..1; at 0 a pair enters.",
 )
 @click.option(
-    "--enlarge", type=float, metavar="FACTOR",
+    "--enlarge",
+    type=float,
+    metavar="FACTOR",
     help="How many times larger gaps, growth and deviations are drawn [what fits].",
 )
 @click.option(
-    "--show", type=click.Choice(list(SHOWN)), default="both", show_default=True,
+    "--show",
+    type=click.Choice(list(SHOWN)),
+    default="both",
+    show_default=True,
     help="Outlines as drawn, hot, or both over each other.",
 )
 @delivery.overrides
@@ -61,7 +71,7 @@ def draw(
     \b
       thermogear draw rig.toml -o gears.svg
       thermogear draw rig.toml --phase 0.5 --enlarge 20 -o gears.png
-    """  # noqa: D301
+    """
     path = Path(output)
     kind = path.suffix.removeprefix(".").lower()
     if kind not in ENDINGS:

@@ -86,7 +86,7 @@ def drawn_gears(
         name: [_outlines(hot, gear, deviations, fineness) for gear in (pair.pinion, pair.wheel)]
         for name, hot in hots.items()
     }
-    drive, back = (mesh_points(pair, phase, flank) for flank in ("drive", "back"))
+    drive = mesh_points(pair, phase)
     gaps = {name: Clearance(hot, phase, tuple(deviations)).gaps for name, hot in hots.items()}
     lag = np.stack([one.min(axis=-1) for one, _ in gaps.values()])
     drive_gap = np.stack([one for one, _ in gaps.values()]) - lag[..., None]
@@ -102,9 +102,10 @@ def drawn_gears(
     distance = np.stack([pair.centre_distance + _opened(hot) for hot in hots.values()])
 
     def stacked(part: int) -> Floats:
-        return np.stack(
-            [np.stack([gear[part] for gear in two], axis=1) for two in shapes.values()]
-        )
+        return np.stack([np.stack([gear[part] for gear in two], axis=1) for two in shapes.values()])
+
+    far, near = stacked(0).max(axis=-1), stacked(0).min(axis=-1)
+    clearance = distance[..., None] - far - near[..., ::-1]
 
     def of_both(name: str) -> Floats:
         return np.array([float(getattr(gear, name)) for gear in (pair.pinion, pair.wheel)])
@@ -129,6 +130,8 @@ def drawn_gears(
             "outline_angle": ((*state, *curve), stacked(1), "rad",
                               "angle of the true outline from the tooth's axis"),
             "centre_distance": (state, distance, "m", "centre distance"),
+            "tip_clearance": ((*state, "gear"), clearance, "m",
+                              "from the gear's tip to the root circle of the other"),
             "set_back": (state, backs, "m",
                          "normal distance of each flank from the one without backlash"),
             "lag": ((*state, "mesh_phase"), lag, "m",
@@ -223,9 +226,7 @@ def _outlines(
     return far, angle + kept * (turned - angle)
 
 
-def _shares(
-    hot: HotPair, deviations: Sequence[Deviation], phase: Floats, s: Floats
-) -> Floats:
+def _shares(hot: HotPair, deviations: Sequence[Deviation], phase: Floats, s: Floats) -> Floats:
     """Share of the load of every candidate pair, (count, phases, pair)."""
     elastic = elastic_pair(hot, tuple(deviations))
     if hot.model.sharing == "loaded":
@@ -235,4 +236,3 @@ def _shares(
     found = np.zeros((hot.count, *s.shape))
     found[:, on] = elastic.share(s[on]).share
     return found
-

@@ -39,8 +39,8 @@ def drawing(
 
     ``operating`` counts from 1 in the order of the file (speeds times torques, torque the fast
     one), the first if left out; ``bundle`` as in the case, the first if left out; ``state`` "hot",
-    "computed", or the gears' temperature [K]; ``phase`` 0..1 of the mesh period, :data:`PHASES` of it
-    if left out; ``fineness`` times as many points of the outlines.
+    "computed", or the gears' temperature [K]; ``phase`` 0..1 of the mesh period, :data:`PHASES` of
+    it if left out; ``fineness`` times as many points of the outlines.
     The one group ``drawing`` is that of :func:`thermogear.mesh.drawing.drawn_gears`. Raises
     InputError where there is no such point, and where its temperatures did not settle.
     """
@@ -113,6 +113,10 @@ def _notices(data: xr.Dataset) -> Iterator[Notice]:
     )
     if float(data["back_gap"].min()) <= 0.0:
         yield Notice("important", "No backlash is left: the hot flanks overlap where they jam.")
+    if float(data["tip_clearance"].min()) <= 0.0:
+        yield Notice(
+            "important", "Tips reach the other gear's root when hot: no clearance is left."
+        )
     if data.attrs["not_drawn"]:
         yield Notice(
             "warning",

@@ -1,4 +1,4 @@
-"""Both gears as a DXF file for a drawing program: true outlines in millimetres (extra ``[cad]``)."""
+"""Both gears as a DXF file for a drawing program: true outlines in mm (extra ``[cad]``)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def put_dxf(drawing: GearDrawing, path: Path, *, place: int, shown: Sequence[str
     extra ``[cad]``.
     """
     ezdxf = _library()
-    document = ezdxf.new("R2010", setup=True, units=4)
+    document = ezdxf.new("R2010", setup=["linetypes"], units=4)
     for name, colour in COLOURS.items():
         document.layers.add(name, color=colour)
     space = document.modelspace()
@@ -40,10 +40,10 @@ def put_dxf(drawing: GearDrawing, path: Path, *, place: int, shown: Sequence[str
         state = drawing.state(name)
         look = {"layer": layer_of(name)}
         for gear in (PINION, WHEEL):
-            line = drawing.whole(state, gear, place)[:-1]
+            line = drawing.whole(state, gear, phase=place)[:-1]
             corners = np.column_stack([line.real, line.imag]).tolist()
             space.add_lwpolyline(corners, close=True, dxfattribs=look)
-            centre = (drawing.centre(state, gear, 1.0), 0.0)
+            centre = (drawing.centre(state, gear, factor=1.0), 0.0)
             space.add_circle(centre, drawing.circles[gear]["bore"], dxfattribs=look)
     look = {"layer": "construction", "linetype": "CENTER"}
     for gear in (PINION, WHEEL):

@@ -33,7 +33,7 @@ _GAP, _CLOSER, _MOVED = 0.35, 0.15, 0.5
 """Most of a module that an enlarged gap, a change of tip clearance and a growth may be."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnState:
     """Both gears in one state of heat, mm; arrays over (phase) and (phase, pair).
 
@@ -96,7 +96,7 @@ class GearDrawing:
         return int(np.argmin(away))
 
     # --- placing ----------------------------------------------------------------------------
-    def centre(self, state: DrawnState, gear: int, factor: float | None = None) -> float:
+    def centre(self, state: DrawnState, gear: int, *, factor: float | None = None) -> float:
         """Where a gear's centre is on the line of centres."""
         much = self.factor if factor is None else factor
         if gear == PINION:
@@ -104,7 +104,7 @@ class GearDrawing:
         return self.centre_distance + much * (state.centre_distance - self.centre_distance)
 
     def axis(
-        self, state: DrawnState, gear: int, phase: int, factor: float | None = None
+        self, state: DrawnState, gear: int, *, phase: int, factor: float | None = None
     ) -> float:
         """Angle of the axis of tooth 0 at a drawn phase [rad]."""
         much = self.factor if factor is None else factor
@@ -113,34 +113,48 @@ class GearDrawing:
         turn = 2.0 * math.pi * float(self.phase[phase]) / self.teeth[gear]
         return self.start[gear] + moved + (turn if gear == PINION else -turn)
 
-    def shape(self, state: DrawnState, gear: int, factor: float | None = None) -> Points:
+    def shape(self, state: DrawnState, gear: int, *, factor: float | None = None) -> Points:
         """The outline of one pitch in the frame of its tooth."""
         much = self.factor if factor is None else factor
         tight = self.tight[gear]
         return np.asarray(tight + much * (state.outlines[gear] - tight))
 
     def tooth(
-        self, state: DrawnState, gear: int, phase: int, number: int, factor: float | None = None
+        self,
+        state: DrawnState,
+        gear: int,
+        *,
+        phase: int,
+        number: int,
+        factor: float | None = None,
     ) -> Points:
         """The outline of tooth ``number`` in its place; teeth count the way the gear turns back."""
         step = 2.0 * math.pi * number / self.teeth[gear]
-        angle = self.axis(state, gear, phase, factor) + (-step if gear == PINION else step)
-        placed = self.shape(state, gear, factor) * cmath.exp(1j * angle)
-        return np.asarray(placed + self.centre(state, gear, factor))
+        angle = self.axis(state, gear, phase=phase, factor=factor) + (
+            -step if gear == PINION else step
+        )
+        placed = self.shape(state, gear, factor=factor) * cmath.exp(1j * angle)
+        return np.asarray(placed + self.centre(state, gear, factor=factor))
 
-    def whole(self, state: DrawnState, gear: int, phase: int, factor: float = 1.0) -> Points:
+    def whole(self, state: DrawnState, gear: int, *, phase: int, factor: float = 1.0) -> Points:
         """All teeth of a gear in their places as one closed line."""
         step = 2.0 * math.pi / self.teeth[gear] * np.arange(self.teeth[gear])
-        turns = np.exp(1j * (self.axis(state, gear, phase, factor) + step))
-        line = (turns[:, None] * self.shape(state, gear, factor)[None, :-1]).ravel()
-        return np.append(line, line[0]) + self.centre(state, gear, factor)
+        turns = np.exp(1j * (self.axis(state, gear, phase=phase, factor=factor) + step))
+        line = (turns[:, None] * self.shape(state, gear, factor=factor)[None, :-1]).ravel()
+        return np.asarray(np.append(line, line[0]) + self.centre(state, gear, factor=factor))
 
     def near(
-        self, state: DrawnState, gear: int, phase: int, reach: complex, factor: float | None = None
+        self,
+        state: DrawnState,
+        gear: int,
+        *,
+        phase: int,
+        reach: complex,
+        factor: float | None = None,
     ) -> Iterator[Points]:
         """The teeth with a point within ``reach`` (half width, half height) of the pitch point."""
         for number in range(self.teeth[gear]):
-            points = self.tooth(state, gear, phase, number, factor)
+            points = self.tooth(state, gear, phase=phase, number=number, factor=factor)
             away = points - self.pitch_point
             if np.any((np.abs(away.real) < reach.real) & (np.abs(away.imag) < reach.imag)):
                 yield points
@@ -188,7 +202,9 @@ class GearDrawing:
         }
 
 
-def gear_drawing(data: xr.Dataset, operating: int = 0, factor: float | None = None) -> GearDrawing:
+def gear_drawing(
+    data: xr.Dataset, operating: int = 0, *, factor: float | None = None
+) -> GearDrawing:
     """The drawing in a stored group at one operating point; ``factor`` None: a round one that fits.
 
     The factor is a 1, 2 or 5 with zeros, the greatest at which neither gap nor growth hides what a
@@ -227,14 +243,14 @@ def gear_drawing(data: xr.Dataset, operating: int = 0, factor: float | None = No
 
 def _state(here: xr.Dataset) -> DrawnState:
     return DrawnState(
-        str(here["state"].item()),
-        _outlines(here, "outline"),
-        MM * float(here["centre_distance"]),
-        MM * float(here["set_back"]),
-        MM * here["lag"].values,
-        here["load_share"].values,
-        MM * here["drive_gap"].values,
-        MM * here["back_gap"].values,
+        name=str(here["state"].item()),
+        outlines=_outlines(here, "outline"),
+        centre_distance=MM * float(here["centre_distance"]),
+        set_back=MM * float(here["set_back"]),
+        lag=MM * here["lag"].values,
+        share=here["load_share"].values,
+        drive_gap=MM * here["drive_gap"].values,
+        back_gap=MM * here["back_gap"].values,
     )
 
 
@@ -251,7 +267,9 @@ def _fitting(
     gap = max(float(np.nanmin(one.back_gap)) for one in states)
     moved = closer = 1e-12
     for one in states:
-        moved = max([moved, *(_far(a, b) for a, b in zip(one.outlines, cold.outlines, strict=True))])
+        moved = max(
+            [moved, *(_far(a, b) for a, b in zip(one.outlines, cold.outlines, strict=True))]
+        )
         apart = one.centre_distance - distance
         for gear, other in ((PINION, WHEEL), (WHEEL, PINION)):
             tip = np.abs(one.outlines[gear]).max() - np.abs(tight[gear]).max()

@@ -56,11 +56,12 @@ def caption(drawing: GearDrawing) -> str:
         if drawing.factor != 1.0
         else "everything is to scale"
     )
+    over = " over the period" if drawing.phase.size > 1 else ""
     return (
         f"True flanks at {drawing.words}: trochoid, shift and deviations, the pinion driving. On "
         f"the left everything is to scale; on the right {enlarged}. The drive flanks touch without "
         f"load; between the back flanks at least {_least(cold)} µm are left cold and "
-        f"{_least(hot)} µm hot over the period. The colour of a contact point is its share of the "
+        f"{_least(hot)} µm hot{over}. The colour of a contact point is its share of the "
         "hot load."
     )
 
@@ -84,6 +85,7 @@ def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, str, str]]:
     def widest(state: Any, gear: int) -> float:
         return 2.0 * float(np.abs(state.outlines[gear]).max())
 
+    clearance = 1e3 * data["tip_clearance"].isel(operating=0).values
     found = [
         ("teeth", str(drawing.teeth[PINION]), str(drawing.teeth[WHEEL])),
         *(
@@ -94,6 +96,8 @@ def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, str, str]]:
         both("tooth thickness on the pitch circle [mm]", of("thickness", 0), of("thickness", 1)),
         ("teeth of the span", *(str(int(k)) for k in data["span_teeth"].values)),
         both("span over these teeth [mm]", of("span", 0), of("span", 1)),
+        both("tip clearance, cold [mm]", *clearance[0]),
+        both("tip clearance, hot [mm]", *clearance[-1]),
         both("centre distance, cold and hot [mm]", cold.centre_distance, hot.centre_distance),
     ]
     return [(words, first, second) for words, first, second in found]

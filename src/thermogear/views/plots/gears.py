@@ -7,7 +7,7 @@ import numpy as np
 from thermogear.base.vocabulary import UNDEFORMED
 from thermogear.views.gears import PINION, WHEEL, GearDrawing, Points
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import COLD, FAINT, HOT, INK, QUIET, scale
+from thermogear.views.style import COLD, HOT, INK, QUIET, scale
 
 SHARES = scale("viridis")[1:-1]
 """From no load to all of it; neither so dark nor so light that it is lost."""
@@ -45,7 +45,7 @@ def _whole(drawing: GearDrawing, place: int) -> Panel:
     )
     cold = drawing.states[0]
     for gear in (PINION, WHEEL):
-        centre = drawing.centre(cold, gear, 1.0)
+        centre = drawing.centre(cold, gear, factor=1.0)
         line = _silhouette(drawing, gear, place)
         for first in range(0, line.size - 1, _PIECE):
             piece = line[first : first + _PIECE + 1]
@@ -70,18 +70,18 @@ _LINE = "#009E73"
 def _silhouette(drawing: GearDrawing, gear: int, place: int) -> Points:
     """All teeth in few points, or of very many those near the mesh."""
     state, teeth = drawing.states[0], drawing.teeth[gear]
-    pitch = drawing.shape(state, gear, 1.0)
+    pitch = drawing.shape(state, gear, factor=1.0)
     tip, fine = pitch.size // 2, 0.02 * drawing.module
     before, after = _corners(pitch[: tip + 1], fine), _corners(pitch[: tip - 1 : -1], fine)[::-1]
     kept = np.concatenate([before, after[1:]])
-    axis, step = drawing.axis(state, gear, place, 1.0), 2.0 * np.pi / teeth
+    axis, step = drawing.axis(state, gear, phase=place, factor=1.0), 2.0 * np.pi / teeth
     facing = 0.0 if gear == PINION else np.pi
     nearest = round((facing - axis) / step)
     half = min(teeth, MOST_TEETH) // 2 + 1
     around = np.arange(teeth + 1) if teeth <= MOST_TEETH else nearest + np.arange(-half, half)
     line = (np.exp(1j * (axis + step * around))[:, None] * kept[None, :-1]).ravel()
     line = line[: teeth * (kept.size - 1) + 1] if teeth <= MOST_TEETH else line
-    return np.asarray(line + drawing.centre(state, gear, 1.0))
+    return np.asarray(line + drawing.centre(state, gear, factor=1.0))
 
 
 def _corners(points: Points, tolerance: float) -> Points:
@@ -137,7 +137,7 @@ def _mesh(drawing: GearDrawing, place: int, shown: list[str]) -> Panel:
         state = drawing.state(name)
         label = words
         for gear in (PINION, WHEEL):
-            for points in drawing.near(state, gear, place, reach):
+            for points in drawing.near(state, gear, phase=place, reach=reach):
                 line = _within(drawing, points, reach)
                 panel.curve(line.real, line.imag, colour=colour, width=width, label=label)
                 label = ""
@@ -176,7 +176,7 @@ def _lines(panel: Panel, drawing: GearDrawing, reach: complex) -> None:
             facing = 0.0 if gear == PINION else np.pi
             wide = min(1.5 * abs(reach) / radius, np.pi)
             arc = radius * np.exp(1j * (facing + np.linspace(-wide, wide, 61)))
-            arc = arc + drawing.centre(drawing.states[0], gear, 1.0)
+            arc = arc + drawing.centre(drawing.states[0], gear, factor=1.0)
             arc = _within(drawing, arc, reach)
             if np.isfinite(arc).any():
                 panel.curve(
