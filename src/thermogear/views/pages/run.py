@@ -44,7 +44,6 @@ FIRST = (
     ("flash-own", "flash-mixed", "friction"),
     ("stiffness-0",),
     ("motion-0-0",),
-    (drawn.NAME,),
 )
 """The pictures that carry the answers: speeds, gap, friction, stiffness, motion."""
 KINDS = ("gear", "dimensionless")
