@@ -13,8 +13,6 @@ SHARES = scale("viridis")[1:-1]
 """From no load to all of it; neither so dark nor so light that it is lost."""
 MOST_TEETH = 160
 """Teeth of a gear that are drawn whole; of more, those that are nearest to the mesh."""
-_PIECE = 120
-"""Steps of a line drawn at once: longer ones are simplified, which bends small teeth aslant."""
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
 _PITCH, _BASE = (8, 3, 2, 3), (2, 2)
 
@@ -47,9 +45,7 @@ def _whole(drawing: GearDrawing, place: int) -> Panel:
     for gear in (PINION, WHEEL):
         centre = drawing.centre(cold, gear, factor=1.0)
         line = _silhouette(drawing, gear, place)
-        for first in range(0, line.size - 1, _PIECE):
-            piece = line[first : first + _PIECE + 1]
-            panel.curve(piece.real, piece.imag, colour=INK, width=0.7)
+        panel.curve(line.real, line.imag, colour=INK, width=0.7)
         bore = centre + drawing.circles[gear]["bore"] * _CIRCLE
         panel.curve(bore.real, bore.imag, colour=INK, width=0.7)
         for radius, dash in _circles(drawing, gear):
