@@ -158,11 +158,11 @@ def test_all_teeth_close_the_line() -> None:
 
 
 def test_chords_of_a_fine_outline_stay_near_the_curve(compared: Compared) -> None:
-    """What a DXF file promises: 0.1 um off, for each mm of module."""
+    """What a DXF file promises: 0.3 um off, for each mm of module."""
     worst = []
     for gear in GEARS:
         points = outline(gear, fineness=10).points
         first, middle, last = points[:-2:2], points[1:-1:2], points[2::2]
         chord = (last - first) / np.maximum(np.abs(last - first), 1e-15)
         worst.append(np.abs(((middle - first) * np.conj(chord)).imag).max() / gear.module)
-    compared("chords of the outline for drawing programs", "the curve between", worst, 1e-4)
+    compared("chords of the outline for drawing programs", "the curve between", worst, 3e-4)
