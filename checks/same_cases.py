@@ -280,7 +280,7 @@ CHOICES = (
     "friction=fernandes flash=exact heat_distribution=parabola inlet=oil sharing=equal",
 )
 COMMANDS = [
-    *("new", "import", "export", "answers", "run", "report", "check", "example", "schema"),
+    *("new", "import", "export", "draw", "answers", "run", "report", "check", "example", "schema"),
     *("friction", "temperature", "warmup", "relief", "contact"),
     *("orbit", "lyapunov", "continue", "shared-force"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
@@ -515,6 +515,14 @@ CASES = (
         (
             "contact rig -o out --torques 50,100 --json",
             "contact own.toml -o own --body rim --json",
+        ),
+        MINE,
+    ),
+    Case(
+        "draw",
+        (
+            "draw rig -o gears.svg --operating 2 --json",
+            "draw own.toml -o gears.png --phase 0.5 --enlarge 20 --state 80 --show hot --json",
         ),
         MINE,
     ),

@@ -63,6 +63,7 @@ _HOME = {
     "write_rexs": "thermogear.case.rexs.writing",
     "family": "thermogear.case.family",
     "run": "thermogear.study.run",
+    "drawing": "thermogear.study.drawing",
     "answers": "thermogear.study.answers.survey",
     "sensitivity": "thermogear.study.sensitivity",
     "Result": "thermogear.results.result",

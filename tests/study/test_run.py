@@ -46,6 +46,7 @@ def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: Result) ->
         "path",
         "mesh",
         "profile",
+        "drawing",
         "motion",
         "temperature",
         "base_sets",

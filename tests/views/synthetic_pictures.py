@@ -8,10 +8,12 @@ import numpy as np
 import xarray as xr
 
 from thermogear.base.vocabulary import STATUS
+from thermogear.views.gears import DrawnState, GearDrawing
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     claims,
     flanks,
+    gears,
     laws,
     loaded,
     one_motion,
@@ -120,6 +122,42 @@ def of_orbits() -> dict[str, Picture]:
     }
 
 
+def two_gears(teeth: int = 12) -> GearDrawing:
+    """Two gears of one shape, trapezia for teeth."""
+    angle = np.array([-1.0, -0.7, -0.3, 0.3, 0.7, 1.0]) * np.pi / teeth
+    radius = np.array([8.5, 8.5, 11.0, 11.0, 8.5, 8.5])
+    shape = radius * np.exp(1j * angle)
+    states = tuple(
+        DrawnState(
+            name=name,
+            outlines=(grown * shape, grown * shape),
+            centre_distance=20.0 * grown,
+            set_back=0.05,
+            lag=np.array([0.0, 0.01]),
+            share=np.array([[0.0, 1.0], [0.4, 0.6]]),
+            drive_gap=np.array([[np.nan, 0.0], [0.01, 0.0]]),
+            back_gap=np.array([[0.2, 0.3], [np.nan, 0.2]]),
+        )
+        for name, grown in (("undeformed", 1.0), ("hot", 1.001))
+    )
+    circles = {"base": 9.4, "pitch": 10.0, "tip": 11.0, "root": 8.5, "bore": 4.0}
+    return GearDrawing(
+        words="100 rpm, 1 N m",
+        module=1.5,
+        teeth=(teeth, teeth),
+        start=(0.0, np.pi),
+        circles=(circles, circles),
+        tight=(shape, shape),
+        states=states,
+        phase=np.array([0.0, 0.25]),
+        contact=np.array([[complex(np.nan, np.nan), 10.0 + 1j], [9.0 - 2j, 10.5 + 2j]]),
+        centre_distance=20.0,
+        pressure_angle=0.35,
+        path={"A": 9.0 - 2.5j, "E": 11.0 + 2.5j},
+        factor=2.0,
+    )
+
+
 def of_surveys() -> dict[str, Picture]:
     points = json.dumps({"A": 1.0, "C": 1.5, "E": 2.0})
     chart = made("sample", "diameter", "drive_fit", "drive_acting").assign(
@@ -149,6 +187,7 @@ def of_surveys() -> dict[str, Picture]:
     )  # fmt: skip
     return {
         "flanks": flanks.traces(chart),
+        "gears": gears.in_mesh(two_gears()),
         "laws": laws.laws(friction, 0, frozenset({"two"})),
         "film": laws.film(friction),
         "contact-phase": loaded.over_phase(contact),

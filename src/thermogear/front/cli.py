@@ -20,6 +20,7 @@ from thermogear.base.errors import InputError, InputErrors, ThermogearError, nea
 from thermogear.base.parameters import long_name
 from thermogear.front import (
     delivery,
+    draw_command,
     gear_commands,
     measure_commands,
     motion_commands,
@@ -216,6 +217,7 @@ def _put(text: str, output: str | None) -> None:
 for _list in (
     new_command,
     rexs_commands,
+    draw_command,
     gear_commands,
     motion_commands,
     sweep_commands,

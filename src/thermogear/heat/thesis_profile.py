@@ -108,6 +108,24 @@ def deformed_profile(
     lambda tau). Shape of field and radius.
     """
     r = np.asarray(radius, dtype=float)
+    return deformed_points(gear, field, r, gear.half_thickness_angle(r), bore)
+
+
+def deformed_points(
+    gear: GearLike,
+    field: RadialField,
+    radius: ArrayLike,
+    angle: ArrayLike,
+    bore: str = "free",
+) -> tuple[Floats, Floats]:
+    """Where points of a tooth go: (r' [m], theta' [rad] from the tooth centre line).
+
+    r' = r + u_r(r),   theta' = theta + theta (lambda tau - u_r/r).
+
+    ``radius`` r [m] from the root circle up, ``angle`` theta [rad] from the tooth centre line: the
+    growth of :func:`deformed_profile` at any place of the tooth. Shape of field and radius.
+    """
+    r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
     body = gear.material
     moved = _radial_displacement(
         field,
@@ -117,6 +135,5 @@ def deformed_profile(
         poisson=body.poisson_ratio,
         bore=bore,
     )
-    psi = gear.half_thickness_angle(r)
-    angle = psi + psi * (body.thermal_expansion * field.rise(r) - moved / r)
-    return np.asarray(r + moved), np.asarray(angle)
+    turned = theta + theta * (body.thermal_expansion * field.rise(r) - moved / r)
+    return np.asarray(r + moved), np.asarray(turned)

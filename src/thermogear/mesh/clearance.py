@@ -59,6 +59,16 @@ class Clearance:
         drive, back = (mesh_points(self.hot.pair, self.phase, flank) for flank in ("drive", "back"))
         return drive, back
 
+    @property
+    def gaps(self) -> Gaps:
+        """(e_j, e_j^c) [m] of every candidate pair, (count, phases, pair), heat among them.
+
+        Where the drive flanks of the tightest pair touch, e_j - min_j e_j is left between those of
+        pair j and 2 b + e_k^c + min_j e_j between the back flanks of pair k.
+        """
+        drive, back = (np.asarray(plain + heat) for plain, heat in self._gaps)
+        return drive, back
+
     @cached_property
     def half_backlash(self) -> Floats:
         """b' [m], (count, phases); b' <= 0 is jammed."""

@@ -47,6 +47,7 @@ from thermogear.results.result import Notice, Result, now
 from thermogear.study import run_notices
 from thermogear.study.answers.survey import answered
 from thermogear.study.answers.survey import notices as answer_notices
+from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
 
@@ -115,6 +116,10 @@ def _gear_groups(
     groups: dict[str, xr.Dataset] = {}
     groups |= _split(_bundles(cycles))
     groups |= measured_flanks(case)
+    first = cycles[case.models[0].name]["status"].sel(state="hot")
+    drawn = drawn_points(case, first)
+    if drawn is not None:
+        groups["drawing"] = drawn
     if case.computed:
         groups["balance"] = balances(case)
     wanted = set(case.pictures)

@@ -9,7 +9,14 @@ from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.csv_files import curve_tables
 from thermogear.views.page import OPEN, Page, Pictures, Section, notice_lines
-from thermogear.views.pages import answers, flank_sections, gear_sections, headline, row_sections
+from thermogear.views.pages import (
+    answers,
+    drawn,
+    flank_sections,
+    gear_sections,
+    headline,
+    row_sections,
+)
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
 
@@ -17,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ORDER = (
+    drawn.section,
     flank_sections.measured,
     gear_sections.friction,
     gear_sections.heat,

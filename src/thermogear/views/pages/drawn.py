@@ -1,0 +1,132 @@
+"""The gears in mesh: a section of a run's page, and the page of a drawing by itself."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from thermogear.base.display import number
+from thermogear.base.vocabulary import UNDEFORMED
+from thermogear.results.result import Result
+from thermogear.views.gears import NEEDS, PINION, WHEEL, GearDrawing, gear_drawing
+from thermogear.views.page import Page, Pictures, Section, Shown, Table
+from thermogear.views.pages.survey import survey
+from thermogear.views.plots.gears import in_mesh
+
+KINDS = ("drawing",)
+NAME, HEADING = "gears", "The gears in mesh, hot over cold"
+PHASE = 0.25
+"""Where in the mesh period a picture shows them: two pairs carry in most gears."""
+
+
+def section(results: Result, pictures: Pictures) -> Section | None:
+    """The gears in mesh with their sizes; None where the run has stored no drawing."""
+    data = results.group("drawing")
+    if data is None or not all(name in data for name in NEEDS):
+        return None
+    drawing = gear_drawing(data)
+    pictures.add(
+        NAME, HEADING, caption(drawing), data, NEEDS, partial(in_mesh, drawing, PHASE), wide=True
+    )
+    return Section("drawing", "The gears, drawn", [*pictures.take(), table(results, drawing)])
+
+
+def page(result: Result) -> Page:
+    """Both gears in mesh at one operating point."""
+    drawing = gear_drawing(result.groups["drawing"])
+    place = drawing.nearest(PHASE)
+    shown = Shown(NAME, HEADING, caption(drawing), partial(in_mesh, drawing, PHASE), wide=True)
+    return survey(
+        result,
+        f"{drawing.words}, {result.text('state')}; mesh phase {drawing.phase[place]:.3g}.",
+        [shown],
+        [table(result, drawing)],
+        numbers=numbers,
+        lines=lines,
+    )
+
+
+def caption(drawing: GearDrawing) -> str:
+    """What the picture shows and by how much it exaggerates."""
+    cold, hot = (drawing.state(name) for name in (UNDEFORMED, "hot"))
+    enlarged = (
+        f"gaps, growth and deviations are drawn {drawing.factor:g} times as large"
+        if drawing.factor != 1.0
+        else "everything is to scale"
+    )
+    over = " over the period" if drawing.phase.size > 1 else ""
+    return (
+        f"True flanks at {drawing.words}: trochoid, shift and deviations, the pinion driving. On "
+        f"the left everything is to scale; on the right {enlarged}. The drive flanks touch without "
+        f"load; between the back flanks at least {_least(cold)} µm are left cold and "
+        f"{_least(hot)} µm hot{over}. The colour of a contact point is its share of the "
+        "hot load."
+    )
+
+
+def _least(state: Any) -> str:
+    return number(1e3 * float(np.nanmin(state.back_gap)))
+
+
+def rows(result: Result, drawing: GearDrawing) -> list[tuple[str, str, str]]:
+    """Words, pinion's and wheel's value of what can be measured on a gear."""
+    data = result.groups["drawing"]
+    cold, hot = (drawing.state(name) for name in (UNDEFORMED, "hot"))
+
+    def both(words: str, *values: float) -> tuple[str, str, str]:
+        first, second = (number(value, 6) for value in values)
+        return words, first, second
+
+    def of(name: str, gear: int) -> float:
+        return 1e3 * float(data[name].values[gear])
+
+    def widest(state: Any, gear: int) -> float:
+        return 2.0 * float(np.abs(state.outlines[gear]).max())
+
+    clearance = 1e3 * data["tip_clearance"].isel(operating=0).values
+    found = [
+        ("teeth", str(drawing.teeth[PINION]), str(drawing.teeth[WHEEL])),
+        *(
+            both(f"{name} diameter [mm]", *(2.0 * drawing.circles[g][name] for g in (0, 1)))
+            for name in ("tip", "pitch", "base", "root")
+        ),
+        both("tip diameter, hot [mm]", widest(hot, PINION), widest(hot, WHEEL)),
+        both("tooth thickness on the pitch circle [mm]", of("thickness", 0), of("thickness", 1)),
+        ("teeth of the span", *(str(int(k)) for k in data["span_teeth"].values)),
+        both("span over these teeth [mm]", of("span", 0), of("span", 1)),
+        both("tip clearance, cold [mm]", *clearance[0]),
+        both("tip clearance, hot [mm]", *clearance[-1]),
+        both("centre distance, cold and hot [mm]", cold.centre_distance, hot.centre_distance),
+    ]
+    return [(words, first, second) for words, first, second in found]
+
+
+def table(result: Result, drawing: GearDrawing) -> Table:
+    """Sizes to lay beside a workshop drawing."""
+    return Table(
+        "Sizes as drawn, the backlash taken off both gears' flanks alike; hot where it says so. "
+        "The span is the base tangent length.",
+        ["", "pinion", "wheel"],
+        rows(result, drawing),
+    )
+
+
+def numbers(result: Result) -> dict[str, Any]:
+    """The drawing as data, as a page's script takes it."""
+    return {"drawing": gear_drawing(result.groups["drawing"]).to_json()}
+
+
+def lines(result: Result) -> list[str]:
+    """The sizes as a terminal shows them."""
+    drawing = gear_drawing(result.groups["drawing"])
+    least = [f"{_least(drawing.state(name))} um {word}" for name, word in
+             ((UNDEFORMED, "cold"), ("hot", "hot"))]  # fmt: skip
+    return [
+        result.title,
+        drawing.words + f", {result.text('state')}",
+        f"{'':<42}{'pinion':>12}{'wheel':>12}",
+        *(f"{words:<42}{first:>12}{second:>12}" for words, first, second in rows(result, drawing)),
+        f"least gap between the back flanks: {', '.join(least)}",
+    ]

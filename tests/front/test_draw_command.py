@@ -1,0 +1,66 @@
+"""``thermogear draw``: files by their ending, and one line for every slip."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from own_pair import OWN_PAIR
+from thermogear.front.cli import main
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(OWN_PAIR, "utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("name", "head"), [("a.svg", b"<?xml"), ("a.png", b"\x89PNG")])
+def test_it_draws_into_the_file_named(
+    case: Path, name: str, head: bytes, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = case.parent / name
+    assert main(["draw", str(case), "-o", str(path), "--phase", "0.5", "--enlarge", "20"]) == 0
+    assert path.read_bytes().startswith(head)
+    told = capsys.readouterr().out
+    assert told.splitlines()[-1] == str(path)
+    assert "span over these teeth" in told
+
+
+def test_a_dxf_holds_the_states_asked_for(case: Path) -> None:
+    path = case.parent / "a.dxf"
+    assert main(["draw", str(case), "-o", str(path), "--show", "hot"]) == 0
+    text = path.read_text("utf-8")
+    assert text.count("AcDbPolyline") == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["-o", "a.stp"], "output: got 'a.stp'; allowed .svg | .png | .pdf | .dxf"),
+        (["-o", "gears"], "output: got 'gears'; allowed .svg | .png | .pdf | .dxf; end its name"),
+        (["-o", "no/such/a.svg"], "output: got no/such/a.svg; there is no directory no/such"),
+        (["--enlarge", "0.5"], "--enlarge: got 0.5; allowed 1..1000"),
+        (["--enlarge", "nan"], "--enlarge: got nan; allowed 1..1000"),
+        (["--phase", "2"], "phase: got 2; allowed 0..1"),
+        (["--operating", "9"], "operating: got 9; allowed 1..1"),
+        (["--state", "warm"], "--state: got 'warm'; allowed "),
+        (["--bundle", "x"], "bundle: got 'x'; allowed consistent"),
+    ],
+)
+def test_a_slip_is_one_line(
+    case: Path,
+    words: list[str],
+    line: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(case.parent)
+    assert main(["draw", str(case), *words]) == 2
+    told = capsys.readouterr()
+    assert told.err.count("\n") == 1
+    assert line in told.err
+    assert told.out == ""
+    assert sorted(path.name for path in case.parent.iterdir()) == ["mine.toml"]
