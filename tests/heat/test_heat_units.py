@@ -373,6 +373,7 @@ GROWTHS = {
     ),
     "thesis_flank_growth": lambda g, f, r: thesis_profile.thesis_flank_growth(g, f, r),
     "deformed_profile": lambda g, f, r: thesis_profile.deformed_profile(g, f, r)[0],
+    "deformed_points": lambda g, f, r: thesis_profile.deformed_points(g, f, r, 0.01)[0],
     "profile_as_printed": lambda g, f, r: thesis_profile.profile_as_printed(g, f, r)[0],
 }
 
