@@ -16,7 +16,7 @@ from own_pair import OWN_PAIR
 from thermogear.views import page as pages
 from thermogear.views.gears import GearDrawing, gear_drawing
 
-SCRIPT = Path(pages.__file__).parent / "page" / "gears.js"
+SCRIPT = Path(pages.__file__).parent / "script" / "gears.js"
 POLICY = "default-src 'none'; script-src 'unsafe-inline'"
 HTML = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Gears</title>
 <meta http-equiv="Content-Security-Policy" content="{policy}"></head><body><main><h1>Gears</h1>

@@ -2,7 +2,8 @@
 
 The groups of the tree: ``path`` (along the path of contact), ``mesh`` (over the mesh phase, and
 figures per operating point), ``flanks/...`` (where they are measured), ``balance`` (where the
-temperatures are computed), ``profile``, ``motion``, ``temperature`` (the same over gear
+temperatures are computed), ``profile``, ``motion``, ``dial`` (one point over gear
+temperatures), ``temperature`` (the same over gear
 temperatures) and ``base_sets/...``; a dimensionless case has ``points`` alone.
 """
 
@@ -47,6 +48,7 @@ from thermogear.results.result import Notice, Result, now
 from thermogear.study import run_notices
 from thermogear.study.answers.survey import answered
 from thermogear.study.answers.survey import notices as answer_notices
+from thermogear.study.dial import dial
 from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
@@ -127,6 +129,9 @@ def _gear_groups(
         groups["profile"] = profiles(case.pair, case.operating, printed=of_the_thesis(case))
     if "motion" in wanted:
         groups["motion"] = _motion(case, cycles, "state", progress)
+        turned = dial(case, cycles[case.models[0].name].sel(state="hot"), progress)
+        if turned is not None:
+            groups["dial"] = turned
     if "temperature" in wanted and case.gear_temperatures:
         groups["temperature"] = _temperature_row(case, progress)
     if "base-sets" in wanted and of_the_thesis(case):

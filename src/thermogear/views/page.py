@@ -12,8 +12,9 @@ from markupsafe import Markup
 
 from thermogear.results.files import finite
 from thermogear.results.result import Notice, Result
+from thermogear.views.moving import Dial, attribute, compact, moving, policy, script, sheet
 from thermogear.views.picture import Picture
-from thermogear.views.svg import draw
+from thermogear.views.svg import draw, shared_styles
 from thermogear.views.typesetting import prose
 
 if TYPE_CHECKING:
@@ -51,7 +52,8 @@ class Table:
 class Shown:
     """A picture with its heading and a caption that says what one should see.
 
-    ``name`` is that of its file; it is made when it is first drawn.
+    ``name`` is that of its file; it is made when it is first drawn. On a page ``dial`` turns it,
+    or ``gears``, the drawings that the script turns through a mesh period.
     """
 
     name: str
@@ -59,6 +61,8 @@ class Shown:
     caption: Cell
     make: Callable[[], Picture] = field(repr=False)
     wide: bool = False
+    dial: Dial | None = field(default=None, repr=False)
+    gears: Callable[[], Any] | None = field(default=None, repr=False)
 
     @cached_property
     def picture(self) -> Picture:
@@ -69,6 +73,14 @@ class Shown:
     def svg(self) -> Markup:
         """The picture as a piece of a page."""
         return draw(self.picture, f"fig-{self.name}", self.heading)
+
+    @property
+    def data(self) -> tuple[str, Markup] | None:
+        """What the page's script draws it from, its kind first; None where it stays still."""
+        if self.gears is not None:
+            return "gears", attribute(compact(self.gears()))
+        told = moving(self.picture, self.dial)
+        return ("picture", attribute(told)) if told else None
 
 
 @dataclass(frozen=True)
@@ -124,6 +136,9 @@ class Pictures:
         needs: Iterable[str],
         make: Callable[[], Picture],
         wide: bool = False,
+        *,
+        dial: Dial | None = None,
+        gears: Callable[[], Any] | None = None,
     ) -> None:
         """Keep the picture unless ``data`` lacks one of the variables it ``needs``."""
         if not all(need in data.variables for need in needs):
@@ -131,7 +146,7 @@ class Pictures:
         if name in self._names:
             raise ValueError(f"two pictures named {name}")
         self._names.add(name)
-        self.found.append(Shown(name, heading, caption, make, wide))
+        self.found.append(Shown(name, heading, caption, make, wide, dial, gears))
 
     def take(self) -> list[Block]:
         """The pictures added since the last call, as galleries: wide ones by themselves."""
@@ -249,7 +264,10 @@ def notice_lines(result: Result, most: int | None = None) -> list[str]:
 
 
 def render(page: Page) -> str:
-    """The whole page as text: it needs no other file, no script and no network."""
+    """The whole page as text: it needs no other file and no network.
+
+    Its one script lets the pictures move; without it they are shown still.
+    """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("thermogear.views"),
         autoescape=True,
@@ -257,11 +275,13 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    sheet, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
+    style, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
     title = " ".join(page.result.title.split()) or "thermogear"
-    return environment.get_template("report.html").render(
+    text = environment.get_template("report.html").render(
         title=title,
-        style=Markup(sheet),
+        style=Markup(style) + sheet(),
+        script=script() if any(page.pictures) else "",
+        policy=policy(),
         summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),
         tiles=page.tiles,
         notices=told(page.result.notices),
@@ -269,3 +289,4 @@ def render(page: Page) -> str:
         sections=[section for section in page.sections if section.blocks],
         version=page.result.text("thermogear"),
     )
+    return shared_styles(text)

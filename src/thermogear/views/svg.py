@@ -15,6 +15,8 @@ _USE = re.compile(r'(?:xlink:)?href="#([^"]+)"')
 _PATH = re.compile(r'\sd="([^"]+)"')
 _LONG = re.compile(r"(\d+\.\d{2})\d+")
 _URL = re.compile(r"url\(#([^)]+)\)")
+_STYLE = re.compile(r'(<[a-z][^<>]*?)\sstyle="([^"<>{}]+)"')
+_PICTURE = re.compile(r"<svg\b.*?</svg>", re.DOTALL)
 _SIZE = re.compile(r'<svg\b[^>]*?viewBox="([^"]+)"[^>]*>', re.DOTALL)
 
 
@@ -26,6 +28,21 @@ def draw(picture: Picture, name: str, title: str) -> Markup:
     from thermogear.views.drawing import image
 
     return Markup(_inline(image(picture, "svg", salt=name).decode(), name, title))
+
+
+def shared_styles(page: str) -> str:
+    """``page`` with every look that a picture's parts have said once, in its style sheet.
+
+    Matplotlib says them with each line and letter: a third of a page.
+    """
+    names: dict[str, str] = {}
+
+    def named(look: re.Match[str]) -> str:
+        return f'{look[1]} class="{names.setdefault(look[2], f"k{len(names)}")}"'
+
+    text = _PICTURE.sub(lambda picture: _STYLE.sub(named, picture[0]), page)
+    sheet = "\n".join(f"svg .{name}{{{look}}}" for look, name in names.items())
+    return text.replace("</style>", f"{sheet}\n</style>", 1)
 
 
 def put_picture(picture: Picture, path: Path, *, resolution: int) -> Path:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from thermogear.views.gears import NEEDS, PINION, WHEEL, GearDrawing, gear_drawi
 from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots.gears import in_mesh
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KINDS = ("drawing",)
 NAME, HEADING = "gears", "The gears in mesh, hot over cold"
@@ -28,8 +31,10 @@ def section(results: Result, pictures: Pictures) -> Section | None:
         return None
     drawing = gear_drawing(data)
     pictures.add(
-        NAME, HEADING, caption(drawing), data, NEEDS, partial(in_mesh, drawing, PHASE), wide=True
-    )
+        NAME, HEADING, caption(drawing), data, NEEDS,
+        partial(in_mesh, drawing, PHASE), wide=True,
+        gears=partial(_data, data),
+    )  # fmt: skip
     return Section("drawing", "The gears, drawn", [*pictures.take(), table(results, drawing)])
 
 
@@ -37,7 +42,10 @@ def page(result: Result) -> Page:
     """Both gears in mesh at one operating point."""
     drawing = gear_drawing(result.groups["drawing"])
     place = drawing.nearest(PHASE)
-    shown = Shown(NAME, HEADING, caption(drawing), partial(in_mesh, drawing, PHASE), wide=True)
+    shown = Shown(
+        NAME, HEADING, caption(drawing), partial(in_mesh, drawing, PHASE), wide=True,
+        gears=partial(_data, result.groups["drawing"]),
+    )  # fmt: skip
     return survey(
         result,
         f"{drawing.words}, {result.text('state')}; mesh phase {drawing.phase[place]:.3g}.",
@@ -46,6 +54,11 @@ def page(result: Result) -> Page:
         numbers=numbers,
         lines=lines,
     )
+
+
+def _data(data: xr.Dataset) -> list[dict[str, Any]]:
+    """Every operating point's drawing as the page's script takes it."""
+    return [gear_drawing(data, place).to_json() for place in range(data.sizes["operating"])]
 
 
 def caption(drawing: GearDrawing) -> str:

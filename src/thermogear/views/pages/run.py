@@ -11,6 +11,7 @@ from thermogear.views.csv_files import curve_tables
 from thermogear.views.page import OPEN, Page, Pictures, Section, notice_lines
 from thermogear.views.pages import (
     answers,
+    dial,
     drawn,
     flank_sections,
     gear_sections,
@@ -31,6 +32,7 @@ ORDER = (
     gear_sections.gap,
     gear_sections.springs,
     gear_sections.vibration,
+    dial.section,
     gear_sections.row,
     row_sections.base_sets,
     row_sections.points,

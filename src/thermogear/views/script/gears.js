@@ -170,6 +170,7 @@ function drawGears(element, data) {
     const high = Math.max(Math.abs(a[1]), Math.abs(e[1])) + 0.8 * m, wide = 0.9 * high;
     mesh = canvas("The teeth in mesh, small things enlarged",
       [c - wide, -high, 2 * wide, 2 * high].map(round));
+    mesh.style.setProperty("order", "1");  // to the right of the whole gears
     const up = svg("g", mesh, { transform: "scale(1 -1)" });
     now.gears.forEach((one, gear) => {
       const at = gear === 0 ? 0 : now.centre_distance, rolling = Math.abs(c - at);
