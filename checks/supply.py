@@ -108,6 +108,9 @@ def licences() -> int:
         "| package | version | licence | needed by |",
         "|---|---|---|---|",
         *(f"| {n} | {v} | {licence or 'UNKNOWN'} | {who} |" for n, v, licence, who in table),
+        "",
+        "Copied into `src/thermogear/views/script`, its licence beside it and in every page:",
+        "uPlot 1.6.32, MIT.",
     ]
     (ROOT / "docs" / "licences.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     bad = [

@@ -28,6 +28,17 @@ SLICE = 3000
 SMALLEST = 7.0
 """Labels of a picture are not smaller than this [CSS px]."""
 
+SETTLE = """(async () => {
+  for (const fold of document.querySelectorAll("details")) fold.open = true;
+  const frame = () => new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)));
+  for (let top = 0; top < document.documentElement.scrollHeight; top += 600) {
+    scrollTo({top, behavior: "instant"});
+    await frame();
+  }
+  scrollTo({top: 0, behavior: "instant"});
+  await frame();
+})()"""
+
 FLAGS = (
     "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -177,9 +188,10 @@ class Browser:
         self.ask("Page.navigate", url=page.resolve().as_uri())
         self._wait("Page.loadEventFired")
         # two frames, so that scripts and fonts have had their turn
-        self._value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
+        self.value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
                     ".then(() => document.fonts.ready).then(() => 1)")  # fmt: skip
-        found = self._value(CHECK)
+        self.settle()
+        found = self.value(CHECK)
         faults = {
             "wide": found["wide"] or (["page"] if found["scroll"] > found["width"] else []),
             "broken": found["broken"],
@@ -195,11 +207,28 @@ class Browser:
         sight.seconds = time.perf_counter() - start
         return sight
 
+    def settle(self) -> None:
+        """Scroll through the page with every fold open, so that all its pictures move."""
+        self.value(SETTLE)
+
+    def scheme(self, colours: str) -> None:
+        """Whether the reader asked for a "light" or a "dark" page."""
+        features = [{"name": "prefers-color-scheme", "value": colours}]
+        self.ask("Emulation.setEmulatedMedia", features=features)
+
+    def asked(self) -> list[str]:
+        """Every address that was asked for since the last page was opened."""
+        return [
+            str(one["params"]["request"]["url"])
+            for one in self._events
+            if one.get("method") == "Network.requestWillBeSent"
+        ]
+
     def _wait(self, method: str) -> None:
         while not any(one.get("method") == method for one in self._events):
             self._events.append(self._next())
 
-    def _value(self, script: str) -> Any:
+    def value(self, script: str) -> Any:
         found = self.ask(
             "Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True
         )

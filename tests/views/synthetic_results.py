@@ -34,6 +34,7 @@ def build(
         "mesh": mesh_group(bundles, torques, jammed),
         "profile": profile_group(),
         "motion": motion_group(bundles, torques, ("undeformed", "hot"), "state", jammed),
+        "dial": dial_group(jammed),
         "temperature": temperature_group(bundles, torques, jammed),
         "base_sets/table-4.2": points_group(),
         "base_sets/section-4.1": points_group("temperature", (293.15, 413.15), "K"),
@@ -242,6 +243,27 @@ def temperature_group(
         "mean_stiffness": (BTO, np.full(shape, 5e8)),
     })  # fmt: skip
     return data.assign(figures.data_vars)
+
+
+def dial_group(jammed: bool = False) -> xr.Dataset:
+    """The first operating point at three temperatures; the last one jammed, if any is."""
+    data = temperature_group(("c",), (100.0,), False).isel(bundle=0, operating=0, drop=True)
+    kept = data.drop_vars(["cold_half_backlash", "jam_temperature"])
+    gap = np.array([1.04e-4, 9.3e-5, 8.6e-5])
+    if jammed:
+        gap[-1] = -1e-6
+        for name in ("displacement", "velocity"):
+            kept[name][-1] = np.nan
+        kept["status"][-1], kept["label"][-1] = STATUS.index("jammed"), "jammed"
+    phase = np.linspace(0.0, 1.0, 33)
+    curve = 5e8 + 1e8 * np.sign(np.cos(2 * np.pi * phase)) * np.array([[1.0], [0.9], [0.8]])
+    curves = label(
+        {"mesh_stiffness": (("gear_temperature", "mesh_phase"), curve)}, {"mesh_phase": phase}
+    )
+    found = kept.assign(half_backlash=("gear_temperature", gap)).merge(curves)
+    return found.assign_attrs(
+        start=1, jam_temperature=430.0, pinion_speed=104.7, pinion_torque=100.0, jammed=int(jammed)
+    )
 
 
 def points_group(

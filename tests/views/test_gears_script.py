@@ -60,24 +60,24 @@ def test_the_page_turns_the_gears_as_python_places_them(
             sight = one.look(page, width)
             assert sight.sound, sight.faults
         for place in (0, 7, 47):
-            said = one._value(MOVE.replace("PLACE", str(place)))
+            said = one.value(MOVE.replace("PLACE", str(place)))
             assert said == f"{drawing.phase[place]:.2f} of a mesh period"
-            first, *_ = one._value(TEETH)
+            first, *_ = one.value(TEETH)
             turn, at = complex(first[0], first[1]), complex(first[2], first[3])
             assert at == pytest.approx(drawing.centre(hot, 1), abs=1e-4)
             step = 2.0 * np.pi / drawing.teeth[1]
             teeth = (cmath.phase(turn) - drawing.axis(hot, 1, phase=place)) / step
             assert teeth == pytest.approx(round(teeth), abs=1e-4)
-            dots = one._value(
+            dots = one.value(
                 "[...document.querySelectorAll('svg text')].map(t => t.textContent).join(' ')"
             )
             shares = [f"{100 * s:.0f} %" for s in hot.share[place] if s > 0.0]
             assert all(share in dots for share in shares)
-        names = one._value(
+        names = one.value(
             "[...document.querySelectorAll('input,select')].every(c => c.labels.length === 1)"
         )
         assert names
-        hidden = one._value(
+        hidden = one.value(
             "(() => { const b = document.querySelectorAll('input[type=checkbox]')[1]; b.click();"
             " return [...document.querySelectorAll('g.hot')]"
             ".every(g => g.style.display === 'none'); })()"

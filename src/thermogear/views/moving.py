@@ -23,7 +23,7 @@ SHEETS = ("uplot.css", "pictures.css")
 DIGITS = 5
 """Significant digits of a place in a picture: a hundredth of a pixel and finer."""
 SHORT = 8
-"""An array of fewer numbers is written where it stands."""
+"""An array of fewer numbers is written where it stands, in full."""
 MOST = 60_000
 """Numbers of one picture; with more it stays still, so that the page stays light."""
 
@@ -100,7 +100,9 @@ def compact(said: Any) -> str:
 
 def attribute(words: str) -> Markup:
     """``words`` as the value of an attribute between single quotes."""
-    return Markup(words.replace("&", "&amp;").replace("<", "&lt;").replace("'", "&#39;"))
+    return Markup(
+        words.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("'", "&#39;")
+    )
 
 
 def _written(said: Any) -> str:
@@ -174,9 +176,9 @@ def _evenly(values: Any) -> dict[str, Any] | None:
 
 
 def _rounded(values: Any) -> Any:
-    """To the digits one can see: DIGITS of the range of the values, or of each where it is wide."""
+    """To the digits one can see: DIGITS of the range of the values; a few, or decades, in full."""
     known = values[np.isfinite(values)]
-    if not known.size:
+    if values.size < SHORT or not known.size:
         return values
     size = float(np.abs(known).max())
     spread = float(known.max() - known.min()) or size
@@ -205,7 +207,8 @@ def _read(name: str) -> str:
 @cache
 def script() -> Markup:
     """The text of the page's script: plots, gears and pictures in one closed piece."""
-    pieces = "\n".join(_read(name) for name in SCRIPTS)
+    licence = f"/*! uPlot 1.6.32\n{_read('uplot.LICENSE')}\n*/"
+    pieces = "\n".join((licence, *(_read(name) for name in SCRIPTS)))
     return Markup(f'//<![CDATA[\n(() => {{\n"use strict";\n{pieces}\n}})();\n//]]>')
 
 

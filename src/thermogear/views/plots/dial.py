@@ -36,6 +36,8 @@ def told(data: xr.Dataset, place: int) -> str:
     """What is found at one temperature, in words."""
     one = data.isel(gear_temperature=place)
     state = STATUS[int(one["status"])]
+    if state == "not_converged":
+        return "heat or loaded contact did not settle"
     stiffness = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']))}·10⁸ N/m"
     left = f"half backlash {number(1e6 * float(one['half_backlash']))} µm"
     if state == "jammed":

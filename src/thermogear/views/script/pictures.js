@@ -91,7 +91,9 @@ class Panel {
       this.full ??= {...this.home};
       this.even(width, height);
     }
-    const scale = (key) => ({time: false, distr: said[key].log ? 3 : 1, range: () => this.now[key]});
+    // uPlot hands the x it was told; the y would be that of its empty series
+    const range = (key) => (u, low, high) => key === "x" && low !== null ? [low, high] : this.now[key];
+    const scale = (key) => ({time: false, distr: said[key].log ? 3 : 1, range: range(key)});
     const home = this.home;
     this.now = {...home};
     const above = said.marks.some((m) => m.kind === "text" && m.at === "x" && m.y > 1);
@@ -204,7 +206,7 @@ const swatch = (host, m) => {
 class Figure {
   constructor(host, said) {
     Object.assign(this, {host, said, off: new Set(), still: false});
-    const name = host.closest("figure").querySelector("h4").textContent;
+    const name = host.closest("figure").querySelector("h3").textContent;
     this.live = element("div", null, {class: "live", role: "group", tabindex: "0",
       "aria-label": `${name}. Keys: plus and minus zoom, 0 shows all, arrows move.`});
     host.before(this.live);
