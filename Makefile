@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-paths friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-paths chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -18,6 +18,13 @@ demo: $(STAMP)  ## the main job: the rig's case file to a report
 
 test: $(STAMP) lint  ## every check, slow layer included
 	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
+
+chromium:  ## the browser that tests pages, Debian's package; without it those tests are left out
+	@command -v chromium || command -v chromium-browser || command -v google-chrome || { \
+	  as=$$(test "$$(id -u)" = 0 || echo "sudo -n"); \
+	  $$as apt-get -qq update && DEBIAN_FRONTEND=noninteractive \
+	  $$as apt-get -qq install --no-install-recommends chromium > /dev/null; } || \
+	  echo "no browser could be installed; tests of moving pages will be left out"
 
 check: $(STAMP) lint unit  ## the fast checks
 

@@ -18,7 +18,7 @@ from thermogear.views.typesetting import FAR, plain, shown
 if TYPE_CHECKING:
     import xarray as xr
 
-POINTS = 256
+POINTS = 400
 
 
 def at(data: xr.Dataset, place: int) -> Picture:

@@ -8,7 +8,7 @@ let found = {};
 const variable = (name) => found[name] ??=
   getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 // on a dark page a dark colour is mixed with white until one can see it
-const BRIGHT = 0.16;
+const BRIGHT = 0.26;
 const light = ([r, g, b]) => [0.2126 * r, 0.7152 * g, 0.0722 * b]
   .reduce((sum, part) => sum + part, 0);
 const parts16 = (said) => [1, 3, 5].map((i) => parseInt(said.slice(i, i + 2), 16) / 255);
