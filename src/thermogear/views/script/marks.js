@@ -37,12 +37,12 @@ const element = (name, parent, said = {}) => {
   parent?.append(made);
   return made;
 };
-// "T$_{f}$ at 5 \$": pieces of [text, whether it is an index]
+// "T$_{f}$, $K_{v}$ at 5 \$": pieces of [text, whether it is an index]
 const pieces = (words) => {
   const parts = [];
   let rest = 0;
-  for (const one of words.matchAll(/\$_\{([^}]*)\}\$/g)) {
-    parts.push([words.slice(rest, one.index), false], [one[1], true]);
+  for (const one of words.matchAll(/\$([^$_\\]*)_\{([^}]*)\}\$/g)) {
+    parts.push([words.slice(rest, one.index) + one[1], false], [one[2], true]);
     rest = one.index + one[0].length;
   }
   parts.push([words.slice(rest), false]);

@@ -56,18 +56,25 @@ const powers = (values) => values.map((v) => {
   return v >= 1e5 || v < 1e-3 ? v.toExponential(0).replace("-", "\u2212") : String(Number(v.toPrecision(2)));
 });
 class Panel {
-  constructor(figure, said, host, frames) {
+  constructor(figure, said, host, frames, row) {
     Object.assign(this, {figure, said});
     this.box = element("div", host, {class: "panel"});
-    if (said.title) say(element("p", this.box, {class: "panel-title"}), said.title);
-    if (said.y.words) say(element("p", this.box, {class: "y-words"}), said.y.words);
+    // panels side by side keep their axes on one level
+    const level = (name, words, others) => {
+      if (others.some((one) => one)) say(element("p", this.box, {class: name}), words || "\u00a0");
+    };
+    level("panel-title", said.title, row.map((one) => one.title));
+    level("y-words", said.y.words, row.map((one) => one.y.words));
+    const above = ({top}) => top && `${top.words}: ${number(top.factor)} \u00d7 the axis below`;
+    level("top-words", above(said), row.map(above));
     this.plot = element("div", this.box, {class: "plot"});
     if (said.x.words) say(element("p", this.box, {class: "x-words"}), said.x.words);
     const all = frames.length ? frames.flat() : said.marks;
     this.home = {x: ends(all, "x", said.x), y: ends(all, "y", said.y)};
   }
   axis(key) {
-    const said = this.said[key], bare = !(said.words || said.names?.length);
+    const said = this.said[key];
+    const bare = ![this.said.x, this.said.y].some((one) => one.words || one.names?.length);
     const covered = this.said.marks.some((m) => m.kind === "field");
     const axis = {
       stroke: () => variable("--ink"), font: `12px ${FONT}`, show: !bare,
@@ -113,13 +120,6 @@ class Panel {
     }, [home.x, home.y], this.plot);
     this.tip = element("div", this.u.over, {class: "tip", hidden: ""});
     this.spot = element("div", this.u.over, {class: "spot", hidden: ""});
-    if (said.top && !this.above) this.second();
-  }
-  second() {
-    const {words: title, factor} = this.said.top;
-    this.above = element("p", null, {class: "top-words"});
-    say(this.above, `${title}: ${number(factor)} \u00d7 the axis below`);
-    this.plot.before(this.above);
   }
   even(width, height) {
     const wide = width - PANEL_SIDE - 20, high = height - 44, {x, y} = this.full;
@@ -215,7 +215,7 @@ class Figure {
     this.grid = element("div", this.live, {class: "panels"});
     const frames = said.dial?.frames ?? [];
     this.rows = said.panels.map((row, i) => row.map((one, j) => new Panel(
-      this, one, this.grid, frames.map((frame) => frame[i][j]))));
+      this, one, this.grid, frames.map((frame) => frame[i][j]), row)));
     this.panels = this.rows.flat();
     for (const key of ["x", "y"])
       for (const one of this.panels) {
