@@ -35,6 +35,7 @@ from thermogear.case.case import DimensionlessCase, GearCase, gear_case
 from thermogear.case.points import Points, excitations, on_numbers, points_of
 from thermogear.case.ranges import warn_of_torque
 from thermogear.case.samples import (
+    FEW,
     GEARS_AT,
     WIDTHS,
     Columns,
@@ -227,15 +228,19 @@ class GearFamily:
         lost = np.int8(STATUS.index("not_converged"))
         return replace(every, status=np.where(place < 0, lost, every.status))
 
-    def quasi_static(self, rows: ArrayLike, want: Collection[str]) -> dict[str, NDArray[Any]]:
+    def quasi_static(
+        self, rows: ArrayLike, want: Collection[str], *, path_positions: int = FEW
+    ) -> dict[str, NDArray[Any]]:
         """Stored quantities of the mesh cycle of every row, in SI: name -> (row, ...).
 
-        ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`); only they are computed.
+        ``want`` names them (:func:`~thermogear.mesh.cycle.mesh_cycle`), and "oil_temperature",
+        "tooth_temperature" (the hotter addendum) [K]; only they are computed. ``path_positions``
+        along the path of contact, where a quantity runs over it.
         With them ``status``: a row that no case could have, or whose heat or mesh does not
         settle, is "not_converged" and nan, and the others do not notice.
         """
         groups, place = self._placed(np.asarray(rows, dtype=float))
-        parts = [self._cycled(group, tuple(want)) for group in groups]
+        parts = [self._cycled(group, tuple(want), path_positions) for group in groups]
         found = {}
         for name in parts[0]:
             values = np.concatenate([one[name] for one in parts])[np.maximum(place, 0)]
@@ -335,7 +340,9 @@ class GearFamily:
         found = self._cycled(group, EXCITES)
         return excitations(replace(group.case, transmission_error=NO_ERROR), found)
 
-    def _cycled(self, group: _Group, want: Sequence[str]) -> dict[str, NDArray[Any]]:
+    def _cycled(
+        self, group: _Group, want: Sequence[str], path_positions: int = FEW
+    ) -> dict[str, NDArray[Any]]:
         """Quantities of the mesh cycle of every row of a group, and its status."""
         case = group.case
         # by its place where a choice that varies changes the name
@@ -343,7 +350,10 @@ class GearFamily:
         names = known if self.bundle in known else [m.name for m in self.case.models]
         model = case.models[names.index(self.bundle)]
         count, columns = group.index.size, group.columns
-        return quasi_static(case, columns, count, model, self.state, want, alive=self.alive)
+        return quasi_static(
+            case, columns, count, model, self.state, want,
+            path_positions=path_positions, alive=self.alive,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ finish, moduli, expansion, damping and error may be a column.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from typing import Any
 
@@ -33,7 +33,7 @@ from thermogear.heat.lubrication import grade
 from thermogear.mesh.cycle import quantities
 from thermogear.mesh.excite import excitations
 from thermogear.mesh.model import MeshModel
-from thermogear.mesh.operating import Varied
+from thermogear.mesh.operating import Operating, Varied
 from thermogear.mesh.thermal import HotPair
 
 Floats = NDArray[np.float64]
@@ -56,6 +56,14 @@ WIDTHS = ("gears.pinion.face_width", "gears.wheel.face_width")
 BODIES = ("pinion_bore", "wheel_bore", "housing")
 OF_OIL = ("oil.viscosity_40", "oil.viscosity_100", "oil.density_15")
 OF_MATERIAL = ("youngs_modulus", "thermal_expansion")
+
+BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
+    "oil_temperature": lambda at: at.oil_temperature,
+    "tooth_temperature": lambda at: np.maximum(
+        at.temperatures.pinion_addendum, at.temperatures.wheel_addendum
+    ),
+}
+"""What is wanted of the operating points themselves, no quantity of the mesh cycle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -362,10 +370,14 @@ def _cycle(
     hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
     s = path_of_contact(case.pair, path_positions)
     phase = np.arange(case.mesh_positions) / case.mesh_positions
+    cyclic = [name for name in want if name not in BODIES_OF]
     found = {
         name: np.asarray(values)
-        for name, values in quantities(hot, case.deviations, s, phase, want).items()
+        for name, values in quantities(hot, case.deviations, s, phase, cyclic).items()
     }
+    for name in want:
+        if name in BODIES_OF:
+            found[name] = np.broadcast_to(BODIES_OF[name](operating), hot.count).copy()
     if balance is not None:
         lost = STATUS.index("not_converged")
         found["status"] = np.where(balance.settled, found["status"], lost)

@@ -36,6 +36,7 @@ from thermogear.case.response import RECORD, RULE, Recording, respond, response_
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
+from thermogear.study.answers.points import answer_numbers, answer_variables
 from thermogear.study.notices import finished, range_notices
 
 if TYPE_CHECKING:
@@ -83,7 +84,8 @@ class SweepPlan:
 
     def variables(self) -> dict[str, Variable]:
         dims = self.family.names
-        return outcome_variables(dims) | response_variables(dims, lines=True)
+        found = outcome_variables(dims) | response_variables(dims, lines=True)
+        return found | answer_variables(dims)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         found = axis_coordinates(self.family.names, self.family.units, self.axes)
@@ -116,7 +118,7 @@ class SweepPlan:
         points = self.family(rows)
         start = np.broadcast_to(np.array(self.start), (len(rows), 2)).copy()
         settled = settle_with_status(points.flat, points.status, start, self.rule, alive=alive)
-        found = outcome_arrays(settled, points.status)
+        found = outcome_arrays(settled, points.status) | answer_numbers(self.family, rows)
         return found | respond(points, settled.state, self.record, lines=True, alive=alive)
 
     def compute(self, key: Key, before: Arrays | None, alive: Alive) -> Arrays:
@@ -181,7 +183,7 @@ def sweep(
     report: Report | None = None,
     alive: Alive = keep_going,
 ) -> Result:
-    """Settled motion and its gear figures over any grid of gear parameters.
+    """Settled motion and every number of the answers over any grid of gear parameters.
 
     ``axes`` map names to SI values: pinion_speed [rad/s], pinion_torque [N m], gear_temperature
     [K], cold_half_backlash [m], damping_ratio, or a dotted field of the case file. Every point

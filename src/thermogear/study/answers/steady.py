@@ -204,7 +204,7 @@ def film(asked: Asked) -> Iterator[Answer]:
                 FILM, "film", f"The least film parameter is {least:.2f} ({acting}).", least, at=at
             )
         torque, speed = (float(asked.hot[f"pinion_{n}"][point]) for n in ("torque", "speed"))
-        why = _unrated(case, torque, float(oil[point]))
+        why = unrated(case, torque, float(oil[point]))
         if why:
             for name in ("scuffing_margin", "scuffing_safety"):
                 yield undecided(FILM, name, why, at=at)
@@ -219,7 +219,7 @@ def film(asked: Asked) -> Iterator[Answer]:
             yield _rated(name, partial(words, case, torque, speed, state, whose), at)
 
 
-def _unrated(case: GearCase, torque: float, oil: float) -> str:
+def unrated(case: GearCase, torque: float, oil: float) -> str:
     """Why scuffing is not rated; empty where it is."""
     for gear in (case.pair.pinion, case.pair.wheel):
         if not steel(gear.material):

@@ -1,0 +1,132 @@
+"""The numbers of the answers at many points at once, as sweeps carry them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError, ThermogearError
+from thermogear.base.plan import Variable
+from thermogear.case.allowed import LANE
+from thermogear.case.case import GearCase
+from thermogear.case.family import BESIDE, GearFamily
+from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
+from thermogear.study.answers.steady import STAGE, unrated
+
+Floats = NDArray[np.float64]
+
+
+class _Number(NamedTuple):
+    unit: str
+    words: str
+
+
+NUMBERS: dict[str, _Number] = {
+    "oil_temperature": _Number("K", "oil temperature"),
+    "tooth_temperature": _Number("K", "temperature of the hotter teeth, without the flash"),
+    "greatest_flash": _Number("K", "greatest flash temperature along the path"),
+    "least_film_parameter": _Number("1", "least film parameter along the path"),
+    "scuffing_margin": _Number(
+        "K", "scuffing temperature less contact temperature, ISO/TR 13989-1"
+    ),
+    "scuffing_safety": _Number("1", "safety by integral temperature, ISO/TR 13989-2"),
+    "backlash": _Number("m", "least backlash, whole gap, along the line of action"),
+    "jam_temperature": _Number(
+        "K", "temperature of the teeth at which the pair jams, housing as it is"
+    ),
+    "jam_margin": _Number("K", "jam temperature less temperature of the teeth"),
+    "static_error": _Number("m", "transmission error, static and loaded, peak to peak"),
+}
+"""Every number with its unit and words; those of the motion are sweeps' own."""
+WANT = (
+    "oil_temperature", "tooth_temperature", "flash_temperature", "film_parameter",
+    "least_half_backlash", "jam_temperature", "transmission_error",
+)  # fmt: skip
+UNRATED = ("pinion_speed", "pinion_torque", "gear_temperature", "cold_half_backlash",
+           "damping_ratio", "operating.torque", *BESIDE, *LANE)  # fmt: skip
+"""Parameters that change neither gears nor oil: a rating needs no other case."""
+
+
+def answer_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
+    """How the numbers are stored over ``dims``."""
+    return {
+        name: Variable(dims, "float64", float("nan"), {"units": one.unit, "long_name": one.words})
+        for name, one in NUMBERS.items()
+    }
+
+
+def answer_numbers(family: GearFamily, rows: ArrayLike) -> dict[str, Floats]:
+    """:data:`NUMBERS` of every row of ``family``, SI, (row,); nan where one is not known.
+
+    The same as :func:`~thermogear.study.answers.survey.answers` tells of a case with these values:
+    flash and film over the case's own positions along the path, scuffing by the standard's
+    friction and body temperature with the oil's, the load stage 12 where none is given.
+    """
+    points = np.asarray(rows, dtype=float)
+    case = family.case
+    found = family.quasi_static(points, WANT, path_positions=case.path_positions)
+    flash, film = found["flash_temperature"], found["film_parameter"]
+    margin, safety = _scuffing(family, points, found)
+    teeth, jam = found["tooth_temperature"], found["jam_temperature"]
+    return {
+        "oil_temperature": found["oil_temperature"],
+        "tooth_temperature": teeth,
+        "greatest_flash": flash.max(axis=1),
+        "least_film_parameter": _least(film),
+        "scuffing_margin": margin,
+        "scuffing_safety": safety,
+        "backlash": 2.0 * found["least_half_backlash"],
+        "jam_temperature": jam,
+        "jam_margin": jam - teeth,
+        "static_error": np.ptp(found["transmission_error"], axis=1),
+    }
+
+
+def _least(film: Floats) -> Floats:
+    """The least of each row that is known, nan where none is."""
+    known = np.where(np.isfinite(film), film, np.inf).min(axis=1)
+    return np.where(np.isfinite(known), known, np.nan)
+
+
+def _scuffing(
+    family: GearFamily, rows: Floats, found: dict[str, NDArray[np.float64]]
+) -> tuple[Floats, Floats]:
+    """Margin [K] and safety [-] of every row, the gears and the oil of each."""
+    margin, safety = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+    other = [i for i, name in enumerate(family.names) if name not in UNRATED]
+    kinds, which = np.unique(rows[:, other], axis=0, return_inverse=True)
+    names = [family.names[i] for i in other]
+    for kind, values in enumerate(kinds if other else np.empty((1, 0))):
+        here = np.flatnonzero(which.ravel() == kind) if other else np.arange(len(rows))
+        case = family.case
+        try:
+            if names:
+                case = case.with_values(dict(zip(names, values, strict=True)), told=False)
+        except ThermogearError:
+            continue  # no case could have it: the status says so
+        at = {n: found[n][here] for n in ("pinion_torque", "pinion_speed", "oil_temperature")}
+        margin[here], safety[here] = _rated(case, *at.values())
+    return margin, safety
+
+
+def _rated(
+    case: GearCase, torque: Floats, speed: Floats, oil: Floats
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    nan = np.full(torque.shape, np.nan)
+    margin, safety = nan.copy(), nan.copy()
+    stage = float(case.scuffing_load_stage or STAGE)
+    for place in range(torque.size):
+        load, turning, warm = float(torque[place]), float(speed[place]), float(oil[place])
+        if unrated(case, load, warm):
+            continue
+        state = Scuffing(lubricant=case.stated.lubricant, oil_temperature=warm, load_stage=stage)
+        for values, rate, name in (
+            (margin, flash_rating, "margin"), (safety, integral_rating, "safety")
+        ):  # fmt: skip
+            try:
+                values[place] = float(getattr(rate(case.pair, load, turning, state), name))
+            except InputError:
+                continue  # the standard does not cover it
+    return margin, safety
