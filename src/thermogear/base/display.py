@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
@@ -46,15 +47,14 @@ _BY_UNIT = {
     "m/s": Display("m/s"),
     "s": Display("ms", 1e3),
 }
+_DIFFERENCE = re.compile("flash|margin|residual|difference|below_gears")
+"""Names of kelvins that are a difference, no temperature."""
 _BY_NAME = {
     "path_position": MILLIMETRE,
     "pinion_radius": MILLIMETRE,
     "wheel_radius": MILLIMETRE,
     "reduced_radius": MILLIMETRE,
     "line_load": Display("N/mm", 1e-3),
-    "flash_temperature": KELVIN,
-    "flash_temperature_mixed": KELVIN,
-    "flash_temperature_dry": KELVIN,
     "velocity": Display("mm/s", 1e3),
     "section_velocity": Display("mm/s", 1e3),
 }
@@ -66,6 +66,8 @@ def display(name: str, unit: str | None = None) -> Display:
         unit = QUANTITIES[name].unit
     elif name in QUANTITIES and unit != QUANTITIES[name].unit:
         return _BY_UNIT.get(unit, Display(unit))
+    if unit == "K" and _DIFFERENCE.search(name):
+        return KELVIN
     return _BY_NAME.get(name) or _BY_UNIT.get(unit) or Display(unit)
 
 

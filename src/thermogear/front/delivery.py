@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
     from thermogear.views.page import Page
 
+CSV = "thermogear.csv"
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 overrides = click.option(
@@ -25,6 +27,38 @@ overrides = click.option(
     metavar="PATH=VALUE",
     help="Put a value in place of the file's, as gears.pinion.teeth=30. May be repeated.",
 )
+
+
+def _csv_place(context: click.Context, _: click.Parameter, name: str | None) -> None:
+    """Keep the place of ``--csv`` for the end; refuse one that nobody could write to."""
+    if name is None:
+        return
+    path = Path(name)
+    if path.is_dir() or not path.parent.is_dir():
+        why = "it is a directory" if path.is_dir() else f"{path.parent} is no directory"
+        raise InputError("--csv", name, allowed="a file", why=why, fix="write --csv points.csv")
+    context.meta[CSV] = path
+
+
+csv = click.option(
+    "--csv",
+    metavar="FILE",
+    expose_value=False,
+    callback=_csv_place,
+    help="Write FILE too: a row for each point, units in the heads, labels as words.",
+)
+
+
+def put_csv(result: Result) -> None:
+    """Write the points of ``result`` where ``--csv`` wants them, whole or not at all."""
+    path = click.get_current_context().meta.get(CSV)
+    if path is not None:
+        from thermogear.base.files import put
+        from thermogear.results.tables import csv_text
+
+        put(path, csv_text(result.to_frame(units="display")))
+
+
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 case = click.argument("case", metavar="CASE")
 
@@ -74,6 +108,7 @@ def deliver(
             result = make(report)
         from thermogear.views.write import clear_tables, page_of, write
 
+        put_csv(result)
         page = page_of(result)
         if folder is not None:
             result.put(folder)

@@ -22,7 +22,13 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 def _common(command: _Command) -> _Command:
     """What every survey takes."""
-    for option in (delivery.as_json, delivery.overrides, delivery.output(), delivery.case):
+    for option in (
+        delivery.as_json,
+        delivery.csv,
+        delivery.overrides,
+        delivery.output(),
+        delivery.case,
+    ):
         command = option(command)
     return command
 

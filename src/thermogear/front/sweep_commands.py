@@ -40,6 +40,7 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
         click.option("--force", is_flag=True, help="Run even if it may not fit."),
         click.option("--estimate", "only_estimate", is_flag=True,
                      help="Print time, memory and disk it will take, and stop."),
+        delivery.csv,
         delivery.as_json,
     ]  # fmt: skip
     for option in reversed(options):
@@ -364,6 +365,7 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
         result = finished(data, title).with_(seconds=round(time.monotonic() - begun, 3))
         write(page_of(result), directory)
+        delivery.put_csv(result)
     except KeyboardInterrupt:
         from thermogear.front.progress import Stopped
 

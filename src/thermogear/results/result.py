@@ -21,7 +21,7 @@ from thermogear.base.stores import RESULT as STORE
 from thermogear.base.stores import read_store
 from thermogear.results.answer import Answer
 from thermogear.results.files import RESULTS, claimed, finite
-from thermogear.results.tables import frames
+from thermogear.results.tables import frames, points, told
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 FILES = {"gear": RESULTS, "dimensionless": RESULTS, "thesis": RESULTS, "sensitivity": RESULTS}
 """The file of a kind; of every other kind it is ``KIND.nc``."""
+OF_POINTS = ("mesh", "motion")
+"""Groups of a run that say something of each operating point, as one table."""
+SHOWN = 6
+"""Notices that a notebook shows."""
 LEVELS = ("important", "warning", "info")
 FIX = "name a directory that this command, or `thermogear run CASE -o DIR`, has written"
 
@@ -162,24 +166,60 @@ class Result:
         told = json.dumps([one._asdict() for one in self.notices])
         return {**self.provenance, "title": self.title, "kind": self.kind, "notices": told}
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: title, kind, answers or notices, the groups with their axes."""
+        from html import escape
+
+        def row(*cells: str) -> str:
+            return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"
+
+        said = [row(one.verdict, one.sentence) for one in self.answers]
+        said = said or [row(one.level, one.text) for one in self.notices[:SHOWN]]
+        groups = [
+            row(name or "(root)", " × ".join(f"{dim} {size}" for dim, size in data.sizes.items()))
+            for name, data in self.groups.items()
+        ]
+        about = f"{self.kind}, thermogear {self.text('thermogear')}, {self.text('created')}"
+        return (
+            f"<div><p><b>{escape(self.title)}</b><br>{escape(about.rstrip(', '))}</p>"
+            f"<table>{''.join(said)}</table><table>{''.join(groups)}</table>"
+            "<p><code>.to_frame()</code>: a row for each point</p></div>"
+        )
+
     def __getitem__(self, path: str) -> Any:
         return self.tree[path]
 
     def __contains__(self, path: str) -> bool:
         return path in self.tree
 
-    def to_frame(self, group: str | None = None, along: Collection[str] = ()) -> pd.DataFrame:
-        """A group as a pandas DataFrame: a row for each place, units in the columns' names.
+    def to_frame(
+        self, group: str | None = None, along: Collection[str] = (), *, units: str = "si"
+    ) -> pd.DataFrame:
+        """A pandas DataFrame: a row for each operating point or grid point, units in the heads.
 
-        ``group`` may be left out where there is one; ``along`` names the dimensions of the wanted
-        variables (default: those of the first). Flags stand as words. Raises InputError for names
-        that are not there.
+        Columns are ``name [unit]``, SI or, with ``units`` "display", as pages show them (um, degC,
+        rpm). Labels and statuses are words; a point that failed is a row with its status. Curves
+        are left out: ``group`` names one group, ``along`` the dimensions of the wanted variables
+        (default: those that most variables have), for instance a curve's. Raises InputError for
+        names that are not there. Group "answers": a row for each answer, its value in its unit.
         """
+        if group == "answers" or (group is None and self.kind == "answers"):
+            return told(self.rows("answers"))
         if group is not None and group not in self.groups:
             raise InputError("group", repr(group), fix=nearest(group, list(self.groups)))
-        data = self.data if group is None else self.groups[group]
-        found = frames(data)
-        wanted = tuple(sorted(along)) if along else next(iter(found), ())
+        if not self.groups:
+            raise InputError("results", "no groups", why="nothing was stored")
+        if group is None and not along:
+            chosen = [self.groups[one] for one in OF_POINTS if one in self.groups]
+            data = points(chosen or list(self.groups.values())[:1])
+        else:
+            data = self.data if group is None else self.groups[group]
+        if "" in self.groups:
+            # a store knows no order of its variables
+            data = data[sorted(map(str, data.data_vars))]
+        found = frames(data, units)
+        most = max(found, key=lambda dims: len(found[dims].columns), default=())
+        wanted = tuple(sorted(along)) if along else most
         if wanted not in found:
             raise InputError(
                 "along", " x ".join(along) or "nothing", allowed=" | ".join(map(" x ".join, found))

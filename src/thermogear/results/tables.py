@@ -2,35 +2,106 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from thermogear.base.display import display
+from thermogear.base.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+UNITS = ("si", "display")
+FIRST = ("status", "label", "period")
+"""Columns that stand behind the axes, before all numbers."""
 
-def frames(data: xr.Dataset) -> dict[tuple[str, ...], pd.DataFrame]:
+
+def frames(data: xr.Dataset, units: str = "si") -> dict[tuple[str, ...], pd.DataFrame]:
     """Dimensions (sorted) -> the variables that have them, a row for each place.
 
-    Columns are named ``name [unit]``; single numbers, which have no dimension, are left out.
+    Columns are named ``name [unit]``, in ``units`` "si" or as pages show them ("display"); single
+    numbers, which have no dimension, are left out.
     """
+    if units not in UNITS:
+        raise InputError("units", repr(units), allowed=" | ".join(UNITS), fix=nearest(units, UNITS))
     families: dict[tuple[str, ...], list[str]] = {}
     for name, variable in data.data_vars.items():
         dims = tuple(sorted(str(d) for d in variable.dims))
         if dims:
             families.setdefault(dims, []).append(str(name))
-    found = {}
-    for dims, names in families.items():
-        frame = _in_words(data[names]).to_dataframe().reset_index()
-        units = {
-            str(column): f"{column} [{data[column].attrs['units']}]"
-            for column in frame.columns
-            if column in data.variables and data[column].attrs.get("units")
-        }
-        found[dims] = frame.rename(columns=units)
-    return found
+    return {dims: _frame(data[names], units) for dims, names in families.items()}
+
+
+def told(rows: Iterable[Mapping[str, Any]]) -> pd.DataFrame:
+    """Answers as rows: name, value and unit, limit, verdict, operating point, sentence."""
+    import pandas as pd
+
+    heads = ["name", "value", "unit", "limit", "verdict", "operating", "question", "sentence"]
+    return pd.DataFrame(list(rows), columns=heads)
+
+
+def csv_text(frame: pd.DataFrame) -> str:
+    """A frame as CSV that a spreadsheet reads safely: no text is a formula."""
+    words = frame.select_dtypes(["object", "string"]).columns
+    safe = frame.assign(**{str(name): frame[name].map(harmless) for name in words})
+    text: str = safe.to_csv(index=False, float_format="%.9g", lineterminator="\n")
+    return text
+
+
+def harmless(value: object) -> object:
+    """A text that a spreadsheet would take for a formula with an apostrophe before it."""
+    if isinstance(value, str) and (value[:1] in {"=", "+", "@"} or re.match(r"-\D", value)):
+        return f"'{value}"
+    return value
+
+
+def points(groups: Iterable[xr.Dataset]) -> xr.Dataset:
+    """What the groups say of each point: the variables of the dimensions that most of them have.
+
+    Curves are left out: a dimension with more than one place that only some variables have is one.
+    """
+    import xarray as xr
+
+    every = list(groups)
+    counts: dict[frozenset[str], int] = {}
+    for data in every:
+        for variable in data.data_vars.values():
+            dims = frozenset(str(d) for d in variable.dims)
+            if dims:
+                counts[dims] = counts.get(dims, 0) + 1
+    wanted = max(counts, key=lambda dims: counts[dims])
+    parts: list[xr.Dataset] = []
+    for data in every:
+        own = [n for n, v in data.data_vars.items() if frozenset(map(str, v.dims)) == wanted]
+        taken = {n for part in parts for n in part.data_vars}
+        parts.append(data[[n for n in own if n not in taken]])
+    kept = [part for part in parts if part.data_vars]
+    return xr.merge(kept, combine_attrs="drop_conflicts", compat="no_conflicts")
+
+
+def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
+    frame = _in_words(data).to_dataframe().reset_index()
+    dims = [name for name in map(str, data.dims) if name in frame.columns]
+    first = [*dims, *(name for name in FIRST if name in frame.columns)]
+    frame = frame[[*first, *(name for name in map(str, frame.columns) if name not in first)]]
+    heads = {}
+    for column in map(str, frame.columns):
+        if column not in data.variables or "flag_meanings" in data[column].attrs:
+            continue
+        unit = str(data[column].attrs.get("units", ""))
+        # a time of minutes is no number of milliseconds
+        if units == "display" and unit and not (unit == "s" and frame[column].abs().max() > 1.0):
+            shown = display(column, unit)
+            frame[column], unit = shown(frame[column]), shown.unit
+        if unit:
+            heads[column] = f"{column} [{unit}]"
+    named: pd.DataFrame = frame.rename(columns=heads)
+    named.attrs["units"] = units
+    return named
 
 
 def _in_words(data: xr.Dataset) -> xr.Dataset:
@@ -38,6 +109,8 @@ def _in_words(data: xr.Dataset) -> xr.Dataset:
     words = {}
     for name, variable in data.data_vars.items():
         if "flag_meanings" in variable.attrs:
-            meanings = np.array(str(variable.attrs["flag_meanings"]).split())
-            words[name] = (variable.dims, meanings[variable.values.astype(int)])
+            meanings = np.array([*str(variable.attrs["flag_meanings"]).split(), "unknown"])
+            places = variable.values.astype(int)
+            known = (places >= 0) & (places < meanings.size - 1)
+            words[name] = (variable.dims, meanings[np.where(known, places, -1)])
     return data.assign(words)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.results.result import Result
+from thermogear.results.tables import harmless
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,9 +136,7 @@ def table_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def quoted(text: str) -> str:
     """A field as a spreadsheet reads it safely: quoted where needed, never a formula."""
-    flat = " ".join(text.split())
-    if flat[:1] in {"=", "+", "@"} or re.match(r"-\D", flat):
-        flat = f"'{flat}"
+    flat = str(harmless(" ".join(text.split())))
     return '"' + flat.replace('"', '""') + '"' if re.search(r'[",;\n]', flat) else flat
 
 

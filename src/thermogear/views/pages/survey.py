@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
-from thermogear.results.tables import frames
+from thermogear.results.tables import csv_text, frames
 from thermogear.views.page import Block, Code, Gallery, Page, Section, Shown, Table, notice_lines
 from thermogear.views.pages.background import case_file
 
@@ -60,9 +60,7 @@ def csv_tables(result: Result) -> dict[str, str]:
         whole = any(not v.dims for v in data.data_vars.values()) + len(families)
         for dims, frame in families.items():
             tail = "" if whole == 1 else f"_by_{'_'.join(dims)}"
-            found[f"{result.kind}_{group}{tail}.csv"] = frame.to_csv(
-                index=False, float_format="%.9g", lineterminator="\n"
-            )
+            found[f"{result.kind}_{group}{tail}.csv"] = csv_text(frame)
     return found
 
 

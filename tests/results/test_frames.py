@@ -1,0 +1,107 @@
+"""Results as pandas frames and CSV: a row for each point, units in the heads, words for codes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import thermogear as tg
+from own_pair import OWN_PAIR
+from thermogear.base.display import display
+from thermogear.base.errors import InputError
+from thermogear.results.result import Result
+from thermogear.results.tables import csv_text, frames
+
+pytestmark = pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning")
+SCALES = {"µm": 1e6, "rpm": 30.0 / np.pi, "10⁸ N/m": 1e-8, "MPa": 1e-6, "–": 1.0, "K": 1.0}
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path]:
+    """Torque x temperature of an own pair; the hottest points jam."""
+    place = tmp_path_factory.mktemp("swept") / "store"
+    case = tg.load_case(OWN_PAIR)
+    axes = {"torque": [10.0, 30.0], "temperature": [330.0, 390.0, 800.0]}
+    return tg.sweep(case, axes, store=place), place
+
+
+def test_a_sweep_becomes_a_row_for_each_point(swept: tuple[Result, Path]) -> None:
+    result, place = swept
+    frame = result.to_frame()
+    assert len(frame) == 6
+    assert list(frame.columns[:4]) == [
+        "pinion_torque [N m]", "gear_temperature [K]", "status", "label"
+    ]  # fmt: skip
+    assert set(frame["status"]) == {"ok", "jammed"}
+    jammed = frame[frame["status"] == "jammed"]
+    assert set(jammed["label"]) == {"jammed"}
+    assert jammed["dynamic_factor [1]"].isna().all()
+    again = tg.open_results(place).to_frame()
+    pd.testing.assert_frame_equal(frame, again)
+    every = xr.Dataset.to_dataframe(result.data[["dynamic_factor"]])["dynamic_factor"]
+    assert np.array_equal(frame["dynamic_factor [1]"], every, equal_nan=True)
+
+
+def test_shown_units_are_si_times_a_scale(swept: tuple[Result, Path]) -> None:
+    result, _ = swept
+    si, shown = result.to_frame(), result.to_frame(units="display")
+    assert si.attrs["units"] == "si"
+    assert shown.attrs["units"] == "display"
+    unit = re.compile(r" \[(.+)\]$")
+    for one, other in zip(si.columns, shown.columns, strict=True):
+        assert unit.sub("", one) == unit.sub("", other)
+        if not (found := unit.search(other)):
+            continue
+        less = 273.15 if found[1] == "°C" else 0.0
+        times = SCALES.get(found[1], 1.0)
+        np.testing.assert_allclose(shown[other], times * (si[one] - less), rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["greatest_flash", "scuffing_margin", "jam_margin", "residual"])
+def test_differences_of_temperature_stay_kelvins(name: str) -> None:
+    assert display(name, "K").unit == "K"
+    assert display("jam_temperature", "K").unit == "°C"
+
+
+def test_a_run_has_a_row_for_each_operating_point_with_its_motion() -> None:
+    result = tg.run(tg.load_case(OWN_PAIR))
+    frame = result.to_frame()
+    mesh = result.groups["mesh"]
+    assert len(frame) == mesh.sizes["bundle"] * mesh.sizes["state"] * mesh.sizes["operating"]
+    for column in ("half_backlash [m]", "contact_loss_share [1]", "status"):
+        assert column in frame.columns
+    answers = result.to_frame("answers")
+    assert list(answers["name"]) == [one.name for one in result.answers]
+    assert isinstance(result._repr_html_(), str)
+
+
+def test_a_code_without_a_word_is_no_other_word() -> None:
+    codes = xr.Dataset({"regime": ("point", np.array([0, 1, -1]))})
+    codes["regime"].attrs["flag_meanings"] = "boundary mixed"
+    (frame,) = frames(codes).values()
+    assert list(frame["regime"]) == ["boundary", "mixed", "unknown"]
+
+
+def test_what_is_not_there_is_refused_in_one_line(swept: tuple[Result, Path]) -> None:
+    result, _ = swept
+    for wrong in ({"group": "mash"}, {"along": ["torque"]}, {"units": "imperial"}):
+        with pytest.raises(InputError) as error:
+            result.to_frame(**wrong)  # type: ignore[arg-type]
+        assert "\n" not in str(error.value)
+    with pytest.raises(InputError):
+        Result.of("gear", "empty", {}).to_frame()
+
+
+def test_no_text_is_a_formula_or_a_tag() -> None:
+    frame = pd.DataFrame({"label": ["=1+1", "-x", "plain", "+2", "@a"], "value": [-1.0] * 5})
+    assert csv_text(frame).splitlines()[1:] == [
+        "'=1+1,-1", "'-x,-1", "plain,-1", "'+2,-1", "'@a,-1"
+    ]  # fmt: skip
+    shown = Result.of("gear", "<script>x</script>", {}, ["<b>"])._repr_html_()
+    assert not re.search(r"<script|<b>(?!&lt;)(?=<)", shown)
+    assert "&lt;script&gt;" in shown
