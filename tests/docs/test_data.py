@@ -20,7 +20,7 @@ def test_the_commands_and_the_table_of_the_page(
     """Smaller: the first two values of each axis, whose rows must be those of the page."""
     monkeypatch.chdir(tmp_path)
     text = PAGE.read_text("utf-8")
-    blocks = dict(re.findall(r"```(sh|python|text)\n(.*?)```", text, re.DOTALL))
+    blocks = dict(re.findall(r"```(sh|py|text)\n(.*?)```", text, re.DOTALL))
     step = 40.0 + 80.0 / 19.0
     small = blocks["sh"].replace("torque=20:80:20", "torque=20:80:2")
     small = small.replace("temperature=40:120:20", f"temperature=40:{step}:2")
@@ -28,7 +28,7 @@ def test_the_commands_and_the_table_of_the_page(
         assert cli.main(shlex.split(line)[1:]) == 0
     capsys.readouterr()
     names: dict[str, object] = {}
-    exec(compile(blocks["python"], str(PAGE), "exec"), names)
+    exec(compile(blocks["py"], str(PAGE), "exec"), names)
     printed = capsys.readouterr().out.splitlines()
     table = blocks["text"].splitlines()
     assert printed[0].split() == table[0].split()

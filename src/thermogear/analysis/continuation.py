@@ -165,6 +165,14 @@ def continuation(
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> branch = continuation(periodic_orbit(model, guess=(1.1, 0.0)), "frequency", 0.52)
+    >>> branch.ended, bool(branch.stable.all())
+    ('reached the end', True)
     """
     if span is not None and not 0.0 < span < np.inf:
         raise InputError("span", span, allowed="> 0, finite")
@@ -404,7 +412,7 @@ def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
 
 @dataclass(frozen=True)
 class Doubled:
-    """An orbit beside a flip or pitchfork: its parameter ``value``, scaled ``direction``."""
+    """An orbit near a flip or pitchfork: its parameter ``value``, scaled ``direction``."""
 
     orbit: Orbit
     value: float
@@ -412,7 +420,7 @@ class Doubled:
 
 
 def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Doubled:
-    """An orbit of twice the period beside a flip, and the direction away from it.
+    """An orbit of twice the period near a flip, and the direction away from it.
 
     The doubled orbit starts along the eigenvector of the multiplier -1; hand its parts to
     :func:`continuation` as ``orbit``, ``start`` (with a ``family``) and ``direction``. Beside a

@@ -3,7 +3,7 @@
 Signs: S > 0 is added material on a flank, measured along the line of action; the gap of a
 tooth pair is e = -(S_1 + S_2), so that relief makes a positive gap. A deviation answers for
 every tooth pair of a mesh at once; several add up. What is a shape of one flank says so as a
-:class:`FlankShape`: flanks that deviate touch beside the nominal point of contact.
+:class:`FlankShape`: flanks that deviate touch next to the nominal point of contact.
 """
 
 from __future__ import annotations
@@ -54,7 +54,12 @@ class Contacts(NamedTuple):
 
 
 def active_profile(pair: GearPair, name: str) -> tuple[float, float, float]:
-    """rho [m] of the named gear at the start of contact, the pitch point and the tip."""
+    """rho [m] of the named gear at the start of contact, the pitch point and the tip.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [f"{1e3 * rho:.2f} mm" for rho in active_profile(pair, "pinion")]
+    ['3.56 mm', '13.68 mm', '22.87 mm']
+    """
     path, length = pair.path, pair.line_of_action
     if name == "pinion":
         return path.a, path.c, path.e
@@ -70,7 +75,10 @@ class Deviation(Protocol):
 
 
 def require_choice(field: str, value: str, known: tuple[str, ...]) -> None:
-    """Refuse a word that is none of ``known``, with the nearest."""
+    """Refuse a word that is none of ``known``, with the nearest.
+
+    >>> require_choice("end", "tip", ("tip", "root"))
+    """
     if value not in known:
         raise InputError(
             field, repr(value), allowed=" | ".join(known), fix=nearest(str(value), known)
@@ -112,6 +120,11 @@ class Relief(FlankShape):
     amount: at the very tip (at the start of active profile) [m], >= 0; length: how far it
     reaches from there [m], measured along the line of action like the path of contact; shape:
     "linear" C x or "parabolic" C x^2 with x from 0 at its start to 1.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> relief = Relief("pinion", amount=20e-6, length=4e-3)
+    >>> (1e6 * relief.taken_off(pair, pair.path.e - np.array([0.0, 2e-3, 4e-3]))).round(1)
+    array([20., 10.,  0.])
     """
 
     gear: str
@@ -153,8 +166,11 @@ class Relief(FlankShape):
 class PitchError:
     """Index errors of the teeth of one gear, one per tooth.
 
-    errors [m] along the line of action: > 0 stands a whole tooth towards its drive side, which
+    errors [m] along the line of action: > 0 puts a whole tooth towards its drive side, which
     is added material on the drive flank and missing on the back flank.
+
+    >>> PitchError("wheel", errors=(4e-6, -2e-6)).gear
+    'wheel'
     """
 
     gear: str
@@ -185,6 +201,11 @@ class PressureAngleError(FlankShape):
 
     Its base radius is r_b (1 - tan(alpha) error): S = -tan(alpha) error (rho - rho_C), 0 at the
     pitch point. A larger pressure angle takes material off the tip.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> error = PressureAngleError("pinion", 1e-3)
+    >>> f"{1e6 * error.taken_off(pair, np.array(pair.path.c + 5e-3)):.2f} um"
+    '1.82 um'
     """
 
     gear: str
@@ -208,6 +229,11 @@ class FlankTable(FlankShape):
 
     radius [m]: rising, shape (n,); added [m]: S, shape (..., n), leading axes are operating
     points (a thermal field each). Linear between the points, constant beyond them.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> worn = FlankTable("pinion", radius=[38e-3, 44e-3], added=[-10e-6, -10e-6])
+    >>> f"{1e6 * worn.taken_off(pair, np.array(pair.path.c)):.1f} um"
+    '10.0 um'
     """
 
     gear: str
@@ -271,6 +297,11 @@ class BasePitchDifference:
 
     strain = lambda_1 t_1 - lambda_2 t_2, t_i the effective temperature rise u_b/(lambda r_b):
     S = strain (s - s_C) [m], strain [-]. A number or an array over operating points.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> strain = 11.5e-6 * (80.0 - 60.0)  # pinion 80 K, wheel 60 K above the drawing
+    >>> f"{1e6 * strain * pair.base_pitch:.2f} um, {BasePitchDifference(strain).strain:.2e}"
+    '2.72 um, 2.30e-04'
     """
 
     strain: ArrayLike

@@ -19,8 +19,12 @@ from thermogear.gears.geometry import LEFT_OUT, Gear, inverse_involute, involute
 class PathPoints(NamedTuple):
     """Distances [m] from the pinion's tangent point N1 along the line of action.
 
-    a: contact starts (wheel tip); b: the leading pair leaves as this one stands here;
+    a: contact starts (wheel tip); b: the leading pair leaves when this one is here;
     c: pitch point; d: the following pair enters; e: contact ends (pinion tip).
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [round(1e3 * s, 2) for s in pair.path]
+    [3.56, 11.06, 13.68, 15.37, 22.87]
     """
 
     a: float
@@ -36,6 +40,10 @@ class GearPair:
 
     A centre distance above that opens a normal backlash; one below it jams and is refused.
     One gear given twice means two equal ones.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e3 * pair.centre_distance:.1f} mm, contact ratio {pair.contact_ratio:.3f}"
+    '120.0 mm, contact ratio 1.635'
     """
 
     pinion: Gear

@@ -1,6 +1,6 @@
 """The parameters of a law object: their ranges, a law with others, a law in words.
 
-A parameter is a field of the law's dataclass; a range stands in its annotation. A field that
+A parameter is a field of the law's dataclass; a range is in its annotation. A field that
 holds a law has the parameters of that law.
 """
 
@@ -34,12 +34,20 @@ class Bounded:
 
 
 def parameters(law: object) -> dict[str, Any]:
-    """Field -> value of a law's parameters, in order."""
+    """Field -> value of a law's parameters, in order.
+
+    >>> parameters(friction_law("boundary"))
+    {'coefficient': 0.1}
+    """
     return {f.name: getattr(law, f.name) for f in fields(law)} if is_dataclass(law) else {}
 
 
 def ranges(law: type[Any]) -> Mapping[str, Bounds]:
-    """The parameters of a kind of law that have a range, with it."""
+    """The parameters of a kind of law that have a range, with it.
+
+    >>> list(ranges(type(friction_law("boundary"))))
+    ['coefficient']
+    """
     return {
         name: mark
         for name, hint in get_type_hints(law, include_extras=True).items()
@@ -50,7 +58,10 @@ def ranges(law: type[Any]) -> Mapping[str, Bounds]:
 
 
 def require_known(law: Any, names: Mapping[str, object]) -> None:
-    """Refuse a name that is no parameter of ``law``; says the nearest of that law."""
+    """Refuse a name that is no parameter of ``law``; says the nearest of that law.
+
+    >>> require_known(friction_law("boundary"), {"coefficient": 0.12})
+    """
     known = parameters(law)
     for name in names:
         if name not in known:
@@ -66,6 +77,9 @@ def with_parameters(law: _Law, values: Mapping[str, Any]) -> _Law:
     """``law`` with ``values`` in place of parameters; a mapping speaks to the law in its field.
 
     Raises InputError for an unknown name, which says the nearest, and for a value out of range.
+
+    >>> with_parameters(friction_law("boundary"), {"coefficient": 0.12})
+    Boundary(coefficient=0.12)
     """
     require_known(law, values)
     made = {}
@@ -81,7 +95,11 @@ def with_parameters(law: _Law, values: Mapping[str, Any]) -> _Law:
 
 
 def law_words(law: Any, plain: object) -> str:
-    """The law's name, and in brackets the parameters in which it differs from ``plain``."""
+    """The law's name, and in brackets the parameters in which it differs from ``plain``.
+
+    >>> law_words(friction_law("boundary", coefficient=0.12), friction_law("boundary"))
+    'boundary(coefficient=0.12)'
+    """
     usual = parameters(plain)
     told = [
         f"{name}={law_words(value, usual.get(name)) if is_dataclass(value) else value}"

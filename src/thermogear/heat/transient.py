@@ -35,6 +35,15 @@ class Stretch:
 
     ``network``: temperatures of the free nodes, arrays (count,), to the network at them. The free
     nodes and their capacities are the same throughout; given temperatures may differ.
+
+    >>> from thermogear.heat.network import Link
+    >>> network = ThermalNetwork(
+    ...     (Link("oil", "ambient", 10.0),), sources={"oil": 200.0}, fixed={"ambient": 293.15},
+    ...     capacities={"oil": 6000.0},
+    ... )
+    >>> course = follow([Stretch(end=600.0, network=lambda state: network)], {"oil": 293.15})
+    >>> f"{course.temperatures['oil'][-1] - 293.15:.1f} K"
+    '12.6 K'
     """
 
     end: float
@@ -128,7 +137,7 @@ def follow(
     to rounding if every flow is counted.
 
     ``stretches`` one after the other from time 0; ``start`` [K] of every free node; ``times`` [s]
-    to be stored beside some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
+    to be stored with some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
     tenth of it relative (the course may err by ten times as much); a stretch without end runs
     until its slowest mode has no more than ``settled_within`` [K] to go; ``events`` [K or m, any]
     of the state that are located where they fall through 0. Raises InputError for stretches that

@@ -39,7 +39,7 @@ SAME = 0.01
 """Two steady states that differ by less [K] at every node are one."""
 
 STAND_IN, OVER = 313.15, 20.0
-"""A point without a state stands in ``operating`` at 40 C, or 20 K over a hotter reference [K]."""
+"""A point without a state is in ``operating`` at 40 C, or 20 K over a hotter reference [K]."""
 
 NODES = (
     "pinion_tooth",
@@ -62,6 +62,9 @@ class Gearbox:
     ``bearing_coefficient`` of the four shaft bearings, each of the bore's diameter and carrying
     half the normal force; ``measured`` temperatures [K] that hold single nodes of the network
     ("oil", "housing", "pinion_tooth", ...), numbers or arrays over operating points.
+
+    >>> Gearbox(immersion=0.5).bearing_coefficient
+    0.0015
     """
 
     surroundings: Surroundings = field(default_factory=Surroundings)
@@ -92,7 +95,7 @@ class HeatBalance:
     none was asked for); ``several`` says where it is another state, by more than 0.01 K.
 
     ``lost``: place of a point -> in one line why it has no value, such as an oil too thick for
-    the law of convection. Its numbers are nan; in ``operating`` and ``network`` it stands at
+    the law of convection. Its numbers are nan; in ``operating`` and ``network`` it is at
     40 C (20 K over a hotter reference), because those hold numbers only.
     """
 
@@ -154,6 +157,11 @@ def heat_balance(
     the oil, or the film at the flanks, leaves the range of the viscosity line. Raises for
     impossible arguments, and where no point has a value even with everything but the given nodes
     at 40 C.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> balance = heat_balance(pair, 100.0, 200.0, lubricant("FVA3"), 60e-6)
+    >>> f"{balance.losses.mesh.item():.0f} W"
+    '166 W'
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")
@@ -328,7 +336,7 @@ class _Loop:
 
 
 def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Temperatures:
-    """The body temperatures [K] that the ``nodes`` of the network stand for."""
+    """The body temperatures [K] that the ``nodes`` of the network give."""
     return Temperatures(
         reference=reference,
         pinion_addendum=nodes["pinion_tooth"],

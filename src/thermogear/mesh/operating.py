@@ -35,6 +35,9 @@ class Temperatures:
     ``pinion_body`` and ``wheel_body``: the body nodes of a heat balance
     (:func:`~thermogear.heat.gearbox.body_radius`), through which the radial field then passes;
     None: the field is logarithmic from bore to addendum.
+
+    >>> Temperatures.uniform(353.15, reference=293.15).wheel_bore
+    353.15
     """
 
     reference: float
@@ -117,6 +120,15 @@ class Operating:
     when it is warm. ``flank_temperature`` [K] where the film forms, for a model whose inlet is the
     body's; left out, the mean of both addenda. ``varied``: what of the pair itself differs between
     the points, in place of the pair's and of ``half_backlash``.
+
+    >>> from thermogear import lubricant
+    >>> warm = Temperatures.uniform(353.15, reference=293.15)
+    >>> point = Operating(
+    ...     speed=[100.0], torque=[200.0], lubricant=lubricant("FVA3"), oil_temperature=353.15,
+    ...     temperatures=warm, half_backlash=60e-6,
+    ... )
+    >>> point.speed.shape
+    (1,)
     """
 
     speed: Floats
@@ -186,7 +198,7 @@ class Operating:
         return np.asarray(mean if self.flank_temperature is None else self.flank_temperature, float)
 
     def as_drawn(self) -> Operating:
-        """The same points with bodies as drawn, oil and film as they are: heat moves nothing."""
+        """The same points with the drawing's sizes, oil and film as they are: heat moves nothing."""
         cold = self.temperatures.cold()
         return replace(self, temperatures=cold, flank_temperature=self.flanks)
 
@@ -196,7 +208,7 @@ class Operating:
         A number, or one for each point. Every excess over the reference scales with the gears': a
         bore's with its own addendum's, housing's and oil's with the mean of both addenda. At the
         reference all is as it is drawn.
-        Raises InputError where the gears stand at the reference: they give no proportion. Warns
+        Raises InputError where the gears are at the reference: they give no proportion. Warns
         (ValidityWarning) where a body or the oil lies outside 0 to 1.5 times the gears' excess:
         drawn out to other temperatures it would run away from them.
         """
