@@ -44,7 +44,9 @@ def dial(case: GearCase, cycle: xr.Dataset, progress: Progress = silent) -> xr.D
         return None
     jam = "proportional_jam_temperature" if case.follow == "proportional" else "jam_temperature"
     temperatures = stops(
-        case.stated.temperatures.reference, hot, jam=float(cycle[jam].isel(operating=0))
+        reference=case.stated.temperatures.reference,
+        hot=hot,
+        jam=float(cycle[jam].isel(operating=0)),
     )
     points = GearFamily(case, ("gear_temperature",))
     rows = temperatures[:, None]
@@ -82,7 +84,7 @@ def dial(case: GearCase, cycle: xr.Dataset, progress: Progress = silent) -> xr.D
     )
 
 
-def stops(reference: float, hot: float, *, jam: float) -> Floats:
+def stops(*, reference: float, hot: float, jam: float) -> Floats:
     """The temperatures [K] of a dial, ascending, whole degrees Celsius and ``hot`` itself.
 
     From the ``reference`` at which the gears are as drawn to well beyond ``hot``, and past ``jam``

@@ -220,7 +220,7 @@ def film(asked: Asked) -> Iterator[Answer]:
 
 
 def unrated(case: GearCase, torque: float, oil: float) -> str:
-    """Why scuffing is not rated; empty where it is."""
+    """Why scuffing is not rated at ``torque`` [N m] and ``oil`` [K]; empty where it is."""
     for gear in (case.pair.pinion, case.pair.wheel):
         if not steel(gear.material):
             return f"the rating is for steel on steel, not {gear.material.name}"
