@@ -37,6 +37,9 @@ class FlankTolerances(NamedTuple):
 
     single_pitch f_pT (1995 f_pt), cumulative_pitch F_pT (F_p), profile_slope f_Halpha,
     profile_form f_falpha, profile_total F_alpha.
+
+    >>> f"{1e6 * flank_tolerances(20, 4e-3, grade=5).rounded().single_pitch:.1f} um"
+    '6.5 um'
     """
 
     single_pitch: float
@@ -51,7 +54,12 @@ class FlankTolerances(NamedTuple):
 
 
 class HelixTolerances(NamedTuple):
-    """Tolerances of one gear's flank lines [m]: slope f_Hbeta, form f_fbeta, total F_beta."""
+    """Tolerances of one gear's flank lines [m]: slope f_Hbeta, form f_fbeta, total F_beta.
+
+    >>> helix = helix_tolerances(25, 4e-3, face_width=25e-3, grade=5)
+    >>> f"{1e6 * helix.rounded().slope:.1f} um"
+    '6.5 um'
+    """
 
     slope: float
     form: float
@@ -66,6 +74,9 @@ def round_tolerance(value: ArrayLike) -> Floats:
     """A tolerance [m] to 1 um above 10 um, 0.5 um from 5 to 10 um, 0.1 um below; any shape.
 
     Halves round up. Source: ISO 1328-1:2013, rounding rule.
+
+    >>> [f"{1e6 * t:.1f} um" for t in round_tolerance([11.4e-6, 7.3e-6, 3.21e-6])]
+    ['11.0 um', '7.5 um', '3.2 um']
     """
     size = np.asarray(value, dtype=float) / _UM
     step = np.where(size > 10.0, 1.0, np.where(size >= 5.0, 0.5, 0.1))
@@ -91,6 +102,9 @@ def flank_tolerances(
     (1995: 0..12), ``edition`` out of :data:`EDITIONS`. Raises outside 5 <= z <= 1000, d 5..15000
     mm (1995: 10000), m 0.5..70 mm: nothing is extrapolated. Source: the two editions of ISO
     1328-1 as public gear codes carry them.
+
+    >>> f"{1e6 * flank_tolerances(20, 4e-3, grade=5).single_pitch:.2f} um"
+    '6.68 um'
     """
     diameter = teeth * module
     _require(edition, grade, teeth, diameter=diameter, module=module)
@@ -122,6 +136,9 @@ def flank_class(teeth: int, module: float, *, figures: tuple[float, float, float
     ``figures``: f_Halpha, f_falpha, F_alpha [m], signs left aside; each is held against the
     rounded tolerance. None where class 11 is exceeded, or the gear leaves the standard's range;
     ``module`` [m].
+
+    >>> flank_class(20, 4e-3, figures=(5e-6, 7e-6, 9e-6))
+    5
     """
     low, high = _GRADES["2013"]
     for grade in range(low, high + 1):
@@ -143,6 +160,9 @@ def helix_tolerances(
     F_beta = sqrt(f_Hbeta^2 + f_fbeta^2); um and mm, times sqrt(2)^(A - 5).
 
     ``face_width`` b [m] 4..1200 mm; the rest, errors and source as :func:`flank_tolerances`.
+
+    >>> f"{1e6 * helix_tolerances(25, 4e-3, face_width=25e-3, grade=5).slope:.2f} um"
+    '6.25 um'
     """
     diameter = teeth * module
     _require("2013", grade, teeth, diameter=diameter, module=module, face_width=face_width)

@@ -23,12 +23,21 @@ def normal_from_circumferential(circumferential: _Lengths, pair: GearPair) -> _L
     """j_n = j_t cos(alpha_w) [m]: backlash on the operating pitch circle, on the line of action.
 
     Source: ISO 21771-1, spur gears.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * normal_from_circumferential(100e-6, pair):.2f} um"
+    '93.97 um'
     """
     return circumferential * math.cos(pair.operating_pressure_angle)
 
 
 def circumferential_from_normal(normal: float, pair: GearPair) -> float:
-    """j_wt = j_n/cos(alpha_w) [m] on the operating pitch circles. Source: ISO 21771-1."""
+    """j_wt = j_n/cos(alpha_w) [m] on the operating pitch circles. Source: ISO 21771-1.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * circumferential_from_normal(100e-6, pair):.2f} um"
+    '106.42 um'
+    """
     return normal / math.cos(pair.operating_pressure_angle)
 
 
@@ -37,12 +46,21 @@ def radial_from_normal(normal: float, pair: GearPair) -> float:
 
     The slope at the operating distance, j_wt/(2 tan(alpha_w)); :func:`normal_from_distance` has
     the curve. Source: ISO 21771-1.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * radial_from_normal(100e-6, pair):.2f} um"
+    '146.19 um'
     """
     return normal / (2.0 * math.sin(pair.operating_pressure_angle))
 
 
 def play_angles(normal: float, pair: GearPair) -> tuple[float, float]:
-    """j_n/r_b [rad] that the pinion turns with the wheel held, and the wheel with the pinion."""
+    """j_n/r_b [rad] that the pinion turns with the wheel held, and the wheel with the pinion.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [round(1e3 * angle, 3) for angle in play_angles(100e-6, pair)]  # mrad
+    [2.66, 1.33]
+    """
     return normal / pair.pinion.base_radius, normal / pair.wheel.base_radius
 
 
@@ -51,6 +69,10 @@ def normal_from_thickness(allowance: float, pair: GearPair) -> float:
 
     E_s is measured along the reference circle: the flank turns by E_s/r, and its normal on the
     line of action moves by r_b E_s/r, at whatever centre distance.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * normal_from_thickness(-50e-6, pair):.2f} um"
+    '46.98 um'
     """
     return -allowance * math.cos(pair.pinion.pressure_angle)
 
@@ -60,6 +82,10 @@ def normal_from_distance(distance: float, pair: GearPair) -> float:
 
     alpha_0 is the operating angle of the mesh without backlash; a smaller distance gives a
     negative value. Derivative: dj_n/da = 2 sin(alpha_w).
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * normal_from_distance(120.1e-3, pair):.2f} um"
+    '68.62 um'
     """
     pinion, wheel = pair.pinion, pair.wheel
     both = pinion.base_radius + wheel.base_radius
@@ -78,7 +104,11 @@ def normal_from_distance(distance: float, pair: GearPair) -> float:
 
 
 class BacklashSpan(NamedTuple):
-    """Normal backlash j_bn [m]: the least, that of the middles of the tolerances, the most."""
+    """Normal backlash j_bn [m]: the least, that of the middles of the tolerances, the most.
+
+    >>> f"{1e6 * BacklashSpan(80e-6, 120e-6, 160e-6).half.middle:.0f} um"
+    '60 um'
+    """
 
     least: float
     middle: float
@@ -105,6 +135,11 @@ def backlash_span(
     ``pinion``, ``wheel``: allowances E_s [m] along the reference circle (one, or lower and upper,
     in any order); ``distance``: deviations [m] of the pair's centre distance. Raises where the
     axes come closer than the base circles. Source: ISO 21771-1, closed by involute geometry.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> span = backlash_span(pinion=(-40e-6,), wheel=(-60e-6,), distance=(0.0,), pair=pair)
+    >>> f"{1e6 * span.middle:.2f} um"
+    '93.97 um'
     """
 
     def total(thickness: float, deviation: float) -> float:

@@ -64,13 +64,21 @@ def least_normal_backlash(*, module: float, centre_distance: float) -> float:
     ``module`` m, ``centre_distance`` a [m]. Range, usual and unconfirmed: ferrous gears in a
     ferrous housing, below 15 m/s at the pitch circle, industrial tolerances. Source: ISO/TR
     10064-2. (AGMA 2002 has it without 2/3.)
+
+    >>> f"{1e6 * least_normal_backlash(module=4e-3, centre_distance=120e-3):.0f} um"
+    '160 um'
     """
     a, m = centre_distance / _MM, module / _MM
     return 2.0 / 3.0 * (0.06 + 0.0005 * a + 0.03 * m) * _MM
 
 
 def recommended_normal_backlash(pair: GearPair) -> float:
-    """:func:`least_normal_backlash` [m] of a pair."""
+    """:func:`least_normal_backlash` [m] of a pair.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * recommended_normal_backlash(pair):.0f} um"
+    '160 um'
+    """
     return least_normal_backlash(module=pair.pinion.module, centre_distance=pair.centre_distance)
 
 
@@ -79,6 +87,9 @@ def upper_allowance(diameter: float, series: str) -> float:
 
     ``diameter`` d [m] of the reference circle, up to 560 mm; ``series`` out of
     :data:`ALLOWANCES`. Raises beyond. Source: DIN 3967, table, by two transcriptions.
+
+    >>> f"{1e6 * upper_allowance(80e-3, 'cd'):.0f} um"
+    '-70 um'
     """
     if series not in ALLOWANCES:
         raise InputError(
@@ -96,6 +107,9 @@ def thickness_tolerance(diameter: float, number: int) -> float:
 
     ``diameter`` d [m] of the reference circle, up to 1000 mm; ``number`` out of :data:`SERIES`.
     Raises beyond. Source: DIN 3967, table, by two transcriptions.
+
+    >>> f"{1e6 * thickness_tolerance(80e-3, 25):.0f} um"
+    '40 um'
     """
     if number not in SERIES:
         raise InputError(
@@ -109,6 +123,9 @@ def thickness_limits(diameter: float, tolerance: str) -> tuple[float, float]:
     """Upper and lower tooth-thickness allowance A_sne, A_sni = A_sne - T_sn [m], both <= 0.
 
     ``diameter`` d [m]; ``tolerance`` as drawings write it, "cd25" or "25cd". Source: DIN 3967.
+
+    >>> [round(1e6 * limit) for limit in thickness_limits(80e-3, "cd25")]
+    [-70, -110]
     """
     found = re.fullmatch(r"([a-h]+)(\d+)|(\d+)([a-h]+)", tolerance.strip())
     if not found:
@@ -140,6 +157,9 @@ def centre_distance_tolerance(centre_distance: float, grade: int = 7) -> float:
     ``centre_distance`` a [m] 3..3150 mm, ``grade`` of IT, 6 to 8; 7 is the usual one. Raises
     beyond. The standard's table rounds by hand: 1 um more in six of its places up to 500 mm.
     Source: DIN 3964 (js), ISO 286-1 (IT).
+
+    >>> f"{1e6 * centre_distance_tolerance(120e-3):.1f} um"
+    '17.5 um'
     """
     if grade not in _UNIT_GRADES:
         raise InputError("centre_distance.grade", grade, allowed="6 | 7 | 8")
@@ -161,6 +181,10 @@ def standard_backlash(
 
     ``pinion``, ``wheel``: tolerances as :func:`thickness_limits`; ``grade`` as
     :func:`centre_distance_tolerance`. Raises as these.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [round(1e6 * backlash) for backlash in standard_backlash(pair)]  # um
+    [143, 197, 252]
     """
     play = centre_distance_tolerance(pair.centre_distance, grade)
     return backlash_span(

@@ -26,7 +26,11 @@ _ANGLE_MARGIN = 1.05
 
 
 def sainsot_coefficients(theta_f: float, *, ratio: float) -> dict[str, float]:
-    """L*, M*, P*, Q* for the foot half angle ``theta_f`` [rad] and h = r_f/r_bore."""
+    """L*, M*, P*, Q* for the foot half angle ``theta_f`` [rad] and h = r_f/r_bore.
+
+    >>> f"{sainsot_coefficients(0.1, ratio=3.0)['L']:.3f}"
+    '6.903'
+    """
     return {
         name: a / theta_f**2 + b * ratio**2 + c * ratio / theta_f + d / theta_f + e * ratio + f
         for name, (a, b, c, d, e, f) in SAINSOT.items()
@@ -49,6 +53,10 @@ def sainsot_compliance(
     1.4 <= h <= 7 or 0.01 <= theta_f <= 0.12, the ranges commonly quoted, by more than 5 % of
     the angle. Neighbouring teeth are not coupled.
     Source: Sainsot, Velex & Duverger 2004, J. Mech. Des. 126, 748.
+
+    >>> gear = Gear(40, 4e-3, bore_radius=20e-3)
+    >>> f"{1e9 * sainsot_compliance(gear, math.tan(math.radians(20))):.3f} um/kN"
+    '1.490 um/kN'
     """
     theta_f, ratio = gear.root_half_angle, gear.root_radius / gear.bore_radius
     if not (

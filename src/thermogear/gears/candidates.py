@@ -34,6 +34,10 @@ def mesh_points(
     each side of the path. Pair j of period N joins pinion tooth N - j. Back flanks run against
     it: s^c = K - s_j, K = 2 s_C + p_b/2 + r_b1 psi_1 - r_b2 psi_2, and join the wheel tooth that
     enters next.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> mesh_points(pair, [0.0, 0.5]).s.shape
+    (2, 4)
     """
     phi = np.atleast_1d(np.asarray(phase, dtype=float))
     if phi.ndim != 1 or not np.all(np.isfinite(phi)):

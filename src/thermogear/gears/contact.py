@@ -16,7 +16,12 @@ Floats = NDArray[np.float64]
 
 
 def path_of_contact(pair: GearPair, count: int = 201) -> Floats:
-    """``count`` positions s [m] from A to E, ends included."""
+    """``count`` positions s [m] from A to E, ends included.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> (1e3 * path_of_contact(pair, 3)).round(2)
+    array([ 3.56, 13.22, 22.87])
+    """
     return np.linspace(pair.path.a, pair.path.e, count)
 
 
@@ -27,6 +32,10 @@ def film_points(pair: GearPair) -> Floats:
     """s [m] of :data:`FILM_POINTS`, where ISO/TS 6336-22 asks for the film.
 
     AB and DE lie in the middle of A-B and D-E.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> (1e3 * film_points(pair)).round(1)
+    array([ 3.6,  7.3, 11.1, 13.7, 15.4, 19.1, 22.9])
     """
     a, b, c, d, e = pair.path
     return np.array([a, 0.5 * (a + b), b, c, d, 0.5 * (d + e), e])
@@ -37,6 +46,11 @@ def pair_positions(pair: GearPair, phase: ArrayLike) -> Floats:
 
     s_j = s_A + (phi mod 1 + j) p_b, j = 0 .. ceil(contact ratio) - 1.
     phase: in periods, any shape (...). Returns (..., pairs); nan where the pair has left at E.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> (1e3 * pair_positions(pair, [0.0, 0.8])).round(2)
+    array([[ 3.56, 15.37],
+           [13.01,   nan]])
     """
     phi = np.asarray(phase, dtype=float) % 1.0
     ranks = np.arange(int(np.ceil(pair.contact_ratio - 1e-12)))
@@ -49,6 +63,10 @@ def mirror_position(pair: GearPair) -> float:
 
     Half the difference of the tooth thicknesses on the rolling circles moves it off the
     standard pair's 2 s_C + p_b/2; backlash is shared evenly between both gears.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(20, 4e-3))
+    >>> f"{mirror_position(pair) - 2.0 * pair.path.c:.6f} m, {pair.base_pitch / 2:.6f} m"
+    '0.005904 m, 0.005904 m'
     """
     (r1, r2), p, w = pair.operating_radii, pair.pinion, pair.wheel
     thicker = p.base_radius * float(p.half_thickness_angle(r1)) - w.base_radius * float(
@@ -65,25 +83,44 @@ def back_flank_position(pair: GearPair, s: ArrayLike) -> Floats:
     on the line of centres touches at the same distance on both lines, r_b1 psi_1 past the
     pitch point; equal tooth thickness on the rolling circles leaves 2 s_C + p_b/2 - s.
     Returned in [s_A, s_A + p_b), the shape of ``s``.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(20, 4e-3))
+    >>> f"{1e3 * back_flank_position(pair, pair.path.c):.2f} mm"
+    '7.78 mm'
     """
     mirrored = mirror_position(pair) - np.asarray(s, dtype=float)
     return np.asarray(pair.path.a + np.mod(mirrored - pair.path.a, pair.base_pitch))
 
 
 def curvature_radii(pair: GearPair, s: ArrayLike) -> tuple[Floats, Floats]:
-    """(rho_1, rho_2) = (s, N1N2 - s) [m]: flank curvature radii at ``s`` [m]."""
+    """(rho_1, rho_2) = (s, N1N2 - s) [m]: flank curvature radii at ``s`` [m].
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [f"{1e3 * rho:.2f} mm" for rho in curvature_radii(pair, pair.path.c)]
+    ['13.68 mm', '27.36 mm']
+    """
     first = np.asarray(s, dtype=float)
     return first, pair.line_of_action - first
 
 
 def flank_radii(pair: GearPair, s: ArrayLike) -> tuple[Floats, Floats]:
-    """(r_1, r_2) [m]: distances of the contact point at ``s`` [m] from the two gear centres."""
+    """(r_1, r_2) [m]: distances of the contact point at ``s`` [m] from the two gear centres.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [f"{1e3 * radius:.1f} mm" for radius in flank_radii(pair, pair.path.c)]
+    ['40.0 mm', '80.0 mm']
+    """
     rho1, rho2 = curvature_radii(pair, s)
     return np.hypot(pair.pinion.base_radius, rho1), np.hypot(pair.wheel.base_radius, rho2)
 
 
 def reduced_radius(pair: GearPair, s: ArrayLike) -> Floats:
-    """rho* = rho_1 rho_2/(rho_1 + rho_2) [m] at ``s`` [m]; 0 at the tangent points."""
+    """rho* = rho_1 rho_2/(rho_1 + rho_2) [m] at ``s`` [m]; 0 at the tangent points.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e3 * reduced_radius(pair, pair.path.c):.2f} mm"
+    '9.12 mm'
+    """
     rho1, rho2 = curvature_radii(pair, s)
     return rho1 * rho2 / pair.line_of_action
 
@@ -92,6 +129,10 @@ def rolling_velocities(pair: GearPair, speed: ArrayLike, s: ArrayLike) -> tuple[
     """(v_1, v_2) = (omega_1 rho_1, omega_2 rho_2) [m/s]: flank velocities past the contact.
 
     speed: pinion speed omega_1 [rad/s]; s: position [m]. Equal at the pitch point.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [f"{v:.2f} m/s" for v in rolling_velocities(pair, 100.0, pair.path.c)]
+    ['1.37 m/s', '1.37 m/s']
     """
     rho1, rho2 = curvature_radii(pair, s)
     omega = np.asarray(speed, dtype=float)
@@ -102,19 +143,33 @@ def sliding_velocity(pair: GearPair, speed: ArrayLike, s: ArrayLike) -> Floats:
     """v_1 - v_2 = (omega_1 + omega_2)(s - s_C) [m/s], signed; exactly 0 at the pitch point.
 
     speed: pinion speed [rad/s]; s: position [m].
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{sliding_velocity(pair, 100.0, pair.path.c + 5e-3):.2f} m/s"
+    '0.75 m/s'
     """
     omega = np.asarray(speed, dtype=float)
     return omega * (1.0 + 1.0 / pair.ratio) * (np.asarray(s, dtype=float) - pair.path.c)
 
 
 def sum_velocity(pair: GearPair, speed: ArrayLike, s: ArrayLike) -> Floats:
-    """v_1 + v_2 [m/s] at ``s`` [m], pinion speed [rad/s]."""
+    """v_1 + v_2 [m/s] at ``s`` [m], pinion speed [rad/s].
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{sum_velocity(pair, 100.0, pair.path.c):.2f} m/s"
+    '2.74 m/s'
+    """
     v1, v2 = rolling_velocities(pair, speed, s)
     return v1 + v2
 
 
 def entrainment_velocity(pair: GearPair, speed: ArrayLike, s: ArrayLike) -> Floats:
-    """(v_1 + v_2)/2 [m/s] at ``s`` [m], pinion speed [rad/s]."""
+    """(v_1 + v_2)/2 [m/s] at ``s`` [m], pinion speed [rad/s].
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{entrainment_velocity(pair, 100.0, pair.path.c):.2f} m/s"
+    '1.37 m/s'
+    """
     return 0.5 * sum_velocity(pair, speed, s)
 
 
@@ -124,13 +179,21 @@ def reduced_modulus(
     """E* with 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa] (Johnson, eq. 4.24 ff).
 
     modulus: Young's moduli [Pa] > 0, any shapes; E/(2 (1 - nu^2)) for equal materials.
+
+    >>> f"{1e-9 * reduced_modulus(210e9, 0.3, 210e9, 0.3):.1f} GPa"
+    '115.4 GPa'
     """
     e1, e2 = np.asarray(modulus1, dtype=float), np.asarray(modulus2, dtype=float)
     return 1.0 / ((1.0 - poisson1**2) / e1 + (1.0 - poisson2**2) / e2)
 
 
 def pair_reduced_modulus(pair: GearPair) -> Floats:
-    """E* [Pa] of the pair's two materials at the reference temperature."""
+    """E* [Pa] of the pair's two materials at the reference temperature.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e-9 * pair_reduced_modulus(pair):.1f} GPa"
+    '113.2 GPa'
+    """
     p, w = pair.pinion.material, pair.wheel.material
     return reduced_modulus(p.youngs_modulus, p.poisson_ratio, w.youngs_modulus, w.poisson_ratio)
 
@@ -141,6 +204,9 @@ def hertz_half_width(line_load: ArrayLike, radius: ArrayLike, modulus: ArrayLike
     line_load: w [N/m] >= 0, of this tooth pair; radius: rho* [m]; modulus: E* [Pa] of
     :func:`reduced_modulus`. For equal materials B = sqrt(8 w rho* (1 - nu^2)/(pi E)).
     Zero load or radius gives 0. Source: Johnson, Contact Mechanics, eq. 4.43.
+
+    >>> f"{1e6 * hertz_half_width(200e3, 10e-3, 115e9):.1f} um"
+    '148.8 um'
     """
     w, rho = np.asarray(line_load, dtype=float), np.asarray(radius, dtype=float)
     return np.asarray(np.sqrt(4.0 * w * rho / (np.pi * np.asarray(modulus, dtype=float))))
@@ -151,6 +217,9 @@ def hertz_pressure(line_load: ArrayLike, radius: ArrayLike, modulus: ArrayLike) 
 
     Arguments as :func:`hertz_half_width`. Zero load gives 0; a loaded contact of zero radius
     (a tangent point) gives inf. Source: Johnson, eq. 4.45.
+
+    >>> f"{1e-6 * hertz_pressure(200e3, 10e-3, 115e9):.0f} MPa"
+    '856 MPa'
     """
     w, rho, modulus_ = np.broadcast_arrays(
         np.asarray(line_load, dtype=float),

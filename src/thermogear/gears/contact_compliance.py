@@ -24,6 +24,9 @@ def yang_sun_stiffness(modulus: ArrayLike, face_width: ArrayLike) -> Floats:
     modulus: E* [Pa] with 1/E* = sum (1 - nu_i^2)/E_i; face_width: b [m]. For equal materials
     pi E b/(4 (1 - nu^2)). Independent of load and position.
     Source: Yang & Sun 1985, J. Mech. Trans. Autom. 107, 529.
+
+    >>> f"{1e-9 * yang_sun_stiffness(115e9, 20e-3):.2f} GN/m"
+    '3.61 GN/m'
     """
     return np.asarray(0.5 * np.pi * np.asarray(modulus) * np.asarray(face_width), dtype=float)
 
@@ -51,6 +54,12 @@ def weber_approach(
     this gear; face_width: b [m]. The pair's approach is the sum over its two teeth. Any shapes;
     zero load gives 0 (F ln a -> 0). Plane strain near the contact.
     Source: Weber & Banaschek 1953; the stresses under the line contact Johnson, eq. 4.46.
+
+    >>> approach = weber_approach(
+    ...     4e3, depth=4e-3, half_width=0.15e-3, modulus=210e9, poisson=0.3, face_width=20e-3
+    ... )
+    >>> f"{1e6 * approach:.2f} um"
+    '2.08 um'
     """
     f, a = np.asarray(force, dtype=float), np.asarray(half_width, dtype=float)
     loaded = f > 0.0
@@ -68,6 +77,9 @@ def palmgren_approach(force: ArrayLike, modulus: ArrayLike, face_width: ArrayLik
     force: F [N] >= 0; modulus: E* [Pa]; face_width: b [m]. For steel on steel the familiar
     3.84e-5 F^0.9/b^0.8 (N, mm). Zero load gives 0. Empirical, for bearing rollers.
     Source: Palmgren 1959, Ball and Roller Bearing Engineering.
+
+    >>> f"{1e6 * palmgren_approach(4e3, 115e9, 20e-3):.2f} um"
+    '6.02 um'
     """
     f = np.asarray(force, dtype=float)
     scale = (1.0 / (np.pi * np.asarray(modulus, dtype=float))) ** PALMGREN_EXPONENT

@@ -36,7 +36,12 @@ class ContactPoint(NamedTuple):
 
 
 def off_path(pair: GearPair, s: Floats) -> tuple[Flags, Flags]:
-    """(s < s_A, s > s_E), rounding aside: where the wheel's, the pinion's tip corner touches."""
+    """(s < s_A, s > s_E), rounding aside: where the wheel's, the pinion's tip corner touches.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [flag.tolist() for flag in off_path(pair, np.array([pair.path.c, pair.path.e + 1e-3]))]
+    [[False, False], [False, True]]
+    """
     slack = 1e-12 * pair.base_pitch
     return s < pair.path.a - slack, s > pair.path.e + slack
 
@@ -48,6 +53,11 @@ def pinion_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Float
     whose string has turned by (s - rho)/r_b1. Returns (string length on the wheel, advance along
     the line of action), both [m], any shape that broadcasts; the advance is 0 for rho = s and
     grows with the square of the distance.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> rho, advance = pinion_point(pair, pair.path.c, rho=pair.path.c)
+    >>> f"{1e3 * rho:.2f} mm, {1e6 * advance:.2f} um"
+    '27.36 mm, 0.00 um'
     """
     r1, r2, length = pair.pinion.base_radius, pair.wheel.base_radius, pair.line_of_action
     s_, rho_ = np.asarray(s, dtype=float), np.asarray(rho, dtype=float)
@@ -63,6 +73,12 @@ def wheel_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats
     """:func:`pinion_point` with the gears exchanged: a point of the wheel's flank.
 
     Returns (string length on the pinion, advance), both [m].
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> s = pair.path.c
+    >>> rho, advance = wheel_point(pair, s, rho=pair.line_of_action - s)
+    >>> f"{1e3 * rho:.2f} mm, {1e6 * advance:.2f} um"
+    '13.68 mm, 0.00 um'
     """
     r1, r2, length = pair.pinion.base_radius, pair.wheel.base_radius, pair.line_of_action
     s_, rho_ = np.asarray(s, dtype=float), np.asarray(rho, dtype=float)
@@ -74,7 +90,12 @@ def wheel_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Floats
 
 
 def flank_ends(pair: GearPair) -> tuple[tuple[float, float], tuple[float, float]]:
-    """String lengths [m] of form circle and tip, of pinion and wheel."""
+    """String lengths [m] of form circle and tip, of pinion and wheel.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e3 * flank_ends(pair)[0][1]:.2f} mm"
+    '22.87 mm'
+    """
     return (
         (pair.pinion.base_radius * pair.pinion.junction[1], pair.path.e),
         (pair.wheel.base_radius * pair.wheel.junction[1], pair.line_of_action - pair.path.a),
@@ -88,6 +109,10 @@ def contact_point(pair: GearPair, s: ArrayLike, extended: bool = True) -> Contac
     turned (s - s_E)/r_b1 further, on the wheel's flank; s < A: the wheel's tip corner on the
     pinion's. The gap grows from 0 at the path's ends. ``extended`` False: inf off the path.
     Any shape.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * contact_point(pair, pair.path.e + 1e-3).gap:.1f} um"
+    '18.9 um'
     """
     shape = np.shape(s)
     s_ = np.atleast_1d(np.asarray(s, dtype=float))

@@ -54,7 +54,12 @@ class Contacts(NamedTuple):
 
 
 def active_profile(pair: GearPair, name: str) -> tuple[float, float, float]:
-    """rho [m] of the named gear at the start of contact, the pitch point and the tip."""
+    """rho [m] of the named gear at the start of contact, the pitch point and the tip.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [f"{1e3 * rho:.2f} mm" for rho in active_profile(pair, "pinion")]
+    ['3.56 mm', '13.68 mm', '22.87 mm']
+    """
     path, length = pair.path, pair.line_of_action
     if name == "pinion":
         return path.a, path.c, path.e
@@ -112,6 +117,11 @@ class Relief(FlankShape):
     amount: at the very tip (at the start of active profile) [m], >= 0; length: how far it
     reaches from there [m], measured along the line of action like the path of contact; shape:
     "linear" C x or "parabolic" C x^2 with x from 0 at its start to 1.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> relief = Relief("pinion", amount=20e-6, length=4e-3)
+    >>> (1e6 * relief.taken_off(pair, pair.path.e - np.array([0.0, 2e-3, 4e-3]))).round(1)
+    array([20., 10.,  0.])
     """
 
     gear: str
@@ -185,6 +195,11 @@ class PressureAngleError(FlankShape):
 
     Its base radius is r_b (1 - tan(alpha) error): S = -tan(alpha) error (rho - rho_C), 0 at the
     pitch point. A larger pressure angle takes material off the tip.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> error = PressureAngleError("pinion", 1e-3)
+    >>> f"{1e6 * error.taken_off(pair, np.array(pair.path.c + 5e-3)):.2f} um"
+    '1.82 um'
     """
 
     gear: str
@@ -208,6 +223,11 @@ class FlankTable(FlankShape):
 
     radius [m]: rising, shape (n,); added [m]: S, shape (..., n), leading axes are operating
     points (a thermal field each). Linear between the points, constant beyond them.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> worn = FlankTable("pinion", radius=[38e-3, 44e-3], added=[-10e-6, -10e-6])
+    >>> f"{1e6 * worn.taken_off(pair, np.array(pair.path.c)):.1f} um"
+    '10.0 um'
     """
 
     gear: str

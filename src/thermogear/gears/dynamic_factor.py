@@ -52,6 +52,10 @@ def reduced_mass(pair: GearPair) -> float:
     m_red = (pi/8)(d_m1/d_b1)^2 d_m1^2/[1/((1 - q1^4) rho1) + 1/((1 - q2^4) rho2 u^2)],
     d_m = (d_a + d_f)/2, q = bore/d_m. The gear with fewer teeth is 1. Source: ISO 6336-1:2006,
     eq. 30 (discs; the wheel as the pinion's size by u).
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{reduced_mass(pair):.2f} kg/m"
+    '16.54 kg/m'
     """
     first, second = pinion_first(pair)
     mean = [gear.tip_radius + gear.root_radius for gear in (first, second)]
@@ -69,6 +73,9 @@ def resonance_speed(stiffness: ArrayLike, mass: ArrayLike, *, teeth: int) -> Flo
 
     ``stiffness`` c_gamma_alpha [N/m^2], ``mass`` m_red [kg/m], ``teeth`` z1. Any shape.
     Source: ISO 6336-1:2006, eq. 6.
+
+    >>> f"{resonance_speed(20e9, 8.0, teeth=20):.0f} rad/s"
+    '2500 rad/s'
     """
     return np.asarray(np.sqrt(np.asarray(stiffness, dtype=float) / np.asarray(mass)) / teeth)
 
@@ -77,6 +84,9 @@ def resonance_edge(line_load: ArrayLike) -> Floats:
     """N_S where the main resonance begins: 0.85, below 100 N/mm 0.5 + 0.35 sqrt(w/100).
 
     ``line_load`` w = F_t K_A/b [N/m], any shape. Source: ISO 6336-1:2006, eq. 11, 12.
+
+    >>> [f"{edge:.3f}" for edge in resonance_edge([25e3, 200e3])]
+    ['0.675', '0.850']
     """
     low = np.minimum(np.asarray(line_load, dtype=float) / _LOW_LOAD, 1.0)
     return np.asarray(0.5 + 0.35 * np.sqrt(low))
@@ -89,6 +99,9 @@ def branch_factors(contact_ratio: float) -> tuple[float, ...]:
     (0.57 - 0.05 e)/(e - 1.44), 0.47, 0.12/(e - 1.74). C_v7: 0.75 to 1.5, 0.125 sin(pi(e - 2)) +
     0.875 to 2.5, 1 beyond. At 2 the source steps, by 9 % at most. Raises below 1.
     Source: ISO 6336-1:2006, table 8.
+
+    >>> branch_factors(1.5)
+    (0.32, 0.34, 0.23, 0.9, 0.47, 0.47, 0.75)
     """
     e = contact_ratio
     if not e >= 1.0:
@@ -107,6 +120,9 @@ def running_in_relief(endurance: float) -> float:
     """C_ay = (s_Hlim/97 - 18.45)^2/18 + 1.5 um [m]: tip relief that running in makes.
 
     ``endurance`` s_Hlim [Pa] (N/mm^2 in the formula). Source: ISO 6336-1:2006, eq. 17.
+
+    >>> f"{1e6 * running_in_relief(1500e6):.2f} um"
+    '2.00 um'
     """
     return ((endurance * 1e-6 / 97.0 - 18.45) ** 2 / 18.0 + 1.5) * 1e-6
 
@@ -123,6 +139,10 @@ def running_in(
     ``deviation`` f [m], ``endurance`` s_Hlim [Pa] of the softer gear (N/mm^2 in the formula),
     ``pitch_speed`` v [m/s], any shape, ``surface`` out of :data:`SURFACES`. Never more than f.
     Source: ISO 6336-1:2006, clause 8.
+
+    >>> less = running_in(10e-6, endurance=1500e6, pitch_speed=5.0, surface="case-hardened")
+    >>> f"{1e6 * less:.2f} um"
+    '0.75 um'
     """
     if surface not in SURFACES:
         raise InputError(
@@ -151,6 +171,12 @@ def factor_of_resonance(
 
     ``ratio`` N >= 0, ``pitch``, ``form``, ``relief``: B_p, B_f, B_k, ``edge`` N_S, any shapes;
     ``contact_ratio`` eps_gamma. Source: ISO 6336-1:2006, eq. 13-22.
+
+    >>> factor, branch = factor_of_resonance(
+    ...     0.5, pitch=0.2, form=0.2, relief=1.0, contact_ratio=1.6
+    ... )
+    >>> f"{factor:.3f}, {BRANCHES[branch]}"
+    '1.181, subcritical'
     """
     n, b_p, b_f, b_k = (np.asarray(a, dtype=float) for a in (ratio, pitch, form, relief))
     c1, c2, c3, c4, c5, c6, c7 = branch_factors(contact_ratio)
@@ -190,6 +216,10 @@ def dynamic_factor(
     :func:`~thermogear.gears.iso6336.iso6336_stiffness`, which warns outside its shifts. Raises
     without load or for a grade that does not exist. Below a contact ratio of 1.2 c' is up to 10 %
     too high. Source: ISO 6336-1:2006, method B, clause 6.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{dynamic_factor(pair, 200.0, 100.0, grade=7).factor:.3f}"
+    '1.039'
     """
     moment, turning = np.asarray(torque, dtype=float), np.asarray(speed, dtype=float)
     if not np.all(np.isfinite(moment) & (moment > 0.0)):
@@ -247,6 +277,10 @@ def dynamic_factor_c(
     ``torque`` [N m] and ``speed`` [rad/s] of ``pair.pinion``, any shapes; ``grade`` 3..8;
     ``application`` K_A. Raises for other grades, 50 and more teeth of the smaller gear, and X > 3,
     where X K_3 has begun to fall. Source: ISO 6336-1:2006, method C, as IACS UR M56 prints it.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{dynamic_factor_c(pair, 200.0, 100.0, grade=7):.3f}"
+    '1.164'
     """
     if grade not in _K1:
         raise InputError("accuracy.grade", grade, allowed="3..8", why="the range of method C")

@@ -36,6 +36,9 @@ def involute(angle: ArrayLike) -> Floats:
     angle: pressure angle [rad], |alpha| < pi/2, any shape. Below 0.1 rad the power series
     replaces the difference, which would lose its leading digits; inv(0) = 0.
     Source: ISO 21771-1.
+
+    >>> f"{involute(math.radians(20)):.6f}"
+    '0.014904'
     """
     alpha = np.asarray(angle, dtype=float)
     a2 = alpha * alpha
@@ -53,6 +56,9 @@ def inverse_involute(value: ArrayLike) -> Floats:
     Newton's rule on inv(alpha) = value, d inv/d alpha = tan^2(alpha), started from the cube
     root's series for small values and from tan(alpha) = value + pi/2 for large ones.
     Any shape, odd in ``value``; 0 gives 0.
+
+    >>> f"{np.degrees(inverse_involute(0.014904)):.3f} deg"
+    '20.000 deg'
     """
     inv = np.asarray(value, dtype=float)
     size = np.abs(inv)
@@ -68,13 +74,22 @@ def inverse_involute(value: ArrayLike) -> Floats:
 
 
 def millimetres(value: float) -> str:
-    """A length [m] as a user reads it."""
+    """A length [m] as a user reads it.
+
+    >>> millimetres(0.0125)
+    '12.5 mm'
+    """
     return f"{1e3 * value:.6g} mm"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rack:
-    """Basic rack profile [modules]: addendum h_aP, dedendum h_fP, tip radius rho_fP (ISO 53)."""
+    """Basic rack profile [modules]: addendum h_aP, dedendum h_fP, tip radius rho_fP (ISO 53).
+
+    >>> rack = Rack(addendum=1.0, dedendum=1.25, fillet_radius=0.38)
+    >>> f"{rack.largest_fillet_radius(math.radians(20)):.3f} modules"
+    '0.472 modules'
+    """
 
     addendum: float = 1.0
     dedendum: float = 1.25
@@ -111,6 +126,10 @@ class Gear:
     and ``bore_radius`` 0.4 pitch radii (our choices). ``rack`` left out is that of ISO 53, with a
     full round where a steep pressure angle leaves no room for its fillet. An undercut tooth is
     refused unless ``allow_undercut``.
+
+    >>> gear = Gear(20, 4e-3)
+    >>> [f"{1e3 * r:.3f} mm" for r in (gear.pitch_radius, gear.base_radius, gear.tip_radius)]
+    ['40.000 mm', '37.588 mm', '44.000 mm']
     """
 
     teeth: int

@@ -49,6 +49,10 @@ def profile_figures(position: ArrayLike, *, added: ArrayLike) -> ProfileFigures:
     tip, at least three points; added: deviation [m] there, > 0 outside. All that is given is the
     evaluated length. Raises for fewer points, or positions that do not rise.
     Source: ISO 1328-1:2013, profile evaluation.
+
+    >>> figures = profile_figures([0.0, 5e-3, 10e-3], added=[-3e-6, 0.0, 3e-6])
+    >>> [f"{1e6 * size:.1f} um" for size in figures]
+    ['6.0 um', '0.0 um', '6.0 um']
     """
     x, trace = np.asarray(position, dtype=float), np.asarray(added, dtype=float)
     if x.ndim != 1 or x.size < 3 or x.shape != trace.shape or not np.all(np.diff(x) > 0.0):
@@ -69,6 +73,10 @@ class WavyProfile(FlankShape):
     along the line of action; wave: sin(2 pi ``waves`` x + ``phase``) less its own mean line,
     with ``form`` peak to peak. So :func:`profile_figures` gives back ``slope`` f_Halpha [m] and
     ``form`` f_falpha [m] >= 0; ``phase`` [rad]. > 0 is material outside; constant beyond.
+
+    >>> flank = WavyProfile("pinion", slope=6e-6, form=0.0)
+    >>> (1e6 * flank.added([0.0, 0.5, 1.0])).round(3)
+    array([-3.,  0.,  3.])
     """
 
     gear: str
@@ -131,6 +139,10 @@ def hand_over(pair: GearPair, *, pinion: float, wheel: float) -> float:
     |f_Halpha1 - f_Halpha2| p_b/g_a: along the path the pinion's profile runs from root to tip and
     the wheel's from tip to root, so equal slopes cancel. The light mesh runs on a saw-tooth of
     this height peak to peak. ``pinion``, ``wheel``: profile slopes [m], > 0 outside at the tip.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * hand_over(pair, pinion=6e-6, wheel=0.0):.2f} um"
+    '3.67 um'
     """
     return abs(pinion - wheel) / pair.contact_ratio
 
@@ -148,6 +160,10 @@ def graded_flanks(
     it. Raises as :func:`~thermogear.gears.accuracy.flank_tolerances`.
     Source: profile of public PHM-BGU gear models (slope, sine of n waves, 10 % scatter); the
     tolerance as a bound, the sign and the evaluated form are ours.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [(flank.gear, flank.flank) for flank in graded_flanks(pair, 6, seed=1)][:2]
+    [('pinion', 'drive'), ('pinion', 'back')]
     """
     rng = np.random.default_rng(seed)
     found = []

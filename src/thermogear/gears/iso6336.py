@@ -55,6 +55,10 @@ def theoretical_single_stiffness(
     q' = C1 + C2/z1 + C3/z2 + C4 x1 + C5 x1/z1 + C6 x2 + C7 x2/z2 + C8 x1^2 + C9 x2^2 in
     mm um/N, z the (virtual) numbers of teeth, x the profile shifts. Any shapes.
     Range: x1 >= x2, -0.5 <= x1 + x2 <= 2.0. Source: ISO 6336-1:2006, eq. 82.
+
+    >>> c = theoretical_single_stiffness(teeth1=20, teeth2=40, shift1=0.0, shift2=0.0)
+    >>> f"{1e-9 * c:.2f} N/(mm um)"
+    '16.27 N/(mm um)'
     """
     z1, z2 = np.asarray(teeth1, dtype=float), np.asarray(teeth2, dtype=float)
     x1, x2 = np.asarray(shift1, dtype=float), np.asarray(shift2, dtype=float)
@@ -68,6 +72,9 @@ def virtual_teeth(teeth: ArrayLike, *, helix_angle: float, pressure_angle: float
     """z_n = z/(cos^2(beta_b) cos(beta)), sin(beta_b) = sin(beta) cos(alpha_n) (ISO 21771-1).
 
     Angles in [rad]; z itself for a spur gear.
+
+    >>> f"{virtual_teeth(20, helix_angle=0.3, pressure_angle=math.radians(20)):.2f}"
+    '22.68'
     """
     base = np.arcsin(np.sin(helix_angle) * np.cos(pressure_angle))
     return np.asarray(np.asarray(teeth, dtype=float) / (np.cos(base) ** 2 * np.cos(helix_angle)))
@@ -87,6 +94,10 @@ def single_stiffness(
 
     dedendum: h_fP in modules (the mean of both gears'); pressure_angle, helix_angle [rad];
     blank_factor: C_R, 1 for solid discs. Source: ISO 6336-1:2006, eq. 81, 85, 88.
+
+    >>> c = single_stiffness(18e9, dedendum=1.25, pressure_angle=math.radians(20))
+    >>> f"{1e-9 * c:.2f} N/(mm um)"
+    '14.04 N/(mm um)'
     """
     rack = 1.0 + 0.5 * (1.2 - dedendum)
     rack *= 1.0 - 0.02 * (20.0 - np.degrees(pressure_angle))
@@ -99,13 +110,21 @@ def blank_factor(*, web: float, rim: float) -> float:
 
     ``web``: b_s/b, 0.2..1.2; ``rim``: s_R/m, at least 1, both held at the ends of their range.
     Source: ISO 6336-1:2006, method B, clause 9.
+
+    >>> f"{blank_factor(web=0.5, rim=5.0):.3f}"
+    '0.949'
     """
     ratio, thickness = min(max(web, 0.2), 1.2), max(rim, 1.0)
     return 1.0 + math.log(ratio) / (5.0 * math.exp(thickness / 5.0))
 
 
 def pinion_first(pair: GearPair) -> tuple[Gear, Gear]:
-    """The source's gear 1 and 2: fewer teeth first, of equally many the larger shift."""
+    """The source's gear 1 and 2: fewer teeth first, of equally many the larger shift.
+
+    >>> pair = GearPair(Gear(40, 4e-3), Gear(20, 4e-3))
+    >>> [gear.teeth for gear in pinion_first(pair)]
+    [20, 40]
+    """
     first, second = sorted(
         (pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift)
     )
@@ -124,6 +143,10 @@ def iso6336_stiffness(
     shift, the only order inside the source's range. So c is continuous in both shifts, and
     exchanging the gears changes nothing. Warns outside the source's shifts, x1 >= x2 and
     -0.5 <= x1 + x2 <= 2. Source: ISO 6336-1:2006, method B, clause 9.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e-9 * iso6336_stiffness(pair, 250e3).mesh:.1f} N/(mm um)"
+    '18.7 N/(mm um)'
     """
     first, second = pinion_first(pair)
     _warn_of_shifts(first, second)

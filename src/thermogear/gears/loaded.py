@@ -94,7 +94,12 @@ def solve_mesh(
     model: LoadedModel | None = None,
     flank: str = "drive",
 ) -> LoadedMesh:
-    """The arrays behind :func:`loaded_contact`, which says what they mean."""
+    """The arrays behind :func:`loaded_contact`, which says what they mean.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{solve_mesh(pair, 4e3, [0.0]).force.sum():.3f} N"
+    '4000.000 N'
+    """
     load = np.asarray(normal_force, dtype=float)
     if not np.all(np.isfinite(load) & (load >= 0.0)):
         raise InputError("normal_force", f"{load} N", allowed=">= 0, finite")
@@ -164,6 +169,11 @@ def mesh_force(
     Other arguments as :func:`loaded_contact`; ``model`` defaults to the "rim" body, the reading
     of a lumped model whose inertia takes up the hub's torsion. Returns (F [N], dF/d delta
     [N/m]) of shape (*lead, position); both 0 before the first pair touches.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> force, stiffness = mesh_force(pair, 10e-6, [0.0, 0.5])
+    >>> f"{force[0] / force[1]:.2f}"
+    '0.97'
     """
     delta = np.asarray(deflection, dtype=float)
     if not np.all(np.isfinite(delta)):
@@ -256,6 +266,11 @@ def loaded_contact(
     stand without such a check. Raises InputError for loads < 0 and deviations that do not fit
     the gears.
     Source: Weber & Banaschek 1953; ring body by Fourier series; extended contact exact.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> contact = loaded_contact(pair, 4e3, 32)
+    >>> f"{1e-6 * contact.mean_stiffness:.0f} N/um"
+    '336 N/um'
     """
     import xarray as xr
 

@@ -139,6 +139,10 @@ def roll_path(
     """Roll path rho [m] of points on a flank, given by ``diameter`` d [m] or roll ``angle`` [rad].
 
     rho = sqrt(d^2/4 - r_b^2) = r_b * angle; nan below the base circle. Shape of what is given.
+
+    >>> gear = Gear(20, 4e-3)
+    >>> f"{1e3 * roll_path(gear, diameter=80e-3):.2f} mm"
+    '13.68 mm'
     """
     if angle is not None:
         return np.asarray(gear.base_radius * np.asarray(angle, dtype=float))
@@ -154,6 +158,10 @@ def smoothing(x: Floats, *, at: Floats, cutoff: float) -> Floats:
     a line passes unchanged up to the ends, where a plain Gaussian would need a run-in. ``x`` [m]
     rising, its gaps at most half a cut-off; ``at`` [m] where the filtered trace is asked for.
     Source: ISO 16610-21 (weights), -31 (ends).
+
+    >>> x = np.linspace(0.0, 8e-3, 41)
+    >>> f"{smoothing(x, at=x[20:21], cutoff=0.8e-3).sum():.3f}"
+    '1.000'
     """
     cells = np.gradient(x)
     away = x[None, :] - at[:, None]
@@ -167,6 +175,10 @@ def noise_of(x: Floats, *, rows: Floats) -> float:
 
     Five neighbours are weighed so that every cubic cancels and white noise keeps its variance;
     the median over all of ``rows`` [m] (trace, point) at ``x`` [m] leaves single outliers out.
+
+    >>> x = np.arange(20) * 0.1e-3
+    >>> f"{1e6 * noise_of(x, rows=(2.0 * x)[None]):.3f} um"
+    '0.000 um'
     """
     near = np.stack([x[k : x.size - 4 + k] for k in range(5)])
     near = (near - near.mean(axis=0)) / np.ptp(near, axis=0)
@@ -185,6 +197,9 @@ def quiet_cutoff(noise: float, *, spacing: float, curvature: float) -> float:
     noise sqrt(3 spacing/(8 sqrt(pi))) s^(-5/2), s = cutoff sqrt(ln 2/2)/pi the filter's width.
     noise [m] standard deviation, spacing [m] of the points, curvature [1/m] over the roll path.
     A bump that bends as much as the two flanks do about their contact would carry by itself.
+
+    >>> f"{1e3 * quiet_cutoff(0.5e-6, spacing=0.02e-3, curvature=50.0):.2f} mm"
+    '0.28 mm'
     """
     if noise <= 0.0:
         return 0.0

@@ -41,6 +41,9 @@ class LoadedModel:
     body: reading of the hub, see :data:`BODIES`; contact: see :data:`CONTACT_LAWS`; start: of
     the tooth's beam, see :data:`STARTS`; extended: contact on tip corners off the path;
     coupled: a tooth moves under its neighbours' load.
+
+    >>> LoadedModel(contact="palmgren").body
+    'bore_clamped'
     """
 
     body: str = "bore_clamped"
@@ -229,7 +232,11 @@ def _on_flank(gear: Gear, rho: Floats) -> Floats:
 
 
 def flat(values: ArrayLike, *, lead: tuple[int, ...]) -> Floats:
-    """``values`` broadcast to ``lead``, one axis of cases."""
+    """``values`` broadcast to ``lead``, one axis of cases.
+
+    >>> flat(2e9, lead=(3,))
+    array([2.e+09, 2.e+09, 2.e+09])
+    """
     return np.ascontiguousarray(
         np.broadcast_to(np.asarray(values, dtype=float), lead).reshape(-1), dtype=float
     )

@@ -67,6 +67,10 @@ def outline(
     ``deviations``: the shapes of flanks among them that are the gear's in ``pair`` move its flanks;
     along the fillet they fade to nothing at the root circle, because nobody says what they are
     there. ``fineness`` times as many points; all of them lie on the true curves.
+
+    >>> shape = outline(Gear(20, 4e-3))
+    >>> f"{1e3 * shape.radius.max():.2f} mm"
+    '44.00 mm'
     """
     half = _half(gear, fineness)
     limit = math.pi / gear.teeth
@@ -161,6 +165,10 @@ def span_over_teeth(gear: Gear, set_back: float = 0.0, teeth: int | None = None)
 
     ``set_back`` [m] of each flank; ``teeth`` k, left out the one that touches nearest to the middle
     of the involute flank. The jaws touch at sqrt(r_b^2 + (W_k/2)^2). Source: ISO 21771-1.
+
+    >>> span = span_over_teeth(Gear(20, 4e-3))
+    >>> f"{1e3 * span.length:.3f} mm over {span.teeth} teeth"
+    '30.642 mm over 3 teeth'
     """
     thick = 2.0 * (gear.base_radius * gear.base_half_angle - set_back)
     if teeth is None:

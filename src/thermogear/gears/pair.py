@@ -21,6 +21,10 @@ class PathPoints(NamedTuple):
 
     a: contact starts (wheel tip); b: the leading pair leaves as this one stands here;
     c: pitch point; d: the following pair enters; e: contact ends (pinion tip).
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> [round(1e3 * s, 2) for s in pair.path]
+    [3.56, 11.06, 13.68, 15.37, 22.87]
     """
 
     a: float
@@ -36,6 +40,10 @@ class GearPair:
 
     A centre distance above that opens a normal backlash; one below it jams and is refused.
     One gear given twice means two equal ones.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e3 * pair.centre_distance:.1f} mm, contact ratio {pair.contact_ratio:.3f}"
+    '120.0 mm, contact ratio 1.635'
     """
 
     pinion: Gear

@@ -34,7 +34,11 @@ SECOND_CHOICE = (
 
 
 class ModuleAdvice(NamedTuple):
-    """The module of ISO 54 nearest to a given one [m], its series, and whether it is the same."""
+    """The module of ISO 54 nearest to a given one [m], its series, and whether it is the same.
+
+    >>> nearest_module(4e-3).preferred
+    True
+    """
 
     module: float
     series: str
@@ -42,7 +46,11 @@ class ModuleAdvice(NamedTuple):
 
 
 def profile(name: str) -> Rack:
-    """The basic rack ``name`` of ISO 53, or an error that says which there are."""
+    """The basic rack ``name`` of ISO 53, or an error that says which there are.
+
+    >>> profile("A")
+    Rack(addendum=1.0, dedendum=1.25, fillet_radius=0.38)
+    """
     if name not in PROFILES:
         raise InputError(
             "profile", repr(name), allowed=" | ".join(PROFILES), fix=nearest(name, PROFILES)
@@ -55,6 +63,9 @@ def nearest_module(module: float) -> ModuleAdvice:
 
     ``preferred`` where it is the given one: nothing needs to be said then. A diametral pitch, m =
     25.4 mm/DP, mostly is not.
+
+    >>> nearest_module(4.1e-3)
+    ModuleAdvice(module=0.004, series='I', preferred=False)
     """
     bounds.MODULE.require_number("module", module)
     table = [(m, "I") for m in FIRST_CHOICE] + [(m, "II") for m in SECOND_CHOICE]

@@ -62,6 +62,11 @@ def optimise_tip_relief(
     amount and one length; evaluations: at most so many from every start; progress: told those
     so far. Lengths lie between 0.05 base
     pitches and the active profile.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> design = optimise_tip_relief(pair, 4e3, positions=16, symmetric=True, evaluations=20)
+    >>> design.relieved < design.unrelieved
+    True
     """
     if not (np.isfinite(normal_force) and normal_force > 0.0):
         raise InputError("normal_force", f"{normal_force} N", allowed="> 0, finite")

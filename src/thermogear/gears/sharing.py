@@ -34,6 +34,10 @@ def equal_share(pair: GearPair, s: ArrayLike) -> Floats:
 
     1 in single, 1/2 in double contact, 0 off the path; any shape. Shares of the pairs in
     contact sum to 1, except at the very end E, where the leaving pair still counts itself.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> equal_share(pair, [pair.path.a, pair.path.c])
+    array([0.5, 1. ])
     """
     mates, inside = _mates(pair, s)
     reach = mates.shape[0] // 2
@@ -50,6 +54,11 @@ def stiffness_share(
     """Share of a pair at ``s`` [m] in proportion to its textbook stiffness: k/sum k_j.
 
     Perfect flanks, uncoupled pairs. Arguments as :func:`pair_stiffness`; 0 off the path.
+
+    >>> pair = GearPair(Gear(30, 4e-3), Gear(45, 4e-3))
+    >>> share = stiffness_share(pair, pair.path.a + np.array([0.0, pair.base_pitch]))
+    >>> f"{share.sum():.3f}"
+    '1.000'
     """
     mates, inside = _mates(pair, s)
     reach = mates.shape[0] // 2

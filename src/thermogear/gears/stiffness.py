@@ -31,6 +31,9 @@ class Moduli:
 
     A hot gear takes ``tooth`` at its pitch circle's temperature and ``body`` at the body's
     area mean.
+
+    >>> f"{1e-9 * Moduli.of(Gear(20, 4e-3)).tooth:.0f} GPa"
+    '206 GPa'
     """
 
     tooth: ArrayLike
@@ -97,6 +100,11 @@ def pair_compliances(
     Beam integrals by :func:`tooth_compliances` from ``start``, Sainsot's foundation, Yang and
     Sun's contact; the common face width counts for both gears. pinion, wheel: moduli, default
     at the reference temperature. Any shapes that broadcast; nan where ``s`` is nan.
+
+    >>> pair = GearPair(Gear(30, 4e-3), Gear(45, 4e-3))
+    >>> parts = pair_compliances(pair, pair.path.c)
+    >>> f"{1e9 * parts.contact:.3f} um/kN"
+    '0.281 um/kN'
     """
     first = Moduli.of(pair.pinion) if pinion is None else pinion
     second = Moduli.of(pair.wheel) if wheel is None else wheel
@@ -131,6 +139,10 @@ def pair_stiffness(
 
     Arguments as :func:`pair_compliances`. 0 where the pair is out of contact (``s`` nan or
     off the path A..E).
+
+    >>> pair = GearPair(Gear(30, 4e-3), Gear(45, 4e-3))
+    >>> f"{1e-6 * pair_stiffness(pair, pair.path.c):.0f} N/um"
+    '286 N/um'
     """
     s_ = np.asarray(s, dtype=float)
     slack = 1e-9 * pair.base_pitch
@@ -153,6 +165,10 @@ def mesh_stiffness(
 
     k(phi) = sum_j k(s_j),  s_j = s_A + (phi + j) p_b < s_E.
     phase: in periods, any shape; moduli broadcast with it. Jumps where a pair enters or leaves.
+
+    >>> pair = GearPair(Gear(30, 4e-3), Gear(45, 4e-3))
+    >>> (1e-6 * mesh_stiffness(pair, [0.1, 0.8])).round(0)  # N/um, two pairs and one
+    array([493., 286.])
     """
     s = pair_positions(pair, phase)
     # pair by pair, so that the moduli's axes meet the phase's and never the pairs'
@@ -170,6 +186,10 @@ def mesh_figures(
     """Mean and extremes of :func:`mesh_stiffness` with both sides of its jumps included.
 
     The mean is integrated between the jumps by Gauss-Legendre quadrature. Scalar moduli.
+
+    >>> pair = GearPair(Gear(30, 4e-3), Gear(45, 4e-3))
+    >>> f"{1e-6 * mesh_figures(pair).mean:.0f} N/um"
+    '433 N/um'
     """
     length = pair.path.e - pair.path.a
     ratio = length / pair.base_pitch

@@ -60,6 +60,10 @@ def flank_point(gear: Gear, t: ArrayLike) -> FlankPoint:
     beta = t - theta_b.
 
     Any shape.
+
+    >>> gear = Gear(20, 4e-3)
+    >>> f"{1e3 * flank_point(gear, math.tan(math.radians(20))).x:.3f} mm"
+    '3.138 mm'
     """
     return _below_point(gear, gear.pointed_tangent - np.asarray(t, dtype=float))
 
@@ -77,7 +81,11 @@ def _below_point(gear: Gear, short: Floats) -> FlankPoint:
 
 
 def start_angle(gear: Gear, start: str) -> float:
-    """Rack normal angle gamma [rad] of the section where the beam begins; see ``STARTS``."""
+    """Rack normal angle gamma [rad] of the section where the beam begins; see ``STARTS``.
+
+    >>> f"{math.degrees(start_angle(Gear(20, 4e-3), '30-degree')):.1f} deg"
+    '43.8 deg'
+    """
     if start == "root-circle":
         return 0.5 * np.pi
     if start == "30-degree":
@@ -134,6 +142,10 @@ def tooth_compliances(
     elements, as near to a tip of 1e-3 modules as a contact fits.
     Slender-beam theory on a stub: the sum with body and contact is meant.
     Source: Weber 1949; Weber & Banaschek 1953; Yang & Sun 1985.
+
+    >>> parts = tooth_compliances(Gear(20, 4e-3), math.tan(math.radians(20)))
+    >>> f"{1e9 * parts.bending:.2f} um/kN"
+    '0.10 um/kN'
     """
     short = gear.pointed_tangent - np.asarray(t, dtype=float)[..., None]
     if np.any(short < -_NEAREST):
@@ -173,6 +185,10 @@ def unit_compliance(gear: Gear, t: ArrayLike, start: str = "30-degree") -> Float
     A Chebyshev series of degree 48 in the logarithm of the distance from the tooth's point,
     where the compliance is smooth however thin the tip: within 1e-9 of the integrals down to
     tips of 1e-4 modules. ``t`` is clipped to the flank, form circle to tip. Shape of ``t``.
+
+    >>> gear = Gear(20, 4e-3)
+    >>> f"{unit_compliance(gear, math.tan(math.radians(20))):.2f}"
+    '2.24'
     """
     series, (low, high) = _unit_series(gear, start)
     away = gear.pointed_tangent - np.asarray(t, dtype=float)

@@ -62,6 +62,11 @@ def first_touch(points: MeshPoints, deviations: Sequence[Deviation] = ()) -> Tou
     pinion advances, at E the pinion while the wheel falls back, between them both in proportion:
     exchanging the gears changes nothing. Deviations that are no shape of a flank (pitch errors,
     heat) count at the nominal point.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> from thermogear.gears.candidates import mesh_points
+    >>> f"{first_touch(mesh_points(pair, [0.1])).gap.min():.3f} m"
+    '0.000 m'
     """
     contacts = points.contacts
     shapes = [d for d in deviations if isinstance(d, FlankShape) and d.acts_on(contacts.flank)]
