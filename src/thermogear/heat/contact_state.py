@@ -22,6 +22,10 @@ class PitchPoint:
     ``line_load`` whole normal load per face width [N/m], ``sum_speed`` v1 + v2 there [m/s],
     ``reduced_radius`` there [m], ``face_width`` [m]. Numbers, or arrays over operating points
     that broadcast against the contact's other fields (shape (operating, 1)).
+
+    >>> point = PitchPoint(line_load=200e3, sum_speed=5.0, reduced_radius=10e-3, face_width=20e-3)
+    >>> float(point.sum_speed)
+    5.0
     """
 
     line_load: ArrayLike
@@ -52,6 +56,13 @@ class ContactState:
     ``central_film_parameter`` [-], central film over mean Ra, for Doleschel's share;
     ``pressure_viscosity`` alpha [1/Pa]; ``pitch_point`` for laws of mean friction;
     ``lubricant_kind`` the base oil's family.
+
+    >>> state = ContactState(
+    ...     line_load=200e3, speed_1=6.0, speed_2=4.0, reduced_radius=10e-3,
+    ...     pressure=0.9e9, viscosity=0.02, roughness=0.4e-6,
+    ... )
+    >>> f"{state.slide_roll_ratio:.1f}"
+    '0.4'
     """
 
     line_load: ArrayLike

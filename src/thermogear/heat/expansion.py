@@ -65,6 +65,15 @@ class RadialField:
     rising order, such as the nodes of a heat network, through which the field passes; with
     none it is the steady conduction of an annulus. Raises for r_x <= 0, r_x >= r_a, places that
     do not rise from bore to tip, temperatures <= 0 K.
+
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> gear = Gear(20, 4e-3)
+    >>> f"{1e6 * base_circle_growth(gear, field):.2f} um"
+    '43.23 um'
+    >>> f"{1e6 * flank_growth(gear, field, 40e-3):.2f} um"
+    '15.73 um'
     """
 
     bore_radius: float
@@ -299,6 +308,13 @@ def radial_displacement(
 
     Arguments as :func:`annulus_displacement`, ``root_radius`` r_f [m]. At the base circle it is
     the u_b that printed formulas leave undefined. Continuous at r_f.
+
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> u = radial_displacement(field, 40e-3, root_radius=35e-3, expansion=11.5e-6, poisson=0.3)
+    >>> f"{1e6 * u:.2f} um"
+    '46.00 um'
     """
     lam, nu = _support(bore, plane, expansion, poisson)
     r = np.asarray(radius, dtype=float)
@@ -348,6 +364,15 @@ def flank_normal_growth(
     that swells uniformly by eps, exactly 0 for lambda tau = eps. Uniform tau: lambda tau rho_k.
     Shape of field and radius. Raises for r < r_b. Agrees with a plane-stress finite-element
     sector to 0.2 um (25 teeth) and 0.7 um (75 teeth).
+
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> growth = flank_normal_growth(
+    ...     field, 40e-3, 0.08, base_radius=37.5e-3, root_radius=35e-3, expansion=1e-5, poisson=0.3
+    ... )
+    >>> f"{1e6 * growth:.2f} um"
+    '13.92 um'
     """
     lam, nu = _support(bore, plane, expansion, poisson)
     r = np.asarray(radius, dtype=float)
@@ -404,6 +429,10 @@ def centre_distance_growth(
 
     ``centre_distance`` a [m], ``expansion`` lambda_h [1/K], temperatures [K]. Along the line of
     action it opens the mesh by Da sin(alpha_w).
+
+    >>> growth = centre_distance_growth(0.12, 11.5e-6, temperature=333.15, reference=293.15)
+    >>> f"{1e6 * growth:.1f} um"
+    '55.2 um'
     """
     rise = np.asarray(temperature, dtype=float) - np.asarray(reference)
     return np.asarray(np.asarray(expansion) * rise * np.asarray(centre_distance))
@@ -420,11 +449,14 @@ def hot_half_backlash(
 
     b' = b - (delta_n1 + delta_n2) + Da sin(alpha_w).
 
-    ``half_backlash`` b [m] cold, ``growth_1``, ``growth_2`` [m] of one flank of pinion and
-    wheel (both flanks of both gears grow), ``axis_opening`` Da sin(alpha_w) [m]. Any shape.
-    b' <= 0 means jammed. Since rho_1 + rho_2 = a sin(alpha_w), growths with
-    ``strain_taken_off`` = lambda_h (T_h - T0) and no opening say the same, and then a pair
-    as hot as its housing keeps b exactly.
+    ``half_backlash`` b [m] cold; ``growth_1``, ``growth_2`` [m] of one flank of pinion and
+    wheel (both flanks of both gears grow); ``axis_opening`` Da sin(alpha_w) [m]. Any shape.
+    b' <= 0 means jammed. Growths with ``strain_taken_off`` = lambda_h (T_h - T0) and no opening
+    give the same: a pair as hot as its housing keeps b exactly.
+
+    >>> backlash = hot_half_backlash(60e-6, growth_1=18e-6, growth_2=25e-6, axis_opening=19e-6)
+    >>> f"{1e6 * backlash:.1f} um"
+    '36.0 um'
     """
     lost = np.asarray(growth_1, dtype=float) + np.asarray(growth_2)
     return np.asarray(np.asarray(half_backlash) - lost + np.asarray(axis_opening))
@@ -435,10 +467,13 @@ def jam_temperature(
 ) -> float:
     """The lowest temperature [K] in [low, high] at which the half backlash reaches 0.
 
-    ``half_backlash`` gives b' [m] at a temperature [K] of a one-parameter family (the least
-    along the path). The interval is scanned at ``scan`` points and the first change of sign
-    refined to 1e-9 K; nan when b' stays positive, ``low`` when it is jammed there already.
-    Raises ConvergenceError where b' is no number.
+    ``half_backlash``: b' [m] at a temperature [K], the least along the path. The interval is
+    scanned at ``scan`` points; the first change of sign is refined to 1e-9 K. nan when b' stays
+    positive; ``low`` when it jams there already. Raises ConvergenceError where b' is no number.
+
+    >>> half_backlash = lambda t: 60e-6 - 0.5e-6 * (t - 293.15)
+    >>> f"{jam_temperature(half_backlash, low=293.15, high=493.15):.2f} K"
+    '413.15 K'
     """
     if not 0.0 < low < high:
         raise InputError("temperature range", f"{low} .. {high} K", allowed="0 K < low < high")

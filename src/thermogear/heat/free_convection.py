@@ -18,7 +18,12 @@ Floats = NDArray[np.float64]
 
 
 def oil_expansion(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
-    """Volume expansion of an oil, beta = -(d rho/dT)/rho [1/K]; ``temperature`` [K], any shape."""
+    """Volume expansion of an oil, beta = -(d rho/dT)/rho [1/K]; ``temperature`` [K], any shape.
+
+    >>> oil = lubricant("FVA3")
+    >>> f"{1e3 * oil_expansion(oil, 333.15):.3f} 1/kK"
+    '0.813 1/kK'
+    """
     return np.asarray(lubricant.density_slope / density(lubricant, temperature))
 
 
@@ -41,6 +46,10 @@ def free_face_convection(
     [1/K]. Any shape; 0.681 k/L where nothing drives a flow. Made for Ra 0.1..1e12, all Pr; up to
     a third above the laminar similarity solution near Ra 1e8. Source: Churchill and Chu 1975, as
     Bergman, Lavine, Incropera and DeWitt print it.
+
+    >>> h = free_face_convection(40.0, 80e-3, 50e-6, 0.13, 700.0, expansion=0.7e-3)
+    >>> f"{h:.1f} W/(m^2 K)"
+    '102.1 W/(m^2 K)'
     """
     drop, tall, nu, k, pr, beta = (
         np.asarray(a, dtype=float)

@@ -45,7 +45,11 @@ ROUGHNESS_LIMIT = 1.13e-6
 
 
 class FrictionLaw(Protocol):
-    """A coefficient of friction with its name, regime and source."""
+    """A coefficient of friction with its name, regime and source.
+
+    >>> [law().name for law in (Boundary, Schlenk, Iso13989Flash, Iso13989Integral, Fernandes)]
+    ['boundary', 'schlenk', 'iso-13989-1', 'iso-13989-2', 'fernandes']
+    """
 
     name: ClassVar[str]
     regime: ClassVar[str]
@@ -112,6 +116,12 @@ def benedict_kelley(
     viscosity, rises with load and roughness.
     Source: Benedict and Kelley, ASLE Trans. 4 (1961) 59-70; 29660 is 3.17e8 of the US units
     (lb/in, cP, in/s) converted, usually printed 29700.
+
+    >>> mu = benedict_kelley(
+    ...     200e3, sliding_speed=1.0, sum_speed=10.0, viscosity=0.02, roughness=0.4e-6
+    ... )
+    >>> f"{mu:.4f}"
+    '0.0682'
     """
     if not (np.isfinite(pitch_floor) and pitch_floor > 0.0):
         raise InputError("pitch_floor", pitch_floor, allowed="> 0")
@@ -169,6 +179,9 @@ def constant_dry(sliding_speed: ArrayLike, coefficient: float = 0.2) -> Floats:
 
     ``sliding_speed`` [m/s] gives the shape only; ``coefficient`` [-] 0.1..0.5 in the thesis.
     Raises outside 0 < mu <= 1.
+
+    >>> constant_dry([0.5, 2.0], coefficient=0.15)
+    array([0.15, 0.15])
     """
     if not 0.0 < coefficient <= 1.0:
         raise InputError("dry_coefficient", coefficient, allowed="0 < mu <= 1")
@@ -180,6 +193,9 @@ class BenedictKelley(Bounded):
     """Benedict and Kelley 1961 with its two regularisations; see :func:`benedict_kelley`.
 
     Its viscosity is that of the oil supply, as the thesis and gear codes read eta_0.
+
+    >>> BenedictKelley(ceiling=0.2).regime
+    'mixed'
     """
 
     pitch_floor: PitchFloor = 0.01
@@ -206,7 +222,11 @@ class BenedictKelley(Bounded):
 
 @dataclass(frozen=True)
 class ConstantDry:
-    """One constant, dry; see :func:`constant_dry`."""
+    """One constant, dry; see :func:`constant_dry`.
+
+    >>> ConstantDry(0.15)
+    ConstantDry(coefficient=0.15)
+    """
 
     coefficient: float = 0.2
     name: ClassVar[str] = "dry"
@@ -244,6 +264,9 @@ class XuKahraman(Bounded):
 
     The fit's roughness is rms: the contact's Ra is converted. ``smooth`` leaves it out, as a
     blend with boundary friction needs it.
+
+    >>> XuKahraman(smooth=True).name
+    'xu-kahraman'
     """
 
     smooth: bool = False
@@ -280,6 +303,9 @@ class LambdaBlend(Bounded):
     are not counted twice. ``boundary`` 0.07 is what Arana, Larranaga and Ulacia, Proc. IMechE J
     233 (2019) 303-316, advise for ground gears in such a blend, near the greatest mean friction
     measured at 0.5 m/s on FZG gears, 0.065; other codes take 0.09 to 0.10.
+
+    >>> LambdaBlend(boundary=0.09).boundary
+    0.09
     """
 
     boundary: Coefficient = 0.07
@@ -411,6 +437,9 @@ def friction_law(name: str, **parameters: object) -> FrictionLaw:
 
     Raises InputError for an unknown law or parameter, which says the nearest, and for a value out
     of range.
+
+    >>> friction_law("boundary", coefficient=0.12)
+    Boundary(coefficient=0.12)
     """
     if name not in LAWS:
         raise InputError("friction", repr(name), fix=nearest(name, LAWS))
@@ -418,7 +447,11 @@ def friction_law(name: str, **parameters: object) -> FrictionLaw:
 
 
 def friction_words(law: FrictionLaw) -> str:
-    """The law's name, and in brackets the parameters that are not its defaults."""
+    """The law's name, and in brackets the parameters that are not its defaults.
+
+    >>> friction_words(friction_law("boundary", coefficient=0.12))
+    'boundary(coefficient=0.12)'
+    """
     return law_words(law, LAWS.get(law.name))
 
 

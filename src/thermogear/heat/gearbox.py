@@ -53,6 +53,9 @@ class Surroundings:
     each side; ``bearing_conductance`` [W/K] of one bearing into the housing; ``oil_mass``,
     ``housing_mass`` [kg] for the warm-up. ``oil_flow`` [m^3/s] of oil supplied at
     ``supply_temperature`` [K] and drawn off as warm as the bath; 0 for a closed bath.
+
+    >>> Surroundings(ambient=303.15).oil_flow
+    0.0
     """
 
     ambient: float = 293.15
@@ -87,6 +90,9 @@ class Losses:
     ``mesh`` and the share ``partition_1`` of it that enters the pinion's flank; ``churning`` into
     the oil; ``bearing_1``, ``bearing_2`` (with seals) into the shafts. ``contact`` [W/K] is no
     loss but comes of the same contact: the conductance between both flanks.
+
+    >>> float(Losses(mesh=200.0, bearing_1=20.0).partition_1)
+    0.5
     """
 
     mesh: ArrayLike
@@ -116,7 +122,12 @@ class Losses:
 
 
 def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
-    """Pr = nu rho c/k of an oil [-]; ``temperature`` [K], any shape."""
+    """Pr = nu rho c/k of an oil [-]; ``temperature`` [K], any shape.
+
+    >>> oil = lubricant("FVA3")
+    >>> f"{oil_prandtl(oil, 353.15):.0f}"
+    '242'
+    """
     heat = density(lubricant, temperature) * lubricant.specific_heat
     diffusivity = lubricant.thermal_conductivity / heat
     return np.asarray(kinematic_viscosity(lubricant, temperature) / diffusivity)
@@ -135,6 +146,13 @@ def face_conductance(
     ``speed`` omega [rad/s], radii [m], ``oil_temperature`` [K] for the oil's properties. h of
     :func:`rotating_face_convection` with the excess growing as r^2. Shape of speed and
     temperature; 0 at rest.
+
+    >>> oil = lubricant("FVA3")
+    >>> g = face_conductance(
+    ...     100.0, inner_radius=16e-3, outer_radius=40e-3, lubricant=oil, oil_temperature=353.15
+    ... )
+    >>> f"{g:.2f} W/K"
+    '6.61 W/K'
     """
     omega, kelvin = np.broadcast_arrays(
         np.asarray(speed, dtype=float), np.asarray(oil_temperature, dtype=float)
@@ -152,7 +170,11 @@ def face_conductance(
 
 
 def body_radius(gear: BodyLike) -> float:
-    """Radius [m] of a gear's body node, sqrt((r_x^2 + r_f^2)/2): it halves the ring's area."""
+    """Radius [m] of a gear's body node, sqrt((r_x^2 + r_f^2)/2): it halves the ring's area.
+
+    >>> f"{1e3 * body_radius(Gear(20, 4e-3)):.2f} mm"
+    '27.21 mm'
+    """
     return float(np.sqrt(0.5 * (gear.bore_radius**2 + gear.root_radius**2)))
 
 
@@ -161,6 +183,9 @@ def tooth_radius(gear: BodyLike) -> float:
 
     A large profile shift puts the pitch circle off the tooth; a tenth of the tooth's height is
     left to root and tip circle.
+
+    >>> f"{1e3 * tooth_radius(Gear(20, 4e-3)):.2f} mm"
+    '40.00 mm'
     """
     margin = 0.1 * (gear.tip_radius - gear.root_radius)
     return float(min(max(gear.pitch_radius, gear.root_radius + margin), gear.tip_radius - margin))
@@ -181,6 +206,9 @@ def body_conductances(gear: BodyLike) -> tuple[float, float]:
     the heat from the tooth node (:func:`tooth_radius`) to the root circle through z times the
     thickness there. In series, without other exchange, bore and root circle differ by
     Q ln(r_f/r_x)/(2 pi k b), the radial field's own value.
+
+    >>> [f"{g:.0f} W/K" for g in body_conductances(Gear(20, 4e-3))]
+    ['12 W/K', '11 W/K']
     """
     k, b = gear.material.thermal_conductivity, gear.face_width
     inner = 2.0 * np.pi * k * b / np.log(body_radius(gear) / gear.bore_radius)
@@ -196,6 +224,10 @@ def body_places(
     heat between both nodes has it, T_f = T_b + (T_t - T_b) R_ring/(R_ring + R_teeth), so that a
     field through these places carries the heat of :func:`body_conductances`. Above the tooth
     node nothing is conducted: there the tooth has its node's temperature up to the tip.
+
+    >>> places = body_places(Gear(20, 4e-3), body=353.15, tooth=353.15)
+    >>> [f"{1e3 * radius:.1f} mm" for radius, _ in places]
+    ['27.2 mm', '35.0 mm', '40.0 mm']
     """
     low, high = np.asarray(body, dtype=float), np.asarray(tooth, dtype=float)
     ring, teeth = _outer_resistances(gear)
@@ -232,6 +264,12 @@ def thermal_network(
     Arrays over operating points of one shape. Flanks and faces give heat to the oil by the
     boundary layer's solution over the wetted share, teeth with the coefficient at their node;
     the flanks exchange heat through their contact.
+
+    >>> oil = lubricant("FVA3")
+    >>> gear = Gear(20, 4e-3)
+    >>> network = thermal_network(gear, gear, 100.0, Losses(mesh=0.0), oil, 293.15)
+    >>> f"{network.steady().temperatures['oil']:.2f} K"
+    '293.15 K'
     """
     around = surroundings or Surroundings()
     omega_1 = np.asarray(speed, dtype=float)

@@ -34,12 +34,20 @@ class Bounded:
 
 
 def parameters(law: object) -> dict[str, Any]:
-    """Field -> value of a law's parameters, in order."""
+    """Field -> value of a law's parameters, in order.
+
+    >>> parameters(friction_law("boundary"))
+    {'coefficient': 0.1}
+    """
     return {f.name: getattr(law, f.name) for f in fields(law)} if is_dataclass(law) else {}
 
 
 def ranges(law: type[Any]) -> Mapping[str, Bounds]:
-    """The parameters of a kind of law that have a range, with it."""
+    """The parameters of a kind of law that have a range, with it.
+
+    >>> list(ranges(type(friction_law("boundary"))))
+    ['coefficient']
+    """
     return {
         name: mark
         for name, hint in get_type_hints(law, include_extras=True).items()
@@ -66,6 +74,9 @@ def with_parameters(law: _Law, values: Mapping[str, Any]) -> _Law:
     """``law`` with ``values`` in place of parameters; a mapping speaks to the law in its field.
 
     Raises InputError for an unknown name, which says the nearest, and for a value out of range.
+
+    >>> with_parameters(friction_law("boundary"), {"coefficient": 0.12})
+    Boundary(coefficient=0.12)
     """
     require_known(law, values)
     made = {}

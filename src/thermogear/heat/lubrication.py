@@ -53,6 +53,10 @@ def kinematic_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     ``temperature`` T [K] > 0. Shape of ``temperature``. Raises for T <= 0 K. Warns outside
     ``lubricant.temperature_range`` and below 2 mm^2/s, where the standard corrects the shift.
     Source: ASTM D341.
+
+    >>> oil = Lubricant.from_two_points("oil", (313.15, 100e-6), (373.15, 11e-6))
+    >>> f"{1e6 * kinematic_viscosity(oil, 373.15):.2f} mm^2/s"
+    '11.00 mm^2/s'
     """
     nu = _walther(lubricant, _checked(lubricant, temperature)) - 0.7
     if np.any(nu < THINNEST * 1e6):
@@ -70,6 +74,10 @@ def density(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
 
     ``temperature`` [K] > 0, any shape. Raises for T <= 0 K, warns outside the oil's range.
     Source: form of ISO/TR 15144-1 eq. 20.
+
+    >>> oil = lubricant("FVA3")
+    >>> f"{density(oil, 288.15):.0f} kg/m^3"
+    '892 kg/m^3'
     """
     values = _checked(lubricant, temperature)
     return np.asarray(
@@ -81,6 +89,10 @@ def dynamic_viscosity(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     """Dynamic viscosity eta(T) = nu(T) rho(T) [Pa s] at ambient pressure.
 
     ``temperature`` [K] > 0, any shape. Raises and warns as :func:`kinematic_viscosity`.
+
+    >>> oil = lubricant("FVA3")
+    >>> f"{1e3 * dynamic_viscosity(oil, 353.15):.1f} mPa s"
+    '16.3 mPa s'
     """
     values = np.asarray(temperature, dtype=float)
     nu = kinematic_viscosity(lubricant, values)
@@ -95,6 +107,10 @@ def walther_slope(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
     beta = B (nu + 0.7) ln(nu + 0.7) / (nu T),   nu in mm^2/s, T in K.
 
     ``temperature`` [K] > 0, any shape; > 0. Derived by differentiating the line.
+
+    >>> oil = lubricant("FVA3")
+    >>> f"{walther_slope(oil, 353.15):.4f} 1/K"
+    '0.0315 1/K'
     """
     values = _checked(lubricant, temperature)
     shifted = _walther(lubricant, values)
@@ -106,6 +122,10 @@ def grade(viscosity_40: float) -> Lubricant:
 
     Its viscosity at 100 °C follows the package's own mineral oils: nu_100 = c nu_40^p, fitted to
     them.
+
+    >>> oil = grade(220e-6)
+    >>> f"{1e6 * kinematic_viscosity(oil, 313.15):.1f} mm^2/s"
+    '220.0 mm^2/s'
     """
     warm, hot = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
     slope, level = _mineral_line()

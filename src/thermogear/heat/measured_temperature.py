@@ -30,6 +30,9 @@ def band_radiance(temperature: ArrayLike, band: Band = None) -> Floats:
     both ends alike, at one wavelength: 1/[exp(c2/(l T)) - 1].
 
     ``temperature`` [K] > 0, any shape. Only ratios matter in the correction.
+
+    >>> f"{band_radiance(400.0) / band_radiance(200.0):.1f}"
+    '16.0'
     """
     t = np.asarray(temperature, dtype=float)
     if not np.all(np.isfinite(t) & (t > 0.0)):
@@ -61,6 +64,12 @@ def infrared_signal(
     ``temperature`` T [K] of the surface, ``emissivity`` eps, ``transmission`` tau of window and
     air, ``surroundings`` T_env [K] that the surface mirrors, ``path`` T_path [K] of the window.
     Any shape. eps = tau = 1 gives L(T).
+
+    >>> signal = infrared_signal(
+    ...     400.0, emissivity=1.0, transmission=1.0, surroundings=300.0, path=300.0
+    ... )
+    >>> f"{signal / band_radiance(400.0):.3f}"
+    '1.000'
     """
     eps, tau = np.asarray(emissivity, dtype=float), np.asarray(transmission, dtype=float)
     own = eps * tau * band_radiance(temperature, band)
@@ -100,6 +109,12 @@ def infrared_temperature(
 
     ``emissivity`` eps in (0, 1], ``transmission`` tau in (0, 1], ``surroundings``, ``path`` [K].
     Any shape. Raises when the reading is darker than its own reflections.
+
+    >>> t = infrared_temperature(
+    ...     373.15, emissivity=0.9, transmission=1.0, surroundings=293.15, path=293.15
+    ... )
+    >>> f"{t - 273.15:.2f} C"
+    '106.26 C'
     """
     for name, value in (
         ("emissivity", emissivity),
@@ -134,6 +149,12 @@ def infrared_indication(
 
     ``emissivity``, ``transmission`` in (0, 1]; ``surroundings``, ``path`` [K], any shapes that
     broadcast with ``temperature``. Raises where the setting leaves nothing for the surface.
+
+    >>> t = infrared_indication(
+    ...     373.15, emissivity=0.9, transmission=1.0, surroundings=293.15, path=293.15
+    ... )
+    >>> f"{t - 273.15:.2f} C"
+    '94.09 C'
     """
     for name, value in (
         ("emissivity", emissivity),
@@ -183,6 +204,9 @@ def surface_temperature(
 
     ``indicated`` T [K] at depth, ``flux`` q [W/m^2] through the surface inwards, ``depth`` d [m]
     below it, ``conductivity`` k [W/(m K)]. Any shape: steady conduction, one dimension.
+
+    >>> f"{surface_temperature(353.15, 1e6, 0.5e-3, 50.0):.2f} K"
+    '363.15 K'
     """
     drop = np.asarray(flux, dtype=float) * np.asarray(depth) / np.asarray(conductivity)
     return np.asarray(np.asarray(indicated, dtype=float) + drop)
@@ -194,6 +218,9 @@ def buried_temperature(
     """What an embedded thermocouple says, T - q d/k [K]: inverse of :func:`surface_temperature`.
 
     ``surface`` T [K], ``flux`` q [W/m^2] inwards, ``depth`` d [m], ``conductivity`` k [W/(m K)].
+
+    >>> f"{buried_temperature(363.15, 1e6, 0.5e-3, 50.0):.2f} K"
+    '353.15 K'
     """
     drop = np.asarray(flux, dtype=float) * np.asarray(depth) / np.asarray(conductivity)
     return np.asarray(np.asarray(surface, dtype=float) - drop)
@@ -222,6 +249,10 @@ class InfraredReading:
     ``indicated`` [K] by an instrument set to emissivity 1, ``emissivity``, ``transmission`` of
     the window, ``surroundings`` and ``path`` [K], ``band`` (l1, l2) [m] or None for total
     radiation.
+
+    >>> reading = InfraredReading(indicated=373.15, emissivity=1.0, surroundings=293.15)
+    >>> f"{reading.temperature():.2f} K"
+    '373.15 K'
     """
 
     indicated: float
@@ -262,7 +293,12 @@ class InfraredReading:
 
 @dataclass(frozen=True, kw_only=True)
 class ThermocoupleReading:
-    """One embedded thermocouple: ``indicated`` [K] at ``depth`` [m] under ``flux`` [W/m^2]."""
+    """One embedded thermocouple: ``indicated`` [K] at ``depth`` [m] under ``flux`` [W/m^2].
+
+    >>> reading = ThermocoupleReading(indicated=353.15, flux=1e6, depth=0.5e-3, conductivity=50.0)
+    >>> f"{reading.temperature():.2f} K"
+    '363.15 K'
+    """
 
     indicated: float
     flux: float
@@ -302,6 +338,10 @@ def field_uncertainty(
 
     ``function`` (T_a, T_x) [K] -> value, ``addendum`` and ``bore`` each (temperature,
     uncertainty) [K]. Central differences over one hundredth of a sigma: first order.
+
+    >>> u = field_uncertainty(lambda a, x: a - x, addendum=(373.15, 3.0), bore=(333.15, 4.0))
+    >>> f"{u:.2f} K"
+    '5.00 K'
     """
     total = 0.0
     pairs = (addendum, bore)

@@ -57,6 +57,9 @@ def permissible_film_parameter(viscosity_40: ArrayLike, *, load_stage: ArrayLike
     5..10. Any shape. For Ra 0.5 um, mineral oil. Raises outside. Compare it with the least
     lambda_GF = h/mean Ra over :func:`~thermogear.gears.contact.film_points`. Source: figure of
     ISO/TR 15144-1 as public code reads it: expect some 10 %.
+
+    >>> f"{permissible_film_parameter(100e-6, load_stage=10):.3f}"
+    '0.090'
     """
     nu, stage = np.asarray(viscosity_40, dtype=float) * 1e6, np.asarray(load_stage, dtype=float)
     low, high = 0.9 * _GRADES[0], 1.1 * _GRADES[-1]
@@ -81,6 +84,9 @@ def micropitting_safety(*, film_parameter: ArrayLike, permissible: ArrayLike) ->
     ``film_parameter`` lambda_GF (..., position), h over the mean Ra of both flanks
     (:func:`~thermogear.heat.film.mean_roughness_film_parameter`), ``permissible`` lambda_GFP
     (...). Source: ISO/TR 15144-1.
+
+    >>> f"{micropitting_safety(film_parameter=[0.3, 0.2, 0.4], permissible=0.1):.2f}"
+    '2.00'
     """
     least = np.asarray(film_parameter, dtype=float).min(axis=-1)
     return np.asarray(least / np.asarray(permissible))

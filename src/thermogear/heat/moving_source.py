@@ -64,6 +64,9 @@ def moving_source_rise(
     ``distribution`` of :data:`FLASH_FACTORS`. Its maximum is the factor C of
     T = C Q/(B_i sqrt(v) sqrt(B)). Quadrature split at the logarithmic singularity with nodes
     crowding at both ends of each part; 1e-9.
+
+    >>> f"{moving_source_rise(0.3, peclet=1000.0).item():.2f}"
+    '0.73'
     """
     flash_factor(distribution)
     if not (np.isfinite(peclet) and peclet > 0.0):
@@ -117,6 +120,9 @@ def peclet_factor(peclet: ArrayLike, distribution: str = "ellipse") -> Floats:
     T_max = C Q_i/(B_i sqrt(v_i) sqrt(B)); C -> u of :data:`FLASH_FACTORS` for Pe -> infinity
     and -> sqrt(Pe) (A - ln Pe)/pi for Pe -> 0. ``peclet`` Pe = v B/a >= 0, any shape; 0 at 0.
     A spline through exact maxima, 1e-5 between Pe 1e-4 and 1e5, the limits beyond.
+
+    >>> [f"{factor:.3f}" for factor in peclet_factor([1.0, 10.0, 1e5])]
+    ['0.691', '0.783', '0.786']
     """
     flash_factor(distribution)
     pe = np.asarray(peclet, dtype=float)
@@ -156,6 +162,13 @@ def peclet_partition(
 
     Arguments as :func:`peclet_flash`. Equal to :func:`temperature.heat_partition` within
     0.001 for Pe >= 5; 1/2 where neither moves.
+
+    >>> steel = material("steel")
+    >>> share = peclet_partition(
+    ...     speed_1=5.0, speed_2=5.0, half_width=0.15e-3, material_1=steel, material_2=steel
+    ... )
+    >>> f"{share:.3f}"
+    '0.500'
     """
     one = _carrying(speed_1, half_width, material_1, distribution)
     two = _carrying(speed_2, half_width, material_2, distribution)
@@ -180,6 +193,13 @@ def peclet_flash(
     ``heat`` Q [W/m] frictional power per width, ``speed_1``, ``speed_2`` [m/s],
     ``half_width`` B [m]. Any shape; 0 where nothing is dissipated. Blok's formula for large Pe,
     lower below.
+
+    >>> steel = material("steel")
+    >>> rise = peclet_flash(
+    ...     10e3, speed_1=6.0, speed_2=4.0, half_width=0.15e-3, material_1=steel, material_2=steel
+    ... )
+    >>> f"{rise:.1f} K"
+    '11.1 K'
     """
     q = np.asarray(heat, dtype=float)
     one = _carrying(speed_1, half_width, material_1, distribution)
@@ -215,6 +235,10 @@ def exact_two_body(
 
     ``peclet_1``, ``peclet_2`` > 0, ``conductivity_ratio`` k_2/k_1. With 400 elements the
     maximum is right to 1e-4.
+
+    >>> _, share = exact_two_body(peclet_1=20.0, peclet_2=20.0, elements=60)
+    >>> f"{share:.3f}"
+    '0.500'
     """
     flash_factor(distribution)
     if not (peclet_1 > 0.0 and peclet_2 > 0.0):
@@ -252,6 +276,14 @@ def flash_temperature(
     ``half_width`` B [m], ``distribution`` ellipse, uniform or parabola, ``method`` "blok",
     "peclet" (default) or "exact" (one linear system per point: a reference, slow). Any shape;
     0 at the pitch point, at no load and at rest.
+
+    >>> steel = material("steel")
+    >>> rise = flash_temperature(
+    ...     0.05, 100e3, speed_1=6.0, speed_2=4.0, half_width=0.15e-3,
+    ...     material_1=steel, material_2=steel,
+    ... )
+    >>> f"{rise:.1f} K"
+    '11.1 K'
     """
     heat = frictional_heat(friction, line_load, speed_1=speed_1, speed_2=speed_2)
     if method == "blok":

@@ -20,7 +20,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """A thermal conductance [W/K] between two named nodes; number or array, >= 0."""
+    """A thermal conductance [W/K] between two named nodes; number or array, >= 0.
+
+    >>> float(Link("housing", "ambient", 10.0).conductance)
+    10.0
+    """
 
     first: str
     second: str
@@ -42,6 +46,12 @@ class SteadyState:
     """Temperatures [K] by node, heat [W] that leaves through each given node, and the residual.
 
     ``residual`` is the greatest heat imbalance of a free node [W].
+
+    >>> network = ThermalNetwork(
+    ...     (Link("oil", "ambient", 10.0),), sources={"oil": 200.0}, fixed={"ambient": 293.15}
+    ... )
+    >>> f"{network.steady().heat_out['ambient']:.1f} W"
+    '200.0 W'
     """
 
     temperatures: Mapping[str, Floats]
@@ -60,6 +70,12 @@ class ThermalNetwork:
     ``capacities`` [J/K] by node, needed for the time course only. Numbers or arrays of one
     broadcastable shape. Raises for unknown nodes, and when a node has no way to a given
     temperature.
+
+    >>> network = ThermalNetwork(
+    ...     (Link("oil", "ambient", 10.0),), sources={"oil": 200.0}, fixed={"ambient": 293.15}
+    ... )
+    >>> f"{network.steady().temperatures['oil']:.2f} K"
+    '313.15 K'
     """
 
     links: tuple[Link, ...]

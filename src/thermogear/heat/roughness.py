@@ -15,5 +15,8 @@ def rms_roughness(roughness: ArrayLike) -> NDArray[np.float64]:
     ``roughness`` Ra [m], any shape. Exact to 0.3 % for Gaussian heights, which ground and run
     flanks roughly have. Source: the mean of the absolute value of a normal variable is
     sqrt(2/pi) of its standard deviation.
+
+    >>> f"{1e6 * rms_roughness(0.4e-6):.2f} um"
+    '0.50 um'
     """
     return np.asarray(RMS_OF_MEAN_ROUGHNESS * np.asarray(roughness, dtype=float))

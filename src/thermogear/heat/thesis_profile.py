@@ -35,6 +35,13 @@ def thesis_flank_growth(gear: GearLike, field: RadialField, radius: ArrayLike) -
     The bracket is the tooth thickness 2 r_k psi(r_k) at r_k; the second term is the stretch
     along the flank as printed; u_b does not appear. ``radius`` r_k [m] >= r_b. Shape of field
     and radius. Too small by a factor 2 to 4 against :func:`expansion.flank_growth`.
+
+    >>> from thermogear.heat.expansion import RadialField
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> f"{1e6 * thesis_flank_growth(Gear(20, 4e-3), field, 40e-3):.2f} um"
+    '6.35 um'
     """
     r = np.asarray(radius, dtype=float)
     cosine = np.minimum(gear.base_radius / r, 1.0)
@@ -50,6 +57,10 @@ def thesis_half_backlash(
 
     ``half_backlash`` b [m], ``deformation_1``, ``_2`` [m]. No housing, and the flanks' growth
     is halved: right only if Delta f meant both flanks of a tooth together.
+
+    >>> b = thesis_half_backlash(60e-6, deformation_1=20e-6, deformation_2=10e-6)
+    >>> f"{1e6 * b:.1f} um"
+    '45.0 um'
     """
     lost = np.asarray(deformation_1, dtype=float) + np.asarray(deformation_2)
     return np.asarray(0.5 * (2.0 * np.asarray(half_backlash) - lost))
@@ -106,6 +117,14 @@ def deformed_profile(
 
     ``radius`` r [m] >= r_b. A uniform field scales the profile: theta' = psi, r' = r (1 +
     lambda tau). Shape of field and radius.
+
+    >>> from thermogear.heat.expansion import RadialField
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> radius, angle = deformed_profile(Gear(20, 4e-3), field, 40e-3)
+    >>> f"{1e3 * radius:.3f} mm, {angle:.5f} rad"
+    '40.046 mm, 0.07854 rad'
     """
     r = np.asarray(radius, dtype=float)
     return deformed_points(gear, field, r, gear.half_thickness_angle(r), bore)
@@ -124,6 +143,14 @@ def deformed_points(
 
     ``radius`` r [m] from the root circle up, ``angle`` theta [rad] from the tooth centre line: the
     growth of :func:`deformed_profile` at any place of the tooth. Shape of field and radius.
+
+    >>> from thermogear.heat.expansion import RadialField
+    >>> field = RadialField.uniform(
+    ...     bore_radius=16e-3, tip_radius=44e-3, temperature=393.15, reference=293.15
+    ... )
+    >>> radius, angle = deformed_points(Gear(20, 4e-3), field, 40e-3, 0.05)
+    >>> f"{1e3 * radius:.3f} mm, {angle:.3f} rad"
+    '40.046 mm, 0.050 rad'
     """
     r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
     body = gear.material

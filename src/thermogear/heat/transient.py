@@ -35,6 +35,15 @@ class Stretch:
 
     ``network``: temperatures of the free nodes, arrays (count,), to the network at them. The free
     nodes and their capacities are the same throughout; given temperatures may differ.
+
+    >>> from thermogear.heat.network import Link
+    >>> network = ThermalNetwork(
+    ...     (Link("oil", "ambient", 10.0),), sources={"oil": 200.0}, fixed={"ambient": 293.15},
+    ...     capacities={"oil": 6000.0},
+    ... )
+    >>> course = follow([Stretch(end=600.0, network=lambda state: network)], {"oil": 293.15})
+    >>> f"{course.temperatures['oil'][-1] - 293.15:.1f} K"
+    '12.6 K'
     """
 
     end: float
