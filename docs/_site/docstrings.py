@@ -1,4 +1,4 @@
-"""Plain-text docstrings as pages: formulas stand apart, bars and stars mean themselves."""
+"""Plain-text docstrings as pages: formulas apart, examples as they are, bars and stars plain."""
 
 from __future__ import annotations
 
@@ -45,8 +45,12 @@ def _escaped(line: str) -> str:
 def as_pages(lines: list[str]) -> list[str]:
     """The docstring's lines in reStructuredText."""
     made: list[str] = []
-    formula = False
+    formula = example = False
     for number, line in enumerate(lines):
+        example = line.strip() != "" and (example or line.lstrip().startswith(">>> "))
+        if example:
+            made.append(line)
+            continue
         continues = (
             formula
             and line.strip() != ""

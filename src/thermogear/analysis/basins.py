@@ -360,12 +360,19 @@ def basins(
     """Which attractor every start (x, x') of a grid at phase 0 ends on.
 
     ``model`` of one lane; ``x`` and ``v`` the axes, in the units of the model. The attractors are
-    found first, from a coarse grid of starts and from ``seeds``; then every start runs until it
-    falls into the neighbourhood of one, whose size was tried out. Starts that fall into none are
-    labelled one by one, and so late attractors are found. Returns the number of the attractor
-    over (x, v), the largest basin first (-1: undecided, -2: diverged), fractions, counts, the
-    attractors' sections and multipliers, their distance to the nearest border and the basin
-    entropies. The result does not depend on ``threads``.
+    found first, from a coarse grid of starts and from ``seeds``. Then every start runs until it
+    comes close to one; how close was tried out. Starts that reach none are labelled one by one,
+    and so late attractors are found. Returns the number of the attractor over (x, v), the largest
+    basin first (-1: undecided, -2: diverged); fractions and counts; the attractors' sections,
+    multipliers and distance to the nearest border; the basin entropies. Alike for any ``threads``.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> found = basins(model, x=[1.0, 1.2], v=[0.0, 0.1])
+    >>> found.attractor_x.values.round(3)
+    array([[1.166]])
     """
     plan = basin_plan(model, x=x, v=v, rule=rule, seeds=seeds, survey=survey)
     return gather(plan, threads=threads, progress=progress)

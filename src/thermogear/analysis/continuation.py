@@ -165,6 +165,14 @@ def continuation(
 
     Raises InputError for an unknown parameter or ``to`` equal to the present value,
     ConvergenceError when the first orbit is none.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> branch = continuation(periodic_orbit(model, guess=(1.1, 0.0)), "frequency", 0.52)
+    >>> branch.ended, bool(branch.stable.all())
+    ('reached the end', True)
     """
     if span is not None and not 0.0 < span < np.inf:
         raise InputError("span", span, allowed="> 0, finite")

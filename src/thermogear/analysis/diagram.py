@@ -225,6 +225,14 @@ def orbit_diagram(
     ``branch_period`` periods (0: none) are continued through the whole range, stable and
     unstable: ``branch_...`` over (branch, branch_point), and the bifurcations located on them,
     ``bifurcation_...``. ``alive`` is called between rounds and raises to end the work.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> diagram = orbit_diagram(model, "frequency", [0.40, 0.41])
+    >>> diagram.period.values.ravel().tolist()
+    [1, 1, 1, 1]
     """
     plan = diagram_plan(
         model,

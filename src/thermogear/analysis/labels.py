@@ -67,6 +67,13 @@ def label(
     periods (``cap`` if that is more): all must end on one orbit, or, for "chaotic", none may
     close and all must still part in the last round. Everything else is undecided. Chaos is
     therefore an estimate, "chaotic for N periods, k starts": no exponent says how long it lasts.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> str(label(model, initial_state=(1.166, 0.002)))
+    'period-1'
     """
     lanes = lanes_of(model)
     if len(lanes) != 1:

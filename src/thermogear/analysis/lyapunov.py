@@ -24,6 +24,14 @@ class Lyapunov:
 
     ``sum`` is the sum of both exponents, exactly -2 zeta; ``batches`` the batch means,
     ``state`` the last state on the section.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> exponent = lyapunov_exponent(model, discard=100, batches=4, batch_periods=50)
+    >>> f"{exponent.sum:.2f}"
+    '-0.10'
     """
 
     value: float
@@ -132,6 +140,17 @@ def lyapunov_exponent(
     period. The mean of ``batches`` batches of ``batch_periods`` periods after ``discard``; the
     error is the standard error of the batch means. Unit: one over the model's unit of time,
     1 for :class:`TorsionalModel`, 1/s for a model in SI.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> start = (1.166, 0.002)
+    >>> exponent = lyapunov_exponent(
+    ...     model, initial_state=start, discard=100, batches=4, batch_periods=50
+    ... )
+    >>> f"{exponent.value:.3f}"
+    '-0.050'
     """
     return lyapunov_exponents(
         _one(model),

@@ -231,6 +231,14 @@ def parameter_map(
     parameters; points that equal neighbours spoke for have ``computed`` 0 and no figures. The
     attributes tell the periods run and those of the full run. The result does not depend on
     ``threads``. ``alive`` is called between rounds and raises to end the work.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> found = parameter_map(model, {"frequency": [0.4, 0.5], "force_amplitude": [0.02, 0.03]})
+    >>> found.period.values.tolist()
+    [[1, 1], [1, 1]]
     """
     plan = map_plan(
         model,

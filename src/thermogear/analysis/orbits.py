@@ -24,6 +24,14 @@ class Orbit:
     first of them,
     ``residual`` |P^n z - z| in units of the half backlash, counts and shares over one orbit,
     ``iterations`` of Newton. :attr:`minimal_period` says whether it closes sooner.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> orbit = periodic_orbit(model, guess=(1.1, 0.0))
+    >>> abs(orbit.multipliers).round(4), orbit.contact_losses
+    (array([0.5335, 0.5335]), 0)
     """
 
     lanes: Lanes = field(repr=False)
@@ -225,6 +233,14 @@ def periodic_orbit(
 
     Raises InputError for a period that is no whole number >= 1 or a model of several lanes, and
     ConvergenceError when Newton does not settle from this guess.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> orbit = periodic_orbit(model, guess=(1.1, 0.0))
+    >>> orbit.points.round(4)
+    array([[1.1664, 0.0022]])
     """
     period = whole("period", period, least=1)
     start = np.asarray(guess, dtype=float)

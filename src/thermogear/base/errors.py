@@ -7,7 +7,11 @@ from collections.abc import Iterable, Sequence
 
 
 class ThermogearError(Exception):
-    """Base of every error this package raises on purpose."""
+    """Base of every error this package raises on purpose.
+
+    >>> issubclass(InputError, ThermogearError)
+    True
+    """
 
 
 class InputError(ThermogearError, ValueError):
@@ -15,6 +19,12 @@ class InputError(ThermogearError, ValueError):
 
     The message is one line: ``field: got VALUE; allowed RANGE; why; fix``. Parts
     that are not given are left out.
+
+    >>> try:
+    ...     Gear(0, 4e-3)
+    ... except InputError as error:
+    ...     print(error)
+    teeth: got 0; allowed 5..2000
     """
 
     def __init__(
@@ -66,7 +76,14 @@ class InputErrors(InputError):
 
 
 class GeometryError(InputError):
-    """A gear or a gear pair that cannot be made or cannot mesh."""
+    """A gear or a gear pair that cannot be made or cannot mesh.
+
+    >>> try:
+    ...     Gear(8, 4e-3)
+    ... except GeometryError as error:
+    ...     print(error)
+    profile_shift: got 0 for 8 teeth; needs x >= 0.532; use x >= 0.54 or >= 18 teeth
+    """
 
 
 class ConvergenceError(ThermogearError):
@@ -74,7 +91,11 @@ class ConvergenceError(ThermogearError):
 
 
 class ValidityWarning(UserWarning):
-    """A value outside the range its source states; the result is an extrapolation."""
+    """A value outside the range its source states; the result is an extrapolation.
+
+    >>> issubclass(ValidityWarning, UserWarning)
+    True
+    """
 
 
 class UnsealedWarning(ValidityWarning):
@@ -86,7 +107,11 @@ class WorkerWarning(UserWarning):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Advice for an unknown ``name``: the nearest known one, else the whole list."""
+    """Advice for an unknown ``name``: the nearest known one, else the whole list.
+
+    >>> nearest("stel", ["steel", "bronze"])
+    "did you mean 'steel'?"
+    """
     names = sorted(known)
     return meant(name, names, cutoff=0.5) or "known: " + ", ".join(names)
 

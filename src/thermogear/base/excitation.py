@@ -22,6 +22,10 @@ class Periodic:
 
     A cosine of amplitude a and phase angle beta, a cos(2 pi phi + beta), is the one
     harmonic a exp(i beta). ``mean`` and ``harmonics`` share one unit.
+
+    >>> stiffness = Periodic(3e8, (5e7,))
+    >>> stiffness([0.0, 0.5])
+    array([3.5e+08, 2.5e+08])
     """
 
     mean: float

@@ -28,6 +28,10 @@ class Material:
 
     E(T) = E20 [1 - ``modulus_slope`` (T - 293.15 K)]; the slope's source for carbon steel is
     the fit to Roark's table (202.0 .. 182.7 GPa at 21 .. 316 C), valid 21..204 C.
+
+    >>> steel = material("steel")
+    >>> f"{steel.thermal_expansion * 1e6:.1f} um/(m K)"
+    '11.5 um/(m K)'
     """
 
     name: str
@@ -97,6 +101,10 @@ class Lubricant:
     [J/(kg K)] are taken constant. ``temperature_range`` [K] is where the line is trusted;
     outside it the viscosity functions warn. ``walther_a``, ``walther_b`` and ``density_15`` may be
     arrays, one entry for each operating point: oils side by side.
+
+    >>> oil = Lubricant.from_two_points("oil", (313.15, 100e-6), (373.15, 11e-6))
+    >>> f"{oil.walther_a:.2f}, {oil.walther_b:.2f}"
+    '9.25, 3.59'
     """
 
     name: str
@@ -236,7 +244,11 @@ Creep of PA66 and POM begins at 60 to 80 C."""
 
 
 def material(name: str) -> Material:
-    """The named set, or an error that says the nearest name."""
+    """The named set, or an error that says the nearest name.
+
+    >>> f"{1e-9 * material('steel').youngs_modulus:.0f} GPa"
+    '206 GPa'
+    """
     if name not in MATERIALS:
         raise InputError("material", repr(name), fix=nearest(name, MATERIALS))
     return MATERIALS[name]
@@ -347,6 +359,9 @@ def lubricant(name: str) -> Lubricant:
     """The named oil, or an error that says the nearest name.
 
     An ISO viscosity grade alone, "ISO VG 100" or "VG 100", is the mineral oil of that grade.
+
+    >>> lubricant("FVA3").kind
+    'mineral'
     """
     grade = _ISO_GRADE.fullmatch(name.strip())
     known = f"M{grade[1]}" if grade else name

@@ -26,6 +26,10 @@ def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
 
     Gear values carry their unit as in a case file (``20 mm:30 mm:3``); those that have a name of
     their own may leave it out.
+
+    >>> name, values = parse_axis(load_case("rig"), "rpm=1000:2000:3")
+    >>> name, values.round(2)
+    ('pinion_speed', array([104.72, 157.08, 209.44]))
     """
     name, sign, rest = text.partition("=")
     gears = isinstance(case, GearCase)
@@ -64,7 +68,11 @@ def parse_axes(case: Case, texts: Sequence[str]) -> dict[str, Floats]:
 
 
 def parse_numbers(texts: Sequence[str]) -> dict[str, float]:
-    """NAME=VALUE of numbers of the dimensionless equation, each once."""
+    """NAME=VALUE of numbers of the dimensionless equation, each once.
+
+    >>> parse_numbers(["frequency=0.7"])
+    {'frequency': 0.7}
+    """
     found: dict[str, float] = {}
     for text in texts:
         name, sign, value = text.partition("=")

@@ -83,7 +83,13 @@ def from_value(
 
 
 def recommended(pair: GearPair) -> Backlash:
-    """The least normal backlash of ISO/TR 10064-2, of the whole gap at the drawing temperature."""
+    """The least normal backlash of ISO/TR 10064-2, of the whole gap at the drawing temperature.
+
+    >>> from thermogear import Gear, GearPair
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{1e6 * recommended(pair).half:.0f} um"
+    '80 um'
+    """
     total = recommended_normal_backlash(pair)
     origin = f"the least normal backlash of ISO/TR 10064-2, {1e3 * total:.4g} mm"
     return Backlash(half=0.5 * total, least=0.5 * total, most=0.5 * total, origin=origin)

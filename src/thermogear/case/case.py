@@ -320,6 +320,9 @@ def load_case(
     ``overrides`` map dotted fields to values as a file would hold them, or are texts
     ``"gears.pinion.teeth=30"``. Raises :class:`InputError` in one line; warns with
     :class:`ValidityWarning` where a value leaves the range of its data.
+
+    >>> load_case("rig").pair.pinion.teeth
+    25
     """
     name, text = case_text(source)
     changes = pairs(overrides)

@@ -79,6 +79,10 @@ def family(
     its base set, some of its ``numbers`` changed, over numbers of the equation. Parameters that
     are not named stay as in the case, at its first speed and torque. Raises InputError for what
     the case does not have.
+
+    >>> found = family(load_case("rig"), ["rpm"])
+    >>> found.names
+    ('pinion_speed',)
     """
     if isinstance(case, DimensionlessCase):
         for option, given in (("bundle", bundle), ("state", ThermalState.of(state) != HOT)):

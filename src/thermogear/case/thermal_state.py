@@ -34,6 +34,9 @@ class ThermalState:
     temperatures given or computed; "computed": from the heat balance, whatever the case gives;
     "at": both addenda at ``temperature`` [K], the rest as ``temperatures.follow`` says; "held": as
     hot as the operating point ``held``, at any speed and torque.
+
+    >>> ThermalState().kind
+    'hot'
     """
 
     kind: str = vocabulary.HOT

@@ -210,7 +210,11 @@ def _by_pint(number: float, unit: str, kind: Kind) -> float:
 
 
 def read_quantity(text: object, kind_name: str) -> float:
-    """An SI number out of a text with a unit; a bare number is refused with an example."""
+    """An SI number out of a text with a unit; a bare number is refused with an example.
+
+    >>> read_quantity("4 mm", "length")
+    0.004
+    """
     kind = KINDS[kind_name]
     example = f'write for instance "{kind.example}"'
 
@@ -252,7 +256,11 @@ def _with_point(text: str, kind: Kind) -> str:
 
 
 def shown(value: float, kind_name: str, digits: int = 6, unit: str = "") -> str:
-    """An SI ``value`` as text in a usual ``unit``, else that of messages and tables."""
+    """An SI ``value`` as text in a usual ``unit``, else that of messages and tables.
+
+    >>> shown(0.004, "length")
+    '4 mm'
+    """
     kind = KINDS[kind_name]
     unit = unit if unit in _USUAL[kind_name] else kind.shown
     told = value - ZERO_CELSIUS if unit == "degC" else value

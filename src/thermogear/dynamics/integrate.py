@@ -214,6 +214,15 @@ def simulate(
 
     Raises InputError for a non-finite start, counts out of range, an unknown method, and
     ``steps_per_period`` that is not a multiple of ``samples_per_period``.
+
+    >>> from thermogear import TorsionalModel
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> run = simulate(model, periods=4, discard=200)
+    >>> run.x.shape
+    (1, 256)
     """
     run = _Run.of(
         model,

@@ -24,6 +24,9 @@ def dead_zone(x: ArrayLike, *, half_backlash: ArrayLike = 1.0) -> Floats:
     x relative displacement along the line of action [any length], positive on the drive side;
     half_backlash b >= 0 in the same unit. Returns the broadcast shape; 0 inside [-b, b] and on
     its edges.
+
+    >>> dead_zone([-3.0, 0.5, 2.0], half_backlash=1.0)
+    array([-2.,  0.,  1.])
     """
     b = np.asarray(half_backlash, dtype=float)
     here = np.asarray(x, dtype=float)
@@ -64,6 +67,13 @@ class TorsionalModel:
     ``stiffness_amplitude`` eps, ``mean_force`` F_m, ``force_amplitude`` F_h, ``half_backlash``
     b' > 0 over the cold one, ``thermal_stiffness`` eps_T > -1. Fields may be arrays that
     broadcast: every element is a lane.
+
+    >>> model = TorsionalModel(
+    ...     damping_ratio=0.05, frequency=0.7, stiffness_amplitude=0.1,
+    ...     mean_force=0.1, force_amplitude=0.05,
+    ... )
+    >>> f"{model.period:.4f}"
+    '8.9760'
     """
 
     damping_ratio: ArrayLike
@@ -150,6 +160,11 @@ class DeadZoneModel:
     ``frequency`` w > 0, ``stiffness`` and ``force``: :class:`Periodic` (any number of
     harmonics) or :class:`Pieces` (with jumps), ``half_backlash`` b > 0. Each may be a sequence;
     sequences of one common length are lanes.
+
+    >>> k, force = Periodic(1.0, (0.1,)), Periodic(0.1, (0.05,))
+    >>> model = DeadZoneModel(damping_ratio=0.05, frequency=0.5, stiffness=k, force=force)
+    >>> f"{model.period:.4f}"
+    '12.5664'
     """
 
     damping_ratio: ArrayLike
@@ -299,6 +314,14 @@ class PairModel:
     ``half_backlash`` b' [m], ``mesh_frequency`` [rad/s]. State (theta1, theta2, theta1',
     theta2'). With balanced torques, T1/r_b1 = T2/r_b2, the momentum
     I1 theta1'/r_b1 + I2 theta2'/r_b2 is constant.
+
+    >>> pair = PairModel(
+    ...     inertias=(2e-3, 2e-3), base_radii=(0.04, 0.04), torques=(100.0, 100.0),
+    ...     stiffness=Periodic(3e8), error=Periodic(0.0), damping=2e3,
+    ...     half_backlash=50e-6, mesh_frequency=2e3,
+    ... )
+    >>> f"{pair.equivalent_mass:.3f} kg, {pair.mean_force:.0f} N"
+    '0.625 kg, 2500 N'
     """
 
     inertias: tuple[float, float]

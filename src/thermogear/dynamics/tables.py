@@ -26,6 +26,9 @@ class Pieces:
     p(phi) = sum_m coefficients[i][m] (phi - starts[i])^m for starts[i] <= phi < starts[i+1],
     phi in periods; the first start is 0, the last piece ends at 1. At a start the value is the
     right-hand limit.
+
+    >>> Pieces.constant(starts=[0.0, 0.25], values=[1.0, 2.0]).mean
+    1.75
     """
 
     starts: tuple[float, ...]
@@ -151,7 +154,12 @@ class Lanes:
 
 
 def stack(tables: Iterable[Table]) -> tuple[Complexes, tuple[Pieces | None, ...]]:
-    """Fourier coefficients (lane, harmonic) and pieces of one table per lane."""
+    """Fourier coefficients (lane, harmonic) and pieces of one table per lane.
+
+    >>> coefficients, pieces = stack([Periodic(3e8, (5e7,)), Periodic(2e8)])
+    >>> coefficients.shape, pieces
+    ((2, 2), (None, None))
+    """
     rows = list(tables)
     width = 1 + max((len(t.harmonics) for t in rows if isinstance(t, Periodic)), default=0)
     coefficients = np.zeros((len(rows), width), complex)

@@ -75,7 +75,10 @@ class Deviation(Protocol):
 
 
 def require_choice(field: str, value: str, known: tuple[str, ...]) -> None:
-    """Refuse a word that is none of ``known``, with the nearest."""
+    """Refuse a word that is none of ``known``, with the nearest.
+
+    >>> require_choice("end", "tip", ("tip", "root"))
+    """
     if value not in known:
         raise InputError(
             field, repr(value), allowed=" | ".join(known), fix=nearest(str(value), known)
@@ -165,6 +168,9 @@ class PitchError:
 
     errors [m] along the line of action: > 0 stands a whole tooth towards its drive side, which
     is added material on the drive flank and missing on the back flank.
+
+    >>> PitchError("wheel", errors=(4e-6, -2e-6)).gear
+    'wheel'
     """
 
     gear: str
@@ -291,6 +297,11 @@ class BasePitchDifference:
 
     strain = lambda_1 t_1 - lambda_2 t_2, t_i the effective temperature rise u_b/(lambda r_b):
     S = strain (s - s_C) [m], strain [-]. A number or an array over operating points.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> strain = 11.5e-6 * (80.0 - 60.0)  # pinion 80 K, wheel 60 K above the drawing
+    >>> f"{1e6 * strain * pair.base_pitch:.2f} um, {BasePitchDifference(strain).strain:.2e}"
+    '2.72 um, 2.30e-04'
     """
 
     strain: ArrayLike

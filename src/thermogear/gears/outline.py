@@ -146,6 +146,10 @@ def whole(points: NDArray[np.complex128], teeth: int) -> NDArray[np.complex128]:
     """All ``teeth`` of a gear as one closed line, from one pitch of it [m].
 
     The point that two neighbours share stands once, and the first closes the line.
+
+    >>> pitch = np.exp(1j * np.linspace(-0.5, 0.5, 5) * np.pi / 2)
+    >>> whole(pitch, 4).size
+    17
     """
     turns = np.exp(2j * math.pi * np.arange(teeth) / teeth)
     line = (turns[:, None] * points[None, :-1]).ravel()

@@ -156,6 +156,10 @@ def body_matrices(
     j pitches ahead (in the direction of its tangential load) with the load of tooth 0.
     ``windup`` False leaves out the rotation of the rim against the clamped bore (order 0 of
     the shear), which a lumped model gives to the body's inertia.
+
+    >>> table, centre = body_matrices(Gear(40, 4e-3))
+    >>> table.shape, centre
+    ((13, 3, 3), 6)
     """
     table, torsion = _foot_matrices(
         gear.teeth,

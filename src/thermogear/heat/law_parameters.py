@@ -58,7 +58,10 @@ def ranges(law: type[Any]) -> Mapping[str, Bounds]:
 
 
 def require_known(law: Any, names: Mapping[str, object]) -> None:
-    """Refuse a name that is no parameter of ``law``; says the nearest of that law."""
+    """Refuse a name that is no parameter of ``law``; says the nearest of that law.
+
+    >>> require_known(friction_law("boundary"), {"coefficient": 0.12})
+    """
     known = parameters(law)
     for name in names:
         if name not in known:
@@ -92,7 +95,11 @@ def with_parameters(law: _Law, values: Mapping[str, Any]) -> _Law:
 
 
 def law_words(law: Any, plain: object) -> str:
-    """The law's name, and in brackets the parameters in which it differs from ``plain``."""
+    """The law's name, and in brackets the parameters in which it differs from ``plain``.
+
+    >>> law_words(friction_law("boundary", coefficient=0.12), friction_law("boundary"))
+    'boundary(coefficient=0.12)'
+    """
     usual = parameters(plain)
     told = [
         f"{name}={law_words(value, usual.get(name)) if is_dataclass(value) else value}"

@@ -212,6 +212,13 @@ def blok_as_printed(
 
     Arguments as :func:`blok_flash`, nothing made absolute. Kept to show the misprint (sqrt(B)
     on the wrong side, a stray sqrt(pi)); feeds nothing.
+
+    >>> value = blok_as_printed(
+    ...     0.05, 200e3, speed_1=9.0, speed_2=4.0, half_width=0.16e-3,
+    ...     contact_coefficient_1=14e3, contact_coefficient_2=14e3,
+    ... )
+    >>> f"{1e3 * value:.2f} mm K"
+    '4.23 mm K'
     """
     mu, w, v1, v2, b = (
         np.asarray(a, dtype=float) for a in (friction, line_load, speed_1, speed_2, half_width)

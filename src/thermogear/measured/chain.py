@@ -31,6 +31,9 @@ class Chain:
     half of it to 0.45 of the rate, with a transition of 0.4 of it. ``low_cut`` None: 0.4 of the
     mesh line. ``window`` reads the amplitude. ``kind`` is what the record is: acceleration,
     velocity is refused, displacement is not integrated.
+
+    >>> Chain(method="trapezoid").method
+    'trapezoid'
     """
 
     method: str = "frequency"

@@ -21,7 +21,12 @@ from thermogear.signals.windows import Window
 @dataclass(frozen=True, kw_only=True)
 class SpeedLine:
     """The main line at one speed: ``speed`` [rad/s] of the pinion (nominal), ``frequency`` [Hz],
-    ``displacement`` [m] peak; ``uncertainty`` relative standard uncertainty, None: not stated."""
+    ``displacement`` [m] peak; ``uncertainty`` relative standard uncertainty, None: not stated.
+
+    >>> line = SpeedLine(speed=100.0, frequency=400.0, displacement=3e-6)
+    >>> line.displacement
+    3e-06
+    """
 
     speed: float
     frequency: float
@@ -122,6 +127,10 @@ def unstated_processing(frequency: float, *, highest: float) -> dict[str, float]
     "window": L = the Hann window's scalloping, 15.1 %. "integration": L = what two trapezoidal
     sums lose at the lowest rate that still resolves the ``highest`` line [Hz] of the test, 2.56
     times it; 0 for a processing that does not use sums cannot be told apart.
+
+    >>> found = unstated_processing(500.0, highest=5000.0)
+    >>> list(found)
+    ['window', 'integration']
     """
     window = Window("hann").scalloping / np.sqrt(12.0)
     loss = 1.0 - float(trapezoid_factor(frequency, rate=2.56 * highest))

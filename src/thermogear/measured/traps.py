@@ -35,7 +35,11 @@ MOST_STAMPS = 1 << 23
 
 
 def is_time_name(name: str) -> bool:
-    """Whether a column's name (without its unit) says time."""
+    """Whether a column's name (without its unit) says time.
+
+    >>> is_time_name("Time"), is_time_name("a1")
+    (True, False)
+    """
     return bool(_TIME.match(name.strip()[:_LONGEST]))
 
 
@@ -55,7 +59,11 @@ def is_possible_rate(rate: float) -> bool:
 
 
 def split_unit(name: str) -> tuple[str, str | None]:
-    """A header cell as (name, known unit): "a1 [g]", "Time(ms)", "acc / m/s²", "加速度(m/s²)"."""
+    """A header cell as (name, known unit): "a1 [g]", "Time(ms)", "acc / m/s²", "加速度(m/s²)".
+
+    >>> split_unit("Time(ms)")
+    ('Time', 'ms')
+    """
     text = name.strip()[:_LONGEST].strip("\"'").strip()
     for pattern in (r"^(.*?)\s*[\[(（{]([^\])）}]*)[\])）}]\s*$", r"^(.*?)\s+(?:/|in)\s+(.+)$"):
         found = re.match(pattern, text)

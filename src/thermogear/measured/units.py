@@ -82,7 +82,11 @@ _SIGNS = str.maketrans(
 
 
 def unit(text: str) -> str | None:
-    """The known name of a unit as written in a file ("m/s²", "[g]", "G", "msec"), else None."""
+    """The known name of a unit as written in a file ("m/s²", "[g]", "G", "msec"), else None.
+
+    >>> unit("msec"), unit("furlong")
+    ('ms', None)
+    """
     bare = text.strip()[:_LONGEST].strip("[](){}").strip().translate(_SIGNS)
     if bare in _TABLE:
         return bare
@@ -101,10 +105,18 @@ def known_unit(text: str, field: str = "unit") -> str:
 
 
 def kind_of(name: str) -> str:
-    """The kind of quantity of a known unit: acceleration, displacement, time, ..."""
+    """The kind of quantity of a known unit: acceleration, displacement, time, ...
+
+    >>> kind_of("mm")
+    'displacement'
+    """
     return _TABLE[name][0]
 
 
 def factor_of(name: str) -> float:
-    """SI units (turns per second for rpm, turns for angles) in one of a known unit."""
+    """SI units (turns per second for rpm, turns for angles) in one of a known unit.
+
+    >>> factor_of("mm")
+    0.001
+    """
     return _TABLE[name][1]

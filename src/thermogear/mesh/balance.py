@@ -62,6 +62,9 @@ class Gearbox:
     ``bearing_coefficient`` of the four shaft bearings, each of the bore's diameter and carrying
     half the normal force; ``measured`` temperatures [K] that hold single nodes of the network
     ("oil", "housing", "pinion_tooth", ...), numbers or arrays over operating points.
+
+    >>> Gearbox(immersion=0.5).bearing_coefficient
+    0.0015
     """
 
     surroundings: Surroundings = field(default_factory=Surroundings)
@@ -154,6 +157,11 @@ def heat_balance(
     the oil, or the film at the flanks, leaves the range of the viscosity line. Raises for
     impossible arguments, and where no point has a value even with everything but the given nodes
     at 40 C.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> balance = heat_balance(pair, 100.0, 200.0, lubricant("FVA3"), 60e-6)
+    >>> f"{balance.losses.mesh.item():.0f} W"
+    '166 W'
     """
     if not tolerance > 0.0:
         raise InputError("tolerance", f"{tolerance} K", allowed="> 0 K")

@@ -85,6 +85,16 @@ def mesh_cycle(
     :meth:`MeshModel.consistent`. Zero torque gives zero contact and flash; zero speed gives
     zero flash; the pitch point has its limit values. Warns outside the ranges of the sources;
     raises InputError for fewer than 2 positions.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> warm = Temperatures.uniform(353.15, reference=293.15)
+    >>> point = Operating(
+    ...     speed=[100.0], torque=[200.0], lubricant=lubricant("FVA3"), oil_temperature=353.15,
+    ...     temperatures=warm, half_backlash=60e-6,
+    ... )
+    >>> cycle = mesh_cycle(pair, point, mesh_positions=32, path_positions=21)
+    >>> f"{cycle.attrs['contact_ratio']:.3f}, {1e6 * cycle.least_half_backlash.item():.1f} um"
+    '1.635, 60.0 um'
     """
     for name, count in (("path_positions", path_positions), ("mesh_positions", mesh_positions)):
         if count < 2:

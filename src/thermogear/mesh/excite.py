@@ -51,6 +51,17 @@ def excitation(
     """The excitation of every operating point of ``cycle``; None where the pair is jammed.
 
     :func:`excitations` one by one: ``inertias`` [kg m^2], ``transmission_error`` e [m].
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> warm = Temperatures.uniform(353.15, reference=293.15)
+    >>> point = Operating(
+    ...     speed=[100.0], torque=[200.0], lubricant=lubricant("FVA3"), oil_temperature=353.15,
+    ...     temperatures=warm, half_backlash=60e-6,
+    ... )
+    >>> cycle = mesh_cycle(pair, point, mesh_positions=32, path_positions=21)
+    >>> (one,) = excitation(cycle, pair, damping_ratio=0.05)
+    >>> f"{one.mean_force:.0f} N"
+    '5321 N'
     """
     found = excitations(
         cycle,

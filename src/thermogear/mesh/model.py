@@ -83,6 +83,9 @@ class MeshModel:
 
     ``friction`` is the name of a law with its default parameters, or a law object; one with its
     defaults is kept by its name. Dry friction's coefficient is ``dry_coefficient``.
+
+    >>> MeshModel.consistent().friction, MeshModel.thesis().friction
+    ('lambda-blend', 'benedict-kelley')
     """
 
     name: str

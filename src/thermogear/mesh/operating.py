@@ -35,6 +35,9 @@ class Temperatures:
     ``pinion_body`` and ``wheel_body``: the body nodes of a heat balance
     (:func:`~thermogear.heat.gearbox.body_radius`), through which the radial field then passes;
     None: the field is logarithmic from bore to addendum.
+
+    >>> Temperatures.uniform(353.15, reference=293.15).wheel_bore
+    353.15
     """
 
     reference: float
@@ -117,6 +120,15 @@ class Operating:
     when it is warm. ``flank_temperature`` [K] where the film forms, for a model whose inlet is the
     body's; left out, the mean of both addenda. ``varied``: what of the pair itself differs between
     the points, in place of the pair's and of ``half_backlash``.
+
+    >>> from thermogear import lubricant
+    >>> warm = Temperatures.uniform(353.15, reference=293.15)
+    >>> point = Operating(
+    ...     speed=[100.0], torque=[200.0], lubricant=lubricant("FVA3"), oil_temperature=353.15,
+    ...     temperatures=warm, half_backlash=60e-6,
+    ... )
+    >>> point.speed.shape
+    (1,)
     """
 
     speed: Floats

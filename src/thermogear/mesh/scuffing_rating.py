@@ -118,7 +118,12 @@ class IntegralRating(NamedTuple):
 
 
 def pair_thermo_elastic_factor(pair: GearPair) -> float:
-    """X_M of the pair's materials, the mean of both thermal contact coefficients."""
+    """X_M of the pair's materials, the mean of both thermal contact coefficients.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> f"{pair_thermo_elastic_factor(pair):.1f}"
+    '52.9'
+    """
     one, two = pair.pinion.material, pair.wheel.material
     modulus = 2.0 * reduced_modulus(
         one.youngs_modulus, one.poisson_ratio, two.youngs_modulus, two.poisson_ratio

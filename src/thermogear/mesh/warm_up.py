@@ -54,6 +54,9 @@ class Duty:
     ``time`` [s], shape (pieces + 1,), rising from 0: the beginning of every piece and the end of
     the last, which may be inf (until steady). ``speed`` [rad/s] >= 0 and ``torque`` [N m] >= 0 of
     the pinion and ``ambient`` [K], shape (pieces,). Raises InputError in one line otherwise.
+
+    >>> Duty(time=[0.0, 600.0], speed=[100.0], torque=[200.0], ambient=[293.15]).time
+    array([  0., 600.])
     """
 
     time: Floats
@@ -170,6 +173,12 @@ def warm_up(
 
     A jam does not end the course; a node of 700 K does. Raises ConvergenceError where the loaded
     contact does not settle. Warns once where the oil leaves its viscosity line.
+
+    >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
+    >>> duty = Duty(time=[0.0, 600.0], speed=[100.0], torque=[200.0], ambient=[293.15])
+    >>> course = warm_up(pair, duty, lubricant("FVA3"), 60e-6)
+    >>> f"{course.temperatures['oil'][-1] - 273.15:.1f} C"
+    '24.0 C'
     """
     box = Gearbox() if gearbox is None else gearbox
     chosen = _Chain(

@@ -18,7 +18,12 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Density:
-    """One-sided power density [unit^2 per unit of rate] averaged over ``averages`` segments."""
+    """One-sided power density [unit^2 per unit of rate] averaged over ``averages`` segments.
+
+    >>> density = welch([np.sin(np.arange(1024))], 1024.0, 256)
+    >>> density.averages, density.bin_width
+    (7, 4.0)
+    """
 
     frequencies: Floats
     density: Floats
@@ -50,6 +55,10 @@ def welch(
     Raises InputError when all blocks together are shorter than one segment, and for a sample
     that is not finite.
     Source: Welch 1967, IEEE Trans. Audio Electroacoust. 15, 70-73.
+
+    >>> x = np.random.default_rng(1).normal(size=20000)
+    >>> f"{welch([x], 1000.0, 256).density.mean():.4f}"
+    '0.0020'
     """
     per_second, chosen = positive_rate(rate), windows.window(window)
     if segment < 8:

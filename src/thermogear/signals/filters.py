@@ -21,6 +21,10 @@ class BandPass:
     ``band`` = (low, high) [same unit as ``rate``], 0 < low < high < rate/2; the response is -6 dB
     at both and 1 in the middle of the band. Too few taps blur the edges: read ``gain`` at the
     line of interest before trusting its amplitude.
+
+    >>> band = BandPass(rate=1000.0, band=(50.0, 150.0), taps=331)
+    >>> [f"{gain:.2f}" for gain in band.gain([50.0, 100.0])]
+    ['0.50', '1.00']
     """
 
     rate: float
@@ -84,6 +88,9 @@ def taps_for(rate: float, *, transition: float) -> int:
 
     Source: Oppenheim and Schafer, Discrete-Time Signal Processing, window design, table of
     transition widths (Hamming: 3.3/N of the rate).
+
+    >>> taps_for(1000.0, transition=10.0)
+    331
     """
     positive_rate(rate)
     if not transition > 0:
@@ -92,6 +99,10 @@ def taps_for(rate: float, *, transition: float) -> int:
 
 
 def without_trend(x: ArrayLike) -> Floats:
-    """The record less its mean and its straight line (least squares)."""
+    """The record less its mean and its straight line (least squares).
+
+    >>> without_trend([1.0, 3.0, 5.0]).round(9) + 0.0
+    array([0., 0., 0.])
+    """
     values = finite_record(x)
     return np.asarray(signal.detrend(values, axis=-1, type="linear"))

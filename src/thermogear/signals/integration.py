@@ -21,6 +21,9 @@ def trapezoid_factor(frequency: ArrayLike, *, rate: float) -> Floats:
     a cosine of any length: sum of the trapezoids of cos(2 u n) is sin(2 u n)/(2 tan u).
 
     Raises InputError above half the rate.
+
+    >>> f"{trapezoid_factor(250.0, rate=1000.0):.4f}"
+    '0.6169'
     """
     u = np.pi * np.asarray(frequency, dtype=float) / positive_rate(rate)
     if np.any(~np.isfinite(u)) or np.any(np.abs(u) > np.pi / 2 * (1 + 1e-12)):
@@ -34,6 +37,9 @@ def integrate_twice_trapezoid(x: ArrayLike, rate: float) -> Floats:
 
     ``x`` [any unit], time last; ``rate`` [samples/s]. Every line is read ``trapezoid_factor``
     times too small. Not the default; kept to show what it does.
+
+    >>> integrate_twice_trapezoid([2.0, 2.0, 2.0], 1.0)
+    array([0., 1., 4.])
     """
     values, step = finite_record(x), 1.0 / positive_rate(rate)
     once = integrate.cumulative_trapezoid(values, dx=step, axis=-1, initial=0.0)
@@ -44,6 +50,9 @@ def integrate_twice_simpson(x: ArrayLike, rate: float) -> Floats:
     """Two running Simpson sums from zero (``scipy.integrate.cumulative_simpson``).
 
     ``x`` [any unit], time last; ``rate`` [samples/s].
+
+    >>> integrate_twice_simpson([2.0, 2.0, 2.0], 1.0).round(9)
+    array([0., 1., 4.])
     """
     values, step = finite_record(x), 1.0 / positive_rate(rate)
     once = integrate.cumulative_simpson(values, dx=step, axis=-1, initial=0.0)
@@ -61,6 +70,11 @@ def integrate_twice(x: ArrayLike, rate: float, *, low_cut: float) -> Floats:
     few periods of a record that does not close on itself carry the ends' leakage.
 
     Raises InputError for a low cut of zero or above half the rate.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> a = -((2 * np.pi * 50.0) ** 2) * 3.0 * np.cos(2 * np.pi * 50.0 * t)
+    >>> f"{integrate_twice(a, 1000.0, low_cut=10.0).max():.3f}"
+    '3.000'
     """
     values, per_second = finite_record(x), positive_rate(rate)
     if not 0 < low_cut < per_second / 2:

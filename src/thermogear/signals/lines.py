@@ -25,6 +25,11 @@ class Line:
     ``bin_offset``: distance from the nearest bin's centre, -0.5..0.5. ``floor``: median amplitude
     of the spectrum beside the line (same window); ``amplitude_error``: standard deviation of the
     amplitude that this floor, taken as Gaussian noise, makes; ``frequency_error`` likewise.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> line = find_line(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0, near=50.0, half_width=5.0)
+    >>> f"{line.amplitude:.3f} at {line.frequency:.1f} Hz"
+    '2.000 at 50.3 Hz'
     """
 
     frequency: float
@@ -49,6 +54,9 @@ def hann_offset(around: Floats) -> float:
     d = 2 (right - left)/(left + 2 peak + right). Exact for one line in a long record: the main
     lobe of the Hann window is sin(pi d)/(pi d (1 - d^2)). Returns 0 where nothing stands.
     Source: Agrez 2002, IEEE Trans. Instrum. Meas. 51, 287-292, the three-point estimate.
+
+    >>> hann_offset(np.array([0.5, 1.0, 0.5]))
+    0.0
     """
     left, peak, right = (float(a) for a in around)
     total = left + 2.0 * peak + right
@@ -65,6 +73,10 @@ def line_at(
     A flat-top window makes |c| insensitive to an error of ``frequency`` (0.1 % half a bin off).
     ``x`` [any unit] is one channel, ``rate`` [samples per unit of time]. Raises InputError
     outside 0 < f < rate/2.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> f"{abs(line_at(2.0 * np.cos(2 * np.pi * 50.0 * t), 1000.0, frequency=50.0)):.3f}"
+    '2.000'
     """
     values, per_second = finite_record(x), positive_rate(rate)
     if values.ndim != 1:
@@ -79,7 +91,11 @@ def line_at(
 
 
 def floor_around(amplitudes: Floats, index: int, *, lobe: int, reach: int = 60) -> float:
-    """Median amplitude of ``reach`` bins on each side, without the main lobe and without bin 0."""
+    """Median amplitude of ``reach`` bins on each side, without the main lobe and without bin 0.
+
+    >>> floor_around(np.full(200, 0.2), 100, lobe=4)
+    0.2
+    """
     low, high = max(1, index - lobe - reach), min(amplitudes.size, index + lobe + reach + 1)
     beside = np.concatenate(
         [amplitudes[low : max(low, index - lobe)], amplitudes[index + lobe + 1 : high]]
@@ -94,6 +110,10 @@ class LineSpectrum:
     A cosine-sum window multiplies in time, so it mixes few neighbours in frequency:
     X_w(k) = [a_0 X(k) + sum_q (-1)^q a_q (X(k - q) + X(k + q))/2]/a_0.
     ``lines``: 2/N times the DFT, 0..N/2.
+
+    >>> spectrum = line_spectrum(np.sin(np.arange(100)), 200.0)
+    >>> spectrum.bin_width
+    2.0
     """
 
     rate: float
@@ -132,6 +152,11 @@ def line_spectrum(x: ArrayLike, rate: float) -> LineSpectrum:
     """The spectrum of one channel that ``line_in`` reads lines from; the mean is taken away.
 
     ``x`` [any unit], ``rate`` [samples per unit of time].
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> spectrum = line_spectrum(2.0 * np.cos(2 * np.pi * 50.0 * t), 1000.0)
+    >>> f"{abs(spectrum.lines[50]):.3f}"
+    '2.000'
     """
     values, per_second = finite_record(x), positive_rate(rate)
     if values.ndim != 1 or values.size < 32:
@@ -151,6 +176,11 @@ def find_line(
     """The strongest line within ``near`` +- ``half_width`` of one channel: see ``line_in``.
 
     ``x`` [any unit], ``rate`` [samples per unit of time].
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> line = find_line(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0, near=50.0, half_width=5.0)
+    >>> f"{line.frequency:.1f} Hz"
+    '50.3 Hz'
     """
     return line_in(line_spectrum(x, rate), near=near, half_width=half_width, window=window)
 
@@ -163,6 +193,11 @@ def line_in(
     Position by ``hann_offset``; amplitude with ``window`` at the nearest bin, over what that
     window passes at the offset found (``Window.response``; the flat top hardly needs it).
     Raises InputError when the band holds no bin.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> spectrum = line_spectrum(2.0 * np.cos(2 * np.pi * 50.3 * t), 1000.0)
+    >>> f"{line_in(spectrum, near=50.0, half_width=5.0).frequency:.1f} Hz"
+    '50.3 Hz'
     """
     chosen = windows.window(window)
     width, top = spectrum.bin_width, spectrum.hann.size - 2

@@ -19,6 +19,10 @@ def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> F
     An edge counts when the signal rises through ``level`` (default: midway between its 2nd and
     98th percentile) after it has been below the lower quarter of its swing: the hysteresis keeps
     noise at the level from counting twice. Raises InputError when fewer than two edges are found.
+
+    >>> pulses = np.arange(400) % 100 >= 50
+    >>> tacho_times(pulses, 1000.0).round(4)
+    array([0.0495, 0.1495, 0.2495, 0.3495])
     """
     values, per_second = finite_record(pulses), positive_rate(rate)
     bottom, top = np.percentile(values, [2.0, 98.0])
@@ -47,6 +51,9 @@ def tacho_angle(times: ArrayLike, pulses_per_turn: float, at: ArrayLike) -> Floa
     ``times`` [s] of the pulses, ``pulses_per_turn`` [-]; a cubic spline through (pulse time, pulse
     number/pulses per turn). Times outside the first and
     last pulse give NaN: no angle is extrapolated.
+
+    >>> tacho_angle([0.0, 0.1, 0.2, 0.3], 2.0, [0.1, 0.25]).round(3)
+    array([0.5 , 1.25])
     """
     edges = finite_record(times, "tacho")
     if edges.size < 4 or np.any(np.diff(edges) <= 0):
@@ -66,6 +73,11 @@ def line_angle(x: ArrayLike, *, frequency: float, half_width: float) -> tuple[Fl
 
     Speed changes are followed as far as they stay inside the half width: keep it below the
     distance to the next line.
+
+    >>> x = np.cos(2 * np.pi * 0.1 * np.arange(2000))
+    >>> cycles, _ = line_angle(x, frequency=0.1, half_width=0.02)
+    >>> f"{np.diff(cycles).mean():.4f} cycles per sample"
+    '0.1000 cycles per sample'
     """
     values = finite_record(x)
     if not 0 < half_width <= frequency < 0.5:
@@ -98,6 +110,11 @@ def resample_by_angle(
     ``x`` [any unit] time last, ``angle`` [turns] of each sample, rising. The record is first made
     four times finer by its Fourier series, so that the cubic spline through it loses less than
     0.1 % up to 0.8 of half the rate. Returns (..., turns x samples_per_turn).
+
+    >>> angle = np.linspace(0.0, 4.0, 401)
+    >>> turned = resample_by_angle(np.cos(2 * np.pi * angle), angle, samples_per_turn=32)
+    >>> turned.shape
+    (128,)
     """
     values = finite_record(x)
     turned = finite_record(angle, "angle")
@@ -136,6 +153,10 @@ def synchronous_average(x: ArrayLike, samples_per_turn: int) -> tuple[Floats, Fl
 
     ``x`` [any unit], angle last. Noise falls with the root of the number of turns; lines at whole
     orders stay exactly.
+
+    >>> mean, rest = synchronous_average([1.0, 3.0, 2.0, 4.0], 2)
+    >>> mean, rest
+    (array([1.5, 3.5]), array([-0.5, -0.5,  0.5,  0.5]))
     """
     values = finite_record(x)
     turns = values.shape[-1] // samples_per_turn
@@ -150,7 +171,11 @@ def synchronous_average(x: ArrayLike, samples_per_turn: int) -> tuple[Floats, Fl
 
 
 def sideband_orders(*, centre: float, spacing: float, count: int) -> Floats:
-    """Orders of ``count`` sidebands on each side of ``centre``, lowest first, centre included."""
+    """Orders of ``count`` sidebands on each side of ``centre``, lowest first, centre included.
+
+    >>> sideband_orders(centre=20.0, spacing=1.0, count=2)
+    array([18., 19., 20., 21., 22.])
+    """
     if count < 0 or not spacing > 0:
         raise InputError("spacing", f"{spacing:g} x {count}", allowed="> 0, count >= 0")
     return np.asarray(centre + spacing * np.arange(-count, count + 1), float)

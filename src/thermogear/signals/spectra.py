@@ -23,6 +23,10 @@ class Spectrum:
     ``amplitudes`` has the record's leading axes and the frequency axis last; the lines at 0 and
     at the Nyquist limit are not doubled. ``bin_width`` = rate/samples; ``noise_bandwidth`` in
     bins (ENBW).
+
+    >>> spectrum = amplitude_spectrum(np.ones(100), 1000.0)
+    >>> f"{spectrum.bin_width:.0f} Hz"
+    '10 Hz'
     """
 
     frequencies: Floats
@@ -54,7 +58,11 @@ class Spectrum:
 
 
 def line_shares(samples: int) -> Floats:
-    """Mean square of each one-sided line over its amplitude squared: 1, 1/2, ..., 1/2, (1)."""
+    """Mean square of each one-sided line over its amplitude squared: 1, 1/2, ..., 1/2, (1).
+
+    >>> line_shares(6)
+    array([1. , 0.5, 0.5, 1. ])
+    """
     shares = np.full(samples // 2 + 1, 0.5)
     shares[0] = 1.0
     if samples % 2 == 0:
@@ -63,7 +71,11 @@ def line_shares(samples: int) -> Floats:
 
 
 def finite_record(x: ArrayLike, field: str = "record") -> Floats:
-    """The record as floats, time on the last axis; empty or non-finite records are refused."""
+    """The record as floats, time on the last axis; empty or non-finite records are refused.
+
+    >>> finite_record([1, 2])
+    array([1., 2.])
+    """
     values = np.asarray(x, dtype=float)
     if values.ndim == 0 or values.shape[-1] < 2:
         raise InputError(field, f"shape {values.shape}", allowed="2 samples or more, time last")
@@ -74,7 +86,11 @@ def finite_record(x: ArrayLike, field: str = "record") -> Floats:
 
 
 def positive_rate(rate: float) -> float:
-    """The sampling rate, refused when it is not a positive finite number."""
+    """The sampling rate, refused when it is not a positive finite number.
+
+    >>> positive_rate(1000)
+    1000.0
+    """
     if not (np.isfinite(rate) and rate > 0):
         raise InputError("rate", rate, allowed="> 0 samples per second (or per period)")
     return float(rate)
@@ -95,6 +111,12 @@ def amplitude_spectrum(
     Raises InputError for an unknown window, a rate that is not positive, non-finite samples.
     Source: Heinzel, Ruediger, Schilling 2002, "Spectrum and spectral density estimation by the
     DFT", eqs. (21)-(24) for the sums and the noise bandwidth, scaled to peak instead of rms.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> x = 3.0 * np.cos(2 * np.pi * 50.0 * t)
+    >>> spectrum = amplitude_spectrum(x, 1000.0)
+    >>> f"{spectrum.amplitudes[50]:.3f} at {spectrum.frequencies[50]:.0f} Hz"
+    '3.000 at 50 Hz'
     """
     values, per_second = finite_record(x), positive_rate(rate)
     chosen = windows.window(window)
@@ -130,6 +152,13 @@ def order_lines(
 
     Returns the leading axes of ``x`` with the orders last. Raises InputError for another length,
     for orders between two lines, negative, or above S/2.
+
+    >>> phase = np.arange(64) / 32
+    >>> lines = order_lines(
+    ...     2.0 * np.cos(2 * np.pi * phase), samples_per_period=32, periods=2, orders=[1, 2]
+    ... )
+    >>> abs(lines).round(3)
+    array([2., 0.])
     """
     values = finite_record(x)
     if samples_per_period < 2 or periods < 1:
@@ -166,7 +195,14 @@ def order_lines(
 def order_amplitudes(
     x: ArrayLike, *, samples_per_period: int, periods: int, orders: ArrayLike
 ) -> Floats:
-    """Peak amplitudes of an exactly periodic record at given orders: |``order_lines``|."""
+    """Peak amplitudes of an exactly periodic record at given orders: |``order_lines``|.
+
+    >>> phase = np.arange(64) / 32
+    >>> order_amplitudes(
+    ...     2.0 * np.cos(2 * np.pi * phase), samples_per_period=32, periods=2, orders=[0.5, 1]
+    ... ).round(3)
+    array([0., 2.])
+    """
     return np.asarray(
         np.abs(
             order_lines(x, samples_per_period=samples_per_period, periods=periods, orders=orders)

@@ -31,6 +31,9 @@ class Window:
 
     The coefficients are those of Harris (1978), flat top as in D'Antona and Ferrero (2006) and
     ``scipy.signal.windows.flattop``. ``main_lobe`` is the half width of the main lobe in bins.
+
+    >>> f"{Window('hann').noise_bandwidth:.2f} bins"
+    '1.50 bins'
     """
 
     name: str
@@ -85,5 +88,9 @@ class Window:
 
 
 def window(name: str | Window) -> Window:
-    """The window of that name; an unknown one is refused with the nearest name."""
+    """The window of that name; an unknown one is refused with the nearest name.
+
+    >>> f"{1.0 - window('flattop').scalloping:.3f}"
+    '0.999'
+    """
     return name if isinstance(name, Window) else Window(name)
