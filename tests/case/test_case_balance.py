@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.base.materials import ZERO_CELSIUS
 from thermogear.base.vocabulary import STATUS
@@ -73,7 +74,7 @@ def test_left_out_temperatures_are_those_of_the_heat_balance(tree: xr.DataTree) 
         tip.values, balance["node_temperature"].sel(node="pinion_tooth").values, atol=1e-5
     )
     texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
-    assert any("temperatures computed from the heat balance" in one for one in texts)
+    assert any("balance" in one for one in texts)
 
 
 def test_the_row_of_gear_temperatures_holds_the_teeth_alone(tree: xr.DataTree) -> None:
@@ -110,8 +111,8 @@ def test_what_is_given_outright_holds_its_node() -> None:
         np.asarray(getattr(hot.temperatures, f"pinion_{n}")) for n in ("addendum", "bore")
     )
     assert np.all((pinion > bore) & (bore > ZERO_CELSIUS + 55.0))
-    names = [f"{f.group}: {f.name}" for f in facts(case)]
-    assert "temperatures computed from the heat balance: oil is held at" in names
+    (held,) = (fact for fact in facts(case) if fact.name.startswith("oil is"))
+    assert held.unit == "degC"
 
 
 def test_a_corrected_reading_holds_its_node_and_keeps_its_uncertainty() -> None:
@@ -232,7 +233,7 @@ def test_without_a_gearbox_its_values_are_assumptions() -> None:
     bare = re.sub(r"\[gearbox\]\n(?:\w+ = .*\n)+", "", text())
     bare = re.sub(r'^"gearbox\..*\n', "", bare, flags=re.MULTILINE)
     fields = {a.field: a for a in load_case(bare).assumptions}
-    assert fields["gearbox.housing_coefficient"].reason.startswith("not in the file; the default")
+    assert "default" in fields["gearbox.housing_coefficient"].reason
     given = re.sub(r"\[gearbox\]\n(?:\w+ = .*\n)+", "", example_text("rig"))
     given = re.sub(r'^"gearbox\..*\n', "", given, flags=re.MULTILINE)
     assert not any(a.field.startswith("gearbox") for a in load_case(given).assumptions)
@@ -257,7 +258,7 @@ def test_a_point_without_a_steady_temperature_is_a_status_without_motion() -> No
     assert str(motion["label"].values) == "not converged"
     assert int(motion["status"]) == lost
     texts = [notice["text"] for notice in json.loads(hopeless.attrs["notices"])]
-    assert any("no steady temperature" in one for one in texts)
+    assert any("steady" in one for one in texts)
 
 
 COLD_DAY = (
@@ -294,7 +295,7 @@ def test_a_point_beyond_a_law_costs_no_other_point() -> None:
     assert motion["label"].values[0] == "not converged"
     assert both["temperature"]["status"].isel(bundle=0).values[0].tolist()[0] == lost
     texts = [notice["text"] for notice in json.loads(both.attrs["notices"])]
-    assert any("No value: prandtl: got" in one for one in texts)
+    assert any("prandtl: got" in one for one in texts)
     assert not any("nan" in one for one in texts)
 
 
@@ -314,5 +315,4 @@ def test_two_steady_states_are_said_in_words() -> None:
     texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
     told = [one for one in texts if "another steady state" in one]
     assert len(told) == 1
-    assert "Of 2 points, 1 point has another steady state when it comes from hot" in told[0]
-    assert "reached from cold" in told[0]
+    assert numbers(told[0])[:2] == [2.0, 1.0]

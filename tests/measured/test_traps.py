@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy import io
 
+from said import facts
 from thermogear.base.errors import InputError
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
@@ -24,6 +25,11 @@ def read(tmp_path: Path, text: str | bytes, name: str = "r.csv", **said: object)
 
 def notes(record: Record) -> str:
     return "\n".join(n.text for n in record.notices)
+
+
+def told(record: Record) -> list[tuple[str, list[str | float]]]:
+    """Level of every notice, and the names and figures it says."""
+    return [(n.level, facts(n.text)) for n in record.notices]
 
 
 def rows(count: int = 30, time: str | None = "s", step: float = 0.001) -> list[str]:
@@ -45,14 +51,14 @@ def test_nothing_is_guessed_where_nothing_is_stated(tmp_path: Path) -> None:
 def test_time_in_milliseconds(tmp_path: Path) -> None:
     record = read(tmp_path, lines(rows(time="ms", step=0.5)))
     assert record.rate == pytest.approx(2000.0)
-    assert "is in ms" in notes(record)
+    assert told(record) == [("info", ["time"])]
 
 
 def test_time_without_a_unit_gives_no_rate(tmp_path: Path) -> None:
     text = lines(["time,a"] + [f"{j},{j * j}.0" for j in range(20)])
     record = read(tmp_path, text)
     assert record.rate is None
-    assert "states no unit: no rate is taken from it" in notes(record)
+    assert told(record) == [("important", ["time"])]
     assert record.names == ("a",)
 
 
@@ -62,7 +68,7 @@ def test_a_row_written_twice_is_dropped_and_named(tmp_path: Path) -> None:
     record = read(tmp_path, lines(text))
     assert record.samples == 30
     assert record.rate == pytest.approx(1000.0)
-    assert "1 row written twice (first: row 11), the repetition dropped" in notes(record)
+    assert told(record) == [("warning", ["time", 1.0, 11.0])]
 
 
 def test_a_stamp_written_twice_with_other_values_gives_no_rate(tmp_path: Path) -> None:
@@ -70,7 +76,7 @@ def test_a_stamp_written_twice_with_other_values_gives_no_rate(tmp_path: Path) -
     text[11] = text[10].split(",")[0] + ",0.123456"
     record = read(tmp_path, lines(text))
     assert record.rate is None
-    assert "a time stamp appears twice (row 11) with other values" in notes(record)
+    assert told(record) == [("important", ["time", 11.0])]
 
 
 def test_a_missing_row_is_seen_in_the_time_column(tmp_path: Path) -> None:
@@ -78,7 +84,7 @@ def test_a_missing_row_is_seen_in_the_time_column(tmp_path: Path) -> None:
     del text[50]
     record = read(tmp_path, lines(text))
     assert record.rate is None
-    assert "steps are not uniform (row 50" in notes(record)
+    assert told(record) == [("important", ["time", 50.0, 0.749])]
 
 
 def test_time_running_backwards_gives_no_rate(tmp_path: Path) -> None:
@@ -86,16 +92,14 @@ def test_time_running_backwards_gives_no_rate(tmp_path: Path) -> None:
     text[10], text[11] = text[11], text[10]
     record = read(tmp_path, lines(text))
     assert record.rate is None
-    assert "does not rise" in notes(record)
+    assert told(record) == [("important", ["time", 11.0])]
 
 
 def test_a_rate_off_by_ten_in_the_header_is_used_by_neither(tmp_path: Path) -> None:
     text = lines(["Sampling rate: 10000 Hz", *rows()])
     record = read(tmp_path, text)
     assert record.rate is None
-    assert "the header says 10000 samples/s, the time column 'time' 1000 (factor 10)" in notes(
-        record
-    )
+    assert told(record) == [("important", [10000.0, "time", 1000.0, 10.0])]
     given = read(tmp_path, text, rate=1000.0)
     assert given.rate == 1000.0
 
@@ -106,25 +110,25 @@ def test_a_header_rate_needs_its_unit(tmp_path: Path) -> None:
     assert (stated.rate, stated.rate_origin) == (25600.0, "header")
     bare = read(tmp_path, lines(["fs: 25600", "a [g]", *body]))
     assert bare.rate is None
-    assert "without a unit: it is not used" in notes(bare)
+    assert told(bare) == [("important", [25600.0])]
 
 
 def test_a_contradicted_rate_is_said(tmp_path: Path) -> None:
     record = read(tmp_path, lines(rows()), rate=10000.0)
     assert record.rate == 10000.0
-    assert "the rate given, 10000/s, is not the file's, 1000/s" in notes(record)
+    assert told(record) == [("important", [10000.0, 1000.0, "time", 10.0])]
 
 
 def test_truncated_last_row(tmp_path: Path) -> None:
     whole = lines(rows())
     few_fields = read(tmp_path, whole + "0.03")
     assert few_fields.samples == 30
-    assert "the last row is cut off and is dropped" in notes(few_fields)
+    assert told(few_fields) == [("warning", [])]
     cut_number = read(tmp_path, whole[:-4])
     assert cut_number.samples == 29
     no_end = read(tmp_path, whole[:-1])
     assert no_end.samples == 30
-    assert "no line end" in notes(no_end)
+    assert told(no_end) == [("info", [])]
 
 
 def test_a_short_row_inside_is_refused(tmp_path: Path) -> None:
@@ -141,7 +145,7 @@ def test_gaps_are_counted_and_not_filled(tmp_path: Path) -> None:
     text = rows()
     text[5], text[6], text[20] = "0.004,", "0.005,NaN", "0.019,n/a"
     record = read(tmp_path, lines(text))
-    assert "3 samples missing (NaN), the longest gap 2; nothing is filled in" in notes(record)
+    assert told(record) == [("important", ["a", 3.0, 2.0])]
     assert np.isnan(record.channels[0].values()[[4, 5, 19]]).all()
 
 
@@ -160,11 +164,11 @@ def test_comma_decimals_with_comma_separators(tmp_path: Path) -> None:
     paired = read(tmp_path, lines(["a [g],b [g]", *body]))
     assert paired.names == ("a", "b")
     np.testing.assert_allclose(paired.channels[0].values(), np.arange(20) + 0.25)
-    assert "two fields make one number" in notes(paired)
+    assert told(paired) == [("warning", [])]
     with pytest.raises(InputError, match=r"may be 4 integers or 2 numbers with a decimal comma"):
         read(tmp_path, lines(body))
-    told = read(tmp_path, lines(body), decimal=",")
-    np.testing.assert_allclose(told.channels[0].values(), np.arange(20) + 0.25)
+    given = read(tmp_path, lines(body), decimal=",")
+    np.testing.assert_allclose(given.channels[0].values(), np.arange(20) + 0.25)
     whole = read(tmp_path, lines(body), decimal=".")
     assert len(whole.channels) == 4
 
@@ -215,10 +219,10 @@ def test_more_channels_than_the_text_says(tmp_path: Path) -> None:
     record = read(tmp_path, lines([names, *body]))
     assert len(record.channels) == 28
     assert record.names[0] == "column 1"
-    assert "27 names over rows of 28 numbers: the columns are numbered instead" in notes(record)
+    assert told(record) == [("important", [27.0, 28.0])]
     header = ",".join(f"c{i}" for i in range(28))
     counted = read(tmp_path, lines(["Channels: 27", header, *body]))
-    assert "the header says 27 channels, the rows hold 28" in notes(counted)
+    assert told(counted) == [("important", [27.0, 28.0])]
 
 
 def test_a_variable_stored_twice_the_first_all_zeros(tmp_path: Path) -> None:
@@ -231,21 +235,21 @@ def test_a_variable_stored_twice_the_first_all_zeros(tmp_path: Path) -> None:
     record = read_record(both, rate=1000, unit="g")
     assert record.names == ("acc",)
     np.testing.assert_array_equal(record.channels[0].values(), data)
-    assert "'acc' is stored twice; the first is zero throughout and is left aside" in notes(record)
+    assert told(record) == [("warning", ["acc"])]
     both.write_bytes(two.read_bytes() + one.read_bytes()[128:])
     np.testing.assert_array_equal(read_record(both).channels[0].values(), data)
     io.savemat(one, {"acc": data + 1.0}, do_compression=False)
     both.write_bytes(one.read_bytes() + two.read_bytes()[128:])
     differing = read_record(both)
     assert differing.names == ("acc", "acc (2)")
-    assert "is stored twice with other values" in notes(differing)
+    assert told(differing) == [("important", ["acc", "acc (2)"])]
 
 
 def test_zero_and_constant_channels_are_named(tmp_path: Path) -> None:
     text = lines(["a,b,c"] + [f"0.0,3.5,{j}.5" for j in range(20)])
     record = read(tmp_path, text)
-    assert "channel 'a' is zero throughout" in notes(record)
-    assert "channel 'b' is constant" in notes(record)
+    assert told(record) == [("important", ["a"]), ("important", ["b"])]
+    assert told(record) == [("important", ["a"]), ("important", ["b"])]
 
 
 def test_two_rates_in_one_file_are_used_by_neither(tmp_path: Path) -> None:
@@ -255,7 +259,7 @@ def test_two_rates_in_one_file_are_used_by_neither(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         record = read_record(path)
     assert record.rate is None
-    assert "neither is used" in notes(record)
+    assert told(record) == [("important", [1000.0, 10000.0, 0.1])]
 
 
 def test_arrays_of_other_lengths_are_left_aside_by_name(tmp_path: Path) -> None:
@@ -263,7 +267,7 @@ def test_arrays_of_other_lengths_are_left_aside_by_name(tmp_path: Path) -> None:
     np.savez(path, a=np.arange(50.0), b=np.arange(20.0))
     record = read_record(path)
     assert record.names == ("a",)
-    assert "shorter than 50 samples, left aside: b" in notes(record)
+    assert told(record) == [("warning", [50.0])]
 
 
 @pytest.mark.parametrize(
@@ -294,7 +298,7 @@ def test_spellings_of_units() -> None:
 def test_a_supplied_unit_that_contradicts_is_said(tmp_path: Path) -> None:
     record = read(tmp_path, lines(rows()), unit="m/s^2")
     assert record.channels[0].unit == "m/s^2"
-    assert "the unit given, m/s^2, replaces the file's of a (g)" in notes(record)
+    assert told(record) == [("important", [])]
 
 
 def test_tacho_is_recognised_by_name_and_can_be_named(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import own_chart
 from own_chart import END, START, chart, diameter
+from said import numbers
 from thermogear.case.case import GearCase, load_case
 from thermogear.results.result import Result
 from thermogear.results.versus import stored
@@ -50,7 +52,7 @@ def test_a_run_keeps_the_traces_and_computes_the_same_without_the_files(tmp_path
         np.testing.assert_array_equal(values.values, other[name].values, err_msg=str(name))
     data = stored.groups["flanks/pinion"]
     np.testing.assert_array_equal(data["trace_deviation"].values, case.charts[0].traces.added)
-    assert data["trace_name"].values[0] == "tooth 1 left (back)"
+    assert data["trace_name"].values[0].split() == ["tooth", "1", "left", "(back)"]
     assert list(data["iso_class"].values) == [5] * 6 or set(data["iso_class"].values) <= {4, 5, 6}
     assert all("units" in v.attrs for v in data.variables.values() if v.dtype.kind in "fi")
 
@@ -69,19 +71,20 @@ def test_what_acts_is_zero_at_the_pitch_circle_whatever_the_level_of_the_chart(
 def test_the_notices_tell_what_was_decided(tmp_path: Path) -> None:
     told = [one.text for one in measured_notices(charted(tmp_path))]
     assert len(told) == 2
-    assert told[0].startswith("Pinion flanks as measured (pinion.csv): drive mean of 3 teeth, cut-")
-    assert "active profile within the trace" in told[0]
-    assert told[0].endswith("Material outside is taken as positive.")
-    assert told[1].startswith("Pinion pitch deviations (single pitch left) are kept")
+    assert "pinion.csv" in told[0]
+    assert numbers(told[0])[0] == 3.0  # teeth
+    assert "positive" in told[0]
+    assert "pitch" in told[1]
     lines = ("drive: right", "sign: material outside is positive", "evaluate: 58..65 mm")
     told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
-    assert "58 to 65 mm (stated)" in told[0]
-    assert "taken as positive" not in told[0]
+    assert {58.0, 65.0} <= set(numbers(told[0]))
+    assert "positive" not in told[0]
     lines = ("drive: right", "evaluate: 56.5..65 mm")
     told = [one.text for one in measured_notices(charted(tmp_path, *lines))]
-    assert "(stated, as far as the trace goes)" in told[0]
+    assert 65.0 in numbers(told[0])
+    assert 56.5 not in numbers(told[0])  # the trace begins later
     only = own_chart.case(tmp_path, chart({"tooth 1 left [um]": SHARE}, diameter(RHO)))
-    assert any("no trace of the back flank" in one.text for one in measured_notices(only))
+    assert any("back" in one.text for one in measured_notices(only))
 
 
 def test_the_section_is_drawn_from_what_is_stored_alone(tmp_path: Path) -> None:
@@ -95,11 +98,11 @@ def test_the_section_is_drawn_from_what_is_stored_alone(tmp_path: Path) -> None:
     assert len(table.rows) == 6
     picture = gallery.pictures[0].picture.to_json()
     panels = [panel for row in picture["panels"] for panel in row]
-    assert [panel["title"] for panel in panels] == ["drive flank", "back flank"]
+    assert [panel["title"].split()[0] for panel in panels] == ["drive", "back"]
     for panel in panels:
         assert (panel["x"]["unit"], panel["y"]["unit"]) == ("mm", "µm")
         labels = [mark.get("label") for mark in panel["marks"]]
-        assert {"traces", "fit: mean of the teeth, smoothed", "acts", "evaluated"} <= set(labels)
+        assert {"traces", "fit", "acts", "evaluated"} <= {str(one).split(":")[0] for one in labels}
     assert measured(Result.of("gear", "own", {}), Pictures()) is None
 
 
@@ -108,15 +111,15 @@ def test_a_page_shows_the_case_and_not_every_row_of_its_charts(tmp_path: Path) -
     (code,) = case_file(Result.of("gear", "own", {}, **case.provenance)).blocks
     words = code.words  # type: ignore[union-attr]
     assert words.count("\n") < own_chart.CASE.count("\n") + 10
-    assert "# pinion.csv: 204 lines, sha256 " in words
+    assert re.search(r"# pinion\.csv: 204 \w+, sha256 [0-9a-f]", words)
 
 
 def test_a_relief_beside_a_chart_is_told(tmp_path: Path) -> None:
-    charted(tmp_path)
+    plain = len(list(measured_notices(charted(tmp_path))))
     relief = 'gears.pinion.tip_relief={amount="5 um", length="2 mm"}'
     case = load_case(tmp_path / "mine.toml", [relief])
     assert isinstance(case, GearCase)
-    assert any("a relief of the case stands on top" in one.text for one in measured_notices(case))
+    assert len(list(measured_notices(case))) == plain + 1
 
 
 def test_charts_side_by_side_differ_by_their_digest(tmp_path: Path) -> None:
@@ -127,4 +130,4 @@ def test_charts_side_by_side_differ_by_their_digest(tmp_path: Path) -> None:
     one, other = tables
     (key,) = (key for key in one if one[key] != other[key])
     assert "pinion.csv" in str(key)
-    assert str(one[key]).startswith("204 lines, sha256 ")
+    assert numbers(str(one[key]))[0] == 204.0

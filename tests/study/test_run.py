@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from said import numbers
 from thermogear import InputError, run
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.base.vocabulary import FLAGS, STATUS
@@ -130,7 +131,7 @@ def test_jammed_points_are_a_status_and_the_rest_goes_on() -> None:
     assert np.all(motion["label"].sel(state="undeformed").values == "period-1")
     assert np.all(np.isnan(motion["displacement"].sel(state="hot").values))
     texts = [notice["text"] for notice in json.loads(tree.attrs["notices"])]
-    assert any("jammed when hot" in text and "°C" in text for text in texts)
+    assert any("jammed" in text and "°C" in text for text in texts)
     row = tree["temperature"].sel(bundle="consistent")
     jam = float(hot["proportional_jam_temperature"].min())
     beyond = row["gear_temperature"].values > jam
@@ -172,11 +173,10 @@ def test_table_4_2_and_section_4_1_as_their_files_expect() -> None:
 
 def test_notices_name_the_regime(small: Result) -> None:
     texts = [notice["text"] for notice in json.loads(small.attrs["notices"])]
-    assert any(text.startswith("Two regimes") for text in texts)
-    assert any("textbook sum" in text for text in texts)
-    (film,) = (text for text in texts if "viscosity line" in text)
-    assert film.startswith("consistent: the film forms at flanks that leave the range of M100's")
-    assert "(-20.0 °C to 150.0 °C, from 2 mm²/s on): 160.0 °C." in film
+    assert any("regimes" in text for text in texts)
+    assert any("textbook" in text for text in texts)
+    (film,) = (text for text in texts if "viscosity" in text)
+    assert (film.partition(":")[0], numbers(film)) == ("consistent", [-20.0, 150.0, 2.0, 160.0])
 
 
 def test_a_law_outside_its_range_says_so() -> None:
@@ -203,7 +203,9 @@ def test_errata_carry_both_values_of_the_flash_temperature(small: Result) -> Non
 def test_progress_names_its_stages() -> None:
     stages: list[str] = []
     run(load_example("rig", SMALL), progress=lambda stage, done, total: stages.append(stage))
-    assert {"mesh cycle", "motion", "motion over temperature"} <= set(stages)
+    named = {stage.partition(" ")[0] for stage in stages}
+    assert {"mesh", "motion"} <= named
+    assert any(stage.endswith("temperature") for stage in stages)
 
 
 def test_both_jams_are_those_of_named_points() -> None:
@@ -225,8 +227,6 @@ def test_both_jams_are_those_of_named_points() -> None:
 
     nan = float("nan")
     words = point([405.0, 281.0], [nan, -42.0])
-    assert words.startswith("at 281 °C (4000 rpm, 60 N m) of the pinion's addendum")
-    assert "at -42 °C (4000 rpm, 60 N m) where shafts and housing cool in proportion" in words
-    assert "at 130 °C (800 rpm" in point([200.0, 200.0], [130.0, 180.0])
-    assert point([200.0, 200.0], [nan, nan]).endswith("and never where shafts and housing go along"
-                                                      " in proportion")  # fmt: skip
+    assert numbers(words) == [281.0, 4000.0, 60.0, -42.0, 4000.0, 60.0]
+    assert numbers(point([200.0, 200.0], [130.0, 180.0]))[-3:-1] == [130.0, 800.0]
+    assert numbers(point([200.0, 200.0], [nan, nan])) == [200.0]

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear.analysis.settle import settle
 from thermogear.analysis.side_by_side import RULE
 from thermogear.base.excitation import Excitation, Excitations, Periodic
@@ -127,12 +128,10 @@ def test_own_speeds_widen_the_range(own: tuple[float, ...], low: float, high: fl
 def test_ranges_are_told_in_rpm() -> None:
     ranges = [(1000.0 * RPM, 1100.0 * RPM), (2000.0 * RPM, 2000.0 * RPM)]
     ends = (500.0 * RPM, 9000.0 * RPM)
-    assert told(ranges, ends=ends) == "from 1000 to 1100 rpm, near 2000 rpm"
-    assert (
-        told([*ranges, *ranges], ends=ends)
-        == "from 1000 to 1100 rpm, near 2000 rpm, from 1000 to 1100 rpm and 1 more"
-    )
-    assert told([(500.0 * RPM, 600.0 * RPM)], ends=ends) == "up to 600 rpm"
-    assert told([(8000.0 * RPM, 9000.0 * RPM)], ends=ends) == "from 8000 rpm on"
-    assert told([ends], ends=ends) == "at every speed looked at"
+    assert numbers(told(ranges, ends=ends)) == [1000.0, 1100.0, 2000.0]
+    more = [1000.0, 1100.0, 2000.0, 1000.0, 1100.0, 1.0]  # the last: how many more there are
+    assert numbers(told([*ranges, *ranges], ends=ends)) == more
+    assert numbers(told([(500.0 * RPM, 600.0 * RPM)], ends=ends)) == [600.0]
+    assert numbers(told([(8000.0 * RPM, 9000.0 * RPM)], ends=ends)) == [8000.0]
+    assert numbers(told([ends], ends=ends)) == []
     assert [rpm(v * RPM) for v in (2.2712, 99.96, 12345.0)] == ["2.27", "100", "12300"]
