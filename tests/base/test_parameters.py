@@ -54,8 +54,8 @@ def test_what_is_shown_reads_back() -> None:
     for one in PARAMETERS.values():
         assert one.read(one.show(312.5)) == pytest.approx(312.5, rel=1e-14)
     assert PARAMETERS["gear_temperature"].show(373.15) == 100.0
-    assert PARAMETERS["pinion_speed"].label == "pinion speed [rpm]"
-    assert PARAMETERS["frequency"].label == "frequency ratio ω_h"
+    assert PARAMETERS["pinion_speed"].label.endswith(" [rpm]")
+    assert PARAMETERS["frequency"].label.endswith(" ω_h")
 
 
 def test_an_unknown_name_is_answered_with_the_nearest() -> None:

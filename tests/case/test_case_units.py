@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from said import numbers
 from thermogear.base.errors import InputError, short
 from thermogear.case.units import _USUAL, KINDS, Kind, convert, read_quantity, shown
 
@@ -180,7 +181,7 @@ def test_every_unit_that_pint_knows_is_converted_or_refused() -> None:
 def test_long_values_are_shortened() -> None:
     assert short("x" * 500).endswith("...")
     assert len(short("x" * 500)) == 60
-    assert short(10**4000) == "a whole number of about 4001 digits"
+    assert numbers(short(10**4000)) == [4001.0]
 
 
 def test_usual_units_are_what_pint_makes_of_them_bit_for_bit() -> None:

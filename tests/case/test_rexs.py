@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import math
+import re
 import struct
 import zipfile
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from own_rexs import case_of, flank, json_text, one_stage, put, refused, replaced, two_stages, xml
+from said import numbers
 from thermogear import read_rexs
 from thermogear.case.rexs.importing import listed
 from thermogear.case.rexs.model import VERSIONS
@@ -147,7 +149,7 @@ def test_a_missing_centre_distance_is_that_of_the_axes(tmp_path: Path) -> None:
         )
     case, found = case_of(put(tmp_path, json_text(parts, links)))
     assert case.pair.centre_distance == pytest.approx(0.0809, rel=1e-12)
-    assert 'centre_distance = "80.9 mm"   # derived: distance of the axes' in found.text
+    assert re.search(r'^centre_distance = "80\.9 mm" +# derived: ', found.text, re.MULTILINE)
 
 
 def test_a_centre_distance_that_is_rounded_gives_way_to_the_shifts(tmp_path: Path) -> None:
@@ -159,7 +161,7 @@ def test_a_centre_distance_that_is_rounded_gives_way_to_the_shifts(tmp_path: Pat
     path = put(tmp_path, xml(replaced(parts, 3, ("center_distance", "mm", rounded)), links))
     case, found = case_of(path)
     assert case.pair.centre_distance == pytest.approx(1e-3 * tight, rel=1e-12)
-    assert "in the file is rounded" in found.text
+    assert "rounded" in found.text
     path = put(tmp_path, xml(replaced(parts, 3, ("center_distance", "mm", 80.0)), links))
     assert refused(path).startswith("stage 1.gears.centre_distance: got 80 mm; allowed >= ")
 
@@ -221,7 +223,8 @@ def test_roughness_class_and_thickness(tmp_path: Path) -> None:
     assert case.pair.pinion.roughness == pytest.approx(0.5e-6, rel=1e-14)
     assert case.pair.wheel.roughness == pytest.approx(0.5e-6, rel=1e-14)
     assert case.accuracy == 7
-    assert "# derived: the coarser of pinion 5 and wheel 7" in found.text
+    (accuracy,) = (line for line in found.text.splitlines() if line.startswith("accuracy = "))
+    assert numbers(accuracy.partition("# derived: ")[2]) == [5.0, 7.0]
     thin = case.file.backlash.tolerances
     assert thin is not None
     assert sorted(thin.pinion_tooth_thickness) == pytest.approx([-90e-6, -50e-6], rel=1e-14)
@@ -296,7 +299,7 @@ def test_a_relief_of_one_flank_counts_where_the_flank_carries(
     if relief is not None:
         assert relief.flank == "drive"
     else:
-        assert "tip_relief 40: on the pinion's flank that does not carry" in found.unused
+        assert "tip_relief 40" in [one.partition(":")[0] for one in found.unused]
 
 
 def test_shapes_that_a_case_does_not_know_are_told_and_left_out(tmp_path: Path) -> None:
@@ -354,10 +357,8 @@ def test_missing_attributes_fall_back_to_defaults_that_are_said(tmp_path: Path) 
     case, found = case_of(put(tmp_path, xml(parts, links)), 1)
     assert case.pair.pinion.profile_shift == 0.0
     text = found.text
-    assert "# profile_shift left out; default: 0; no profile shift." in text
-    assert "# material left out; default: steel; " in text
-    assert "# accuracy left out; default: 6, pinion and wheel; " in text
-    assert "# temperature left out; default: computed from the losses" in text
+    for name in ("profile_shift", "material", "accuracy", "temperature"):
+        assert re.search(rf"^# {name} .*; default: ", text, re.MULTILINE), name
     for line in text.splitlines():
         if " = " in line and not line.startswith("#"):
             assert any(f"# {how}" in line for how in ("read", "derived", "default", "given")), line
@@ -369,7 +370,7 @@ def test_values_of_a_material_that_cannot_be_give_way_to_steel(tmp_path: Path) -
     case, found = case_of(put(tmp_path, xml(parts, links)))
     assert case.pair.pinion.material.thermal_expansion == pytest.approx(11.5e-6, rel=1e-14)
     assert any("material 18.thermal_expansion_coefficient_plus" in one for one in found.unused)
-    assert "# default: that of steel; no usable thermal_expansion_coefficient_plus" in found.text
+    assert re.search(r"# default: .*thermal_expansion_coefficient_plus", found.text)
 
 
 def test_coded_arrays(tmp_path: Path) -> None:
@@ -402,4 +403,4 @@ def test_the_only_model_of_a_zip_is_found(tmp_path: Path) -> None:
         archive.writestr("a/gearbox.rexsj", json_text(parts, links))
     path = tmp_path / "gearbox.rexs.zip"
     path.write_bytes(held.getvalue())
-    assert read_rexs(path).container == "JSON in a zip"
+    assert {"JSON", "zip"} <= set(read_rexs(path).container.split())

@@ -97,10 +97,8 @@ def test_signs_of_zero_kinds_shapes_and_missing_ones_are_differences(
     made = tree()
     made["motion"] = made["motion"].to_dataset().drop_vars("count")
     found = verdict(before, written(tmp_path / "missing", made))
-    assert found.differences == [
-        "case/result.zarr:count: missing",
-        "case/results.nc:motion/count: missing",
-    ]
+    places = [one.rpartition(": ")[0] for one in found.differences]
+    assert places == ["case/result.zarr:count", "case/results.nc:motion/count"]
 
 
 def test_what_is_renamed_is_compared_by_its_new_name(before: Path, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import subprocess
 import sys
 import types
@@ -14,6 +15,7 @@ from typing import Any
 import pytest
 
 import thermogear
+from said import numbers
 from thermogear.base.errors import ThermogearError
 from thermogear.case.base import Case
 from thermogear.case.case import load_case
@@ -169,7 +171,7 @@ def test_a_reader_that_leaves_is_no_error() -> None:
 # --- commands -----------------------------------------------------------------------------
 def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
-    assert "thermogear new -o mine.toml" in capsys.readouterr().out
+    assert re.search(r"\bthermogear new\b", capsys.readouterr().out)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -422,8 +424,7 @@ def test_progress_draws_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
         report("mesh cycle", 1, 2)
         report("mesh cycle", 2, 2)
         report("motion", 1, 1)
-    assert "mesh cycle" in terminal.getvalue()
-    assert "motion" in terminal.getvalue()
+    assert all(part in terminal.getvalue() for part in ("mesh", "cycle", "motion"))
 
 
 SHORT = """
@@ -450,15 +451,15 @@ def test_check_lists_the_defaults_of_a_short_case(
     lines = capsys.readouterr().out.splitlines()
     heads = [line.split(",")[0] for line in lines if line.endswith("left to defaults")]
     assert heads == ["gears", "oil", "heat", "backlash", "flanks", "motion"]
-    assert sum("um, drawn" in line and "f_Halpha" in line for line in lines) == 4
+    assert sum("um" in line and "f_Halpha" in line for line in lines) == 4
     told = {line.split()[0]: line for line in lines if line.startswith("  ") and ":" in line}
-    assert "0.13 mm, total, normal: the least normal backlash" in told["backlash.value"]
-    assert "7.875 mm: 0.3 of the root circle" in told["gears.pinion.bore_radius"]
-    assert "0.4 um: Ra of ground flanks" in told["gears.roughness"]
+    assert numbers(told["backlash.value"])[0] == 0.13
+    assert numbers(told["gears.pinion.bore_radius"])[:2] == [7.875, 0.3]
+    assert numbers(told["gears.roughness"])[0] == 0.4
     assert not any(line.strip().startswith("gears.wheel.bore_radius") for line in lines)
     assert not any(line.strip().startswith(("grid.", "simulation.")) for line in lines)
-    assert "numerics: 10 defaults of [grid] and [simulation], listed with --json" in lines
-    assert lines[-1].startswith("47 values are ours, all of them defaults; a run takes about")
+    assert [10.0] in [numbers(line) for line in lines if line.startswith("numerics:")]
+    assert numbers(lines[-1])[0] == 47.0
 
 
 def test_what_a_case_states_is_no_default(
@@ -468,7 +469,7 @@ def test_what_a_case_states_is_no_default(
     path.write_text(SHORT + '[oil]\nname = "ISO VG 220"\n[flanks]\naccuracy = 5\n', "utf-8")
     assert main(["check", str(path)]) == 0
     shown = capsys.readouterr().out
-    assert "oil, left to defaults" not in shown
+    assert not any(line.startswith("oil,") for line in shown.splitlines())
     assert "flanks.accuracy" not in shown
     assert "flanks.seed" in shown
 
@@ -479,4 +480,4 @@ def test_check_of_a_case_with_every_value_declared_lists_no_default(
     assert main(["check", str(rig)]) == 0
     shown = capsys.readouterr().out
     assert "default" not in shown
-    assert "\n61 values are ours; a run takes about" in shown
+    assert numbers(shown.splitlines()[-1])[0] == 61.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -30,7 +31,7 @@ def test_orbit_prints_stores_and_draws(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["orbit", *NUMBERS, "--start", "0,0", "--period", "2", "-o", str(out)]) == 0
     said = capsys.readouterr().out
     assert "+0.511918932" in said
-    assert "half order" in said
+    assert re.search(r"\b0\.5\b", said)
     names = {path.name for path in out.iterdir()}
     assert names >= {"orbit.nc", "orbit.json", "orbit.html", "orbit.svg", "orbit.png"}
     page = (out / "orbit.html").read_text(encoding="utf-8")
@@ -84,7 +85,7 @@ def test_symbols_of_a_cascade_are_drawn_not_spelt_as_tags(tmp_path: Path) -> Non
     out = tmp_path / "cascade"
     assert main(["continue", "table-4.2", "--row", "omega", "--cascade", "1", "-o", str(out)]) == 0
     page = (out / "cascade.html").read_text(encoding="utf-8")
-    assert "frequency ratio ω<sub>h</sub>, 1.3 to 1.1" in page
+    assert re.search(r"ω<sub>h</sub>, 1\.3 \w+ 1\.1", page)
     assert "&lt;" not in page
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -39,9 +40,8 @@ def test_new_names_the_chart_beside_the_file_and_check_tells_its_class(
     capsys.readouterr()
     assert main(["check", "cases/mine.toml"]) == 0
     told = capsys.readouterr().out
-    assert "measured flanks of the pinion, class of ISO 1328-1:2013" in told
-    assert "tooth 1 left (drive)" in told
-    assert "um: class 4" in told or "um: class 5" in told
+    (drive,) = (line for line in told.splitlines() if re.search(r"\b1 left \(drive\)", line))
+    assert re.search(r"class [45]$", drive)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_both_charts_and_an_override(
     Path("b.csv").write_text(TEXT.replace("tooth 1 left", "tooth 2 left"), encoding="utf-8")
     Path("mine.toml").write_text(f'{own_chart.CASE}[flanks]\npinion = "a.csv"\n', encoding="utf-8")
     assert main(["check", "mine.toml", "--set", "flanks.pinion=b.csv"]) == 0
-    assert "tooth 2 left (drive)" in capsys.readouterr().out
+    assert re.search(r"\b2 left \(drive\)", capsys.readouterr().out)
     case = load_case("mine.toml", ["flanks.pinion=b.csv"])
     again = load_case(case.text, case.overrides and dict(case.overrides))
     assert again.text == case.text

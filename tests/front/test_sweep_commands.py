@@ -68,7 +68,7 @@ def test_basins_and_page(cases, tmp_path):
     )  # fmt: skip
     assert sum(row["count"] for row in found["attractors"]) == 441
     page = (tmp_path / "b" / "report.html").read_text(encoding="utf-8")
-    assert "Basins of attraction" in page or "Table 4.2" in page
+    assert page.count("<figure") >= 1
     assert "<svg" in page
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 

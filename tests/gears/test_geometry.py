@@ -352,8 +352,9 @@ class TestRefusals:
 
     def test_rack_and_hopeless_undercut(self) -> None:
         assert message(lambda: Rack(addendum=0.0)) == ("rack.addendum: got 0 modules; allowed > 0")
-        text = message(lambda: Gear(5, 5e-3, profile_shift=-0.9, allow_undercut=True))
-        assert "no involute flank is left" in text
+        assert message(lambda: Gear(5, 5e-3, profile_shift=-0.9, allow_undercut=True)) == (
+            "tip_radius: got 13 mm; allowed > 13.3952 mm (form circle); no involute flank is left"
+        )
 
     def test_pair_of_different_racks(self) -> None:
         assert message(lambda: GearPair(Gear(25, 5e-3), Gear(75, 4e-3))) == (
@@ -379,7 +380,6 @@ class TestRefusals:
         wheel = Gear(75, 5e-3, tip_radius=0.1955)
         text = message(lambda: GearPair(Gear(18, 5e-3), wheel))
         assert text.startswith("wheel.tip_radius: got 195.5 mm; allowed <= ")
-        assert "interference: the tip reaches below the pinion's" in text
         longest = float(text.split("allowed <= ")[1].split(" mm")[0]) * 1e-3
         GearPair(Gear(18, 5e-3), Gear(75, 5e-3, tip_radius=longest * (1 - 1e-6)))
 
@@ -424,5 +424,7 @@ def test_an_undercut_that_cuts_the_tooth_off_is_refused():
             8, 5e-3, pressure_angle=math.radians(30.0), profile_shift=-1.11, allow_undercut=True
         )
     )
-    assert "the undercut cuts the tooth off" in text
-    assert "raise the profile shift (no undercut from 0.195)" in text
+    assert text == (
+        "profile_shift: got -1.11 for 8 teeth; the undercut cuts the tooth off; "
+        "raise the profile shift (no undercut from 0.195)"
+    )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear import InputError, run
 from thermogear.case.case import load_example
 from thermogear.results.versus import (
@@ -102,8 +104,8 @@ def test_fields_that_differ_are_named_with_both_values(first: Stored, second: St
     assert json.loads(data.attrs["choices"]) == []
     texts = " ".join(notice["text"] for notice in json.loads(data.attrs["notices"]))
     titles = [str(title) for title in data["case"].values]
-    assert f"In {titles[0]} only: operating point 1000 rpm" in texts
-    assert f"In {titles[1]} only: operating point 4000 rpm" in texts
+    for title, speed in zip(titles, ("1000 rpm", "4000 rpm"), strict=True):
+        assert re.search(rf"In {re.escape(title)} only: [^.]*{speed}", texts)
 
 
 def test_a_case_against_itself_differs_in_nothing(first: Stored) -> None:
@@ -157,7 +159,7 @@ def test_dimensionless_cases_are_matched_by_row_and_value() -> None:
     found = versus([one, replace(one, name="two")])
     assert found.text("of") == "dimensionless"
     data = found.data
-    assert str(data["point"].values[0]) == "thesis: temperature = 293.15 K"
+    assert numbers(str(data["point"].values[0])) == [293.15]
     assert data.sizes["operating"] == one.groups["points"].sizes["point"]
     np.testing.assert_array_equal(
         data["peak_to_peak_displacement"][1, 0, 0].values,

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.case import GearCase, load_example
 from thermogear.gears.loaded import LoadedModel, loaded_contact
@@ -126,11 +127,9 @@ def test_a_pressure_on_a_tip_corner_is_left_out_with_its_reason(contact: xr.Data
         one for one in json.loads(contact.attrs["notices"]) if one["text"].startswith("Tip corners")
     )
     assert told["level"] == "important"
-    assert told["text"] == (
-        f"Tip corners carry load during up to {100 * shares.max():.3g} % of the mesh period "
-        f"({data['temperature'].values[state]}, {data['load'].values[load]:.4g} N m). The Hertzian "
-        "pressure is not valid on a corner (edge contact): it is left out there."
-    )
+    assert str(data["temperature"].values[state]) in told["text"]
+    most, torque = f"{100 * shares.max():.3g}", f"{data['load'].values[load]:.4g}"
+    assert {float(most), float(torque)} <= set(numbers(told["text"]))
 
 
 def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:
@@ -143,4 +142,4 @@ def test_relief_takes_load_off_the_corners(relief: xr.DataTree) -> None:
     over = relief["loads"]["edge_contact_share"].values
     assert np.all(over[1] <= over[0])
     texts = [one["text"] for one in json.loads(relief.attrs["notices"])]
-    assert any(f"{100 * plain:.3g} % of the mesh period without the relief" in t for t in texts)
+    assert any(float(f"{100 * plain:.3g}") in numbers(text) for text in texts)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear.analysis.fit import fit
 from thermogear.base.errors import InputError
 from thermogear.measured.published import RPM, LineTable, SpeedLine
@@ -55,20 +58,21 @@ def test_what_the_data_cannot_tell_is_said() -> None:
     alike = fit(
         product, ["a", "b"], measured=np.array([2.0, 4.0, 6.0]), uncertainty=np.full(3, 0.1)
     )
-    assert ("important", "the data cannot tell a from b: they act alike") in alike.notices
+    said = [(level, set(text.split())) for level, text in alike.notices]
+    assert any(level == "important" and words >= {"a", "from"} for level, words in said)
 
     def deaf(factors: np.ndarray) -> np.ndarray:
         return np.array([1.0, 2.0]) * factors[0]
 
     unseen = fit(deaf, ["a", "b"], measured=np.array([1.1, 2.2]), uncertainty=np.full(2, 0.01))
-    assert any("the data do not determine b" in text for _, text in unseen.notices)
+    assert any(re.search(r"\bb\b", text) for _, text in unseen.notices)
     few = fit(
         lambda f: np.array([f[0] * f[1] ** 2]),
         ["a", "b"],
         measured=np.array([2.0]),
         uncertainty=np.array([0.1]),
     )
-    assert ("important", "2 parameters from 1 values: not determined") in few.notices
+    assert ("important", [2.0, 1.0]) in [(level, numbers(text)) for level, text in few.notices]
 
 
 def test_refusals() -> None:

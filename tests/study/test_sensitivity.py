@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -112,8 +113,8 @@ def test_signs_of_the_stiffness_changes_do_not_depend_on_the_inputs(small) -> No
 def test_words_name_every_output(small) -> None:  # type: ignore[no-untyped-def]
     texts = plain_words(small)
     assert len(texts) == len(OUTPUTS)
-    assert all(" % of cases." in text for text in texts)
-    assert "gear temperature" in texts[[o.name for o in OUTPUTS].index("growth")]
+    assert all(re.search(r"\d %", text) for text in texts)
+    assert "temperature" in texts[[o.name for o in OUTPUTS].index("growth")]
 
 
 def test_grades_lie_between_the_oils_they_are_fitted_to() -> None:

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.case import load_case, load_example
 from thermogear.case.response import Recording, respond
@@ -115,7 +116,8 @@ def test_jumps_are_the_same_in_coarse_and_in_fine_steps():
         assert not data.left_early.values.any()
     assert lists[0] == pytest.approx([2401.1125, 2251.3559], abs=1e-3)
     assert lists[1] == pytest.approx(lists[0], abs=1e-5)
-    assert any("contact is lost at" in text for text in notices_of(data))
+    assert np.any(data.contact_loss_share.values > 0.0)
+    assert any("lost" in text for text in notices_of(data))
 
 
 def test_contact_that_lasts_is_not_called_lost():
@@ -126,9 +128,7 @@ def test_contact_that_lasts_is_not_called_lost():
     ).data  # fmt: skip
     assert np.all(data.contact_loss_share.values[..., 0] == 0.0)
     assert np.all(data.contact_loss_share.values[..., 1] > 0.01)
-    assert "contact is lost at 2400 rpm (in any state, up or down)" in json.loads(
-        data.attrs["notices"]
-    )
+    assert [2400.0] in [numbers(text) for text in json.loads(data.attrs["notices"])]
 
 
 def test_where_the_runs_differ_is_said(plain):
@@ -174,7 +174,7 @@ def test_jammed_corner_of_a_sweep_is_a_status(rig):
     data = sweep(rig, {"backlash": [2e-6, 125e-6]}).data
     assert data.status.values.tolist() == [1, 0]
     assert np.isnan(data.dynamic_factor.values[0])
-    assert any("1 of 2 points are jammed" in text for text in notices_of(data))
+    assert any("jammed" in text and numbers(text)[:2] == [1.0, 2.0] for text in notices_of(data))
 
 
 def test_response_of_a_motion_in_lasting_contact_is_linear(rig):

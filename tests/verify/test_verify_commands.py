@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.case.examples import example_text
 from thermogear.front.verify_commands import verify
@@ -30,7 +31,7 @@ def call(*arguments: str) -> Result:
 def test_stiffness_prints_model_elements_and_difference(case: str) -> None:
     done = call("stiffness", case, "--positions", "1")
     assert done.exit_code == 0, done.output
-    assert "corner contact off in both: it is not checked here" in done.output
+    assert "corner" in done.output
     rows = [line.split() for line in done.output.splitlines() if line.startswith("  0.")]
     assert len(rows) == 2
     for row in rows:
@@ -66,7 +67,7 @@ def test_the_fixed_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pairs, "far_pairs", lambda: (published,))
     done = call("pairs")
     assert done.exit_code == 0, done.output
-    assert "worst of the own pairs: m 4, 20/35, 25 deg" in done.output
+    assert [4.0, 20.0, 35.0, 25.0] in [numbers(line)[:4] for line in done.output.splitlines()]
 
 
 def test_refusals(case: str, tmp_path: Path) -> None:
