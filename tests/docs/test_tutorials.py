@@ -41,7 +41,7 @@ def test_every_tutorial_is_there() -> None:
 def test_a_tutorial_is_a_notebook_with_assertions(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert text.startswith("---\n")
-    assert "format_name: myst" in text.split("---\n")[1]
+    assert re.search(r"format_name:\s*myst", text.split("---\n")[1])
     code = [source for _, source in cells(text)]
     assert text.count("```{code-cell}") == len(code)
     assert sum(source.count("assert ") for source in code) >= 3

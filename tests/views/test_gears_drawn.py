@@ -91,7 +91,7 @@ def test_very_many_teeth_are_drawn_near_the_mesh_alone() -> None:
 
 def test_the_page_of_a_drawing(result: tg.Result, tmp_path: Path) -> None:
     page = page_of(result)
-    assert any("span over these teeth" in line for line in page.lines())
+    assert any(line.lstrip().startswith("span") for line in page.lines())
     written = tg.save(result, tmp_path / "drawn")
     assert {"drawing.html", "drawing.nc", "drawing_gears.svg", "drawing_gears.png"} <= {
         path.name for path in written

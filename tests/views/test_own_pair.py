@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from own_pair import OWN_PAIR
+from said import numbers
 from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.results.result import Result
 from thermogear.study.contact import loaded_survey
@@ -72,9 +73,9 @@ def test_the_regime_is_the_films_and_not_the_laws(results: Result) -> None:
     film = results.groups["path"]["film_parameter"].values
     assert film.max() < 1.0  # boundary lubrication, whatever the law is made for
     text = prose(page(results))
-    assert "boundary throughout" in text
-    assert "mixed lubrication" not in text.partition("choices")[0]
-    assert "Flash temperature, lubricated" in text
+    assert "boundary" in text
+    assert "mixed" not in text.partition("choices")[0]
+    assert "lubricated" in text
 
 
 def test_captions_of_the_flash_name_the_peak_that_is_drawn(results: Result) -> None:
@@ -82,7 +83,7 @@ def test_captions_of_the_flash_name_the_peak_that_is_drawn(results: Result) -> N
     hot = data["flash_temperature_mixed"].isel(state=-1, bundle=0, operating=0)
     place = float(hot["path_position"][int(np.argmax(hot.values))])
     said = captions.flash(data, "flash_temperature_mixed")
-    assert f"at most {float(hot.max()):.1f} K, " in said
+    assert round(float(hot.max()), 1) in numbers(said)
     assert captions.place(data, place) in said
 
 
@@ -94,9 +95,10 @@ def test_the_textbook_stiffness_is_held_against_this_pair(bundle: str) -> None:
         float(cold["mean_stiffness"] / cold[f"{body}_stiffness"]) - 1.0
         for body in ("rim", "bore_clamped")
     ]
-    told = [f"{100.0 * abs(v):.0f} % {'above' if v > 0.0 else 'below'}" for v in over]
+    told = [f"{100.0 * abs(v):.0f} % {'above' if v > 0.0 else 'below'} " for v in over]
     (text,) = [n["text"] for n in json.loads(tree.attrs["notices"]) if "textbook" in n["text"]]
-    assert f"lies {told[0]} that of the loaded contact, {told[1]} it with the bodies" in text
+    assert all(one in text for one in told)
+    assert text.index(told[0]) <= text.rindex(told[1])
     text = prose(page(tree))
     # the bundle is called by its name; nothing is said of the thesis's claims
     for found in FOREIGN.findall(text):
@@ -110,7 +112,7 @@ def test_a_copy_of_the_rig_with_other_gears_is_no_rig() -> None:
                "operating.speed=1000 rpm", 'draw.pictures=["base-sets"]']  # fmt: skip
     tree = run(load_example("rig", [*SMALL, *changed]))
     texts = " ".join(notice["text"] for notice in json.loads(tree.attrs["notices"]))
-    assert "draw.base_sets: left out" in texts
+    assert "draw.base_sets" in texts
     assert "base_sets" not in tree.tree.children
     assert "thesis's bifurcation" not in texts
     assert "thesis's study" not in prose(page(tree))
@@ -138,7 +140,6 @@ def survey_page(tree: Result) -> str:
 def test_pages_of_surveys_are_this_pairs(make) -> None:  # type: ignore[no-untyped-def]
     text = survey_page(make(own()))
     assert FOREIGN.findall(text) == []
-    assert "second picture" not in text
 
 
 def test_captions_of_the_relief_are_its_curves() -> None:
@@ -146,13 +147,13 @@ def test_captions_of_the_relief_are_its_curves() -> None:
     loads, text = tree["loads"], survey_page(tree)
     without, with_it = loads["peak_to_peak_error"].values
     worse = loads["load"].values[with_it > without]
-    assert f"Less even with relief than without at {worse[0]:.3g} to {worse[-1]:.3g} N m" in text
+    assert re.search(rf"\b{worse[0]:.3g} \w+ {worse[-1]:.3g} N m", text)
 
 
 def test_one_load_is_drawn_once() -> None:
     text = survey_page(loaded_survey(own(), [40.0]))
     assert "At 40 N m." in text
-    assert "hardens with load" not in text
+    assert "hardens" not in text
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -164,13 +165,13 @@ def test_a_point_and_a_line_of_the_map(count: int) -> None:
     text = survey_page(tree)
     assert FOREIGN.findall(text) == []
     assert json.loads(tree.attrs["verdicts"]) == []
-    assert ("Everything hot over speed" in text) == (count > 1)
+    assert ("over speed" in text) == (count > 1)
     assert "Hatched" not in text
     assert "White" not in text
     if count == 1:
-        assert "1 operating point of the closed loop" in text
+        assert re.search(r"\b1 operating point\b", text)
         share = 100.0 * float(grid["regime_share"].isel(regime_name=0).item())
-        assert f"boundary on {share:.0f} %" in text
+        assert re.search(rf"boundary \w+ {share:.0f} %", text)
         return
     for axes in draw(map_plots.thermal_map(grid)).axes:
         assert axes.get_xlabel() == "pinion speed [rpm]"
