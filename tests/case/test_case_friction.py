@@ -213,7 +213,7 @@ def test_a_reason_may_stand_for_a_parameter() -> None:
         example_text("rig").replace(
             "[model]", "[model.friction]\nlaw = 'lambda-blend'\nboundary = 0.08\n\n[model]"
         )
-        + '\n[ours."model.friction.boundary"]\nvalue = 0.08\nreason = "a roller test"\n'
+        + '\n[ours."model.friction.boundary"]\nvalue = 0.08\nreason = "measured"\n'
     )
     mine = [a for a in case.assumptions if a.field == "model.friction.boundary"]
-    assert [(a.value, a.reason) for a in mine] == [("0.08", "a roller test")]
+    assert [(a.value, a.reason) for a in mine] == [("0.08", "measured")]

@@ -591,7 +591,10 @@ def test_output_that_is_not_ours_is_refused(rig: Path, tmp_path: Path, failing: 
     home.mkdir()
     (home / "thesis.docx").write_text("years of work", encoding="utf-8")
     said = failing("run", str(rig), "-o", str(home))
-    assert "the directory holds files that are not results of thermogear" in said
+    assert said == (
+        f"output: got {home}; the directory holds files that are not results of thermogear; "
+        "name a new or an empty directory"
+    )
     assert [p.name for p in home.iterdir()] == ["thesis.docx"]
 
 

@@ -102,11 +102,11 @@ def test_an_existing_file_is_left_as_it_is(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text("keep me\n", encoding="utf-8")
+    path.write_text("kept\n", encoding="utf-8")
     assert main(["new", *options(NEEDED), "-o", str(path)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "mine.toml" in line
-    assert path.read_text(encoding="utf-8") == "keep me\n"
+    assert path.read_text(encoding="utf-8") == "kept\n"
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def test_the_list(tmp_path: Path, capsys: Capture) -> None:
     stages = [numbers(line) for line in out if "cylindrical_stage" in line]
     assert stages[0] == [1.0, 3.0, 21.0, 43.0, 2.5]
     assert stages[1][:2] == [2.0, 3000.0]
-    assert out[-1] == f"next: thermogear import {path} --stage 1 -o mine.toml"
+    assert out[-1].split()[1:4] == ["thermogear", "import", str(path)]
     assert main(["import", str(path), "--json"]) == 0
     content = json.loads(capsys.readouterr().out)
     assert [one["stage"] for one in content["stages"]] == [1, 2]
@@ -54,7 +54,7 @@ def test_a_stage_as_a_case_with_its_duty(tmp_path: Path, capsys: Capture) -> Non
     out = capsys.readouterr().out.splitlines()
     duty = tmp_path / "mine-duty.csv"
     assert out[:2] == [str(mine), str(duty)]
-    assert out[-1] == f"next: thermogear answers {mine}"
+    assert out[-1].split() == ["next:", "thermogear", "answers", str(mine)]
     case = load_case(mine)
     work = read_duty(duty, case)  # type: ignore[arg-type]
     assert work.time.tolist() == [0.0, 7200.0, 10800.0]

@@ -170,17 +170,8 @@ def test_uncertainty_grows_with_noise_and_holds_the_sensor() -> None:
 
 def test_settings_say_everything_an_amplitude_needs() -> None:
     found = measure(tone(419.7, 1e-5))
-    assert list(found.settings) == [
-        "rate",
-        "samples",
-        "bin width",
-        "window",
-        "method",
-        "band",
-        "taps",
-        "low cut",
-        "amplitudes",
-    ]
+    names = "rate samples bin window method band taps low amplitudes"
+    assert [name.split()[0] for name in found.settings] == names.split()
     assert found.settings["window"].split(",")[0] == "flattop"
     assert numbers(found.settings["window"])[0] == 3.77
     with pytest.raises(InputError, match=r"^method: got 'trapez'; did you mean 'trapezoid'\?$"):

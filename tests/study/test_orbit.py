@@ -189,9 +189,8 @@ def test_heat_moves_a_cascade_by_scaling_alone() -> None:
     (sweep,) = sweeps_of(table(), "zeta")
     summary = cascade_results([sweep], 2, title="", hot=True).summary
     cold, thesis, consistent = summary["cascades"]
-    assert summary["notices"] == [
-        "no back flank is hit on any of these branches: b' has no effect, heat acts by ε_T"
-    ]
+    (notice,) = summary["notices"]
+    assert "ε_T" in notice
     for entry in (thesis, consistent):
         s = np.sqrt(1.0 + entry["heat_numbers"]["thermal_stiffness"])
         numbers = {

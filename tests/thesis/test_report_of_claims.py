@@ -98,7 +98,7 @@ def test_ctrl_c_keeps_what_is_judged(
     assert 0 < summary["claims"] < summary["claims_in_all"] == len(CLAIMS)
     assert f"{summary['claims']} of {len(CLAIMS)} claims" in told.out
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert re.search(rf"\b{len(CLAIMS) - summary['claims']} of {len(CLAIMS)}\b", page)
+    assert f"{len(CLAIMS) - summary['claims']} of {len(CLAIMS)}" in page
     ids = set(re.findall(r'\bid="([^"]+)"', page))
     assert set(re.findall(r'href="#([^"]+)"', page)) <= ids
 

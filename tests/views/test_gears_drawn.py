@@ -63,10 +63,10 @@ def test_the_picture_shows_what_it_says(drawing: GearDrawing) -> None:
         "share of the load on a contact point"
     ]
     labels = [m.label for m in mesh.marks if isinstance(m, Curve) and m.label]
-    assert labels[:2] == ["cold, as drawn", "hot"]
+    assert [label.split(",")[0] for label in labels[:2]] == ["cold", "hot"]
     assert Picture.from_json(picture.to_json()).to_json() == picture.to_json()
     only = in_mesh(drawing, 0.25, "hot").panels[0][1]
-    assert "cold, as drawn" not in [m.label for m in only.marks if isinstance(m, Curve)]
+    assert not any(m.label.startswith("cold") for m in only.marks if isinstance(m, Curve))
 
 
 def test_the_picture_is_drawn_without_a_word(

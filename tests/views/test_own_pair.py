@@ -169,12 +169,12 @@ def test_a_point_and_a_line_of_the_map(count: int) -> None:
     assert "Hatched" not in text
     assert "White" not in text
     if count == 1:
-        assert re.search(r"\b1 operating point\b", text)
+        assert "1 operating" in text
         share = 100.0 * float(grid["regime_share"].isel(regime_name=0).item())
         assert re.search(rf"boundary \w+ {share:.0f} %", text)
         return
     for axes in draw(map_plots.thermal_map(grid)).axes:
-        assert axes.get_xlabel() == "pinion speed [rpm]"
+        assert axes.get_xlabel().endswith("[rpm]")
         assert "torque" not in axes.get_ylabel()
         assert axes.get_ylabel().endswith("]")
 
@@ -183,9 +183,8 @@ def test_the_rigs_map_checks_the_thesis_where_there_is_something_to_compare() ->
     rig = load_example("rig", SMALL)
     assert isinstance(rig, GearCase)
     one = json.loads(thermal_map(rig, [100.0], [100.0]).attrs["verdicts"])
-    assert {row["claim"].partition(":")[0] for row in one} == {
-        "friction coefficient", "flash temperature", "growth",
-    }  # fmt: skip
+    about = {row["claim"].partition(":")[0].split()[0] for row in one}
+    assert about == {"friction", "flash", "growth"}
     two = json.loads(thermal_map(rig, [100.0, 200.0], [100.0]).attrs["verdicts"])
     flash = next(r for r in two if r["claim"] == "flash temperature rises with speed, mixed")
     assert flash == {
