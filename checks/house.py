@@ -70,7 +70,7 @@ def page() -> str:
     """The whole page as text."""
     lines = [
         "---", "orphan: true", "---", "# The house in figures", "",
-        "Made by `make house`; a test holds it true. What the floors are for stands in",
+        "Made by `make house`; a test holds it true. What the floors are for is in",
         "[the architecture](architecture.md). Imports only point down, without cycles; no module",
         f"has more than {MOST_LINES} lines; every public name is loaded when first used.", "",
         "| floor | modules | lines | longest | imports |", "|---|---:|---:|---:|---|",

@@ -16,8 +16,8 @@ def test_the_page_runs_as_written() -> None:
     names: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, str(PAGE), "exec"), names)
-    found, swing = names["found"], names["swing"]
+    found, peak_to_peak = names["found"], names["peak_to_peak"]
     assert isinstance(found, dict)
     assert not found["status"].any()
     assert found["half_backlash"].shape == (256,)
-    assert np.isfinite(np.asarray(swing)).all()
+    assert np.isfinite(np.asarray(peak_to_peak)).all()
