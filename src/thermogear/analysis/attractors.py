@@ -1,4 +1,4 @@
-"""Attractors as things: found from starts, told apart, recognised from near, matched."""
+"""Attractors as things: found from starts, distinguished, recognised from near, matched."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def attractors_from(
 ) -> tuple[list[Attractor], Whole]:
     """The attractors reached from ``starts`` (start, 2) of one lane, and which start goes where.
 
-    The starts are settled one beside the other; -1 where a start stays undecided, -2 where it
+    The starts are settled side by side; -1 where a start stays undecided, -2 where it
     diverges. Attractors come in the order of the starts that reach them first.
     """
     many = lanes.take(np.zeros(len(starts), int))
@@ -157,7 +157,7 @@ def _orbit(field: Field, point: Floats, period: int, multiplier: complex) -> Att
 def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> float:
     """The largest tried radius from which every start on squares about the orbit comes home.
 
-    Starts stand on the edges of squares of that half width and of a half and a quarter of it;
+    Starts are on the edges of squares of that half width and of a half and a quarter of it;
     home means within a tenth of the radius of its own point of the orbit.
     """
     size = abs(multiplier)

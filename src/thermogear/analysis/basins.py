@@ -215,7 +215,7 @@ def _late(
 def _described(
     data: xr.Dataset, known: Sequence[Attractor], where: NDArray[np.int64], unit: Floats
 ) -> xr.Dataset:
-    """The attractors, their fractions and how robust they are, beside the grid."""
+    """The attractors, their fractions and how robust they are, with the grid."""
     count = len(known)
     counts = np.array([np.count_nonzero(where == n) for n in range(count)], np.int64)
     longest = max([1, *(a.period if not a.chaotic else 256 for a in known)])

@@ -42,7 +42,7 @@ CARRIED = 1e-8
 SILENT = 1e-11
 """A test function below this is rounding: of orbits that float in the gap it is 0 all along."""
 DOUBLED = (1e-4, 3e-5, 1e-3, 1e-5, 3e-4, 3e-3, 1e-2)
-"""Amplitudes (scaled) at which a doubled orbit is looked for beside its flip."""
+"""Amplitudes (scaled) at which a doubled orbit is looked for near its flip."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ def carried(bifurcation: Bifurcation, family: Family) -> Bifurcation:
 
     Newton on state (2,) and parameter at once, in the family's units: the orbit closes and
     (1 - mu_1)(1 - mu_2) is 0 (of a period doubling (1 + mu_1)(1 + mu_2); a pitchfork is one of
-    the half orbit mirrored). Beside a grazing, where that fails, the branch is searched nearby.
+    the half orbit mirrored). Near a grazing, where that fails, the branch is searched nearby.
     ``family``, value -> model as :func:`~thermogear.analysis.continuation.continuation` takes
     it, must be a near one. The value is good to 1e-10 of itself.
 
@@ -208,7 +208,7 @@ def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
 def _along(curve: Curve, test: Callable[[Point], float], guess: Floats) -> Floats | None:
     """The nearest zero of a test function on the branch through the neighbourhood of ``guess``.
 
-    Beside a grazing multipliers run as the root of the distance from it, which no Newton follows.
+    Near a grazing multipliers run as the root of the distance from it, which no Newton follows.
     """
     gap, jacobian, section = curve.residual(guess)
     two = curve.unit[:2]
@@ -290,7 +290,7 @@ def _may_hide(beside: Point | None, a: Point, b: Point) -> bool:
 def criticality(bifurcation: Bifurcation, family: Family) -> str:
     """Whether a period doubling or a pitchfork is supercritical; "" where no orbit shows it.
 
-    The multiplier of the new orbits beside it that was +1 is below 1 (they are stable, and live
+    The multiplier of the new orbits near it that was +1 is below 1 (they are stable, and live
     where the old orbit is not) or above. An orbit in lasting contact is neither: there the
     equation is linear (Hill's), and orbits of every size exist at the same value.
     """
@@ -305,7 +305,7 @@ def criticality(bifurcation: Bifurcation, family: Family) -> str:
 
 
 def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Floats, Point]:
-    """An orbit beside a flip (of twice the period) or a pitchfork (no longer symmetric).
+    """An orbit near a flip (of twice the period) or a pitchfork (no longer symmetric).
 
     With its curve and the scaled direction (3,) that leads to it, along the eigenvector of the
     multiplier -1 of the flipping map. Raises ConvergenceError where none is found.
@@ -342,7 +342,7 @@ def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Flo
 
 
 def mothers_of(curve: Curve, point: Point) -> dict[str, Floats]:
-    """How far the orbit stands from the mothers it may have, scaled (2,), by how it left them.
+    """How far the orbit is from the mothers it may have, scaled (2,), by how it left them.
 
     Of an even period: from itself half its period later, 0 where it has shrunk into an orbit
     of half its period. In a symmetric equation: from its own mirror image, 0 where it has

@@ -412,7 +412,7 @@ def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
 
 @dataclass(frozen=True)
 class Doubled:
-    """An orbit beside a flip or pitchfork: its parameter ``value``, scaled ``direction``."""
+    """An orbit near a flip or pitchfork: its parameter ``value``, scaled ``direction``."""
 
     orbit: Orbit
     value: float
@@ -420,7 +420,7 @@ class Doubled:
 
 
 def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Doubled:
-    """An orbit of twice the period beside a flip, and the direction away from it.
+    """An orbit of twice the period near a flip, and the direction away from it.
 
     The doubled orbit starts along the eigenvector of the multiplier -1; hand its parts to
     :func:`continuation` as ``orbit``, ``start`` (with a ``family``) and ``direction``. Beside a

@@ -1,4 +1,4 @@
-"""A family of models: from rows of parameter values to lanes, whatever stands behind them."""
+"""A family of models: from rows of parameter values to lanes, from a case or from plain numbers."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ Floats = NDArray[np.float64]
 class Family(Protocol):
     """``family(points)`` makes one lane of every row of ``points`` (point, parameter).
 
-    ``names`` of the parameters, ``units`` beside them ("1": a pure number), ``inputs`` what
+    ``names`` of the parameters, their ``units`` ("1": a pure number), ``inputs`` what
     defines the family, as plain numbers and texts. What it returns has ``lanes()``; a
-    ``status`` array beside it marks points that have no motion (jammed).
+    ``status`` array with it marks points that have no motion (jammed).
     """
 
     @property

@@ -61,7 +61,7 @@ def label(
     ``max_period`` closes and the largest Lyapunov exponent is positive by more than four
     standard errors, in both halves of its record.
 
-    The label stands only when the same motion on twice as many sub-steps of the event-exact maps
+    The label is given only when the same motion on twice as many sub-steps of the event-exact maps
     ends there too. Where a difference of 1e-13 half backlashes grows a millionfold on the way,
     ``starts`` starts that differ by so much are followed, to where each closes, for ``follow``
     periods (``cap`` if that is more): all must end on one orbit, or, for "chaotic", none may
@@ -226,7 +226,7 @@ def _confirmed(
 ) -> list[Label]:
     """The labels that hold for starts that differ by rounding; the others are undecided.
 
-    A neighbour within :data:`APART` of a start stays beside it where the linearised motion never
+    A neighbour within :data:`APART` of a start stays near it where the linearised motion never
     parts them by more than :data:`PARTED`; then the same start on twice as many sub-steps is
     enough. Elsewhere rounding decides where a motion ends, and all of ``starts`` are followed.
     """
@@ -352,7 +352,7 @@ def _kinds(first: Label, ends: Sequence[_End]) -> list[Label]:
 
 
 def _judged(first: Label, ends: Sequence[_End]) -> Label:
-    """The label of a start when the starts beside it ended so."""
+    """The label of a start when the starts near it ended so."""
     kinds = _kinds(first, ends)
     still = [end for end in ends if end.label is None]
     most = max([first.discarded, *(end.periods for end in ends)])

@@ -170,7 +170,7 @@ def _lattice(size: int, stride: int) -> NDArray[np.int64]:
 
 
 def _refined(found: Arrays, stride: int) -> NDArray[np.bool_]:
-    """Places inside or beside cells whose corners differ; equal cells take their corners' label.
+    """Places inside or next to cells whose corners differ; equal cells take their corners' label.
 
     A cell counts as equal only when its neighbours are equal too, and never when undecided.
     """

@@ -25,7 +25,7 @@ class Label:
     """What a trajectory settles on.
 
     ``name`` is "period-n", "chaotic", "diverged" or "undecided"; ``period`` n (0: none found;
-    also given for an undecided motion that seems to close). What stands behind it: ``orbit`` with
+    also given for an undecided motion that seems to close). What proves it: ``orbit`` with
     its Floquet multipliers, or ``lyapunov`` with its error. ``reason`` says it in words,
     ``discarded`` how many periods went by before. ``starts`` that differ by rounding share the
     label; of a chaotic motion all of them were ``followed`` so many periods and none closed: an
@@ -136,7 +136,7 @@ def returned(lane: Lanes, window: Floats, first: Label, elapsed: int) -> Label |
 
 
 def _on(points: Floats, scaled: Floats) -> bool:
-    """Whether sections lie on an orbit and come nearer; the last is beside its first point."""
+    """Whether sections are on an orbit and come nearer; the last is next to its first point."""
     turned = points[(np.arange(len(scaled)) - (len(scaled) - 1)) % len(points)]
     away = np.max(np.abs(scaled - turned), axis=1)
     early, late = float(away[: len(away) // 2].max()), float(away[len(away) // 2 :].max())

@@ -4,7 +4,7 @@ One start, one rounding, left as soon as it closes or its exponent is positive: 
 later, and a start on the border of two basins may end elsewhere.
 
 Lanes of one layout run side by side. After every round those whose section closes are polished
-by Newton together; a lane leaves as soon as its proof stands, so that most of a map costs a
+by Newton together; a lane leaves as soon as it is proven, so that most of a map costs a
 hundredth of the longest transient in it.
 """
 
@@ -82,7 +82,7 @@ class Settled:
     """One entry per lane.
 
     ``label`` codes into :data:`LABELS`, ``period`` n (0: none), ``point`` (lane, 2) of the
-    orbit where the trajectory stands, ``multiplier`` (lane, 2) complex, ``lyapunov`` per unit
+    orbit where the trajectory is, ``multiplier`` (lane, 2) complex, ``lyapunov`` per unit
     time with its ``lyapunov_error`` (exact, error 0, for periodic lanes), ``losses`` and
     ``impacts`` per orbit, ``shares`` of time in back, free and drive, ``used`` periods run,
     ``state`` (lane, 2) at the end, ``sections`` (lane, keep, 2) the last ones, on the orbit

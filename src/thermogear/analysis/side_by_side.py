@@ -1,6 +1,6 @@
 """Motions along one parameter, each handed on to its neighbours: where several exist at once.
 
-A coarse look without branches: what is found at one lane is tried at the lanes beside it until
+A coarse look without branches: what is found at one lane is tried at the neighbouring lanes until
 nothing new turns up, so that a motion is followed as far as it lives, up to one lane's distance.
 """
 

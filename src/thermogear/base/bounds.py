@@ -1,7 +1,7 @@
 """How large the sizes of a gear pair may be, for case files and for numbers from Python alike.
 
 A number from Python has no unit: whoever writes millimetres, degrees Celsius or gigapascals where
-metres, kelvins and pascals are meant is told so, with the number that was probably meant. What
+metres, kelvins and pascals are meant is refused, with the number that was probably meant. What
 stays within the bounds all the same cannot be noticed.
 """
 

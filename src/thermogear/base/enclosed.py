@@ -1,4 +1,4 @@
-"""Files that a case names, in the text of the case itself: how they stand there and are shown."""
+"""Files that a case names, in the text of the case itself: how they are kept and shown there."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def told(content: str) -> str:
 
 
 def with_digests(data: dict[str, Any]) -> dict[str, Any]:
-    """A case's tables with each file told in place of its content."""
+    """A case's tables with the name of each file in place of its content."""
     files = data.get("files")
     if not isinstance(files, dict):
         return data

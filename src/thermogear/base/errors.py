@@ -99,7 +99,7 @@ class ValidityWarning(UserWarning):
 
 
 class UnsealedWarning(ValidityWarning):
-    """A stored file without its seal: whether it is as it was written cannot be told."""
+    """A stored file without its seal: nobody can say whether it is as it was written."""
 
 
 class WorkerWarning(UserWarning):
@@ -123,7 +123,7 @@ def meant(name: str, known: Iterable[str], *, cutoff: float) -> str | None:
 
 
 def short(value: object) -> str:
-    """A value as it stands in a message: one line, at most 60 characters."""
+    """A value as a message shows it: one line, at most 60 characters."""
     if isinstance(value, bool):
         text = str(value).lower()
     elif isinstance(value, dict):

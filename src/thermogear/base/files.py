@@ -1,4 +1,4 @@
-"""Files, whole or not there: written beside their place, then put into it; and what users wrote."""
+"""Files, whole or not there: written near their place, then put into it; and what users wrote."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from thermogear.base.errors import InputError, meant
 LOCK = "lock"
 """Stands in every directory that one process at a time writes into; stays there."""
 SEAL = ".sha256"
-"""Ending of a seal: the digest of the file beside it, as ``sha256sum -c`` reads it."""
+"""Ending of a seal: the digest of the file next to it, as ``sha256sum -c`` reads it."""
 PART = ".part"
 """Ending of what is being written; what a kill leaves of it is nothing."""
 
@@ -29,10 +29,10 @@ _number = itertools.count()
 
 @contextmanager
 def beside(path: Path) -> Iterator[Path]:
-    """A name beside ``path`` to write to; the file takes the place of ``path`` at the end.
+    """A name next to ``path`` to write to; the file replaces ``path`` at the end.
 
     An older file stays until then, and for good where writing fails. A link is replaced, not
-    followed. What the system refuses is told with the name of ``path``.
+    followed. What the system refuses is reported with the name of ``path``.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}-{next(_number)}{PART}")
     try:
@@ -66,7 +66,7 @@ def meant_beside(path: Path, pattern: str = "*") -> str | None:
 
 
 def require_new_file(path: Path, field: str = "output") -> None:
-    """Refuse a ``path`` that cannot be a new file: something stands there, or nothing above it."""
+    """Refuse a ``path`` that cannot be a new file: something is there, or nothing above it."""
     if path.is_dir():
         raise InputError(field, str(path), why="it is a directory", fix="name a file in it")
     if path.exists():
@@ -76,7 +76,7 @@ def require_new_file(path: Path, field: str = "output") -> None:
 
 
 def require_directory(path: Path, field: str = "output") -> None:
-    """Refuse a ``path`` that cannot be a directory: a file stands there, or above it."""
+    """Refuse a ``path`` that cannot be a directory: a file is there, or above it."""
     for place in (path, *path.parents):
         if place.exists() and not place.is_dir():
             why = "it is a file" if place == path else f"{place} is a file"
@@ -137,14 +137,14 @@ def held(directory: Path, field: str = "output") -> Iterator[None]:
 
 
 def seal_of(path: Path) -> Path:
-    """Where the seal of ``path`` stands."""
+    """The place of the seal of ``path``."""
     return path.with_name(path.name + SEAL)
 
 
 def put_sealed(path: Path, data: bytes | memoryview) -> Path:
-    """:func:`put`, and the seal of ``path`` beside it.
+    """:func:`put`, and the seal of ``path`` next to it.
 
-    At no moment, not of a kill either, does a file stand beside a seal that denies it: while the
+    At no moment, not of a kill either, is a file next to a seal that denies it: while the
     new file takes the old one's place the seal vouches for both.
     """
     seal = seal_of(path)

@@ -128,4 +128,4 @@ LIMITS: dict[str, Limit] = {
 """Every threshold of a verdict, by the name of its answer."""
 
 NO_LIMIT = Limit("°C", source="no limit is known for a material that is no steel")
-"""Of teeth of which nobody says what they stand."""
+"""Of teeth whose strength is not given."""

@@ -34,7 +34,7 @@ _Scales = dict[Any, "tuple[h5py.Dataset, int]"]
 
 
 def write_tree(tree: xr.DataTree, path: Path) -> Path:
-    """Write ``tree`` as ``path`` (netCDF-4) with its seal beside it, whole or not at all.
+    """Write ``tree`` as ``path`` (netCDF-4) with its seal next to it, whole or not at all.
 
     HDF5 writes into memory: a disk that is full is an OSError, and an older file stays. The same
     is stored as by ``tree.to_netcdf(engine="h5netcdf")``, which opens every group and dimension

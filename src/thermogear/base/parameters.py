@@ -1,7 +1,7 @@
 """Everything that can be varied, named once: for fields, options, sweeps, axes and pictures.
 
 A parameter has one long name, the names a person may write for it, its SI unit and the unit it is
-shown in. Gear parameters stand for fields of a case file; the others are the numbers of the
+shown in. Gear parameters are fields of a case file; the others are the numbers of the
 dimensionless equation. A field of the case file that has no name here is a parameter too
 (:func:`thermogear.case.allowed.gear_parameter`).
 """
@@ -23,7 +23,7 @@ EQUATION = "base"
 class Parameter:
     """A parameter: shown is ``factor * (value - zero)`` in ``shown``, the value in ``unit`` (SI).
 
-    ``words`` and ``symbol`` name it on an axis. ``fields`` of a gear case it stands for, all with
+    ``words`` and ``symbol`` name it on an axis. ``fields`` of a gear case it means, all with
     the same value; ``number``: a number of the dimensionless equation. ``aliases`` are the other
     names a person may write.
     """
@@ -49,7 +49,7 @@ class Parameter:
 
     @property
     def label(self) -> str:
-        """Words, symbol and [unit]: what stands at an axis."""
+        """Words, symbol and [unit]: the label of an axis."""
         unit = f"[{self.shown}]" if self.shown else ""
         return " ".join(part for part in (self.words, self.symbol, unit) if part)
 
@@ -144,7 +144,7 @@ PARAMETERS: dict[str, Parameter] = {one.name: one for one in _ALL}
 NUMBERS: tuple[str, ...] = tuple(one.name for one in _ALL if one.number)
 """The numbers of the dimensionless equation, in the order of its keywords."""
 GEARS: tuple[str, ...] = tuple(one.name for one in _ALL if one.fields)
-"""The parameters that stand for fields of a gear case."""
+"""The parameters that are fields of a gear case."""
 
 _LONG = {alias: one.name for one in _ALL for alias in (one.name, *one.aliases)}
 
@@ -158,7 +158,7 @@ def long_name(name: str) -> str:
 
 
 def named(name: str, among: Iterable[str] = PARAMETERS, option: str = "parameter") -> Parameter:
-    """The parameter that ``name`` or one of its aliases stands for, out of ``among``.
+    """The parameter that ``name`` or one of its aliases means, out of ``among``.
 
     InputError, under the name of ``option``, for an unknown one: the nearest is said.
     """

@@ -11,7 +11,7 @@ from typing import Any
 from thermogear.base.errors import InputError, short
 
 NAMED = {"model.friction": "law"}
-"""A name that may stand for a table, and the field of the table that holds it."""
+"""A name that may replace a table, and the field of the table that holds it."""
 
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 

@@ -1,4 +1,4 @@
-"""What stands between SI and the units people read; inside the floors numbers are SI."""
+"""Between SI and the units people read; inside the floors numbers are SI."""
 
 from __future__ import annotations
 

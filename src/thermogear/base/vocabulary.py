@@ -30,7 +30,7 @@ class Quantity:
 
 
 UNDEFORMED, HOT = STATES = ("undeformed", "hot")
-"""States of a run: gears as drawn with the oil of operation, and as hot as the case says."""
+"""States of a run: the drawing's sizes with the oil of operation, and as hot as the case says."""
 
 STATUS = ("ok", "jammed", "not_converged", "diverged")
 """Meaning of the values 0, 1, 2, ... of every ``status`` variable."""
@@ -273,7 +273,7 @@ FASTER_RULE = (
     "labels by a faster rule, an estimate: one start, left as soon as it closes or its exponent is "
     "positive; chaos may end later, and a start on a border may end elsewhere"
 )
-"""What stands behind the labels of maps, diagrams, basins and run-ups."""
+"""What proves the labels of maps, diagrams, basins and run-ups."""
 
 
 def label_words(name: str, *, followed: int, starts: int) -> str:
@@ -302,7 +302,7 @@ def told_labels(data: xr.Dataset) -> NDArray[np.str_]:
 
 
 def told_operating(data: xr.Dataset) -> int:
-    """Place of the operating point that stands for the rest: the first with a hot state, else 0."""
+    """Place of the operating point that represents the rest: the first with a hot state, else 0."""
     if "status" not in data or "operating" not in data["status"].dims:
         return 0
     status = data["status"].isel(state=-1) if "state" in data["status"].dims else data["status"]

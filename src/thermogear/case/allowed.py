@@ -31,7 +31,7 @@ LANE = ("frequency", "half_backlash")
 
 
 def gear_parameter(name: str, option: str = "parameter") -> Parameter:
-    """The parameter of a gear case that ``name`` stands for: out of the table, or a dotted field.
+    """The parameter of a gear case that ``name`` means: out of the table, or a dotted field.
 
     Raises :class:`InputError` where there is no such field, or none that holds numbers.
     """
@@ -48,7 +48,7 @@ def gear_parameter(name: str, option: str = "parameter") -> Parameter:
 
 
 def number_parameter(name: str, option: str = "parameter") -> Parameter:
-    """The number of the dimensionless equation that ``name`` stands for."""
+    """The number of the dimensionless equation that ``name`` means."""
     return named(name, NUMBERS, option)
 
 

@@ -1,6 +1,6 @@
 """The values that are ours: declared in the file's table ``[ours]``, or left to a default.
 
-A declared reason holds for the value that stands beside it and for no other: where the case has
+A declared reason holds for the value given with it and for no other: where the case has
 another value, whoever edited, overrode or left it out, the entry is silent. A reason without a
 value, as older files have them, is left out with a warning.
 """
@@ -25,7 +25,7 @@ from thermogear.case.refusals import dotted, table_at
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value that no source states: where it stands, what it is, why it was taken."""
+    """A value that no source states: its field, what it is, why it was taken."""
 
     field: str
     value: str

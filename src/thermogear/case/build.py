@@ -46,7 +46,7 @@ class Follows:
     below: bool
 
     def at(self, addendum: ArrayLike) -> ArrayLike:
-        """The temperature [K] beside an ``addendum`` [K]; numbers, or one for each point."""
+        """The temperature [K] belonging to an ``addendum`` [K]; numbers, or one for each point."""
         return np.subtract(addendum, self.value) if self.below else self.value
 
     def checked(self, addendum: ArrayLike, field: str) -> ArrayLike:
@@ -85,7 +85,7 @@ class TemperatureRule:
     oil: Follows
 
     def at(self, *, pinion_addendum: ArrayLike, wheel_addendum: ArrayLike) -> Temperatures:
-        """All body temperatures beside the two addenda [K]."""
+        """All body temperatures that belong to the two addenda [K]."""
         return Temperatures(
             reference=self.reference,
             pinion_addendum=pinion_addendum,
@@ -96,7 +96,7 @@ class TemperatureRule:
         )
 
     def oil_at(self, pinion_addendum: ArrayLike) -> ArrayLike:
-        """The oil's temperature [K] beside the pinion's addendum [K]."""
+        """The oil's temperature [K] that belongs to the pinion's addendum [K]."""
         return self.oil.checked(pinion_addendum, "oil.temperature")
 
 

@@ -120,7 +120,7 @@ class GearCase(Case):
         """The case with numbers put to other SI ``values``, no text read again.
 
         The names are those of :data:`~thermogear.base.parameters.GEARS` or dotted fields of the
-        file. The same as :func:`load_case` with these values as overrides, which stand in its
+        file. The same as :func:`load_case` with these values as overrides, which are in its
         ``overrides``. ``told`` as in :func:`case_of`. Raises InputError for an unknown field, and
         where no case file could hold a value.
         """
@@ -288,7 +288,7 @@ def _in_proportion(hot: Operating, gear_temperature: ArrayLike) -> Operating:
 
 @dataclass(frozen=True, kw_only=True)
 class DimensionlessCase(Case):
-    """Rows of points of the dimensionless equation; no gear stands behind them.
+    """Rows of points of the dimensionless equation; they come from no gear.
 
     ``base``: the numbers that the rows start from, one or several of each.
     """
@@ -315,7 +315,7 @@ def load_case(
     """The case in the file ``source``, or in the text itself, with ``overrides`` put in.
 
     Files that it names count from ``folder`` (default: where the case file is, of a text the
-    working directory) and stand in its ``text`` afterwards.
+    working directory) and are in its ``text`` afterwards.
 
     ``overrides`` map dotted fields to values as a file would hold them, or are texts
     ``"gears.pinion.teeth=30"``. Raises :class:`InputError` in one line; warns with
@@ -339,7 +339,7 @@ def case_of(
 ) -> GearCase | DimensionlessCase:
     """The case of a file's tables ``data``, with ``changes`` in them; ``text`` as it was read.
 
-    ``told`` False leaves out its assumptions and warnings, for a case that nobody is shown.
+    ``told`` False leaves out its assumptions and warnings, for a case that nobody sees.
     """
     kind = data.get("kind", "gear")
     file = DimensionlessFile if kind == "dimensionless" else GearFile

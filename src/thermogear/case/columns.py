@@ -33,7 +33,7 @@ class Column:
     cells: tuple[str, ...]
 
     def shown(self, row: int) -> str:
-        """A cell as it stands in the file, with its unit and row (from 1, the head not counted)."""
+        """A cell as the file has it, with its unit and row (from 1, the head not counted)."""
         return f"{self.cells[row]} {self.unit} in row {row + 1}"
 
 

@@ -19,7 +19,7 @@ def decided(
     deviations: Sequence[Deviation],
     accuracy: int | None,
 ) -> dict[str, str]:
-    """Field -> the value that stands in its place, with its unit."""
+    """Field -> the value that replaces it, with its unit."""
     found = {
         "gears.centre_distance": shown(pair.centre_distance, "length"),
         "backlash.value": f"{shown(2.0 * backlash.half, 'length')}, total, normal",

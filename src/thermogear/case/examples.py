@@ -21,7 +21,7 @@ EXAMPLES = {
 
 
 OF_THE_THESIS = ("rig", "table-4.2", "section-4.1")
-"""Those that stand for the thesis's own cases."""
+"""The thesis's own cases."""
 
 
 def example_text(name: str) -> str:

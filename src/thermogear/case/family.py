@@ -149,7 +149,7 @@ def base_model(
 class GearFamily:
     """Gear parameters -> points, for one ``case``, one bundle of it and one state of its heat.
 
-    Beside a parameter gear_temperature the state is "hot". Rows whose geometry is one share a mesh
+    With a parameter gear_temperature the state is "hot". Rows whose geometry is one share a mesh
     cycle (:mod:`thermogear.case.samples`); every other value of a field that is no column makes a
     case of its own. ``alive`` is called between cycles and raises to end the work.
     """
@@ -257,7 +257,7 @@ class GearFamily:
         return found
 
     def _placed(self, rows: Floats) -> tuple[list[_Group], Whole]:
-        """Groups of rows, and where each row stands in them, one after the other; -1: nowhere.
+        """Groups of rows, and the place of each row in them, one after the other; -1: nowhere.
 
         Raises what is wrong where no row has a case.
         """

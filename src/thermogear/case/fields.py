@@ -1,4 +1,4 @@
-"""What may stand in a field of a case file: the readers behind the annotations of the schema.
+"""What a field of a case file may hold: the readers behind the annotations of the schema.
 
 Each reader is handed what TOML gave, returns an SI number (or a name), and refuses everything else
 with an :class:`InputError` whose field is still empty: where it stood is filled in by
@@ -258,7 +258,7 @@ class Choice(Reader):
 
 
 class NameOrTable(Choice):
-    """A name, or a table that holds it as ``key`` beside fields of its own.
+    """A name, or a table that holds it as ``key`` with fields of its own.
 
     The name alone is read as a table of it; ``check`` sees every table that names it.
     """
@@ -311,7 +311,7 @@ class Words(Reader):
 
 @dataclass(frozen=True)
 class Several(Reader):
-    """A list of what ``one`` reads; with ``single`` one alone may stand without brackets."""
+    """A list of what ``one`` reads; with ``single`` one alone may be written without brackets."""
 
     one: Reader
     _: KW_ONLY

@@ -1,4 +1,4 @@
-"""Where a field stands in the text of a case file."""
+"""The line of a field in the text of a case file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _parts(path: str) -> tuple[str, ...]:
 
 
 def _places(text: str) -> dict[tuple[str, ...], int]:
-    """Line of every table and key; of what stands twice the first."""
+    """Line of every table and key; of what is written twice the first."""
     found: dict[tuple[str, ...], int] = {}
     table: tuple[str, ...] = ()
     for number, line in enumerate(text.splitlines(), 1):

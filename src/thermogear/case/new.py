@@ -36,7 +36,7 @@ class NewCase:
     def text(self, folder: Path | None = None) -> str:
         """The file; InputError where the case it describes is impossible.
 
-        Names of charts count from ``folder``, where the file is to stand (default: here).
+        Names of charts count from ``folder``, where the file will be (default: here).
         """
         text = "\n".join(self._lines()) + "\n"
         try:

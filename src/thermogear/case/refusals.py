@@ -40,7 +40,7 @@ def complaints(error: ValidationError, file: type[BaseModel]) -> list[InputError
 
 
 def _meant(key: str, table: type[BaseModel] | None) -> str | None:
-    """The field that a misspelt key most likely stands for."""
+    """The field that a misspelt key most likely means."""
     if "diametral" in key:
         return "module"
     close = difflib.get_close_matches(key, table.model_fields if table else (), n=1, cutoff=0.5)

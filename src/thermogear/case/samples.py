@@ -68,7 +68,7 @@ BODIES_OF: dict[str, Callable[[Operating], ArrayLike]] = {
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """``case`` with its operating points in columns, and what vibration needs beside them.
+    """``case`` with its operating points in columns, and what else vibration needs.
 
     ``damping_ratio`` [-] and ``error`` (times the case's own), (sample,); ``inertias`` [kg m^2],
     (sample, 2).
@@ -102,7 +102,7 @@ def with_error(springs: Excitations, error: NDArray[np.complex128]) -> Excitatio
 
 
 def fields_of(name: str) -> tuple[str, ...]:
-    """The columns that a parameter stands for: fields of the file, or itself."""
+    """The columns that a parameter means: fields of the file, or itself."""
     one = PARAMETERS.get(name)
     if name in ("cold_half_backlash", GEARS_AT) or one is None or not one.fields:
         return (name,)
@@ -319,7 +319,7 @@ def quasi_static(
     refused: list[ThermogearError] = []
 
     def asked(places: Whole) -> list[tuple[Whole, dict[str, NDArray[Any]]]]:
-        """The cycle of samples that do it, halved where one is refused until it stands alone."""
+        """The cycle of samples that do it, halved where one is refused until it is alone."""
         alive()
         some = {name: values[places] for name, values in columns.items()}
         try:

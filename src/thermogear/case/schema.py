@@ -1,6 +1,6 @@
 """The case file as pydantic models: what may be written, before anything is computed from it.
 
-A field without a default must stand in the file. A described default is a value that is ours:
+A field without a default must be in the file. A described default is a value that is ours:
 whoever leaves it out finds it among the assumptions of the case, the description as the reason.
 """
 
@@ -323,7 +323,7 @@ class BacklashTable(Table):
 
 
 class DynamicsTable(Table):
-    """What vibration needs beside the mesh."""
+    """What vibration needs besides the mesh."""
 
     damping_ratio: Annotated[float, Number(low=0.0, high=2.0, example="0.07")] = Field(
         default=0.07,

@@ -1,4 +1,4 @@
-"""What thermometers would show beside the true temperatures of a pair in its duty."""
+"""What thermometers would show, and the true temperatures of a pair in its duty."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ LARGEST = 1_000_000
 
 
 def folder_of(source: str | Path) -> Path:
-    """Where the files that a case names are: beside its file; for a text the working directory."""
+    """The folder of the files that a case names: its own; for a text the working directory."""
     return Path() if _is_text(source) else Path(source).parent
 
 
@@ -25,7 +25,7 @@ def case_text(source: str | Path) -> tuple[str, str]:
     """(name, text) of a case given by its path or as text.
 
     A ``str`` is a text when it holds a line break or an equals sign, or nothing; else a path. The
-    bare name of a ready-made case stands for it where no such file exists.
+    bare name of a ready-made case means it where no such file exists.
     """
     if _is_text(source):
         return "case", str(source)

@@ -22,7 +22,7 @@ class Table(BaseModel):
 
 
 def one_of(table: Table, first: str, second: str, field: str = "") -> None:
-    """Refuse a table that holds both of two rivals, or neither; ``field`` is where it stands."""
+    """Refuse a table that holds both of two rivals, or neither; ``field`` is its place."""
     given = [name for name in (first, second) if getattr(table, name) is not None]
     if len(given) != 1:
         got, fix = ("both", "leave one out") if given else ("neither", f"write {first} = ...")

@@ -30,7 +30,7 @@ ALLOWED = "undeformed | hot | computed | degrees Celsius"
 class ThermalState:
     """A state of heat of a gear pair.
 
-    ``kind`` "undeformed": bodies as drawn, oil as in operation; "hot": as the case says, its
+    ``kind`` "undeformed": the drawing's sizes, oil as in operation; "hot": as the case says, its
     temperatures given or computed; "computed": from the heat balance, whatever the case gives;
     "at": both addenda at ``temperature`` [K], the rest as ``temperatures.follow`` says; "held": as
     hot as the operating point ``held``, at any speed and torque.
@@ -81,7 +81,7 @@ class ThermalState:
 
     @property
     def words(self) -> str:
-        """The state as a reader is told it."""
+        """The state as a reader sees it."""
         if self.temperature is None:
             return self.kind
         return f"gears at {self.temperature - ZERO_CELSIUS:.6g} °C"

@@ -1,4 +1,4 @@
-"""Which cases are the thesis's own: what is said of the thesis is said beside them alone."""
+"""Which cases are the thesis's own: only with them anything is said of the thesis."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _is_rig(case: GearCase) -> bool:
 
 
 def _stated(case: GearCase) -> tuple[object, ...]:
-    """What a gear case says beside its operating points and its choices."""
+    """What a gear case says besides its operating points and its choices."""
     at = case.stated
     return (
         case.pair,

@@ -91,7 +91,7 @@ _USUAL: dict[str, dict[str, float]] = {
     "mass": {"kg": 1.0},
     "volume flow": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05},
 }
-"""Units that stand in nearly every file, by their factor to SI: bit for bit what pint makes of
+"""Units of nearly every file, by their factor to SI: bit for bit what pint makes of
 them, without loading it, which takes longer than many a command."""
 
 _TEXT = re.compile(

@@ -136,7 +136,7 @@ class ExactMaps:
 
 @dataclass(kw_only=True)
 class State:
-    """Where a group of lanes stands; advanced in place."""
+    """State of a group of lanes; advanced in place."""
 
     x: Floats
     y: Floats

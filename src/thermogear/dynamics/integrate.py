@@ -199,7 +199,7 @@ def simulate(
     ``model``: :class:`TorsionalModel`, :class:`DeadZoneModel` (lanes side by side),
     :class:`PairModel`, :class:`LoadSharedModel`, or anything with ``derivative(t, y)`` and
     ``period``: of two states they are x and x'; of more each is stored by its name in the model's
-    ``states`` (else y1, y2, ...), x and x' beside them where it has ``displacement(t, state)``.
+    ``states`` (else y1, y2, ...), x and x' too where it has ``displacement(t, state)``.
     ``initial_state`` (x, x') for all lanes, or an array (lane, 2); for the pair (x, x') or
     (theta1, theta2, theta1', theta2'). ``samples_per_period`` (0: none) uniform samples of the
     kept periods, the first of each at phase 0. ``method``: "exact", "rk4" (with

@@ -31,7 +31,7 @@ class LoadSharedModel:
     between first touch and knee as :class:`PairSprings` says.
 
     y [m] displacement of the pinion's base circle over the wheel's less the kinematic error,
-    positive on the drive side; ``half_backlash`` b [m] the cold one, because heat stands in
+    positive on the drive side; ``half_backlash`` b [m] the cold one, because heat is in
     S_j as a deviation; ``mass`` m [kg], ``damping`` c [N s/m], ``mesh_frequency`` [rad/s],
     ``force`` F [N] with -m e'' of the kinematic error in it; ``drive`` and ``back`` flanks.
     Where the one-spring form opens and closes the whole mesh at once, here pairs touch and
@@ -65,7 +65,7 @@ class LoadSharedModel:
     ) -> LoadSharedModel:
         """The pairs' springs on the masses, damping and load of ``excitation``.
 
-        ``error`` the kinematic error [m] alone: what deviations and heat do stands in the
+        ``error`` the kinematic error [m] alone: what deviations and heat do is in the
         springs. The excitation's own stiffness gives no more than c = 2 zeta sqrt(k_m m_e).
         """
         mass = excitation.equivalent_mass

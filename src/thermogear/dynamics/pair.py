@@ -1,4 +1,4 @@
-"""Two gears: both rotations integrated as they stand, or rebuilt from the exact relative motion."""
+"""Two gears: both rotations integrated as they are, or rebuilt from the exact relative motion."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def simulate_pair(
     samples: int,
     tolerances: tuple[float, float],
 ) -> xr.Dataset:
-    """Both rotations integrated as they stand: four states."""
+    """Both rotations integrated as they are: four states."""
     state = np.array(four_of(start, model), dtype=float)
     total = discard + periods
     if method == "rk4":

@@ -124,7 +124,7 @@ def deliver(
 
 
 def tell(page: Page, path: Path | None, *, as_json: bool) -> None:
-    """Print a page as a terminal or a script wants it, and where it stands."""
+    """Print a page as a terminal or a script wants it, and its path."""
     from thermogear.results.files import json_text
 
     if as_json:

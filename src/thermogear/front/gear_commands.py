@@ -287,7 +287,7 @@ def contact(
 
     Tangent and secant stiffness, transmission error, load shares, pressure, double contact (and
     how gears of unequal temperature lose it at light load), how long tip corners carry (edge
-    contact, where no pressure is given), beside ISO 6336-1. Writes contact.nc, contact.html,
+    contact, where no pressure is given), and ISO 6336-1. Writes contact.nc, contact.html,
     pictures and CSV to DIR.
     """
     read = delivery.load_gears(case, overrides)

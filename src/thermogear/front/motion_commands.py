@@ -303,7 +303,7 @@ def _sweeps(
 @_point_options
 @click.option("--speeds", type=int, default=41, show_default=True, help="Speeds of the sweep.")
 def shared_force(speeds: int, **options: Any) -> None:
-    """The mesh force shared pair by pair beside the one-spring form, at rest and in motion.
+    """The mesh force shared pair by pair and the one-spring form, at rest and in motion.
 
     \b
       thermogear shared-force rig.toml -o shared

@@ -1,4 +1,4 @@
-"""``thermogear verify``: models beside finite elements; a group for the main one to register."""
+"""``thermogear verify``: models against finite elements; a group for the main one to register."""
 
 from __future__ import annotations
 

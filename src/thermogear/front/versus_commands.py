@@ -75,7 +75,7 @@ def versus(results: tuple[str, ...], output: str, as_json: bool) -> None:
 
 
 def _existing(path: Path) -> Path:
-    """``path`` where it is there or names a ready-made case; else the nearest name beside it."""
+    """``path`` where it is there or names a ready-made case; else the nearest name there."""
     from thermogear.base.errors import InputError
     from thermogear.base.files import meant_beside
     from thermogear.case.examples import EXAMPLES
@@ -91,7 +91,7 @@ def _existing(path: Path) -> Path:
 
 
 def _homes(directory: Path, paths: list[Path]) -> list[Path]:
-    """Where the results of each path stand: a directory given, or a new one below DIR."""
+    """Where the results of each path are: a directory given, or a new one below DIR."""
     taken = {path.resolve() for path in paths if path.is_dir()}
     homes = []
     for path in paths:

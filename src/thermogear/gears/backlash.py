@@ -1,7 +1,7 @@
 """Backlash of a pair: its kinds and what one is in another, and what tolerances leave of it.
 
 One tooth pair's whole play along the line of action is the normal backlash j_n; the half
-backlash j_n/2 stands to each side of a tooth that floats in the middle. Lengths in metres.
+backlash j_n/2 is left on each side of a tooth in the middle. Lengths in metres.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Backlash as standards recommend it: a least normal backlash, tooth-thickness and axis tolerances.
 
 ISO/TR 10064-2 says how much, DIN 3967 how thin the teeth are cut for it and how exactly, DIN 3964
-how exactly the axes stand. All are recommendations: a drawing overrules them.
+how exact the centre distance is. All are recommendations: a drawing overrules them.
 """
 
 from __future__ import annotations

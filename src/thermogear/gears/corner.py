@@ -1,4 +1,4 @@
-"""Where flanks meet beside the path of contact: any point of one on the other, tip corners too.
+"""Where flanks meet off the path of contact: any point of one on the other, tip corners too.
 
 A pair whose involutes would meet off the path of contact cannot touch there; a loaded mesh
 lets the tip corner of one tooth touch the other's flank, early on the way in and late on the

@@ -3,7 +3,7 @@
 Signs: S > 0 is added material on a flank, measured along the line of action; the gap of a
 tooth pair is e = -(S_1 + S_2), so that relief makes a positive gap. A deviation answers for
 every tooth pair of a mesh at once; several add up. What is a shape of one flank says so as a
-:class:`FlankShape`: flanks that deviate touch beside the nominal point of contact.
+:class:`FlankShape`: flanks that deviate touch next to the nominal point of contact.
 """
 
 from __future__ import annotations
@@ -166,7 +166,7 @@ class Relief(FlankShape):
 class PitchError:
     """Index errors of the teeth of one gear, one per tooth.
 
-    errors [m] along the line of action: > 0 stands a whole tooth towards its drive side, which
+    errors [m] along the line of action: > 0 puts a whole tooth towards its drive side, which
     is added material on the drive flank and missing on the back flank.
 
     >>> PitchError("wheel", errors=(4e-6, -2e-6)).gear

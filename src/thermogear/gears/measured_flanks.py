@@ -1,7 +1,7 @@
 """Flanks as a measuring machine found them: what of a chart's traces acts in the mesh.
 
 A trace holds slope, form, waves, and noise of the probe. A run has one mesh period for all, so
-the mean of the teeth acts, without the waves that are too short to be told from noise; each
+the mean of the teeth acts, without the waves too short to be distinguished from noise; each
 trace is evaluated by itself. The roll path rho is the string length along the line of action.
 """
 

@@ -67,7 +67,7 @@ class LoadedModel:
 def _body_unit(gear: Gear, t: Floats, direction: int, model: LoadedModel) -> Floats:
     """Ring compliance between the candidates for unit modulus and width, (position, pair, pair).
 
-    ``direction`` +1: teeth farther on the path stand ahead in the direction of their load.
+    ``direction`` +1: teeth farther on the path are ahead in the direction of their load.
     """
     table, centre = body_matrices(gear, windup=model.body == "bore_clamped")
     load = foot_load(gear, t)

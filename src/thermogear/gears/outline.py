@@ -145,7 +145,7 @@ def _taken_off(
 def whole(points: NDArray[np.complex128], teeth: int) -> NDArray[np.complex128]:
     """All ``teeth`` of a gear as one closed line, from one pitch of it [m].
 
-    The point that two neighbours share stands once, and the first closes the line.
+    The point that two neighbours share is there once, and the first closes the line.
 
     >>> pitch = np.exp(1j * np.linspace(-0.5, 0.5, 5) * np.pi / 2)
     >>> whole(pitch, 4).size

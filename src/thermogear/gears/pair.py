@@ -19,7 +19,7 @@ from thermogear.gears.geometry import LEFT_OUT, Gear, inverse_involute, involute
 class PathPoints(NamedTuple):
     """Distances [m] from the pinion's tangent point N1 along the line of action.
 
-    a: contact starts (wheel tip); b: the leading pair leaves as this one stands here;
+    a: contact starts (wheel tip); b: the leading pair leaves when this one is here;
     c: pitch point; d: the following pair enters; e: contact ends (pinion tip).
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))

@@ -58,10 +58,9 @@ def optimise_tip_relief(
     normal_force: F_n [N] > 0; moduli and deviations (for example the hot pair's base-pitch
     difference) as :func:`loaded_contact`, without leading axes; shape: "linear" or "parabolic";
     largest: greatest amount [m], default three times the unrelieved error's mean height over its
-    least value plus its swing; positions: of the mesh period; symmetric: both gears with one
-    amount and one length; evaluations: at most so many from every start; progress: told those
-    so far. Lengths lie between 0.05 base
-    pitches and the active profile.
+    least value plus its peak-to-peak value; positions: of the mesh period; symmetric: both gears
+    with one amount and one length; evaluations: at most so many from every start; progress: called
+    with those so far. Lengths are between 0.05 base pitches and the active profile.
 
     >>> pair = GearPair(Gear(20, 4e-3), Gear(40, 4e-3))
     >>> design = optimise_tip_relief(pair, 4e3, positions=16, symmetric=True, evaluations=20)

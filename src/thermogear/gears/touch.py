@@ -2,7 +2,7 @@
 
 The gap e of a pair is how far the mesh must advance along the line of action before the pair
 touches. Flanks with a shape of their own do not touch at the nominal point of contact: a flank
-that falls away beside it touches where it is nearest. Force, clearance, jam and pictures take
+that falls away next to it touches where it is nearest. Force, clearance, jam and pictures take
 their gaps from here.
 """
 
@@ -58,7 +58,7 @@ def first_touch(points: MeshPoints, deviations: Sequence[Deviation] = ()) -> Tou
     advance until the pinion's point rho_1 meets the wheel's involute at rho_2
     (:func:`~thermogear.gears.corner.pinion_point`), e_1 and e_2 the material taken off at these
     points, which turns them about their gear. Close to the nominal point a = x^2/(2 rho*),
-    x = (rho_1 - s) tan(alpha_k) along the flank. At A the wheel stands at its phase while the
+    x = (rho_1 - s) tan(alpha_k) along the flank. At A the wheel is at its phase while the
     pinion advances, at E the pinion while the wheel falls back, between them both in proportion:
     exchanging the gears changes nothing. Deviations that are no shape of a flank (pitch errors,
     heat) count at the nominal point.
@@ -178,7 +178,7 @@ def _least_advance(
     ``valleys`` how many humps may hide the least value from the samples.
 
     A window that must hold the least value is sampled, then narrowed by golden sections; both
-    tip corners stand beside it, because the least value at a border is reached there alone.
+    tip corners are tried too, because the least value at a border is reached there alone.
     """
     (low, high), (lowest, highest) = flank_ends(pair)
     # the part of the advance that the pinion makes

@@ -56,7 +56,7 @@ class GearLike(Protocol):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RadialField:
-    """T(r) of a gear body, logarithmic between bore, addendum circle and what stands ``between``.
+    """T(r) of a gear body, logarithmic between bore, addendum circle and the places ``between``.
 
     ``bore_radius`` r_x, ``tip_radius`` r_a [m]; ``bore_temperature`` T_x and
     ``addendum_temperature`` T_a [K], numbers or arrays that broadcast against the radii (shape
@@ -122,7 +122,7 @@ class RadialField:
     def gradient(self) -> Floats:
         """g = (T_a - T_x)/ln(r_a/r_x) [K]; exactly 0 for a uniform field.
 
-        Over the whole body: the gradient everywhere only where nothing stands between.
+        Over the whole body: the gradient everywhere only where nothing is between.
         """
         drop = np.asarray(self.addendum_temperature) - np.asarray(self.bore_temperature)
         return np.asarray(drop / np.log(self.tip_radius / self.bore_radius))

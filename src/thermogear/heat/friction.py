@@ -478,7 +478,7 @@ class LawsTogether:
 
 
 def laws_together(state: ContactState, laws: Sequence[FrictionLaw]) -> LawsTogether:
-    """Every one of ``laws`` in ``state``; one that refuses it says why and stands as nan."""
+    """Every one of ``laws`` in ``state``; one that refuses it says why and is nan."""
     mu = np.full((len(laws), *state.shape), np.nan)
     outside = np.zeros(mu.shape, dtype=bool)
     missing = []

@@ -2,7 +2,7 @@
 
 Nodes: ambient, housing, oil, and of pinion and wheel tooth, body and shaft. The tooth node is
 the T_a, the shaft node the T_x of the radial temperature field. What the drawing of a pair
-does not say - areas, wetting, shaft lengths - stands in :class:`Surroundings`, all of it ours
+does not say - areas, wetting, shaft lengths - is in :class:`Surroundings`, all of it ours
 and meant to be replaced by a user who knows better.
 """
 

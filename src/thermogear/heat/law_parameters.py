@@ -1,6 +1,6 @@
 """The parameters of a law object: their ranges, a law with others, a law in words.
 
-A parameter is a field of the law's dataclass; a range stands in its annotation. A field that
+A parameter is a field of the law's dataclass; a range is in its annotation. A field that
 holds a law has the parameters of that law.
 """
 

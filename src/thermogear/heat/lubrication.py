@@ -2,7 +2,7 @@
 
 The functions take a :class:`~thermogear.base.materials.Lubricant` and temperatures [K] of any
 shape. The Walther line is empirical: its constants are in mm^2/s and K, and the factor 1e-6 to
-SI stands in the formula.
+SI is in the formula.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Body temperature estimates and scuffing margins of ISO/TR 13989 and 15144-1.
 
 Arguments in SI, temperatures in kelvin; the standards' units (N/mm, mm, kW, C) appear as
-factors. Margins are given in kelvin beside the ratios: 50 K is the customary advice.
+factors. Margins are given in kelvin as well as ratios: 50 K is the customary advice.
 """
 
 from __future__ import annotations

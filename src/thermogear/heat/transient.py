@@ -137,7 +137,7 @@ def follow(
     to rounding if every flow is counted.
 
     ``stretches`` one after the other from time 0; ``start`` [K] of every free node; ``times`` [s]
-    to be stored beside some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
+    to be stored with some ``moments`` of each stretch; ``tolerance`` [K] of one step's error, a
     tenth of it relative (the course may err by ten times as much); a stretch without end runs
     until its slowest mode has no more than ``settled_within`` [K] to go; ``events`` [K or m, any]
     of the state that are located where they fall through 0. Raises InputError for stretches that

@@ -70,7 +70,7 @@ class Turning:
     """The angle of each sample, by which a record is resampled before lines are read.
 
     ``cycles`` at the samples from ``dropped`` on; ``per_cycle`` samples per cycle wanted. In the
-    resampled record a line stands still whatever the speed does; its mean frequency is its order
+    resampled record a line stays at its order at any speed; its mean frequency is its order
     times ``mean`` [cycles/sample].
     """
 
@@ -84,7 +84,7 @@ class Turning:
         return float((self.cycles[-1] - self.cycles[0]) / (self.cycles.size - 1))
 
     def resampled(self, values: Floats, offset: int) -> Floats:
-        """``values``, whose first stands at sample ``offset`` of the record, in equal angles."""
+        """``values``, whose first is at sample ``offset`` of the record, in equal angles."""
         first = max(self.dropped, offset)
         last = min(self.dropped + self.cycles.size, offset + values.shape[-1])
         angle = self.cycles[first - self.dropped : last - self.dropped]

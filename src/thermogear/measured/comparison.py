@@ -102,7 +102,7 @@ def verdict(errors: Sequence[float], names: Sequence[str], u_val: float) -> str:
 
 
 def table_of(found: Measurement, speed: float | None = None) -> LineTable:
-    """The mesh line of a measurement (the channel where it stands out most) as a table."""
+    """The mesh line of a measurement (its clearest channel) as a table."""
     lines = [line for line in found.lines if line.name == "mesh x 1"]
     lines = [line for line in lines if np.isfinite(line.displacement)]
     if not lines:

@@ -56,7 +56,7 @@ class Gearing:
 def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Gearing:
     """Mesh line, shafts, tooth numbers and further meshes of one record.
 
-    1. Mesh line: the peak whose harmonics 1..5 stand out most, in the mean of the logarithms of
+    1. Mesh line: the peak with the clearest harmonics 1..5, in the mean of the logarithms of
        amplitude over floor, over all channels (``near`` [cycles/sample] restricts it to +-3 %).
     2. The phase of that line is the angle: the record is resampled in mesh cycles, which makes
        every line of the gear train sharp, whatever the speed does.
@@ -66,7 +66,7 @@ def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Geari
     4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
-    ``channels``: one array each, equal lengths. Raises InputError when no mesh line stands out.
+    ``channels``: one array each, equal lengths. Raises InputError when no mesh line is found.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -114,7 +114,7 @@ class _Family:
 
 
 def _of_family(table: Floats, family: _Family) -> tuple[float, Gearing]:
-    """The gearing if this family is the mesh's, and how much stands for it.
+    """The gearing if this family is the mesh's, and its score.
 
     A shaft's own harmonics make a family too, often the stronger one; but no sidebands at whole
     parts of it stand around them. So the sidebands' score counts like the family's.

@@ -1,4 +1,4 @@
-"""How the numbers of a text file stand: separator, decimal sign, names, units, stated facts."""
+"""How the numbers of a text file are written: separator, decimal sign, names, units, facts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _META = re.compile(r"^[\s#%;/!\"']*([^:=,;\t]{2,40}?)\s*[:=,;\t]\s*\"?([^\s\"]+)
 
 @dataclass
 class Layout:
-    """How the numbers of a text file stand: found from its first lines.
+    """How the numbers of a text file are written: found from its first lines.
 
     ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
     fields make one number. ``skip``: lines before the first row.
@@ -115,7 +115,7 @@ def _separator(body: list[str], options: ReadOptions, path: Path) -> tuple[str |
 def _header(
     above: list[str], separator: str | None, width: int
 ) -> tuple[list[str], list[str | None]]:
-    """Names and units from the lines above the table (as many as stand there)."""
+    """Names and units from the lines above the table (as many as there are)."""
     if not above:
         return [], []
     parted = separator

@@ -86,7 +86,7 @@ def read_record(
     integer samples) say it. ``channels`` keeps those alone; ``tacho`` names the tacho channel;
     ``decimal`` is "." or "," where the text leaves it open; ``limit`` bytes is the most that a
     packed file may become (None: :func:`~thermogear.measured.options.decoded_limit` of its
-    size). What looks wrong stands in ``notices``.
+    size). What looks wrong is in ``notices``.
 
     Raises InputError (one line) for a file that cannot be read.
     """

@@ -31,7 +31,7 @@ class _Packed24:
 
 
 def read_wave(path: Path, options: ReadOptions) -> Record:
-    """A record from a WAV file. The rate stands in it, the unit never does.
+    """A record from a WAV file. It has the rate, never the unit.
 
     Integer samples become fractions of full scale (so ``scale`` must say what full scale is);
     float samples keep their values.

@@ -39,7 +39,7 @@ SAME = 0.01
 """Two steady states that differ by less [K] at every node are one."""
 
 STAND_IN, OVER = 313.15, 20.0
-"""A point without a state stands in ``operating`` at 40 C, or 20 K over a hotter reference [K]."""
+"""A point without a state is in ``operating`` at 40 C, or 20 K over a hotter reference [K]."""
 
 NODES = (
     "pinion_tooth",
@@ -95,7 +95,7 @@ class HeatBalance:
     none was asked for); ``several`` says where it is another state, by more than 0.01 K.
 
     ``lost``: place of a point -> in one line why it has no value, such as an oil too thick for
-    the law of convection. Its numbers are nan; in ``operating`` and ``network`` it stands at
+    the law of convection. Its numbers are nan; in ``operating`` and ``network`` it is at
     40 C (20 K over a hotter reference), because those hold numbers only.
     """
 
@@ -336,7 +336,7 @@ class _Loop:
 
 
 def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Temperatures:
-    """The body temperatures [K] that the ``nodes`` of the network stand for."""
+    """The body temperatures [K] that the ``nodes`` of the network give."""
     return Temperatures(
         reference=reference,
         pinion_addendum=nodes["pinion_tooth"],

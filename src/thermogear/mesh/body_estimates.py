@@ -1,4 +1,4 @@
-"""Body temperatures as the ISO reports estimate them, beside those of the heat balance."""
+"""Body temperatures as the ISO reports estimate them, to compare with the heat balance."""
 
 from __future__ import annotations
 

@@ -64,10 +64,10 @@ def mesh_cycle(
     friction, flash and contact temperature, thermal growth of both flanks, and the springs of
     the pair. Over the mesh phase (0 where a pair enters at A): mesh stiffness, half backlash,
     kinematic error. Per operating point: normal force, mean and extreme stiffness, half backlash,
-    jam temperature (the pinion's addendum, once when both gears warm alike beside a housing as it
-    is, once when shafts and housing rise in proportion to them; nan where that never jams), and
+    jam temperature (of the pinion's addendum: once when both gears warm alike and the housing
+    stays, once when shafts and housing rise in proportion; nan where that never jams), and
     ``status``: ``ok``; ``jammed`` where the least half backlash over the phase is <= 0 (the values
-    stay, for they say how far it is jammed); ``not_converged`` where the loaded contact did not
+    stay: they say how far it is jammed); ``not_converged`` where the loaded contact did not
     settle. ``friction_coefficient_least`` and ``_greatest`` span the laws of oiled contacts that
     are within their range there, ``friction_outside_range`` is 1 where the chosen one is not, and
     ``film_outside_range`` where the film forms beyond the range of the oil's viscosity line.

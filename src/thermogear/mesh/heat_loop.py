@@ -68,7 +68,7 @@ class Course:
 def asked(respond: Respond, nodes: Floats, index: Indices, lost: dict[int, str]) -> Response:
     """``respond``, with the points at which it raises named in ``lost`` and left as they are.
 
-    A batch that is refused is halved until the points that are to blame stand alone.
+    A batch that is refused is halved until the points that fail are alone.
     """
     try:
         return respond(nodes, index)

@@ -45,7 +45,7 @@ def pair_springs(
     carries its exact share with its exact slope, and their sum is the mesh's tangent
     stiffness. A pair that the mean load leaves free takes touch and slope from the first
     greater load that reaches it. Heat and ``deviations`` are in S_j with their mean, so that
-    the backlash beside them is the cold one. The force begins where the tightest pair touches
+    the backlash used with them is the cold one. The force begins where the tightest pair touches
     (:func:`~thermogear.gears.touch.first_touch`), halfway to the mean load's deflection the
     springs take over: free play and jam are those of
     :func:`~thermogear.mesh.clearance.Clearance`.

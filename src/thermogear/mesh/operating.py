@@ -198,7 +198,7 @@ class Operating:
         return np.asarray(mean if self.flank_temperature is None else self.flank_temperature, float)
 
     def as_drawn(self) -> Operating:
-        """The same points with bodies as drawn, oil and film as they are: heat moves nothing."""
+        """The same points with the drawing's sizes, oil and film as they are: heat moves nothing."""
         cold = self.temperatures.cold()
         return replace(self, temperatures=cold, flank_temperature=self.flanks)
 
@@ -208,7 +208,7 @@ class Operating:
         A number, or one for each point. Every excess over the reference scales with the gears': a
         bore's with its own addendum's, housing's and oil's with the mean of both addenda. At the
         reference all is as it is drawn.
-        Raises InputError where the gears stand at the reference: they give no proportion. Warns
+        Raises InputError where the gears are at the reference: they give no proportion. Warns
         (ValidityWarning) where a body or the oil lies outside 0 to 1.5 times the gears' excess:
         drawn out to other temperatures it would run away from them.
         """

@@ -55,7 +55,7 @@ _FASTEST = 50.0  # m/s
 
 @dataclass(frozen=True, kw_only=True)
 class Scuffing:
-    """The oil, how it comes to the mesh, and what it stood in the FZG test.
+    """The oil, how it comes to the mesh, and its stage in the FZG test.
 
     ``oil_temperature`` [K]; ``load_stage`` S_FZG of A/8.3/90, 1..14 or the last one passed;
     ``steel`` out of :data:`~thermogear.heat.scuffing.STRUCTURE_FACTORS`; ``lubrication`` out of

@@ -169,7 +169,7 @@ def warm_up(
     the start; its ambient is the duty's), ``reference`` [K], ``housing`` and ``deviations`` as
     :func:`heat_balance`; ``start`` [K] of all nodes or by node, else the first ambient;
     ``factors`` on conductances [-] by the names of :data:`FACTORS`; ``times`` [s] to be stored
-    beside some ``moments`` of each piece; ``tolerance`` [K] of a step's error.
+    with some ``moments`` of each piece; ``tolerance`` [K] of a step's error.
 
     A jam does not end the course; a node of 700 K does. Raises ConvergenceError where the loaded
     contact does not settle. Warns once where the oil leaves its viscosity line.

@@ -67,7 +67,7 @@ class BandPass:
     def apply(self, x: ArrayLike) -> Floats:
         """The filtered record without delay, ``delay`` samples dropped at each end.
 
-        Sample 0 of the result stands at the time of sample ``delay`` of the record. Only samples
+        Sample 0 of the result is at the time of sample ``delay`` of the record. Only samples
         that every tap saw remain: no padding is invented.
         """
         values = finite_record(x)

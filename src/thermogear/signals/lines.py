@@ -23,7 +23,7 @@ class Line:
     """One line: ``frequency`` (unit of the rate), peak ``amplitude``, ``phase`` at sample 0 [rad].
 
     ``bin_offset``: distance from the nearest bin's centre, -0.5..0.5. ``floor``: median amplitude
-    of the spectrum beside the line (same window); ``amplitude_error``: standard deviation of the
+    of the spectrum near the line (same window); ``amplitude_error``: standard deviation of the
     amplitude that this floor, taken as Gaussian noise, makes; ``frequency_error`` likewise.
 
     >>> t = np.arange(1000) / 1000.0
@@ -42,7 +42,7 @@ class Line:
 
     @property
     def prominence(self) -> float:
-        """Amplitude over the floor beside it."""
+        """Amplitude over the floor near it."""
         return self.amplitude / self.floor if self.floor > 0 else float("inf")
 
 
@@ -52,7 +52,7 @@ def hann_offset(around: Floats) -> float:
     ``around``: left neighbour, highest bin, right neighbour, any unit.
 
     d = 2 (right - left)/(left + 2 peak + right). Exact for one line in a long record: the main
-    lobe of the Hann window is sin(pi d)/(pi d (1 - d^2)). Returns 0 where nothing stands.
+    lobe of the Hann window is sin(pi d)/(pi d (1 - d^2)). Returns 0 where there is no line.
     Source: Agrez 2002, IEEE Trans. Instrum. Meas. 51, 287-292, the three-point estimate.
 
     >>> hann_offset(np.array([0.5, 1.0, 0.5]))

@@ -17,7 +17,7 @@ def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> F
 
     ``pulses`` [any unit], ``rate`` [samples/s], ``level`` [unit of the pulses].
     An edge counts when the signal rises through ``level`` (default: midway between its 2nd and
-    98th percentile) after it has been below the lower quarter of its swing: the hysteresis keeps
+    98th percentile) after it has been below the lower quarter of its range: the hysteresis keeps
     noise at the level from counting twice. Raises InputError when fewer than two edges are found.
 
     >>> pulses = np.arange(400) % 100 >= 50

@@ -1,6 +1,6 @@
 """The attributes that are used: what each measures, its unit and name version by version.
 
-A value is converted by the unit written beside it. The unit is checked against the schema: another
+A value is converted by the unit written with it. The unit is checked against the schema: another
 unit of the same kind counts and is said, one of another kind is refused.
 """
 
@@ -228,7 +228,7 @@ def plain(number: float) -> str:
 
 
 class Reader:
-    """Values of one model's components; units it wonders at stand in ``said``."""
+    """Values of one model's components; doubtful units are in ``said``."""
 
     def __init__(self, model: Model) -> None:
         self.model = model

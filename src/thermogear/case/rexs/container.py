@@ -28,7 +28,7 @@ _FIELD = "REXS file"
 def read_rexs(path: str | Path) -> Model:
     """The gearbox model in a REXS file: XML (``.rexs``), JSON (``.rexsj``) or a zip (``.rexsz``).
 
-    Versions 1.0 to 1.7 and 2.0.0; the kind is told by the content, not by the name. ``.components``
+    Versions 1.0 to 1.7 and 2.0.0; the content decides the kind, not the name. ``.components``
     by their id, ``.relations``, ``.load_cases``: values as they are written, with the unit beside
     them, such as [mm]; nothing is converted. Raises InputError in one line for what is no REXS
     file, any DOCTYPE, and sizes no gearbox has (64 MiB, 2 million nodes), before anything is

@@ -33,7 +33,7 @@ _LOSSES = 0.1
 class Load:
     """One load of a stage: ``speed`` [rad/s] with its sign and ``torque`` [N m] of gear_1 by the
     mesh, as far as they are known; ``duration`` [s] or ``share`` of the time. ``speed_read``: the
-    speed stands in the file; ``signed``: its sense is known."""
+    speed is in the file; ``signed``: its sense is known."""
 
     name: str
     speed: float | None

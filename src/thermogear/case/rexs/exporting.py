@@ -1,6 +1,6 @@
 """A case and what it amounts to, as a REXS model.
 
-Every number stands in the unit of REXS, and exactly, in SI, in ``custom_thermogear_*`` beside it;
+Every number is in the unit of REXS, and exactly, in SI, in ``custom_thermogear_*``;
 the whole case is kept in ``custom_thermogear_case``, so that an import gives the same case.
 """
 
@@ -73,7 +73,7 @@ class _Maker:
 
     # --- pieces ---------------------------------------------------------------------------
     def exact(self, name: str, si: float) -> list[Attribute]:
-        """A number in the unit of REXS, and beside it as it is."""
+        """A number in the unit of REXS, and also as it is."""
         means = MEANINGS[name]
         si = float(si)
         value, unit = from_si(si, means, numbers(self.version))

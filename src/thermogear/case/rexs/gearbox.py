@@ -228,7 +228,7 @@ def tool_of(model: Model, gear: Component, flanks: dict[str, Component]) -> Comp
 def settings_of(
     model: Model, gear: Component, flanks: dict[str, Component]
 ) -> tuple[Component, ...]:
-    """Where the generated profile shift may stand: settings of the steps, flanks, the gear."""
+    """Where the generated profile shift may be: settings of the steps, flanks, the gear."""
     workpieces = {gear.id, *(flank.id for flank in flanks.values())}
     found = [
         settings

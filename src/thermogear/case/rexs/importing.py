@@ -159,7 +159,7 @@ def imported(
 ) -> Imported:
     """The case file of a ``stage``, checked; InputError in one line where none comes of it.
 
-    ``speed`` and ``torque`` of the pinion, "1000 rpm" and "100 N m", stand in for what the model
+    ``speed`` and ``torque`` of the pinion, "1000 rpm" and "100 N m", replace what the model
     does not say.
     """
     reader = Reader(model)

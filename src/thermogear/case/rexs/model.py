@@ -23,7 +23,7 @@ Value = str | int | float | bool | list[object] | None
 
 @dataclass(frozen=True)
 class Attribute:
-    """One value with the unit written beside it; None where none is written."""
+    """One value with the unit written with it; None where none is written."""
 
     id: str
     unit: str | None

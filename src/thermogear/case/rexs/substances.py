@@ -147,7 +147,7 @@ def _oil(reader: Reader, made: Draft, oil: Component) -> None:
 
 
 def _named(name: str) -> str:
-    """The name of an oil of the package that a name stands for; empty where none does."""
+    """The name of an oil of the package that a name means; empty where none does."""
     grade = re.search(r"(?:iso)?[\s_-]*vg[\s_-]*(\d+)", name, re.IGNORECASE)
     for one in (name, f"ISO VG {grade[1]}" if grade else ""):
         try:
