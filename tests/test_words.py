@@ -100,3 +100,46 @@ def test_the_counter_itself() -> None:
     )
     assert [line for line in holding if not held(line)] == []
     assert [line for line in free if held(line)] == []
+
+
+PLAIN = {
+    "swing": "peak-to-peak",
+    "swings": "peak-to-peak",
+    "stands": "is, is given, is shown",
+    "stand in": "replace",
+    "as drawn": "of the drawing's sizes",
+}
+"""Words that docs and docstrings leave out, with those that they use."""
+READ = ("README.md", "docs/*.md", "docs/howto/*.md", "docs/theory/*.md", "docs/tutorials/*.md")
+RECORDS = re.compile(r"^(trial_|mutation|benchmarks|friction_evidence|licences|house)")
+FLOORS = ["base", "case", "gears", "heat", "mesh", "dynamics", "analysis", "signals", "measured"]
+
+
+def prose_of_docs() -> Iterator[tuple[str, str]]:
+    """Path and text of every page that is written by hand."""
+    for pattern in READ:
+        for path in sorted(ROOT.glob(pattern)):
+            if not RECORDS.match(path.name):
+                yield str(path.relative_to(ROOT)), path.read_text("utf-8")
+
+
+def prose_of_docstrings() -> Iterator[tuple[str, str]]:
+    """Path and docstrings of every public module; compiled kernels explain themselves to few."""
+    kinds = ast.Module | ast.ClassDef | ast.FunctionDef
+    for floor in FLOORS:
+        for path in sorted((ROOT / "src" / "thermogear" / floor).rglob("*.py")):
+            if "kernels" in path.parts:
+                continue
+            tree = ast.parse(path.read_text("utf-8"))
+            docs = [ast.get_docstring(n) or "" for n in ast.walk(tree) if isinstance(n, kinds)]
+            yield str(path.relative_to(ROOT)), "\n".join(docs)
+
+
+def test_docs_and_docstrings_use_plain_words() -> None:
+    found = [
+        f"{path}: {word!r}; write {better}"
+        for path, text in [*prose_of_docs(), *prose_of_docstrings()]
+        for word, better in PLAIN.items()
+        if re.search(rf"(?<![`_\w]){word}\b(?!_)", text)
+    ]
+    assert found == []

@@ -591,10 +591,8 @@ def test_output_that_is_not_ours_is_refused(rig: Path, tmp_path: Path, failing: 
     home.mkdir()
     (home / "thesis.docx").write_text("years of work", encoding="utf-8")
     said = failing("run", str(rig), "-o", str(home))
-    assert said == (
-        f"output: got {home}; the directory holds files that are not results of thermogear; "
-        "name a new or an empty directory"
-    )
+    why = "the directory holds files that are not results of thermogear"
+    assert said == f"output: got {home}; {why}; name a new or an empty directory"
     assert [p.name for p in home.iterdir()] == ["thesis.docx"]
 
 

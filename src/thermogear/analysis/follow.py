@@ -57,7 +57,7 @@ class Leap:
     """A motion leaves its branch at ``value``: at a fold, or a subcritical period doubling.
 
     ``kind`` of bifurcation, ``period`` and ``state`` (2,) there; ``landed`` the parameter just
-    behind, where the new motion of ``found_period`` periods (0: no orbit) stands at ``found`` (2,).
+    behind, where the new motion of ``found_period`` periods (0: no orbit) is at ``found`` (2,).
     """
 
     kind: str

@@ -1,7 +1,7 @@
 """What a field of a case file may hold: the readers behind the annotations of the schema.
 
 Each reader is handed what TOML gave, returns an SI number (or a name), and refuses everything else
-with an :class:`InputError` whose field is still empty: where it stood is filled in by
+with an :class:`InputError` whose field is still empty: its place is filled in by
 :mod:`thermogear.case.refusals`.
 """
 

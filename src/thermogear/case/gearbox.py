@@ -47,7 +47,7 @@ class Box(NamedTuple):
 def housing_box(pair: GearPair, shaft_length: float, immersion: float) -> Box:
     """A box around ``pair``, as wide as the face and two shafts of ``shaft_length`` [m] each.
 
-    Length a + r_a1 + r_a2 + 2 c, height 2 max(r_a) + 2 c, with c of 20 mm; the oil stands
+    Length a + r_a1 + r_a2 + 2 c, height 2 max(r_a) + 2 c, with c of 20 mm; the oil level is
     ``immersion`` (over the wheel's tip radius) above the wheel's lowest point, gears not counted.
     """
     first, second = pair.pinion.tip_radius, pair.wheel.tip_radius

@@ -65,8 +65,8 @@ def draw(
 ) -> None:
     """Draw CASE's gears in mesh: true flanks, cold and hot, the contact points and their load.
 
-    Both gears to scale, and the mesh with gaps, growth and deviations enlarged by the factor that
-    stands above it. A DXF file holds the true outlines in mm on the layers cold and hot.
+    Both gears to scale, and the mesh with gaps, growth and deviations enlarged by the factor
+    written above it. A DXF file holds the true outlines in mm on the layers cold and hot.
 
     \b
       thermogear draw rig.toml -o gears.svg

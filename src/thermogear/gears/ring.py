@@ -152,7 +152,7 @@ def body_matrices(
 ) -> tuple[Floats, int]:
     """E b times the compliance between foot loads of teeth 0, 1, 2.. pitches apart.
 
-    Returns (table, centre): table[centre + j] couples the displacement of a tooth that stands
+    Returns (table, centre): table[centre + j] couples the displacement of a tooth
     j pitches ahead (in the direction of its tangential load) with the load of tooth 0.
     ``windup`` False leaves out the rotation of the rim against the clamped bore (order 0 of
     the shear), which a lumped model gives to the body's inertia.

@@ -61,7 +61,7 @@ def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Geari
     2. The phase of that line is the angle: the record is resampled in mesh cycles, which makes
        every line of the gear train sharp, whatever the speed does.
     3. A shaft with z teeth puts sidebands at h +- n/z around the mesh harmonics h. z is the
-       whole number whose sidebands n = 1..3 stand out most; a second shaft is sought among the
+       whole number with the clearest sidebands n = 1..3; a second shaft is sought among the
        z that do not divide it, by n = 1.
     4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
        both, with 17 teeth or more (fewer are undercut as standard gears).
@@ -117,7 +117,7 @@ def _of_family(table: Floats, family: _Family) -> tuple[float, Gearing]:
     """The gearing if this family is the mesh's, and its score.
 
     A shaft's own harmonics make a family too, often the stronger one; but no sidebands at whole
-    parts of it stand around them. So the sidebands' score counts like the family's.
+    parts of it are around them. So the sidebands' score counts like the family's.
     """
     mesh = family.mesh
     text = ", ".join(f"{np.exp(h):.1f}" for h in family.heights)

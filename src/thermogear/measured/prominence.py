@@ -1,4 +1,4 @@
-"""How far every line of a spectrum stands out of the floor around it."""
+"""How far every line of a spectrum is above the floor around it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Prominence:
 
 
 def prominence(channels: Floats, rate: float) -> Prominence:
-    """How far each bin of ``channels`` (channel, sample) stands out; ``rate`` [samples/unit]."""
+    """How far each bin of ``channels`` (channel, sample) is over its floor; ``rate`` [samples/unit]."""
     spectrum = amplitude_spectrum(channels - channels.mean(axis=-1, keepdims=True), rate, "hann")
     amplitudes = np.maximum(spectrum.amplitudes, 1e-300)
     logs = np.log(amplitudes)

@@ -246,7 +246,7 @@ def _expected(record: Record, teeth: int | None, speed: float | None) -> float |
 
 
 def _gearing(table: Floats, notices: list[Notice], expected: float | None) -> Gearing | None:
-    """What the lines say by themselves; the expected place only where it stands out as well."""
+    """What the lines say by themselves; the expected place only where it is clear as well."""
     try:
         free: Gearing | None = find_gearing(list(table))
     except InputError as error:

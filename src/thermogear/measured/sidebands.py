@@ -1,6 +1,6 @@
 """Shafts and tooth numbers from the sidebands of a mesh line, and a further mesh.
 
-Everything here is in orders of the mesh line. The one physical law used: a mesh line stands at a
+Everything here is in orders of the mesh line. The one physical law used: a mesh line is at a
 whole number of every shaft it belongs to.
 """
 
@@ -28,7 +28,7 @@ class Shaft:
     """A shaft seen by its sidebands: ``teeth`` = mesh line over shaft line, whole by law.
 
     ``ratio`` +- ``ratio_error`` is the measured one, ``order`` that of the first shaft,
-    ``score`` the mean log prominence of its sidebands, ``lines`` how many of them stand out.
+    ``score`` the mean log prominence of its sidebands, ``lines`` how many of them are clear.
     """
 
     teeth: int
@@ -63,7 +63,7 @@ WEAK = 0.2
 
 
 def shafts_of(sharp: Prominence, top: int, evidence: list[str]) -> tuple[Shaft, ...]:
-    """The two gears whose sidebands stand out most, the faster shaft (fewer teeth) first."""
+    """The two gears with the clearest sidebands, the faster shaft (fewer teeth) first."""
     harmonics = np.arange(1, top + 1)
     highest = min(_TEETH[1], int(sharp.per_unit / 6))
     teeth = np.arange(_TEETH[0], highest + 1)
@@ -111,7 +111,7 @@ def shafts_of(sharp: Prominence, top: int, evidence: list[str]) -> tuple[Shaft, 
 def _outer(
     sharp: Prominence, harmonics: NDArray[np.int64], teeth: int, score: float, highest: int
 ) -> int:
-    """The multiple of ``teeth`` whose sidebands between stand nearly as high, else ``teeth``.
+    """The multiple of ``teeth`` whose sidebands between are nearly as high, else ``teeth``.
 
     Where the even sidebands of a shaft happen to be the strongest, half its tooth number would
     win: the odd ones between them tell.
@@ -131,7 +131,7 @@ def _outer(
 
 def _inner(sharp: Prominence, harmonics: NDArray[np.int64], teeth: int) -> Shaft | None:
     """A faster shaft whose tooth number divides ``teeth``: with a whole ratio k its sidebands are
-    every k-th of the slow shaft's, and stand far over those between."""
+    every k-th of the slow shaft's, and far higher than those between."""
     best: tuple[float, int] = (1.0, 0)  # at least a factor e over those between
     for k in range(2, teeth // _TEETH[0] + 1):
         if teeth % k:

@@ -5,7 +5,7 @@ drives and turns from the first axis to the second. One outline is one pitch of 
 of its tooth (:mod:`thermogear.gears.outline`); the drive side is that of positive angles, on the
 wheel seen from its own centre.
 
-The tooth ``k`` of a gear stands at phase phi and with everything small ``factor`` times as large at
+The tooth ``k`` of a gear is, at phase phi and with everything small ``factor`` times as large at
 
     pinion  start + factor set_back/r_b + 2 pi (phi + k)/z,
     wheel   start + factor (set_back + lag)/r_b - 2 pi (phi + k)/z,

@@ -198,7 +198,7 @@ class Operating:
         return np.asarray(mean if self.flank_temperature is None else self.flank_temperature, float)
 
     def as_drawn(self) -> Operating:
-        """The same points with the drawing's sizes, oil and film as they are: no thermal growth."""
+        """The same points with the drawing's sizes, oil and film unchanged: heat moves nothing."""
         cold = self.temperatures.cold()
         return replace(self, temperatures=cold, flank_temperature=self.flanks)
 

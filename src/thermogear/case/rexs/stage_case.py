@@ -59,7 +59,7 @@ def draft(
     reader: Reader, stage: Stage, speed: str | None = None, torque: str | None = None
 ) -> Draft:
     """The lines of a case out of a stage; ``speed`` and ``torque`` of the pinion as a case file
-    holds them stand in for what the model lacks, or replace it."""
+    holds them are used for what the model lacks, or replace it."""
     teeth = require_spur(reader, stage)
     drive = Drive(reader)
     loads = drive.loads_of(stage)
