@@ -44,7 +44,7 @@ class Prominence:
 
 
 def prominence(channels: Floats, rate: float) -> Prominence:
-    """How far a bin of ``channels`` (channel, sample) is over its floor; ``rate`` [samples/unit]."""
+    """How far a bin of ``channels`` (channel, sample) is over its floor; ``rate`` [1/unit]."""
     spectrum = amplitude_spectrum(channels - channels.mean(axis=-1, keepdims=True), rate, "hann")
     amplitudes = np.maximum(spectrum.amplitudes, 1e-300)
     logs = np.log(amplitudes)
