@@ -140,6 +140,7 @@ def survey_page(tree: Result) -> str:
 def test_pages_of_surveys_are_this_pairs(make) -> None:  # type: ignore[no-untyped-def]
     text = survey_page(make(own()))
     assert FOREIGN.findall(text) == []
+    assert "second picture" not in text
 
 
 def test_captions_of_the_relief_are_its_curves() -> None:
