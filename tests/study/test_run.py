@@ -48,6 +48,7 @@ def test_the_whole_chain_is_there_in_both_bundles_cold_and_hot(small: Result) ->
         "mesh",
         "profile",
         "drawing",
+        "dial",
         "motion",
         "temperature",
         "base_sets",
