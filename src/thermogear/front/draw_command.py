@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError
 from thermogear.front import delivery
 
 PICTURES = ("svg", "png", "pdf")
@@ -79,7 +79,7 @@ def draw(
             "output",
             repr(output),
             allowed=" | ".join(f".{one}" for one in ENDINGS),
-            fix=nearest(kind, ENDINGS) if kind else "end its name with .svg",
+            fix="end its name with .svg",
         )
     if path.is_dir() or not path.parent.is_dir():
         why = "it is a directory" if path.is_dir() else f"there is no directory {path.parent}"
