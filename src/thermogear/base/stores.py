@@ -79,24 +79,45 @@ class Vouched:
     """What a journal vouches for.
 
     ``chunks``: hashes of the numbers of each finished chunk, by variable. Of a finished whole:
-    ``numbers`` of every other array, ``metadata`` of every zarr.json by its path, ``manifest``.
+    ``numbers`` of every other array, ``metadata`` of every zarr.json by its path, ``manifest``;
+    ``created``: when it was finished, ``title`` of its case.
     """
 
     chunks: Mapping[tuple[int, ...], Mapping[str, str]] = field(default_factory=dict)
     numbers: Mapping[str, str] = field(default_factory=dict)
     metadata: Mapping[str, str] = field(default_factory=dict)
     manifest: str = ""
+    created: str = ""
+    title: str = ""
 
 
 def read_vouched(directory: Path) -> Vouched:
     """What the journal of ``directory`` vouches for; its last word on each."""
     chunks: dict[tuple[int, ...], dict[str, str]] = {}
     whole: dict[str, Any] = {}
+    told: dict[str, str] = {}
     for entry in read_journal(directory):
         if "chunk" in entry:
             chunks[tuple(entry["chunk"])] = entry["sha256"]
         whole = entry.get("whole", whole)
-    return Vouched(chunks, **whole)
+        told |= {name: entry[name] for name in ("created", "title") if name in entry}
+    return Vouched(chunks, **whole, **told)
+
+
+def about_store(directory: Path) -> dict[str, Any]:
+    """Whose a finished store is: case, changes, bundle, heat, what was fixed, version and date."""
+    vouched = read_vouched(directory)
+    manifest = read_manifests(directory).get(vouched.manifest, {})
+    inputs = manifest.get("inputs", {})
+    found = {name: inputs[name] for name in ("torque",) if name in inputs}
+    model = inputs.get("model", {})
+    own = ("case", "overrides", "bundle", "state") if "case" in model else ()
+    found |= {name: model[name] for name in own}
+    found |= {} if own else {"model": model}
+    if "temperatures" in inputs:
+        found.pop("state", None)  # several, told with the figures
+    code = str(manifest.get("code", "")).partition("+")[0]
+    return found | {"thermogear": code, "created": vouched.created, "title": vouched.title}
 
 
 class _Damage(Exception):

@@ -358,12 +358,16 @@ def _compute(plan: Plan, directory: Path, title: str, options: dict[str, Any]) -
 
             data = carry_out(
                 plan, directory, threads=options["threads"], scheduler=options["scheduler"],
-                report=report, forced=options["force"],
+                report=report, forced=options["force"], title=title,
             )  # fmt: skip
+        from thermogear.base.stores import about_store
         from thermogear.study.notices import finished
         from thermogear.views.write import page_of, write
 
-        result = finished(data, title).with_(seconds=round(time.monotonic() - begun, 3))
+        about = about_store(directory)
+        about.pop("title", None)
+        took = round(time.monotonic() - begun, 3)
+        result = finished(data, title).with_(**about, seconds=took)
         write(page_of(result), directory)
         delivery.put_csv(result)
     except KeyboardInterrupt:

@@ -18,7 +18,7 @@ import thermogear
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.stores import RESULT as STORE
-from thermogear.base.stores import read_store
+from thermogear.base.stores import about_store, read_store
 from thermogear.results.answer import Answer
 from thermogear.results.files import RESULTS, claimed, finite
 from thermogear.results.tables import frames, points, told
@@ -74,7 +74,7 @@ class Result:
 
         A notice that is a bare text is an "info".
         """
-        about = {"thermogear": thermogear.__version__, **provenance}
+        about = {"thermogear": thermogear.__version__, "created": now(), **provenance}
         told = tuple(_notice(one) for one in notices)
         return cls(kind, title, groups, told, {k: _plain(v) for k, v in about.items()})
 
@@ -297,7 +297,8 @@ def open_results(directory: str | Path, kind: str = "") -> Result:
     if path.is_file():
         return Result.read(path)
     if (path / STORE).exists():
-        return stored_dataset(read_store(path))
+        about = about_store(path)
+        return stored_dataset(read_store(path), about.pop("title", "")).with_(**about)
     there = sorted(file.name for file in path.glob("*.nc"))
     wanted = [FILES.get(kind, f"{kind}.nc")] if kind else there
     if len(wanted) > 1:

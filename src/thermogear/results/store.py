@@ -41,6 +41,7 @@ from thermogear.base.stores import (
     read_vouched,
 )
 from thermogear.results.fingerprint import code_version, environment
+from thermogear.results.result import now
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -335,7 +336,7 @@ class Store:
 
     # --- the finished whole ----------------------------------------------------------------
 
-    def complete(self) -> xr.Dataset:
+    def complete(self, title: str = "") -> xr.Dataset:
         """Add to the chunks, once all are there, what follows from them, and store that too."""
         variables = self.plan.variables()
         missing = [key for key in keys_of(self.plan) if key not in self._hashes]
@@ -380,7 +381,7 @@ class Store:
         }
         before = read_vouched(self.directory)
         if whole != {name: getattr(before, name) for name in whole}:
-            self._note({"whole": whole})
+            self._note({"whole": whole, "created": now(), "title": title})
         return data
 
 

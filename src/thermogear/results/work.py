@@ -134,13 +134,14 @@ def carry_out(
     report: Report | None = None,
     forced: bool = False,
     alive: Alive = keep_going,
+    title: str = "",
 ) -> xr.Dataset:
     """Compute ``plan`` and return it as one labelled Dataset.
 
     With a ``store`` directory every chunk is written as it is ready, and the same call goes on
     where an earlier one ended; without one it stays in memory. ``threads`` on this machine
     (default: all cores), or a dask ``scheduler`` address, whose workers compute while this
-    process writes. The result is the same to the last bit whoever computes. Ctrl+C, and
+    process writes. ``title``: the case's, kept beside the store. The result is the same to the last bit whoever computes. Ctrl+C, and
     ``alive`` when it raises, keep what is stored.
     """
     directory = None if store is None else Path(store)
@@ -169,7 +170,7 @@ def carry_out(
                 clock.step(done)
         finally:
             source.close()
-        return kept.complete()
+        return kept.complete(title)
 
 
 class _Clock:

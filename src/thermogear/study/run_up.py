@@ -496,5 +496,13 @@ def run_up(
         rule=rule,
         branch_period=branch_period,
     )
-    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report, alive=alive)
+    data = carry_out(
+        plan,
+        store,
+        threads=threads,
+        scheduler=scheduler,
+        report=report,
+        alive=alive,
+        title=case.title,
+    )
     return finished(data, case.title)

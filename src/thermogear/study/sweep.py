@@ -192,5 +192,13 @@ def sweep(
     same call resumes; ``scheduler`` is a dask address. Jammed and diverged points are a status.
     """
     plan = sweep_plan(case, axes, bundle=bundle, state=state, rule=rule)
-    data = carry_out(plan, store, threads=threads, scheduler=scheduler, report=report, alive=alive)
+    data = carry_out(
+        plan,
+        store,
+        threads=threads,
+        scheduler=scheduler,
+        report=report,
+        alive=alive,
+        title=case.title,
+    )
     return finished(data, case.title)

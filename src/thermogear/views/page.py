@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from thermogear.results.files import finite
 from thermogear.results.result import Notice, Result
+from thermogear.views.heading import who
 from thermogear.views.moving import Dial, attribute, compact, moving, policy, script, sheet
 from thermogear.views.picture import Picture
 from thermogear.views.svg import draw, shared_styles
@@ -104,20 +105,32 @@ Block = Text | Table | Gallery | Code
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page with its place in the navigation."""
+    """A part of the page with its place in the navigation; ``folded`` until a reader opens it."""
 
     name: str
     title: str
     blocks: Sequence[Block]
+    folded: bool = True
+
+    @property
+    def inside(self) -> str:
+        """What a reader finds in it: how many pictures and tables."""
+        galleries_ = [one for one in self.blocks if isinstance(one, Gallery)]
+        counts = {
+            "picture": sum(len(one.pictures) for one in galleries_),
+            "table": sum(isinstance(one, Table) for one in self.blocks),
+        }
+        return ", ".join(f"{n} {word}{'s' * (n > 1)}" for word, n in counts.items() if n)
 
 
 @dataclass(frozen=True)
 class Tile:
-    """One figure at the top of the page."""
+    """One answer at the top of the page; ``marked`` where it wants a look."""
 
     title: str
     value: str
     beside: Cell
+    marked: bool = False
 
 
 @dataclass
@@ -168,6 +181,8 @@ def galleries(pictures: Iterable[Shown]) -> list[Block]:
     return blocks + [Gallery(row)] * bool(row)
 
 
+LEAD = "pictures"
+"""The section of the pictures that carry the answer."""
 SHOWN = ("first", "all", "none")
 """How many pictures a page shows."""
 
@@ -202,17 +217,36 @@ class Page:
 
         The pictures kept stand together behind the first section, with ``every``: how to get all.
         """
-        there = {one.name: one for one in self.pictures}
+        there = [one.name for one in self.pictures]
         if which == "all" or not self.first or not there:
             return self
-        kept: list[Shown] = []
-        if which == "first":
-            found = (next((n for n in names if n in there), "") for names in self.first)
-            kept = [there[name] for name in found if name] or [*there.values()][: len(self.first)]
+        kept = self.leading if which == "first" else []
         told = Text(f"{len(kept)} of {len(there)} pictures. {every}", "note")
-        shown = Section("pictures", "In pictures", [*galleries(kept), told])
+        shown = Section(LEAD, "In pictures", [*galleries(kept), told], folded=False)
         rest = [one for one in map(_without_pictures, self.sections) if one.blocks]
         return replace(self, sections=[*rest[:1], shown, *rest[1:]])
+
+    @property
+    def leading(self) -> list[Shown]:
+        """The pictures that carry the answer."""
+        there = {one.name: one for one in self.pictures}
+        found = (next((n for n in names if n in there), "") for names in self.first)
+        return [there[name] for name in found if name] or [*there.values()][: len(self.first)]
+
+    @property
+    def parts(self) -> list[Section]:
+        """The sections as a reader meets them: the open ones, pictures first, then the folded."""
+        sections = [one for one in self.sections if one.blocks]
+        leading = self.leading if all(one.name != LEAD for one in sections) else []
+        if leading:
+            names = {one.name for one in leading}
+            sections = [
+                Section(LEAD, "In pictures", galleries(leading), folded=False),
+                *(one for one in (_less(part, names) for part in sections) if one.blocks),
+            ]
+        if sections and all(one.folded for one in sections):
+            sections[0] = replace(sections[0], folded=False)
+        return sorted(sections, key=lambda one: one.folded)
 
     @property
     def figures(self) -> dict[str, Any]:
@@ -226,6 +260,17 @@ class Page:
             for block in section.blocks:
                 if isinstance(block, Gallery):
                     yield from block.pictures
+
+
+def _less(section: Section, names: Collection[str]) -> Section:
+    """It without the pictures of these names."""
+    blocks: list[Block] = []
+    for block in section.blocks:
+        if isinstance(block, Gallery):
+            blocks += galleries(one for one in block.pictures if one.name not in names)
+        else:
+            blocks.append(block)
+    return replace(section, blocks=blocks)
 
 
 def _without_pictures(section: Section) -> Section:
@@ -277,8 +322,10 @@ def render(page: Page) -> str:
     )
     style, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
     title = " ".join(page.result.title.split()) or "thermogear"
+    parts = page.parts
     text = environment.get_template("report.html").render(
         title=title,
+        who=who(page.result),
         style=Markup(style) + sheet(),
         script=script() if any(page.pictures) else "",
         policy=policy(),
@@ -286,7 +333,8 @@ def render(page: Page) -> str:
         tiles=page.tiles,
         notices=told(page.result.notices),
         open=OPEN,
-        sections=[section for section in page.sections if section.blocks],
+        sections=parts,
+        folded=any(one.folded for one in parts),
         version=page.result.text("thermogear"),
     )
     return shared_styles(text)

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Any
 from thermogear.base.display import number
 from thermogear.results.result import Result
 from thermogear.views.csv_files import quoted
-from thermogear.views.page import Block, Gallery, Page, Section, Shown, Table, Text, notice_lines
+from thermogear.views.page import (
+    LEAD,
+    Block,
+    Gallery,
+    Page,
+    Section,
+    Shown,
+    Table,
+    Text,
+    notice_lines,
+)
 from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
@@ -37,7 +47,7 @@ def page(result: Result) -> Page:
         _headline(kind, summary),
         [
             Section("numbers", "Numbers", [*_TABLES[kind](summary)]),
-            Section("picture", "Picture", [Gallery([shown])]),
+            Section(LEAD, "In pictures", [Gallery([shown])], folded=False),
         ],
         numbers=lambda: summary,
         lines=lambda: [*LINES[kind](summary), *notice_lines(result)],

@@ -73,7 +73,7 @@ def _record(results: Result) -> Section | None:
     caption = "The first samples, unfiltered."
     needs = ["record_reading"]
     pictures.add("record", "Start of the record", caption, data, needs, make, wide=True)
-    return Section("record", "Time record", pictures.take())
+    return Section("record", "Time record", pictures.take(), folded=False)
 
 
 def _spectrum(results: Result) -> Section | None:
@@ -102,7 +102,7 @@ def _spectrum(results: Result) -> Section | None:
     caption = "Hann window over the whole record; of each run of bins the highest is drawn."
     needs = ["spectrum_reading"]
     pictures.add("spectrum", "Spectrum with the lines found", caption, data, needs, make, wide=True)
-    return Section("spectrum", "Spectrum", pictures.take())
+    return Section("spectrum", "Spectrum", pictures.take(), folded=False)
 
 
 _COLOURS = (COLD, HOT, "#009E73", "#CC79A7")
@@ -208,7 +208,7 @@ def _comparison(results: Result) -> Section | None:
             "off mesh [bins]",
         ]
         blocks.append(Table("What the measured lines imply.", names, lines, names=0))
-    return Section("comparison", "Comparison", blocks)
+    return Section("comparison", "Comparison", blocks, folded=False)
 
 
 def _maybe(value: float, digits: int) -> str:

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Any
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.results.tables import csv_text, frames
-from thermogear.views.page import Block, Code, Gallery, Page, Section, Shown, Table, notice_lines
+from thermogear.views.page import (
+    LEAD,
+    Block,
+    Code,
+    Gallery,
+    Page,
+    Section,
+    Shown,
+    Table,
+    notice_lines,
+)
 from thermogear.views.pages.background import case_file
 
 if TYPE_CHECKING:
@@ -32,9 +42,9 @@ def survey(
     small = [one for one in pictures if not one.wide]
     drawn: list[Block] = [Gallery([one]) for one in pictures if one.wide]
     drawn += [Gallery(small)] * bool(small)
-    sections = [Section("pictures", "Pictures", drawn)]
+    sections = [Section(LEAD, "In pictures", drawn, folded=False)]
     if code:
-        sections.append(Section("paste", "For the case file", [Code(code)]))
+        sections.append(Section("paste", "For the case file", [Code(code)], folded=False))
     sections.append(Section("numbers", "Numbers", list(tables)))
     sections.append(case_file(result))
     return Page(

@@ -12,7 +12,7 @@ from thermogear.base.display import number
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Page, Pictures, Section, Table, Text
+from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
@@ -117,7 +117,7 @@ def _pictures(data: xr.Dataset) -> Section:
 
         said = caption if isinstance(caption, str) else caption(data)
         pictures.add(name, heading, said, data, (), drawn, wide=True)
-    return Section("pictures", "Pictures", pictures.take())
+    return Section(LEAD, "In pictures", pictures.take(), folded=False)
 
 
 def _diagram_caption(data: xr.Dataset) -> str:

@@ -130,7 +130,7 @@ def _counted(results: Result, claims: xr.Dataset) -> Section:
         "whatever is assumed."
     )
     table = Table("Verdicts by section of the document.", ["section", *verdicts, "claims"], rows)
-    return Section("verdicts", "Verdicts", [intro, table])
+    return Section("verdicts", "Verdicts", [intro, table], folded=False)
 
 
 def _claims_table(claims: xr.Dataset, place: int, shown: Collection[str]) -> Table:

@@ -120,7 +120,7 @@ def _differences(data: xr.Dataset) -> Section:
         )  # fmt: skip
     elif data.attrs["of"] == "gear":
         blocks.append(Text("Bundles of one name make the same choices in all cases."))
-    return Section("differences", "What differs", blocks)
+    return Section("differences", "What differs", blocks, folded=False)
 
 
 def _figures(data: xr.Dataset) -> Section:
@@ -134,7 +134,7 @@ def _figures(data: xr.Dataset) -> Section:
                 kept = [name for name in names if name in here and _any(here, name)]
                 if kept:
                     blocks.append(_table(here, kept, words))
-    return Section("figures", "Key figures", blocks)
+    return Section("figures", "Key figures", blocks, folded=False)
 
 
 def _table(here: xr.Dataset, names: Sequence[str], words: str) -> Table:

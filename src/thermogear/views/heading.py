@@ -1,0 +1,110 @@
+"""The line below a page's title: which study, at which point, what was fixed, when, what with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermogear.base.display import celsius, number, span
+from thermogear.base.parameters import PARAMETERS
+from thermogear.base.units import RPM
+from thermogear.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STUDIES = {
+    "gear": "Run", "dimensionless": "Run", "answers": "Answers", "diagram": "Orbit diagram",
+    "map": "Map of regimes", "basins": "Basins of attraction", "sweep": "Sweep",
+    "run-up": "Run-up and run-down", "warmup": "Warm-up", "temperature": "Heat balance",
+    "relief": "Tip relief", "contact": "Loaded contact", "friction": "Friction laws",
+    "orbit": "Orbit", "lyapunov": "Lyapunov exponent", "branch": "Branches of orbits",
+    "cascade": "Period doublings", "shared": "Two forms of the mesh force",
+    "drawing": "Drawing", "versus": "Comparison of cases", "thesis": "The thesis's claims",
+    "measurement": "Measurement", "comparison": "Comparison with a record",
+    "sensitivity": "Sensitivity",
+}  # fmt: skip
+MODEL = {
+    "damping_ratio": "ζ", "frequency": "mesh over natural frequency",
+    "half_backlash": "half backlash", "stiffness_amplitude": "ε", "mean_force": "mean force",
+    "force_amplitude": "force amplitude",
+}  # fmt: skip
+MOST_CHANGES = 6
+
+
+def who(result: Result) -> str:
+    """Study, operating point, fixed parameters, version and date of the run, as one line.
+
+    All of it is stored: a page drawn again says the same.
+    """
+    parts = [
+        STUDIES.get(result.kind, result.kind.replace("-", " ").capitalize()),
+        *dict.fromkeys(_fixed(result)),
+        f"thermogear {result.text('thermogear')}" if result.text("thermogear") else "",
+        _date(result.text("created")),
+    ]
+    return " · ".join(part for part in parts if part)
+
+
+def _date(created: str) -> str:
+    """Day and minute of the run, as stored: universal time."""
+    if not created:
+        return "date not stored"
+    day, _, time = created.partition("T")
+    return f"{day} {time[:5]} UTC" if time else day
+
+
+def _fixed(result: Result) -> Iterator[str]:
+    data = next((g for n in ("mesh", "path", "map", "steady", "speeds", "")
+                 if (g := result.group(n)) is not None), None)  # fmt: skip
+    if data is not None:
+        yield from _points(data)
+    torque = result.text("torque") or result.text("pinion_torque")
+    if torque:
+        yield f"{float(torque):.6g} N m"
+    if data is None or "pinion_speed" not in data.variables:
+        for speed in result.values("own_rpm"):
+            yield f"{float(speed):.6g} rpm"
+    yield from _heat(result)
+    bundles = result.table("bundles")
+    bundle = " and ".join(bundles) if bundles else result.text("bundle")
+    if bundle:
+        yield f"{bundle} bundle"
+    for name, value in result.table("model").items():
+        if name in MODEL and isinstance(value, int | float):
+            yield f"{MODEL[name]} {number(float(value), 4)}"
+    changes = [f"{path} = {value}" for path, value in result.values("overrides")]
+    yield from changes[:MOST_CHANGES]
+    if len(changes) > MOST_CHANGES:
+        yield f"{len(changes) - MOST_CHANGES} more changes (see the case file)"
+
+
+def _points(data: xr.Dataset) -> Iterator[str]:
+    """Speeds, torques and the other axes, each a value or a span."""
+    names = ["pinion_speed", "pinion_torque"]
+    names += [str(n) for n in data.dims if str(n) in PARAMETERS and str(n) not in names]
+    for name in names:
+        if name not in data.variables:
+            continue
+        values = np.unique(np.asarray(data[name].values, dtype=float))
+        values = values[np.isfinite(values)]
+        if not values.size:
+            continue
+        if name == "pinion_speed":
+            yield f"{span(values / RPM, 5)} rpm"
+        elif name == "pinion_torque":
+            yield f"{span(values, 5)} N m"
+        else:
+            one = PARAMETERS[name]
+            yield f"{one.words} {span(np.asarray(one.show(values)), 5)} {one.shown}".strip()
+
+
+def _heat(result: Result) -> Iterator[str]:
+    state: Any = result.text("state")
+    if state:
+        try:
+            yield f"gears at {celsius(float(state))}"
+        except ValueError:
+            yield state if state == "undeformed" else f"gears {state}"
