@@ -101,7 +101,7 @@ def read_vouched(directory: Path) -> Vouched:
             chunks[tuple(entry["chunk"])] = entry["sha256"]
         whole = entry.get("whole", whole)
         told |= {name: entry[name] for name in ("created", "title") if name in entry}
-    return Vouched(chunks, **whole, **told)
+    return Vouched(chunks, **{**whole, **told})
 
 
 def about_store(directory: Path) -> dict[str, Any]:

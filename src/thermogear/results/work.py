@@ -141,8 +141,9 @@ def carry_out(
     With a ``store`` directory every chunk is written as it is ready, and the same call goes on
     where an earlier one ended; without one it stays in memory. ``threads`` on this machine
     (default: all cores), or a dask ``scheduler`` address, whose workers compute while this
-    process writes. ``title``: the case's, kept beside the store. The result is the same to the last bit whoever computes. Ctrl+C, and
-    ``alive`` when it raises, keep what is stored.
+    process writes. ``title``: the case's, kept beside the store.
+    The result is the same to the last bit whoever computes. Ctrl+C, and ``alive`` when it raises,
+    keep what is stored.
     """
     directory = None if store is None else Path(store)
     require_space(plan, directory, threads=threads, forced=forced)

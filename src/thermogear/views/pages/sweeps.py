@@ -13,6 +13,7 @@ from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
+from thermogear.views.pages.findings import finding
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
@@ -71,8 +72,8 @@ def _summary(data: xr.Dataset) -> str:
             f"{sweeps.CLASSES[n][0]} {100.0 * np.mean(code == n):.3g} %" for n in np.unique(code)
         ]
         words = f"{TITLES[kind]}, {code.size} points: " + ", ".join(parts) + "."
-        return f"{words} {FASTER_RULE.capitalize()}."
-    return TITLES[kind]
+        return f"{finding(data)} {words} {FASTER_RULE.capitalize()}."
+    return finding(data)
 
 
 def _pictures(data: xr.Dataset) -> Section:
@@ -122,12 +123,15 @@ def _pictures(data: xr.Dataset) -> Section:
 
 def _diagram_caption(data: xr.Dataset) -> str:
     words = (
-        "Sections at phase 0 of the settled motion, each value starting from the end of the last"
+        "Sections at phase 0 of the settled motion, each value starting from the end of the last: "
+        "up with rising values, down with falling ones"
     )
     if data.sizes.get("branch"):
         words += "; branches from continuation"
     known = np.isfinite(data["lyapunov"].values).any()
-    return words + ("; the largest Lyapunov exponent below." if known else ".")
+    return words + (
+        "; the largest Lyapunov exponent below, full up, dashed down." if known else "."
+    )
 
 
 def _sweep_caption(data: xr.Dataset) -> str:

@@ -79,7 +79,8 @@ def orbit_diagram_picture(data: xr.Dataset) -> Picture:
     p = shown(name, data[name].values)
     top = Panel(Axis(), Axis("X at phase 0 [–]"))
     low = Panel(_along(data, name), Axis("exponent λ₁ [–]"))
-    for direction, (colour, word) in enumerate(((COLD, "up"), (HOT, "down"))):
+    ways = ((COLD, "up", ()), (HOT, "down", (3, 2)))
+    for direction, (colour, word, dash) in enumerate(ways):
         x = data["section_x"].values[direction]
         places = np.broadcast_to(p[None, :, None], x.shape)
         top.points(
@@ -88,7 +89,7 @@ def orbit_diagram_picture(data: xr.Dataset) -> Picture:
         )  # fmt: skip
         top.points([], [], marker="dot", colour=colour, label=word)
         for row in data["lyapunov"].values[direction]:
-            low.curve(p, row, colour=colour, width=0.8, marker=_dot(p))
+            low.curve(p, row, colour=colour, dash=dash, width=0.8, marker=_dot(p))
     _branches(top, data, name)
     low.line(y=0.0, colour=INK, width=0.8)
     return Picture(

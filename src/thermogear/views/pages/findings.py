@@ -1,0 +1,115 @@
+"""What a diagram, map, basin, sweep or run-up found, in one sentence, from its figures alone."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.display import number
+from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.views.plots.parameters import shown
+from thermogear.views.plots.sweeps import CLASSES, classes_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+UNDECIDED = 9
+MOST = 4
+"""Stretches that a sentence names one by one."""
+
+
+def finding(data: xr.Dataset) -> str:
+    """One sentence; it says so where nothing was found."""
+    kind = str(data.attrs["kind"])
+    if kind in ("diagram", "run-up"):
+        words = _two_ways(data)
+    elif kind == "basins":
+        words = _basins(data)
+    else:
+        words = _counts(data)
+        if kind == "sweep":
+            words += _greatest(data)
+    return f"{words}{_undecided(data)}."
+
+
+def _two_ways(data: xr.Dataset) -> str:
+    """Where the motions up and down differ in kind, and where they jump."""
+    axes = data["label"].dims
+    name = str(data.attrs.get("parameter", "pinion_speed"))
+    codes = np.moveaxis(classes_of(data), axes.index("direction"), 0)
+    rest = [str(n) for n in axes if n != "direction"]
+    other = tuple(i for i, n in enumerate(rest) if n != name)
+    apart = np.asarray((codes[0] != codes[1]).any(axis=other))
+    values = shown(name, data[name].values)
+    unit = _unit(name)
+    parts = []
+    if apart.any():
+        parts.append(
+            f"Up and down end on motions of another kind at {_stretches(values, apart)}{unit}"
+        )
+    else:
+        parts.append("Up and down end on motions of the same kind at every value")
+    if "jump_direction" in data:
+        turns = data["jump_direction"].values
+        up, down = int((turns > 0).sum()), int((turns < 0).sum())
+        parts.append(f"{up} jumps up and {down} down" if up + down else "nothing jumps")
+    return "; ".join(parts)
+
+
+def _basins(data: xr.Dataset) -> str:
+    count = data.sizes["attractor_number"]
+    if not count:
+        return "No attractor was found"
+    shares = [
+        f"{f'period {int(p)}' if p else 'chaotic, estimate'}, {number(100.0 * float(f))} % of the starts"
+        for p, f in zip(data["attractor_period"].values, data["fraction"].values, strict=True)
+    ]
+    if count == 1:
+        return f"One attractor was found: {shares[0]}"
+    return f"{count} attractors exist side by side: {'; '.join(shares)}"
+
+
+def _counts(data: xr.Dataset) -> str:
+    codes = classes_of(data)
+    found = Counter(int(n) for n in codes.ravel() if n != UNDECIDED)
+    if not found:
+        return "No point is decided"
+    words = ", ".join(f"{CLASSES[n][0]} at {c}" for n, c in found.most_common())
+    return f"Of {codes.size} points: {words}"
+
+
+def _greatest(data: xr.Dataset) -> str:
+    values = data["dynamic_factor"].values
+    if not np.isfinite(values).any():
+        return "; no point has a dynamic factor"
+    place = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    at = [
+        f"{number(float(shown(str(n), data[n].values[i])), 6)}{_unit(str(n))}"
+        for n, i in zip(data["dynamic_factor"].dims, place, strict=True)
+    ]
+    return f"; the greatest dynamic factor is {number(float(values[place]))}, at {', '.join(at)}"
+
+
+def _undecided(data: xr.Dataset) -> str:
+    if "label" not in data:
+        return ""
+    codes = classes_of(data)
+    count = int((codes == UNDECIDED).sum())
+    return f"; {count} of {codes.size} points are undecided" if count else ""
+
+
+def _unit(name: str) -> str:
+    one = PARAMETERS.get(long_name(name))
+    return f" {one.shown}" if one is not None and one.shown else ""
+
+
+def _stretches(values: NDArray[np.float64], flags: NDArray[np.bool_]) -> str:
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
+    if len(edges) > MOST:
+        low, high = values[flags].min(), values[flags].max()
+        return f"{int(flags.sum())} values between {low:.6g} and {high:.6g}"
+    ends = [(values[a], values[b - 1]) for a, b in edges]
+    return ", ".join(f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}" for a, b in ends)
