@@ -42,7 +42,8 @@ def _two_ways(data: xr.Dataset) -> str:
     codes = np.moveaxis(classes_of(data), axes.index("direction"), 0)
     rest = [str(n) for n in axes if n != "direction"]
     other = tuple(i for i, n in enumerate(rest) if n != name)
-    apart = np.asarray((codes[0] != codes[1]).any(axis=other))
+    known = (codes[0] != UNDECIDED) & (codes[1] != UNDECIDED)
+    apart = np.asarray(((codes[0] != codes[1]) & known).any(axis=other))
     values = shown(name, data[name].values)
     unit = _unit(name)
     parts = []
@@ -51,7 +52,10 @@ def _two_ways(data: xr.Dataset) -> str:
             f"Up and down end on motions of another kind at {_stretches(values, apart)}{unit}"
         )
     else:
-        parts.append("Up and down end on motions of the same kind at every value")
+        parts.append(
+            "Up and down end on motions of the same kind at every value"
+            + (" decided both ways" if not known.all() else "")
+        )
     if "jump_direction" in data:
         turns = data["jump_direction"].values
         up, down = int((turns > 0).sum()), int((turns < 0).sum())
@@ -64,7 +68,8 @@ def _basins(data: xr.Dataset) -> str:
     if not count:
         return "No attractor was found"
     shares = [
-        f"{f'period {int(p)}' if p else 'chaotic, estimate'}, {number(100.0 * float(f))} % of the starts"
+        f"{f'period {int(p)}' if p else 'chaotic, estimate'}, "
+        f"{number(100.0 * float(f))} % of the starts"
         for p, f in zip(data["attractor_period"].values, data["fraction"].values, strict=True)
     ]
     if count == 1:

@@ -41,13 +41,13 @@ ORDER = (
 
 
 FIRST = (
+    ("gears", "gap-temperature", "gap-phase"),
     ("dynamic-factor",),
-    ("gap-temperature", "gap-phase"),
     ("flash-own", "flash-mixed", "friction"),
     ("stiffness-0",),
     ("motion-0-0",),
 )
-"""The pictures that carry the answers: speeds, gap, friction, stiffness, motion."""
+"""The pictures that carry the answers: gears with their gap, speeds, friction, stiffness, motion."""
 KINDS = ("gear", "dimensionless")
 
 
