@@ -55,3 +55,9 @@ def test_basins_say_how_many_attractors_and_their_shares(shares: list[float]) ->
     said = finding(data)
     assert said.startswith("One attractor" if len(shares) == 1 else f"{len(shares)} attractors")
     assert all(f"{100 * share:.0f}" in said for share in shares)
+
+
+def test_a_range_without_any_motion_is_said_to_have_none() -> None:
+    data = two_ways([])
+    data["label"][:] = 4
+    assert finding(data).startswith("No value has a motion")

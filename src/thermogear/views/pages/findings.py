@@ -42,7 +42,9 @@ def _two_ways(data: xr.Dataset) -> str:
     codes = np.moveaxis(classes_of(data), axes.index("direction"), 0)
     rest = [str(n) for n in axes if n != "direction"]
     other = tuple(i for i, n in enumerate(rest) if n != name)
-    known = (codes[0] != UNDECIDED) & (codes[1] != UNDECIDED)
+    if (codes > UNDECIDED).all():
+        return "No value has a motion: all are jammed or diverge"
+    known = (codes != UNDECIDED).all(axis=0)
     apart = np.asarray(((codes[0] != codes[1]) & known).any(axis=other))
     values = shown(name, data[name].values)
     unit = _unit(name)

@@ -47,7 +47,7 @@ FIRST = (
     ("stiffness-0",),
     ("motion-0-0",),
 )
-"""The pictures that carry the answers: gears with their gap, speeds, friction, stiffness, motion."""
+"""The pictures that carry the answers: gears or gap, speeds, friction, stiffness, motion."""
 KINDS = ("gear", "dimensionless")
 
 
