@@ -261,7 +261,8 @@ def _errors(events: list[dict[str, Any]]) -> Iterator[str]:
     for one in events:
         what, said = one.get("method"), one.get("params", {})
         if what == "Runtime.exceptionThrown":
-            yield str(said["exceptionDetails"].get("text", "exception"))
+            details = said["exceptionDetails"]
+            yield str(details.get("exception", {}).get("description") or details.get("text"))
         elif what == "Runtime.consoleAPICalled" and said["type"] in {"error", "assert"}:
             yield " ".join(str(arg.get("value", "")) for arg in said["args"])
         elif what == "Log.entryAdded" and said["entry"]["level"] == "error":

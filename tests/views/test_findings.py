@@ -30,10 +30,22 @@ def test_where_up_and_down_differ_is_said_with_its_ends(apart: list[int]) -> Non
     here = rpm[(data["period"].values[0] != data["period"].values[1])]
     said = finding(data)
     if not here.size:
-        assert "same kind at every value" in said
+        assert "same motion at every value" in said
         return
     assert f"{here.min():.0f}" in said
     assert f"{here.max():.0f} rpm" in said
+
+
+@pytest.mark.parametrize("name", ["dte_peak_to_peak", "point_x"])
+def test_two_orbits_of_one_period_are_two_motions(name: str) -> None:
+    """A fold leaves period 1 both ways; what differs is the orbit."""
+    data = two_ways([])
+    values = np.ones((2, data.sizes["pinion_speed"]))
+    same = data.assign({name: (data["label"].dims, values)})
+    assert "same motion at every value" in finding(same)
+    values[1, 3:6] = 1.4
+    said = finding(data.assign({name: (data["label"].dims, values)}))
+    assert "3300 to 3500 rpm" in said
 
 
 def test_undecided_points_are_counted() -> None:

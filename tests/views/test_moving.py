@@ -178,6 +178,29 @@ def test_the_dial_turns(
 
 
 @pytest.mark.slow
+def test_every_picture_is_drawn(
+    chromium: browser.Browser | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Those of every study, and one without a single number."""
+    one = there(chromium, capsys)
+    empty = Panel(Axis("speed [rpm]"), Axis("λ [–]", log="decades"))
+    empty.curve([1.0] * 9, [np.nan] * 9, colour="#0072B2", label="nothing")
+    empty.points([], [], colour="#0072B2", label="no place")
+    every = {**synthetic_pictures.every(), "empty": Picture([[empty]])}
+    shown = [
+        Shown(re.sub(r"\W", "-", name), name, "", lambda picture=picture: picture)  # type: ignore[misc]
+        for name, picture in every.items()
+    ]
+    result = Result.of("gear", "Every picture", {}, [])
+    page = tmp_path / "every.html"
+    page.write_text(render(Page(result, "", [Section("s", "s", [Gallery(shown)])])), "utf-8")
+    sight = one.look(page, 1400)
+    assert not sight.faults["errors"], sight.faults
+    moving_ = page.read_text("utf-8").count("data-picture='")
+    assert one.value("document.querySelectorAll('.live').length") == moving_ > 20
+
+
+@pytest.mark.slow
 def test_curves_go_and_come_and_zoom_goes_back(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

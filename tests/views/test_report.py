@@ -95,7 +95,7 @@ def test_every_picture_has_a_heading_a_caption_and_a_title(text: str) -> None:
 def test_the_sections_stand_in_the_order_of_the_physics(text: str) -> None:
     names = [s.attrib["id"] for s in tree_of(text).iter("section")]
     assert names == [
-        "pictures", "results", "friction", "heat", "backlash", "stiffness", "motion", "dial",
+        "pictures", "results", "friction", "heat", "backlash", "stiffness", "motion",
         "temperature", "base-sets", "choices", "assumptions", "errata", "facts",
         "case", "sources", "version",
     ]  # fmt: skip

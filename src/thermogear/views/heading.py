@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -64,9 +65,8 @@ def _fixed(result: Result) -> Iterator[str]:
     torque = result.text("torque") or result.text("pinion_torque")
     if torque:
         yield f"{float(torque):.6g} N m"
-    if data is None or "pinion_speed" not in data.variables:
-        for speed in result.values("own_rpm"):
-            yield f"{float(speed):.6g} rpm"
+    if data is not None and result.stored:
+        yield from _of_the_case(result, data)
     yield from _heat(result)
     bundles = result.table("bundles")
     bundle = " and ".join(bundles) if bundles else result.text("bundle")
@@ -79,6 +79,23 @@ def _fixed(result: Result) -> Iterator[str]:
     yield from changes[:MOST_CHANGES]
     if len(changes) > MOST_CHANGES:
         yield f"{len(changes) - MOST_CHANGES} more changes (see the case file)"
+
+
+def _of_the_case(result: Result, data: xr.Dataset) -> Iterator[str]:
+    """Speed and torque as the case file gives them, where they are no axis: the first of each."""
+    try:
+        given = tomllib.loads(result.text("case")).get("operating", {})
+    except tomllib.TOMLDecodeError:
+        return
+    told = {str(path) for path, _ in result.values("overrides")}
+    for name in ("speed", "torque"):
+        asked = name == "torque" and result.text("torque")
+        if f"pinion_{name}" in data.dims or f"operating.{name}" in told or asked:
+            continue
+        value = given.get(name)
+        value = value[0] if isinstance(value, list) and value else value
+        if isinstance(value, str):
+            yield value
 
 
 def _points(data: xr.Dataset) -> Iterator[str]:

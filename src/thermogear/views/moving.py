@@ -136,7 +136,7 @@ def _given(one: Any) -> dict[str, Any]:
     for known in fields(one):
         value = getattr(one, known.name)
         if isinstance(value, np.ndarray):
-            if value.size:
+            if value.size or known.default is MISSING:
                 found[known.name] = value
         elif known.default is MISSING or value != known.default:
             found[known.name] = value

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Page, Pictures, Section, Table, Text, notice_lines
+from thermogear.views.page import Block, Page, Pictures, Section, Table, notice_lines
 from thermogear.views.pages.background import background
 from thermogear.views.plots.speeds import speeds_picture
 
@@ -22,11 +22,10 @@ MOST_POINTS = 6
 def page(result: Result) -> Page:
     """The answers alone."""
     pictures = Pictures()
-    sections = [one for one in (section(result, pictures),) if one is not None]
     return Page(
         result,
         summary(result),
-        sections + background(result),
+        sections(result, pictures) + background(result),
         numbers=lambda: numbers(result),
         lines=lambda: [*lines(result), *notice_lines(result)],
     )
@@ -56,18 +55,11 @@ def gravest(answers: Sequence[Answer]) -> list[Answer]:
     return [worst(several) for several in by_name.values()]
 
 
-def section(result: Result, pictures: Pictures) -> Section | None:
-    """The first section of a page: every answer with its verdict, then the speeds."""
+def sections(result: Result, pictures: Pictures) -> list[Section]:
+    """First of a page: every answer with its verdict, then the speeds; each point's, folded."""
     found = result.answers
     if not found:
-        return None
-    blocks: list[Block] = [_table("", gravest(found))]
-    points = list(dict.fromkeys(one.operating for one in found if one.operating))
-    if 1 < len(points) <= MOST_POINTS:
-        blocks.append(Text("Each operating point", "title"))
-        blocks += [
-            _table(point, [one for one in found if one.operating == point]) for point in points
-        ]
+        return []
     speeds = result.group("speeds")
     if speeds is not None:
         pictures.add(
@@ -80,7 +72,13 @@ def section(result: Result, pictures: Pictures) -> Section | None:
             lambda: speeds_picture(speeds),
             wide=True,
         )
-    return Section("answers", "Answers", blocks + pictures.take())
+    blocks: list[Block] = [_table("", gravest(found)), *pictures.take()]
+    first = Section("answers", "Answers", blocks, folded=False)
+    points = list(dict.fromkeys(one.operating for one in found if one.operating))
+    if not 1 < len(points) <= MOST_POINTS:
+        return [first]
+    each = [_table(point, [one for one in found if one.operating == point]) for point in points]
+    return [first, Section("answers-each", "Answers at each operating point", each)]
 
 
 def _table(caption: str, answers: Sequence[Answer]) -> Table:

@@ -16,7 +16,10 @@ from thermogear.views.plots.sweeps import CLASSES, classes_of
 if TYPE_CHECKING:
     import xarray as xr
 
-UNDECIDED = 9
+UNDECIDED, PERIODIC = 9, 7
+"""Places of the classes: undecided, and the last of the periodic ones."""
+APART = 1e-3
+"""Two orbits of one kind differ by more than this part of the greatest value."""
 MOST = 4
 """Stretches that a sentence names one by one."""
 
@@ -45,17 +48,16 @@ def _two_ways(data: xr.Dataset) -> str:
     if (codes > UNDECIDED).all():
         return "No value has a motion: all are jammed or diverge"
     known = (codes != UNDECIDED).all(axis=0)
-    apart = np.asarray(((codes[0] != codes[1]) & known).any(axis=other))
+    apart = np.asarray(((codes[0] != codes[1]) | _swings_apart(data, codes)) & known)
+    apart = np.asarray(apart.any(axis=other))
     values = shown(name, data[name].values)
     unit = _unit(name)
     parts = []
     if apart.any():
-        parts.append(
-            f"Up and down end on motions of another kind at {_stretches(values, apart)}{unit}"
-        )
+        parts.append(f"Up and down end on different motions at {_stretches(values, apart)}{unit}")
     else:
         parts.append(
-            "Up and down end on motions of the same kind at every value"
+            "Up and down end on the same motion at every value"
             + (" decided both ways" if not known.all() else "")
         )
     if "jump_direction" in data:
@@ -63,6 +65,21 @@ def _two_ways(data: xr.Dataset) -> str:
         up, down = int((turns > 0).sum()), int((turns < 0).sum())
         parts.append(f"{up} jumps up and {down} down" if up + down else "nothing jumps")
     return "; ".join(parts)
+
+
+def _swings_apart(data: xr.Dataset, codes: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Where both ways end on one kind of orbit, and yet on two orbits.
+
+    By the peak-to-peak error where it is stored, else by the place at phase 0 of period 1.
+    """
+    name = "dte_peak_to_peak" if "dte_peak_to_peak" in data else "point_x"
+    if name not in data:
+        return np.zeros(codes.shape[1:], np.bool_)
+    values = np.moveaxis(data[name].values, data["label"].dims.index("direction"), 0)
+    periodic = codes <= (PERIODIC if name == "dte_peak_to_peak" else 0)
+    both = periodic.all(axis=0) & (codes[0] == codes[1]) & np.isfinite(values).all(axis=0)
+    size = float(np.nanmax(np.abs(values), initial=0.0))
+    return np.asarray(both & (np.abs(values[0] - values[1]) > APART * size))
 
 
 def _basins(data: xr.Dataset) -> str:

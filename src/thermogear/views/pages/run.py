@@ -42,12 +42,12 @@ ORDER = (
 
 FIRST = (
     ("gears", "gap-temperature", "gap-phase"),
+    ("dial", "stiffness-0"),
     ("dynamic-factor",),
     ("flash-own", "flash-mixed", "friction"),
-    ("stiffness-0",),
     ("motion-0-0",),
 )
-"""The pictures that carry the answers: gears or gap, speeds, friction, stiffness, motion."""
+"""The pictures that carry the answers: gears or gap, temperature, speeds, friction, motion."""
 KINDS = ("gear", "dimensionless")
 
 
@@ -71,8 +71,7 @@ def page(result: Result) -> Page:
 
 def _sections(results: Result) -> list[Section]:
     pictures = Pictures()
-    first = answers.section(results, pictures)
-    found = [] if first is None else [first]
+    found = answers.sections(results, pictures)
     mesh = results.group("mesh")
     if mesh is not None:
         table = tables.key_results(mesh, results.group("path"), results.group("motion"))

@@ -49,12 +49,24 @@ const tick = (values, step) => {
   return values.map((v) => v === null ? null : (Math.abs(v) >= 1e6 || (v !== 0 && decimals > 5)
     ? v.toExponential(1) : v.toFixed(decimals)).replace("-", "\u2212"));
 };
-const powers = (values) => values.map((v) => {
-  if (v === null) return null;
-  const power = Math.log10(v);
-  if (Math.abs(power - Math.round(power)) > 1e-9) return null;
-  return v >= 1e5 || v < 1e-3 ? v.toExponential(0).replace("-", "\u2212") : String(Number(v.toPrecision(2)));
-});
+// 1 to 9 times the powers of ten, the powers alone over many decades
+const decades = (low, high) => {
+  const found = [], most = high / low > 1e6 ? 1 : 9;
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high) && found.length < 500; power++)
+    for (let k = 1; k <= most; k++) {
+      const value = k * 10 ** power;
+      if (value >= low && value <= high) found.push(value);
+    }
+  return found;
+};
+const powers = (values) => {
+  const wide = values.at(-1) / values[0];
+  return values.map((v) => {
+    const lead = Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9));
+    if (lead !== 1 && (wide > 30 || (wide > 4 && lead !== 2 && lead !== 5))) return null;
+    return v >= 1e5 || v < 1e-3 ? v.toExponential(0).replace("-", "\u2212") : String(Number(v.toPrecision(2)));
+  });
+};
 class Panel {
   constructor(figure, said, host, frames, row) {
     Object.assign(this, {figure, said});
@@ -88,7 +100,11 @@ class Panel {
     if (said.ticks?.length) {
       axis.splits = () => said.ticks;
       axis.values = (u, at) => at.map((v) => said.names?.[said.ticks.indexOf(v)] ?? number(v));
-    } else if (said.log) axis.values = (u, at) => powers(at);
+    } else if (said.log) {
+      axis.splits = (u, i, low, high) => decades(low, high);
+      axis.filter = (u, at) => at;
+      axis.values = (u, at) => powers(at);
+    }
     else axis.values = (u, at, i, space, step) => tick(at, step);
     return axis;
   }
