@@ -257,6 +257,28 @@ def test_the_pointer_reads_values_with_units(
 
 
 @pytest.mark.slow
+def test_a_link_opens_the_part_it_leads_to(
+    chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one = there(chromium, capsys)
+    one.look(page, 1400)
+    opened = one.value(
+        """(async () => {
+          const folds = [...document.querySelectorAll("details")];
+          folds.forEach(fold => { fold.open = false; });
+          const found = [];
+          for (const link of document.querySelectorAll("nav a")) {
+            link.click();
+            await new Promise(r => setTimeout(r, 30));
+            found.push(document.getElementById(link.hash.slice(1)).getClientRects().length > 0);
+          }
+          return found; })()"""
+    )
+    assert len(opened) > 5
+    assert all(opened)
+
+
+@pytest.mark.slow
 def test_hostile_words_stay_words_and_the_policy_holds(
     chromium: browser.Browser | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

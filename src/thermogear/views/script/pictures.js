@@ -397,7 +397,7 @@ dark.addEventListener("change", () => {
   figures.forEach((one) => one.recolour());
 });
 const unfold = () => {
-  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  const target = document.getElementById(location.hash.slice(1));
   if (!target) return;
   for (let fold = target.closest("details"); fold; fold = fold.parentElement.closest("details"))
     fold.open = true;
