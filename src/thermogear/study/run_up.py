@@ -478,14 +478,12 @@ def run_up(
     case's rule. Each speed starts from the motion at the speed before. Over (state, direction,
     pinion_speed): dynamic transmission error (mean, rms, peak to peak), dynamic mesh force, dynamic
     factor, contact loss, label and multipliers; ``dte_line`` over order as well, the waterfall.
-    Between two speeds the orbit is
-    followed slowly, and what is no orbit of up to 16 periods is carried on in steps of 0.5 % of
-    the speed that stand still, so that jumps do not depend on the step of ``speeds``.
-    ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up to 4 periods), and
-    where a run back jumps (``return``);
-    ``left_early``: the step alone would have left it before; ``bifurcation_...`` and
-    ``branch_...``: the folds behind it, from continuation of the orbits of up to
-    ``branch_period`` mesh periods (0: none).
+    Between two speeds the orbit is followed slowly, and what is no orbit of up to 16 periods is
+    carried on in steps of 0.5 % of the speed that stand still, so that jumps do not depend on the
+    step of ``speeds``. ``jump_...``: where the motion leaves its branch (``fold``, of orbits of up
+    to 4 periods), and where a run back jumps (``return``); ``left_early``: the step alone would
+    have left it before; ``bifurcation_...`` and ``branch_...``: the folds behind it, from
+    continuation of the orbits of up to ``branch_period`` mesh periods (0: none).
     """
     plan = run_up_plan(
         case,
@@ -496,13 +494,6 @@ def run_up(
         rule=rule,
         branch_period=branch_period,
     )
-    data = carry_out(
-        plan,
-        store,
-        threads=threads,
-        scheduler=scheduler,
-        report=report,
-        alive=alive,
-        title=case.title,
-    )
+    how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
+    data = carry_out(plan, store, **how, alive=alive, title=case.title)
     return finished(data, case.title)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.display import number
+from thermogear.base.display import exactly, number
 from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.views.plots.parameters import shown
 from thermogear.views.plots.sweeps import CLASSES, classes_of
@@ -111,7 +111,7 @@ def _greatest(data: xr.Dataset) -> str:
         return "; no point has a dynamic factor"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     at = [
-        f"{number(float(shown(str(n), data[n].values[i])), 6)}{_unit(str(n))}"
+        f"{exactly(float(shown(str(n), data[n].values[i])))}{_unit(str(n))}"
         for n, i in zip(data["dynamic_factor"].dims, place, strict=True)
     ]
     return f"; the greatest dynamic factor is {number(float(values[place]))}, at {', '.join(at)}"

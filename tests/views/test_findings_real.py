@@ -1,0 +1,94 @@
+"""The sentence of a page on what was found, on gears: two cases with two outcomes each."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import thermogear as tg
+from thermogear.base.units import RPM
+from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.views.pages.findings import finding
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("ignore::thermogear.ValidityWarning"),
+]
+PAIR = """
+[gears]
+module = "2.5 mm"
+face_width = "28 mm"
+[gears.pinion]
+teeth = 19
+[gears.wheel]
+teeth = 53
+[oil]
+name = "ISO VG 100"
+temperature = "80 degC"
+[temperatures]
+pinion_addendum = "90 degC"
+wheel_addendum = "90 degC"
+pinion_bore = "80 degC"
+wheel_bore = "80 degC"
+housing = "60 degC"
+[flanks]
+accuracy = 6
+[operating]
+speed = "2400 rpm"
+torque = "60 N m"
+"""
+
+
+@pytest.fixture(scope="module")
+def pair() -> GearCase:
+    return gear_case(load_case(PAIR))
+
+
+def apart(data: xr.Dataset) -> np.ndarray:
+    """Speeds [rpm] at which the error up and down differs by more than 1 um, by the stored data."""
+    error = data["dte_peak_to_peak"]
+    up, down = (error.isel(direction=i) for i in (0, 1))
+    differs = (np.abs(up - down) > 1e-6).any("state").values
+    return np.asarray(data["pinion_speed"].values[differs] / RPM)
+
+
+@pytest.mark.parametrize(("first", "last"), [(3000.0, 5000.0), (8800.0, 10200.0)])
+def test_a_run_up_says_where_up_and_down_differ(pair: GearCase, first: float, last: float) -> None:
+    data = tg.run_up(pair, np.linspace(first, last, 15) * RPM, branch_period=0).data
+    said, speeds = finding(data), apart(data)
+    if not speeds.size:
+        assert "same motion at every value" in said
+        return
+    named = [float(n) for n in re.findall(r"\d+(?:\.\d+)?", said.partition(";")[0])]
+    assert min(named) == pytest.approx(speeds.min(), abs=0.01)
+    assert max(named) == pytest.approx(speeds.max(), abs=0.01)
+
+
+def test_both_outcomes_were_there(pair: GearCase) -> None:
+    """What the test above is worth: one range has two motions, the other one."""
+    found = [
+        apart(tg.run_up(pair, np.array(ends) * RPM, branch_period=0).data).size
+        for ends in ([3000.0, 4000.0, 5000.0], [9000.0, 9500.0, 10200.0])
+    ]
+    assert found[0] == 0
+    assert found[1] > 0
+
+
+@pytest.mark.parametrize("torques", [[20.0, 60.0], [1.0, 2.0]])
+def test_a_sweep_names_the_greatest_dynamic_factor(pair: GearCase, torques: list[float]) -> None:
+    speeds = np.array([2400.0, 6000.0, 11000.0]) * RPM
+    data = tg.sweep(pair, {"speed": speeds, "torque": torques}).data
+    said = finding(data)
+    values = data["dynamic_factor"]
+    place = values.argmax(...)  # type: ignore[arg-type]
+    at = data.isel({str(k): int(v) for k, v in place.items()})
+    assert f"{float(at['pinion_speed']) / RPM:.0f} rpm" in said
+    assert f"{float(at['pinion_torque']):g} N m" in said
+    top = re.search(r"dynamic factor is ([\d.]+)", said)
+    assert top
+    assert float(top[1]) == pytest.approx(float(values.max()), rel=5e-3)
+    kinds = {int(n) for n in data["label"].values.ravel()}
+    assert len(re.findall(r"[a-z0-9, ]+ at \d+", said.partition(";")[0])) >= len(kinds) - 1
