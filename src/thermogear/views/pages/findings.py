@@ -20,6 +20,7 @@ UNDECIDED, PERIODIC = 9, 7
 """Places of the classes: undecided, and the last of the periodic ones."""
 APART = 1e-3
 """Two orbits of one kind differ by more than this part of the greatest value."""
+SAME = "Up and down end on the same motion at every value"
 MOST = 4
 """Stretches that a sentence names one by one."""
 
@@ -56,10 +57,7 @@ def _two_ways(data: xr.Dataset) -> str:
     if apart.any():
         parts.append(f"Up and down end on different motions at {_stretches(values, apart)}{unit}")
     else:
-        parts.append(
-            "Up and down end on the same motion at every value"
-            + (" decided both ways" if not known.all() else "")
-        )
+        parts.append(SAME + (" decided both ways" if not known.all() else ""))
     if "jump_direction" in data:
         turns = data["jump_direction"].values
         up, down = int((turns > 0).sum()), int((turns < 0).sum())
