@@ -20,9 +20,18 @@ import synthetic_pictures
 import synthetic_results as synthetic
 
 from thermogear.results.result import Result
-from thermogear.views.moving import Dial, attribute, compact, moves, moving, policy, script
+from thermogear.views.moving import (
+    Dial,
+    attribute,
+    compact,
+    distinct,
+    moves,
+    moving,
+    policy,
+    script,
+)
 from thermogear.views.page import Gallery, Page, Section, Shown, render
-from thermogear.views.picture import Axis, Contours, Field, Hatch, Panel, Picture
+from thermogear.views.picture import Axis, Contours, Field, Hatch, Panel, Picture, Points
 from thermogear.views.plots import dial as dial_plot
 from thermogear.views.write import write_report
 
@@ -94,8 +103,24 @@ def test_contours_hatches_turned_axes_and_clouds_stay_still() -> None:
     assert not moves(Picture([[Panel(Axis(low=1.0, high=0.0))]]))
     assert not moves(Picture([[Panel(Axis(slant=30.0))]]))
     many = Panel()
-    many.points(np.zeros(40_000), np.zeros(40_000), colour="#000000")
+    many.curve(np.zeros(40_000), np.zeros(40_000), colour="#000000")
     assert not moves(Picture([[many]]))
+
+
+def test_a_cloud_keeps_a_point_for_every_place_one_can_see() -> None:
+    rng = np.random.default_rng(5)
+    x = np.repeat(np.linspace(0.0, 1.0, 200), 100)
+    y = np.where(x < 0.5, np.sin(9.0 * x), rng.uniform(-1.0, 1.0, x.size))
+    y[::777] = np.nan
+    cloud = distinct(Points(x, y, colour="#000000"))
+    assert isinstance(cloud, Points)
+    kept = {(a, b) for a, b in zip(cloud.x, cloud.y, strict=True)}  # type: ignore[arg-type]
+    assert kept <= {(a, b) for a, b in zip(x, y, strict=True)}
+    assert len(kept) == np.size(cloud.x) < 0.6 * x.size
+    known = np.isfinite(y)
+    places = np.stack([np.asarray(cloud.x), np.asarray(cloud.y)], axis=1)
+    for a, b in zip(x[known][::50], y[known][::50], strict=True):
+        assert np.abs(places - [a, b]).max(axis=1).min() < 2.0 / 2000
 
 
 def test_one_script_by_its_hash_and_nothing_else_is_allowed() -> None:

@@ -7,7 +7,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cache
 from importlib.resources import files
 from itertools import chain
@@ -16,15 +16,17 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from thermogear.views.picture import Axis, Contours, Field, Hatch, Mark, Panel, Picture
+from thermogear.views.picture import Axis, Contours, Field, Hatch, Mark, Panel, Picture, Points
 
 SCRIPTS = ("uplot.js", "gears.js", "marks.js", "pictures.js")
 SHEETS = ("uplot.css", "pictures.css")
 DIGITS = 5
 """Significant digits of a place in a picture: a hundredth of a pixel and finer."""
+DENSE, CELLS = 2000, 2000
+"""From so many points on a cloud is thinned, to so many cells across and up."""
 SHORT = 8
 """An array of fewer numbers is written where it stands, in full."""
-MOST = 60_000
+MOST = 40_000
 """Numbers of one picture; with more it stays still, so that the page stays light."""
 
 
@@ -59,7 +61,7 @@ def moves(picture: Picture) -> bool:
 
 
 def _count(picture: Picture) -> int:
-    marks = chain.from_iterable(panel.marks for panel in chain(*picture.panels))
+    marks = [distinct(m) for panel in chain(*picture.panels) for m in panel.marks]
     return sum(np.size(getattr(m, n, ())) for m in marks for n in ("x", "y", "values"))
 
 
@@ -125,9 +127,24 @@ def _axis(axis: Axis) -> dict[str, Any]:
 
 
 def _marks(panel: Panel) -> list[dict[str, Any]]:
-    return [
-        {"kind": type(m).__name__.lower(), **_given(m)} for m in panel.marks if isinstance(m, Mark)
-    ]
+    return [{"kind": type(m).__name__.lower(), **_given(distinct(m))} for m in panel.marks]
+
+
+def distinct(mark: Mark) -> Mark:
+    """A cloud of points with one for each of :data:`CELLS` x :data:`CELLS` places of its extent.
+
+    The sections of a settled motion lie on each other; marks of fewer points stay as they are.
+    """
+    if not isinstance(mark, Points) or np.size(mark.x) < DENSE:
+        return mark
+    places = np.stack([np.ravel(mark.x), np.ravel(mark.y)])
+    places = places[:, np.isfinite(places).all(axis=0)]
+    low = places.min(axis=1, keepdims=True, initial=np.inf)
+    extent = places.max(axis=1, keepdims=True, initial=-np.inf) - low
+    cells = np.round(CELLS * (places - low) / np.where(extent > 0.0, extent, 1.0))
+    _, first = np.unique(cells, axis=1, return_index=True)
+    x, y = places[:, np.sort(first)]
+    return replace(mark, x=x, y=y)
 
 
 def _given(one: Any) -> dict[str, Any]:
