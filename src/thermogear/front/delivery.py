@@ -34,6 +34,8 @@ def _csv_place(context: click.Context, _: click.Parameter, name: str | None) -> 
     if name is None:
         return
     path = Path(name)
+    if path.suffix.lower() != ".csv":
+        raise InputError("--csv", name, allowed="a file that ends in .csv", fix=f"write {name}.csv")
     if path.is_dir() or not path.parent.is_dir():
         why = "it is a directory" if path.is_dir() else f"{path.parent} is no directory"
         raise InputError("--csv", name, allowed="a file", why=why, fix="write --csv points.csv")

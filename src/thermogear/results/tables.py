@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.display import display
-from thermogear.base.errors import InputError, nearest
+from thermogear.base.errors import InputError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +27,7 @@ def frames(data: xr.Dataset, units: str = "si") -> dict[tuple[str, ...], pd.Data
     numbers, which have no dimension, are left out.
     """
     if units not in UNITS:
-        raise InputError("units", repr(units), allowed=" | ".join(UNITS), fix=nearest(units, UNITS))
+        raise InputError("units", repr(units), allowed=" | ".join(UNITS), fix='write units="si"')
     families: dict[tuple[str, ...], list[str]] = {}
     for name, variable in data.data_vars.items():
         dims = tuple(sorted(str(d) for d in variable.dims))

@@ -279,9 +279,10 @@ def _notices(
             "important", f"{int((status == STATUS.index('jammed')).sum())} points are jammed."
         )
     elif settled.any():
+        none = "No point" if settled.all() else "No settled point"
         yield Notice(
             "info",
-            f"No point jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
+            f"{none} jams: at least {1e6 * float(np.nanmin(least[settled])):.0f} um of half "
             "backlash are left. Held against its housing as it is, the pair would jam from "
             f"{_least(jam[settled])} of the pinion's teeth"
             + _in_proportion(together[settled], case.stated.temperatures.reference),
