@@ -261,7 +261,7 @@ def test_curves_go_and_come_and_zoom_goes_back(
 def test_the_pointer_reads_values_with_units(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The pointer is put on a stored point by the labels of the ticks, not by the script's own."""
+    """In the middle of the backlash's panel: what is told is a point of the stored data."""
     one = there(chromium, capsys)
     one.look(page, 1400)
     said = one.value(

@@ -125,12 +125,11 @@ class Section:
 
 @dataclass(frozen=True)
 class Tile:
-    """One answer at the top of the page; ``marked`` where it wants a look."""
+    """One figure at the top of the page."""
 
     title: str
     value: str
     beside: Cell
-    marked: bool = False
 
 
 @dataclass
