@@ -1,0 +1,1 @@
+"""Shafts and bearings of a gear pair: elements, assembly, modes, statics and response."""

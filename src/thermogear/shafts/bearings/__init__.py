@@ -1,0 +1,1 @@
+"""Rolling bearings: geometry, stiffness, clearance, friction and life."""
