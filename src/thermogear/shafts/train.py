@@ -111,14 +111,13 @@ class Casing:
 
 @dataclass(frozen=True, kw_only=True)
 class DriveEnd:
-    """A motor or a load: ``inertia`` [kg m^2] on a coupling that twists.
+    """A motor on the pinion's shaft, a load on the wheel's: ``inertia`` [kg m^2] on a coupling.
 
     ``position`` [m] from the shaft's left end; ``stiffness`` [N m/rad] and ``damping`` [N m s] of
     the coupling. ``slip_damping`` [N m s]: how the torque falls with speed (0: constant torque),
     behind a ``lag`` [s].
     """
 
-    shaft: str
     position: float
     inertia: float
     stiffness: float

@@ -1,0 +1,295 @@
+"""The linear drive train: natural frequencies, critical speeds, response to harmonic forces.
+
+The mesh and every bearing act as springs at one equilibrium: M q'' + (C + Omega G) q' + K q = f,
+Omega the pinion's speed about +z, sigma times its amount. The rigid rotation of the train is
+projected out, mass-orthogonally, so that every frequency is one of a vibration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.shafts.assembly import Assembly, linear_stiffness
+from thermogear.shafts.train import SHAFTS
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+FREE = 1e-9
+"""A frequency below this share of the middle one is a free motion."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Modes:
+    """Modes at one speed, (modes,), by rising frequency.
+
+    ``frequency`` w [rad/s]; ``shape`` q (n, modes) complex, the motion is Re(q e^{iwt}), scaled to
+    w^2 q^H M q + q^H K q = 1 J; ``damping_ratio`` [-].
+    """
+
+    frequency: Floats
+    shape: Complexes
+    damping_ratio: Floats
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LinearTrain:
+    """A drive train with its contacts as springs.
+
+    ``mesh`` k of the drive flank [N/m], ``back`` of the back flank where it is closed too,
+    ``bearings`` (count, 2, 2) [N/m].
+    """
+
+    assembly: Assembly
+    mesh: float
+    bearings: Floats
+    back: float = 0.0
+
+    @cached_property
+    def stiffness(self) -> Floats:
+        """K with every closed contact, (n, n) [N/m]."""
+        return linear_stiffness(self.assembly, self.mesh, self.bearings, back=self.back)
+
+    @cached_property
+    def basis(self) -> Floats:
+        """A basis (n, n - 1) of all motions M-orthogonal to the rigid rotation.
+
+        The Householder reflection of M r leaves unit-like columns, so that nothing is lost in
+        scale.
+        """
+        pull = self.assembly.mass @ self.assembly.rotation
+        pull = pull / np.linalg.norm(pull)
+        first = int(np.argmax(np.abs(pull)))
+        pull[first] += np.copysign(1.0, pull[first])
+        whole = np.eye(pull.size) - 2.0 * np.outer(pull, pull) / (pull @ pull)
+        return np.asarray(np.delete(whole, first, axis=1))
+
+    @cached_property
+    def damping(self) -> Floats:
+        """C of the named kind, (n, n) [N s/m], without gyroscopics."""
+        model, train = self.assembly.damping, self.assembly
+        if model.kind == "modal":
+            modes = self.modes(0.0)
+            m = train.mass @ _scaled(modes, train.mass)
+            return np.asarray(m @ np.diag(2.0 * model.ratio * modes.frequency) @ m.T)
+        mesh = self.mesh_damping * np.outer(train.drive, train.drive)
+        if model.kind == "proportional":
+            bare = linear_stiffness(train, 0.0, self.bearings)
+            return np.asarray(model.mass * self._moving_mass + model.shafts * bare + mesh)
+        if model.kind != "bearings":
+            raise InputError("damping", repr(model.kind), allowed="bearings | proportional | modal")
+        return np.asarray(train.viscous + model.shafts * train.elastic + mesh)
+
+    @cached_property
+    def _moving_mass(self) -> Floats:
+        """M without the rigid rotation, which no damping of the train may brake."""
+        train = self.assembly
+        pull = train.mass @ train.rotation
+        return np.asarray(train.mass - np.outer(pull, pull) / (train.rotation @ pull))
+
+    @property
+    def mesh_damping(self) -> float:
+        """c_m = 2 zeta sqrt(k m_e) [N s/m], m_e of the two gears alone."""
+        own = self.assembly.damping
+        zeta = own.ratio if own.kind == "modal" else own.mesh
+        return float(2.0 * zeta * np.sqrt(self.mesh * self.assembly.mesh_mass))
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether K is symmetric, so that undamped modes keep their energy."""
+        k = self.stiffness
+        return bool(np.allclose(k, k.T, rtol=1e-12, atol=1e-12 * np.abs(k).max()))
+
+    def modes(self, speed: float, *, damped: bool = False) -> Modes:
+        """The modes at ``speed`` [rad/s] of the pinion, (n - 1,), rising.
+
+        Undamped: lambda A z = -B z with A = diag(M, K), B = ((Omega G, K), (-K, 0)), Hermitian once
+        A is reduced. ``damped``, or with bearings whose K is not symmetric: the eigenvalues of the
+        state matrix; a ratio below zero is unstable, over-damped pairs are left out. Raises
+        InputError where a motion is free besides the rotation.
+        """
+        if damped or not self.symmetric:
+            return self._damped_modes(speed, damped)
+        t, train = self.basis, self.assembly
+        mass, stiff = self._held
+        omega = train.frame.sense * speed
+        if omega == 0.0:
+            square, shape = scipy.linalg.eigh(stiff, mass)
+            return Modes(
+                frequency=np.sqrt(square),
+                shape=(t @ shape / np.sqrt(2.0 * square)).astype(complex),
+                damping_ratio=np.zeros(square.size),
+            )
+        n = t.shape[1]
+        low, lowk = np.linalg.cholesky(mass), np.linalg.cholesky(stiff)
+        solve = scipy.linalg.solve_triangular
+        gyro = solve(
+            low, solve(low, omega * t.T @ train.gyroscopic @ t, lower=True).T, lower=True
+        ).T
+        cross = solve(low, lowk, lower=True)
+        whole = np.block([[gyro, cross], [-cross.T, np.zeros((n, n))]])
+        found, vectors = scipy.linalg.eigh(1j * whole)
+        at = np.argsort(found)[n:]
+        shape = solve(lowk, vectors[n:, at], lower=True, trans="T")
+        return Modes(
+            frequency=np.asarray(found[at]),
+            shape=t @ shape,
+            damping_ratio=np.zeros(n),
+        )
+
+    @cached_property
+    def _held(self) -> tuple[Floats, Floats]:
+        """M and K of the motions besides the rotation; refused where one of them is free."""
+        t = self.basis
+        mass, stiff = t.T @ self.assembly.mass @ t, t.T @ self.stiffness @ t
+        square = scipy.linalg.eigvalsh(stiff, mass)
+        free = int(np.sum(square <= FREE**2 * np.median(np.abs(square))))
+        if free:
+            raise InputError(
+                "bearings",
+                f"{free} free motion{'s' if free > 1 else ''} of the shafts",
+                allowed="none besides the rotation of the train",
+                why="nothing holds the shafts against it",
+                fix="give each shaft two bearings that are loaded, or preload them",
+            )
+        return mass, stiff
+
+    def _damped_modes(self, speed: float, damped: bool) -> Modes:
+        t, train = self.basis, self.assembly
+        mass, stiff = self._held
+        omega = train.frame.sense * speed
+        loss = omega * train.gyroscopic + (self.damping if damped else 0.0)
+        n = t.shape[1]
+        right = np.linalg.solve(mass, np.hstack([stiff, t.T @ loss @ t]))
+        state = np.block([[np.zeros((n, n)), np.eye(n)], [-right]])
+        found, vectors = np.linalg.eig(state)
+        keep = found.imag > FREE * np.median(np.abs(found))
+        order = np.argsort(found[keep].imag)
+        value, shape = found[keep][order], t @ vectors[:n, keep][:, order]
+        energy = np.einsum("im,ij,jm->m", shape.conj(), self.stiffness, shape).real
+        kinetic = np.einsum("im,ij,jm->m", shape.conj(), train.mass, shape).real
+        total = np.abs(energy) + np.abs(value) ** 2 * kinetic
+        return Modes(
+            frequency=np.asarray(value.imag),
+            shape=shape / np.sqrt(total),
+            damping_ratio=np.asarray(-value.real / np.abs(value)),
+        )
+
+    def critical(self, order: float) -> tuple[Floats, Complexes]:
+        """Speeds at which ``order`` times the speed is a natural frequency: [rad/s], and shapes.
+
+        With Omega = omega/order the gyroscopic term joins the mass: K q = omega^2 (M - i sigma G /
+        order) q, one Hermitian eigenproblem without a sweep over speed. (found,), (n, found),
+        rising; an order may miss a mode that stiffens faster than it turns.
+        """
+        if not order > 0.0:
+            raise InputError("order", order, allowed="> 0")
+        t, train = self.basis, self.assembly
+        stiff = t.T @ self.stiffness @ t
+        sense = train.frame.sense
+        moving = t.T @ (train.mass - 1j * sense * train.gyroscopic / order) @ t
+        if not self.symmetric:
+            square, vectors = scipy.linalg.eig(stiff, moving)
+            real = (square.real > 0.0) & (np.abs(square.imag) < 1e-6 * np.abs(square))
+            value, shape = np.sqrt(square[real].real), vectors[:, real]
+        else:
+            inverse, vectors = scipy.linalg.eigh(moving, stiff)
+            real = inverse > 1e-14 * inverse.max()
+            value, shape = 1.0 / np.sqrt(inverse[real]), vectors[:, real]
+        rising = np.argsort(value)
+        return np.asarray(value[rising] / order), (t @ shape[:, rising]).astype(complex)
+
+    def respond(self, frequency: ArrayLike, speed: ArrayLike, force: ArrayLike) -> Complexes:
+        """q of M q'' + (C + Omega G) q' + K q = Re(``force`` e^{i w t}), (..., n) complex [m, rad].
+
+        ``frequency`` w [rad/s] and ``speed`` [rad/s] of one shape (...), ``force`` (..., n) [N,
+        N m]. The rigid rotation, which would run away with a force that drives it, is left out.
+        """
+        w, omega = np.broadcast_arrays(np.asarray(frequency, float), np.asarray(speed, float))
+        t, train = self.basis, self.assembly
+        parts = [t.T @ one @ t for one in (train.mass, self.damping, train.gyroscopic)]
+        stiff = t.T @ self.stiffness @ t
+        pushed = np.broadcast_to(np.asarray(force, complex), (*w.shape, train.size)) @ t
+        found = np.empty((*w.shape, t.shape[1]), complex)
+        for at in np.ndindex(w.shape):
+            turning = train.frame.sense * omega[at] * parts[2]
+            dynamic = stiff - w[at] ** 2 * parts[0] + 1j * w[at] * (parts[1] + turning)
+            found[at] = np.linalg.solve(dynamic, pushed[at])
+        return found @ t.T
+
+
+def _scaled(modes: Modes, mass: Floats) -> Floats:
+    """Real shapes at rest with unit modal mass, (n, modes)."""
+    shape = modes.shape.real
+    return np.asarray(shape / np.sqrt(np.einsum("im,ij,jm->m", shape, mass, shape)))
+
+
+def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
+    """Where the strain energy of ``shape`` (n, modes) sits: part -> share of all [-], (modes,).
+
+    Parts: "mesh", each shaft's "bending" and "torsion", each bearing by name, each coupling,
+    each seat, "housing feet". The shares of a symmetric K sum to 1.
+    """
+    own, q = train.assembly, np.asarray(shape)
+    found = {"mesh": train.mesh * np.abs(own.drive @ q) ** 2}
+    if train.back:
+        found["mesh, back flank"] = train.back * np.abs(own.back @ q) ** 2
+    owners = np.array([name.split(".")[0] for name in own.coordinates])
+    turns = np.array([name.endswith(".tz") for name in own.coordinates])
+    for shaft in SHAFTS:
+        for what, kind in (("bending", ~turns), ("torsion", turns)):
+            mine = (owners == shaft) & kind
+            found[f"{shaft} shaft, {what}"] = _energy(own.elastic[np.ix_(mine, mine)], q[mine])
+    for end in ("motor", "load"):
+        if end in owners:
+            row = own.index[f"{end}.tz"]
+            others = np.flatnonzero(own.elastic[row])
+            found[f"{end} coupling"] = sum(
+                (-own.elastic[row, j] * np.abs(q[row] - q[j]) ** 2 for j in others[others != row]),
+                np.zeros(q.shape[1]),
+            )
+            mine = (owners == ("pinion" if end == "motor" else "wheel")) & turns
+            shaft = f"{'pinion' if end == 'motor' else 'wheel'} shaft, torsion"
+            both = mine | (np.arange(own.size) == row)
+            whole = _energy(own.elastic[np.ix_(both, both)], q[both])
+            found[shaft] = whole - found[f"{end} coupling"]
+    for place, k in zip(own.bearings, train.bearings, strict=True):
+        found[place.bearing.name] = _energy(k, place.directions.T @ q)
+    rest = own.stiffness - own.elastic
+    found["seats and feet"] = _energy(rest, q)
+    if not np.any(rest):
+        del found["seats and feet"]
+    total = sum(found.values())
+    return {name: np.asarray(value / total) for name, value in found.items()}
+
+
+def _energy(stiffness: Floats, q: NDArray[np.complex128] | Floats) -> Floats:
+    return np.asarray(np.einsum("im,ij,jm->m", q.conj(), stiffness, q).real)
+
+
+def whirl(train: Assembly, shape: ArrayLike) -> dict[str, Floats]:
+    """How each shaft whirls in ``shape`` (n, modes): +1 with its own sense, -1 against, 0 in line.
+
+    w = sum of m 2 Im(x* y)/sum of m (|x|^2 + |y|^2), times the sense in which the shaft turns;
+    nan where it does not move across. (modes,) per shaft.
+    """
+    q = np.asarray(shape)
+    found = {}
+    for shaft, turns in zip(SHAFTS, (1.0, -1.0), strict=True):
+        rows = [
+            [train.index[f"{shaft}.{i}.{c}"] for i in range(train.nodes[SHAFTS.index(shaft)].size)]
+            for c in ("x", "y")
+        ]
+        weight = train.mass[rows[0], rows[0]][:, None]
+        x, y = q[rows[0]], q[rows[1]]
+        amount = np.sum(weight * (np.abs(x) ** 2 + np.abs(y) ** 2), axis=0)
+        sense = 2.0 * np.sum(weight * np.imag(x.conj() * y), axis=0)
+        still = amount <= 1e-16 * np.sum(np.abs(q) ** 2, axis=0) * weight.max()
+        with np.errstate(invalid="ignore", divide="ignore"):
+            found[shaft] = np.where(still, np.nan, -turns * train.frame.sense * sense / amount)
+    return found
