@@ -105,8 +105,8 @@ class LinearTrain:
         k = self.stiffness
         return bool(np.allclose(k, k.T, rtol=1e-12, atol=1e-12 * np.abs(k).max()))
 
-    def modes(self, speed: float, *, damped: bool = False) -> Modes:
-        """The modes at ``speed`` [rad/s] of the pinion, (n - 1,), rising.
+    def modes(self, speed: float, *, damped: bool = False, count: int | None = None) -> Modes:
+        """The modes at ``speed`` [rad/s] of the pinion, (n - 1,), rising; the first ``count``.
 
         Undamped: lambda A z = -B z with A = diag(M, K), B = ((Omega G, K), (-K, 0)), Hermitian once
         A is reduced. ``damped``, or with bearings whose K is not symmetric: the eigenvalues of the
@@ -114,18 +114,19 @@ class LinearTrain:
         InputError where a motion is free besides the rotation.
         """
         if damped or not self.symmetric:
-            return self._damped_modes(speed, damped)
+            return self._damped_modes(speed, damped, count)
         t, train = self.basis, self.assembly
-        mass, stiff = self._held
+        mass, stiff = self.held
         omega = train.frame.sense * speed
+        n = t.shape[1]
+        wanted = n if count is None else min(count, n)
         if omega == 0.0:
-            square, shape = scipy.linalg.eigh(stiff, mass)
+            square, shape = scipy.linalg.eigh(stiff, mass, subset_by_index=(0, wanted - 1))
             return Modes(
                 frequency=np.sqrt(square),
                 shape=(t @ shape / np.sqrt(2.0 * square)).astype(complex),
                 damping_ratio=np.zeros(square.size),
             )
-        n = t.shape[1]
         low, lowk = np.linalg.cholesky(mass), np.linalg.cholesky(stiff)
         solve = scipy.linalg.solve_triangular
         gyro = solve(
@@ -133,17 +134,12 @@ class LinearTrain:
         ).T
         cross = solve(low, lowk, lower=True)
         whole = np.block([[gyro, cross], [-cross.T, np.zeros((n, n))]])
-        found, vectors = scipy.linalg.eigh(1j * whole)
-        at = np.argsort(found)[n:]
-        shape = solve(lowk, vectors[n:, at], lower=True, trans="T")
-        return Modes(
-            frequency=np.asarray(found[at]),
-            shape=t @ shape,
-            damping_ratio=np.zeros(n),
-        )
+        found, vectors = scipy.linalg.eigh(1j * whole, subset_by_index=(n, n + wanted - 1))
+        shape = solve(lowk, vectors[n:], lower=True, trans="T")
+        return Modes(frequency=found, shape=t @ shape, damping_ratio=np.zeros(wanted))
 
     @cached_property
-    def _held(self) -> tuple[Floats, Floats]:
+    def held(self) -> tuple[Floats, Floats]:
         """M and K of the motions besides the rotation; refused where one of them is free."""
         t = self.basis
         mass, stiff = t.T @ self.assembly.mass @ t, t.T @ self.stiffness @ t
@@ -159,9 +155,9 @@ class LinearTrain:
             )
         return mass, stiff
 
-    def _damped_modes(self, speed: float, damped: bool) -> Modes:
+    def _damped_modes(self, speed: float, damped: bool, count: int | None) -> Modes:
         t, train = self.basis, self.assembly
-        mass, stiff = self._held
+        mass, stiff = self.held
         omega = train.frame.sense * speed
         loss = omega * train.gyroscopic + (self.damping if damped else 0.0)
         n = t.shape[1]
@@ -169,7 +165,7 @@ class LinearTrain:
         state = np.block([[np.zeros((n, n)), np.eye(n)], [-right]])
         found, vectors = np.linalg.eig(state)
         keep = found.imag > FREE * np.median(np.abs(found))
-        order = np.argsort(found[keep].imag)
+        order = np.argsort(found[keep].imag)[:count]
         value, shape = found[keep][order], t @ vectors[:n, keep][:, order]
         energy = np.einsum("im,ij,jm->m", shape.conj(), self.stiffness, shape).real
         kinetic = np.einsum("im,ij,jm->m", shape.conj(), train.mass, shape).real
@@ -220,7 +216,7 @@ class LinearTrain:
             turning = train.frame.sense * omega[at] * parts[2]
             dynamic = stiff - w[at] ** 2 * parts[0] + 1j * w[at] * (parts[1] + turning)
             found[at] = np.linalg.solve(dynamic, pushed[at])
-        return found @ t.T
+        return np.asarray(found @ t.T, dtype=complex)
 
 
 def _scaled(modes: Modes, mass: Floats) -> Floats:
