@@ -1,0 +1,303 @@
+"""Natural frequencies over speed, the orders that excite them, and the speeds where both meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from thermogear.base.errors import InputError
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import label
+from thermogear.case.case import GearCase
+from thermogear.results.result import Notice, Result
+from thermogear.shafts.linear import LinearTrain, Modes, strain_shares
+from thermogear.shafts.response import Response, error_response, unbalance_response
+from thermogear.shafts.train import SHAFTS
+from thermogear.study.shafts.modes import name_of
+from thermogear.study.shafts.sketch import sketch
+from thermogear.study.shafts.state import TrainState, plan_of, settled
+from thermogear.study.shafts.statics import notices
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+KIND = "campbell"
+SPEEDS = 13
+"""Speeds at which the natural frequencies are computed; they change little in between."""
+FINE = 240
+"""Speeds of the response."""
+MODES = 12
+MESH_HARMONICS = 3
+LEVELS = ("least", "mean", "greatest")
+NIL = 0.01
+"""Participation below which an order leaves a mode alone."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """What excites the train ``order`` times a turn of the pinion: a mesh, a shaft or a bearing."""
+
+    name: str
+    order: float
+    kind: str
+    part: str
+
+
+def orders_of(case: GearCase) -> list[Order]:
+    """Mesh harmonics, both shafts and the elements of every rolling bearing passing the load."""
+    pair = case.pair
+    z1, ratio = pair.pinion.teeth, pair.pinion.teeth / pair.wheel.teeth
+    found = [
+        Order(
+            name="mesh" if h == 1 else f"{h} x mesh", order=float(h * z1), kind="mesh", part="mesh"
+        )
+        for h in range(1, MESH_HARMONICS + 1)
+    ]
+    found += [
+        Order(name=f"{shaft} shaft", order=turns, kind="shaft", part=shaft)
+        for shaft, turns in zip(SHAFTS, (1.0, ratio), strict=True)
+    ]
+    for name, shaft, passing in plan_of(case).passing_orders:
+        turns = 1.0 if shaft == SHAFTS[0] else ratio
+        found.append(
+            Order(name=f"elements of {name}", order=passing * turns, kind="bearing", part=name)
+        )
+    return found
+
+
+def campbell(
+    case: GearCase,
+    *,
+    speeds: tuple[float, float] | None = None,
+    torque: float | None = None,
+    count: int = MODES,
+    progress: Progress = silent,
+) -> Result:
+    """Natural frequencies over the pinion's speed, critical speeds and forced response.
+
+    ``speeds`` (from, to) [rad/s], 0 to 1.5 times the case's greatest if left out; ``torque`` [N m]
+    of the pinion, the hardest point's; ``count`` modes. Undeformed and hot as that point is, with
+    its bearings' stiffness; the mesh at its least, mean and greatest stiffness. Groups:
+    ``campbell`` over (state, stiffness_level, pinion_speed, mode); ``critical`` over (state,
+    stiffness_level, line, mode) with the participation of the mode; ``response`` over (state,
+    line, response_speed, ...). Raises InputError for a case without shafts.
+    """
+    at = case.stated
+    place = int(np.argmax(at.speed * at.torque))
+    if torque is not None:
+        case = case.with_values({"torque": torque})
+        place = int(np.argmax(case.stated.speed * case.stated.torque))
+    low, high = speeds or (0.0, 1.5 * float(at.speed.max()))
+    if not 0.0 <= low < high:
+        raise InputError(
+            "--rpm", f"{low / RPM:.6g}:{high / RPM:.6g} rpm", allowed="0 <= LOW < HIGH"
+        )
+    found = [row[0] for row in settled(case, [place], progress=progress)]
+    grid = np.linspace(low, high, SPEEDS)
+    orders = orders_of(case)
+    curves, participation, levels, responses, names = [], [], [], [], []
+    fine = np.linspace(max(low, high / FINE), high, FINE)
+    for number, state in enumerate(found):
+        trains = [state.rest.linear(k) for k in state.band]
+        curve, kept = [], []
+        for level, train in enumerate(trains):
+            progress("campbell", number * (len(trains) + 1) + level, 2 * (len(trains) + 1))
+            followed = _followed(train, grid, count)
+            curve.append([m.frequency for m in followed])
+            kept.append(followed)
+        curves.append(curve)
+        names.append([_name(trains[1], kept[1][0], mode) for mode in range(count)])
+        crossed = [[_critical(t, one, count) for one in orders] for t in trains]
+        levels.append([[speed for speed, _ in row] for row in crossed])
+        participation.append([[share for _, share in row] for row in crossed])
+        progress("campbell", number * (len(trains) + 1) + len(trains), 2 * (len(trains) + 1))
+        responses.append(_responses(case, state, fine, orders))
+    progress("campbell", 1, 1)
+    lines: dict[str, Any] = {
+        "line": [one.name for one in orders],
+        "order": (("line",), [one.order for one in orders], "1", "per turn of the pinion"),
+    }
+    states = [one.state.kind for one in found]
+    number = (("mode",), np.arange(1, count + 1), "1", "number of the mode")
+    level_names = {"state": states, "stiffness_level": list(LEVELS), "mode": number}
+    return Result.of(
+        KIND,
+        f"Campbell diagram: {case.title}",
+        {
+            "campbell": label(
+                {
+                    "natural_frequency": (
+                        ("state", "stiffness_level", "pinion_speed", "mode"),
+                        curves,
+                        "rad/s",
+                        "natural frequency",
+                    ),
+                    "mode_name": (("state", "mode"), names),
+                },
+                level_names | {"pinion_speed": (("pinion_speed",), grid)},
+            ),
+            "critical": label(
+                {
+                    "critical_speed": (
+                        ("state", "stiffness_level", "line", "mode"),
+                        levels,
+                        "rad/s",
+                        "speed of the pinion at which the order meets the mode",
+                    ),
+                    "participation": (
+                        ("state", "stiffness_level", "line", "mode"),
+                        participation,
+                        "1",
+                        "how much of the mode the order can drive",
+                    ),
+                },
+                level_names | lines,
+            ),
+            "response": _response_table(case, states, fine, responses),
+        },
+        [*notices(case, [[one] for one in found]), *_own_notices(found)],
+        **case.provenance,
+        bundle=case.models[0].name,
+        speeds=[float(s) for s in at.speed],
+        torque=found[0].torque,
+        band=[list(one.band) for one in found],
+        train=sketch(plan_of(case).drive_train(pair=case.pair), case.pair),
+    )
+
+
+def _followed(train: LinearTrain, grid: Floats, count: int) -> list[Modes]:
+    """The ``count`` lowest modes at the first speed, each followed by its shape."""
+    ahead = min(count + 6, train.basis.shape[1])
+    found = [_taken(train.modes(float(grid[0]), count=ahead), slice(0, count))]
+    for speed in grid[1:]:
+        here = train.modes(float(speed), count=ahead)
+        last = found[-1]
+        near = np.abs(
+            np.outer(last.frequency, here.frequency)
+            * (last.shape.conj().T @ train.assembly.mass @ here.shape)
+            + last.shape.conj().T @ train.stiffness @ here.shape
+        )
+        _, chosen = linear_sum_assignment(-near)
+        found.append(_taken(here, chosen))
+    return found
+
+
+def _taken(modes: Modes, which: Any) -> Modes:
+    return Modes(
+        frequency=modes.frequency[which],
+        shape=modes.shape[:, which],
+        damping_ratio=modes.damping_ratio[which],
+    )
+
+
+def _name(train: LinearTrain, modes: Modes, place: int) -> str:
+    shares = strain_shares(train, modes.shape[:, place : place + 1])
+    return name_of({name: float(value[0]) for name, value in shares.items()})
+
+
+def _critical(train: LinearTrain, order: Order, count: int) -> tuple[Floats, Floats]:
+    """Speeds [rad/s] and participations of the ``count`` lowest modes; nan where there is none."""
+    speed, shape = train.critical(order.order)
+    shares = participation(train, order, shape, speed * order.order)
+    rows = np.full((2, count), np.nan)
+    kept = min(count, speed.size)
+    rows[0, :kept], rows[1, :kept] = speed[:kept], shares[:kept]
+    return rows[0], rows[1]
+
+
+def participation(
+    train: LinearTrain, order: Order, shape: NDArray[np.complex128], frequency: Floats
+) -> Floats:
+    """How much of each mode (n, modes) an order can drive [-].
+
+    Mesh and bearing orders: the strain energy of the teeth, or of that bearing, over all. Shaft
+    orders: the kinetic energy of that shaft's forward whirl over all, for an unbalance turns
+    forward.
+    """
+    if order.kind != "shaft":
+        return strain_shares(train, shape)[order.part]
+    own = train.assembly
+    turns = own.frame.sense * (1.0 if order.part == SHAFTS[0] else -1.0)
+    nodes = range(own.nodes[SHAFTS.index(order.part)].size)
+    rows = [[own.index[f"{order.part}.{i}.{c}"] for i in nodes] for c in ("x", "y")]
+    forward = 0.5 * (shape[rows[0]] + 1j * turns * shape[rows[1]])
+    moving = own.mass[np.ix_(rows[0], rows[0])]
+    energy = 2.0 * np.einsum("im,ij,jm->m", forward.conj(), moving, forward).real
+    total = np.einsum("im,ij,jm->m", shape.conj(), own.mass, shape).real
+    return np.asarray(energy / total)
+
+
+def _responses(
+    case: GearCase, state: TrainState, speeds: Floats, orders: Sequence[Order]
+) -> list[Response]:
+    """The response to the mesh's harmonics, then to the unbalance of either shaft."""
+    error = state.loaded_error
+    found = [
+        error_response(
+            state.linear,
+            speeds,
+            order=one.order,
+            error=complex(error[h]) if h < error.size else 0.0,
+        )
+        for h, one in enumerate(one for one in orders if one.kind == "mesh")
+    ]
+    unbalances = plan_of(case).drive_train(pair=case.pair).unbalances
+    return found + [unbalance_response(state.linear, speeds, s, unbalances) for s in SHAFTS]
+
+
+def _response_table(
+    case: GearCase, states: Sequence[str], speeds: Floats, found: Sequence[Sequence[Response]]
+) -> xr.Dataset:
+    over = ("state", "source", "response_speed")
+
+    def amplitude(name: str) -> Floats:
+        return np.array([[np.abs(getattr(one, name)) for one in row] for row in found])
+
+    across = {
+        "bearing_force": ("bearing", "N", "dynamic force of the bearing, amplitude along "),
+        "ring_acceleration": ("bearing", "m/s^2", "acceleration of the outer ring along "),
+        "casing_acceleration": ("", "m/s^2", "acceleration of the housing along "),
+    }
+    variables: dict[str, Any] = {
+        "dynamic_mesh_force": (
+            over,
+            amplitude("mesh_force"),
+            "N",
+            "dynamic mesh force, amplitude",
+        )
+    }
+    for name, (along, unit, words) in across.items():
+        values = amplitude(name)
+        for c, axis in enumerate(("x", "y")):
+            dims = (*over, along) if along else over
+            variables[f"{name}_{axis}"] = (dims, values[..., c], unit, words + axis)
+    sources = [f"mesh harmonic {h}" for h in range(1, MESH_HARMONICS + 1)]
+    sources += [f"unbalance of the {shaft}'s shaft" for shaft in SHAFTS]
+    return label(
+        variables,
+        {
+            "state": list(states),
+            "source": sources,
+            "response_speed": (("response_speed",), speeds, "rad/s", "speed of the pinion"),
+            "bearing": list(plan_of(case).bearing_names),
+        },
+    )
+
+
+def _own_notices(found: Sequence[TrainState]) -> Iterator[Notice]:
+    yield Notice(
+        "info",
+        "Linear about the equilibrium at the greatest power: teeth and bearings stay in contact, "
+        "the mesh has its mean stiffness in the response, its least and greatest in the band.",
+    )
+    if any(one.status != 0 for one in found):
+        yield Notice(
+            "important", "The pair is jammed in one of the states; its back flanks carry too."
+        )

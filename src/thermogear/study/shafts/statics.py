@@ -1,0 +1,246 @@
+"""Loads, clearances and tilts of a drive train at rest under its torque, cold and hot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.progress import Progress, silent
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import label
+from thermogear.case.case import GearCase
+from thermogear.results.result import Notice, Result
+from thermogear.shafts.train import SHAFTS
+from thermogear.study.shafts.sketch import sketch
+from thermogear.study.shafts.state import TrainState, places_of, plan_of, settled
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+KIND = "statics"
+TILT_SHARE = 0.5
+"""Misalignment across the face over the mesh deflection from which a plane mesh is doubtful."""
+POINT, RING = ("state", "operating"), ("state", "operating", "bearing")
+
+
+def statics(case: GearCase, *, progress: Progress = silent) -> Result:
+    """Bearing loads, deflections, tilts and centre distance of a case's drive train at rest.
+
+    Undeformed and hot, at the operating points (at most six). Groups: ``statics`` over (state,
+    operating), ``bearings`` over (state, operating, bearing), ``deflection`` of both shafts along
+    their length; SI. Raises InputError for a case without shafts, or whose shafts nothing holds.
+    """
+    places = places_of(case)
+    found = settled(case, places, progress=progress)
+    plan = plan_of(case)
+    train = plan.drive_train(pair=case.pair)
+    return Result.of(
+        KIND,
+        f"Loads of the shafts: {case.title}",
+        {
+            "statics": of_mesh(case, found),
+            "bearings": of_bearings(case, found),
+            "deflection": _deflections(found),
+        },
+        notices(case, found),
+        **case.provenance,
+        bundle=case.models[0].name,
+        train=sketch(train, case.pair),
+    )
+
+
+def coordinates(found: Sequence[Sequence[TrainState]]) -> dict[str, object]:
+    """State and operating point of every number."""
+    row = found[0]
+    return {
+        "state": [states[0].state.kind for states in found],
+        "pinion_speed": (("operating",), [one.speed for one in row]),
+        "pinion_torque": (("operating",), [one.torque for one in row]),
+    }
+
+
+def _grid(found: Sequence[Sequence[TrainState]], of: Callable[[TrainState], object]) -> Floats:
+    """A number of every equilibrium over (state, operating, ...), nan where there is none."""
+    shape = next(
+        (np.shape(of(one)) for row in found for one in row if one.equilibrium is not None), ()
+    )
+    return np.array(
+        [
+            [np.full(shape, np.nan) if one.equilibrium is None else of(one) for one in row]
+            for row in found
+        ],
+        dtype=float,
+    )
+
+
+def of_mesh(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
+    """What the mesh feels, over (state, operating)."""
+    width = min(case.pair.pinion.face_width, case.pair.wheel.face_width)
+
+    def backlash(one: TrainState) -> float:
+        return 2.0 * one.mesh.half_backlash + sum(one.rest.flank_openings)
+
+    return label(
+        {
+            "mesh_force": (POINT, _grid(found, lambda s: s.rest.mesh_force), "N", "mesh force"),
+            "mesh_deflection": (
+                POINT,
+                _grid(found, lambda s: s.rest.mesh_force / s.band[1]),
+                "m",
+                "deflection of the teeth at mean stiffness",
+            ),
+            "centre_distance_growth": (
+                POINT,
+                _grid(found, lambda s: s.rest.centre_distance_growth),
+                "m",
+                "growth of the centre distance by the deflection of shafts and bearings",
+            ),
+            "contact_ratio": (
+                POINT,
+                _grid(found, lambda s: s.mesh.pair.contact_ratio),
+                "1",
+                "contact ratio at the actual centre distance",
+            ),
+            "backlash_at_shift": (
+                POINT,
+                _grid(found, backlash),
+                "m",
+                "normal backlash of the teeth with the shift of the centres in it",
+            ),
+            "mean_stiffness": (
+                POINT,
+                _grid(found, lambda s: s.band[1]),
+                "N/m",
+                "mean mesh stiffness at the actual centre distance",
+            ),
+            "misalignment": (
+                POINT,
+                _grid(found, lambda s: s.rest.misalignment),
+                "rad",
+                "tilt of the gears against each other in the plane of action",
+            ),
+            "misalignment_across_face": (
+                POINT,
+                _grid(found, lambda s: abs(s.rest.misalignment) * width),
+                "m",
+                "tilt times face width: how far the flanks part across the face",
+            ),
+            "rounds": (
+                POINT,
+                _grid(found, lambda s: len(s.growths)),
+                "1",
+                "rounds of centre distance and stiffness",
+            ),
+            "status": (POINT, [[one.status for one in row] for row in found]),
+        },
+        coordinates(found),
+    )
+
+
+def of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
+    """Load, clearance, displacement and stiffness of every bearing, hot and cold."""
+    plan = plan_of(case)
+    limits = [[plan.bearing_limits(one) for one in row] for row in found]
+
+    def limit(name: str) -> Floats:
+        return np.array([[[b[name] for b in one] for one in row] for row in limits], dtype=float)
+
+    def given(name: str) -> Floats:
+        return np.array([[getattr(one, name) for one in row] for row in found], dtype=float)
+
+    load = _grid(found, lambda s: s.rest.bearing_force)
+    moved = _grid(found, lambda s: s.rest.bearing_displacement)
+    stiff = _grid(found, lambda s: s.rest.bearing_stiffness)
+    warm = given("temperatures")
+    return label(
+        {
+            "bearing_load": (RING, np.linalg.norm(load, axis=-1), "N", "load of the bearing"),
+            "bearing_load_x": (RING, load[..., 0], "N", "load along x"),
+            "bearing_load_y": (RING, load[..., 1], "N", "load along y"),
+            "journal_x": (RING, moved[..., 0], "m", "journal in its ring along x"),
+            "journal_y": (RING, moved[..., 1], "m", "journal in its ring along y"),
+            "radial_clearance": (
+                RING,
+                given("clearances"),
+                "m",
+                "radial clearance, half of the play; below zero a preload",
+            ),
+            "bearing_stiffness_x": (RING, stiff[..., 0, 0], "N/m", "tangent stiffness along x"),
+            "bearing_stiffness_y": (RING, stiff[..., 1, 1], "N/m", "tangent stiffness along y"),
+            "inner_ring_temperature": (RING, warm[..., 0], "K", "temperature of the inner ring"),
+            "outer_ring_temperature": (RING, warm[..., 2], "K", "temperature of the outer ring"),
+            "static_safety": (RING, limit("static_safety"), "1", "static safety C0/P0"),
+            "least_load_ratio": (
+                RING,
+                limit("least_load_ratio"),
+                "1",
+                "load over the least load that keeps the elements rolling",
+            ),
+            "bearing_life": (RING, limit("life"), "s", "basic rating life L10 at this load"),
+        },
+        coordinates(found) | {"bearing": list(plan.bearing_names)},
+    )
+
+
+def _deflections(found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
+    """Lines of both shafts: x and y [m] over the length."""
+    variables: dict[str, object] = {}
+    places: dict[str, object] = {}
+    assembly = found[0][0].assembly
+    for number, shaft in enumerate(SHAFTS):
+        nodes = assembly.nodes[number]
+        rows = {
+            c: [assembly.index[f"{shaft}.{i}.{c}"] for i in range(nodes.size)] for c in ("x", "y")
+        }
+        for c, at in rows.items():
+            variables[f"{shaft}_{c}"] = (
+                (*POINT, f"{shaft}_position"),
+                _grid(found, lambda s, at=at: s.rest.displacement[at]),
+                "m",
+                f"deflection of the {shaft}'s shaft along {c}",
+            )
+        places[f"{shaft}_position"] = (
+            (f"{shaft}_position",),
+            nodes - nodes[assembly.gear_nodes[number]],
+            "m",
+            "distance along the shaft from the middle of the gear",
+        )
+    return label(variables, coordinates(found) | places)
+
+
+def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[Notice]:
+    """What limits the model, and what one should look at."""
+    yield Notice(
+        "info",
+        "Two shafts in one plane mesh: no axial forces, gears without tilt stiffness of their "
+        "own, friction of the teeth left out of the bearing loads.",
+    )
+    width = min(case.pair.pinion.face_width, case.pair.wheel.face_width)
+    tilted = max(
+        (
+            abs(one.rest.misalignment) * width * one.band[1] / max(one.rest.mesh_force, 1e-9)
+            for row in found
+            for one in row
+            if one.equilibrium is not None and one.rest.mesh_force > 0.0
+        ),
+        default=0.0,
+    )
+    if tilted > TILT_SHARE:
+        yield Notice(
+            "warning",
+            f"The gears tilt by up to {tilted:.2g} of the teeth's deflection across the face: the "
+            "load leans to one end, which a plane mesh does not see.",
+        )
+    for row in found:
+        for one in row:
+            if one.equilibrium is None:
+                yield Notice(
+                    "important",
+                    f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: heat "
+                    "balance or loaded contact did not settle; no numbers.",
+                )
+    yield from plan_of(case).notices([one for row in found for one in row])

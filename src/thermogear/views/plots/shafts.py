@@ -1,0 +1,281 @@
+"""Drive trains: the sketch to scale, deflections, modes, the Campbell diagram, the response."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermogear.base.display import display
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, STATES, WIDE, names_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PINION, WHEEL = OKABE_ITO[0], OKABE_ITO[1]
+SHAFTS = {"pinion": PINION, "wheel": WHEEL}
+DASHES = {"undeformed": (4.0, 3.0), "hot": ()}
+MOST_MODES = 8
+"""Modes that are drawn."""
+
+
+def sketch(said: Mapping[str, Any]) -> Picture:
+    """Both shafts side by side, as far apart as their centres are, to one scale, in mm."""
+    shafts, apart = said["shafts"], 1e3 * float(said["centre_distance"])
+    panel = Panel(Axis("along the shafts [mm]", grid=False), Axis(grid=False), equal=True)
+    for number, shaft in enumerate(shafts):
+        centre, colour = -number * apart, SHAFTS[shaft["name"]]
+        ends = [1e3 * shaft["sections"][0][0], 1e3 * shaft["sections"][-1][1]]
+        for start, end, outer, inner in shaft["sections"]:
+            _box(panel, (1e3 * start, 1e3 * end), centre, 1e3 * outer, INK)
+            if inner:
+                _box(panel, (1e3 * start, 1e3 * end), centre, 1e3 * inner, FAINT, dash=(3.0, 2.0))
+        face, tip = (1e3 * one for one in shaft["gear"])
+        _box(panel, (-0.5 * face, 0.5 * face), centre, tip, colour, width=2.2)
+        panel.text(
+            0.0, centre + 0.5 * tip, shaft["name"], up="bottom", offset=(0.0, 2.0), bold=True
+        )
+        size = 0.55 * max(1e3 * one[2] for one in shaft["sections"])
+        for name, at in shaft["bearings"]:
+            _bearing(panel, 1e3 * at, centre, size, name)
+        for name, at in shaft["discs"]:
+            panel.curve(
+                [1e3 * at] * 2, [centre - 1.6 * size, centre + 1.6 * size], colour=QUIET, width=5.0
+            )
+            panel.text(1e3 * at, centre - 1.6 * size, name, up="top", offset=(0.0, -2.0), size=7.5)
+        if shaft["end"]:
+            name, at = shaft["end"][0], 1e3 * shaft["end"][1]
+            side = -1.0 if abs(at - ends[0]) <= abs(at - ends[1]) else 1.0
+            long = 0.12 * (ends[1] - ends[0])
+            panel.curve([at, at + side * long], [centre] * 2, colour=QUIET, dash=(2.0, 2.0))
+            panel.points([at + side * long], [centre], colour=QUIET, marker="square", size=11.0)
+            panel.text(at + side * long, centre, name, up="bottom", offset=(0.0, 8.0), size=8.0)
+        panel.curve([ends[0], ends[1]], [centre] * 2, colour=QUIET, width=0.7, dash=(8.0, 2.0))
+    panel.y.ticks = [0.0]
+    panel.y.names = [""]
+    return Picture([[panel]], size=(WIDE, 4.2))
+
+
+def _box(
+    panel: Panel,
+    along: tuple[float, float],
+    centre: float,
+    across: float,
+    colour: str,
+    *,
+    width: float = 1.3,
+    dash: tuple[float, ...] = (),
+) -> None:
+    a, b = along
+    low, high = centre - 0.5 * across, centre + 0.5 * across
+    panel.curve([a, b, b, a, a], [low, low, high, high, low], colour=colour, width=width, dash=dash)
+
+
+def _bearing(panel: Panel, at: float, centre: float, size: float, name: str) -> None:
+    for side in (-1.0, 1.0):
+        low, high = centre + side * size, centre + side * 1.75 * size
+        half = 0.3 * size
+        x = [at - half, at + half, at + half, at - half, at - half]
+        panel.curve(x, [low, low, high, high, low], colour=INK, width=1.1)
+        for cross in ((low, high), (high, low)):
+            panel.curve([at - half, at + half], cross, colour=INK, width=0.8)
+    panel.text(at, centre - 1.75 * size, name, up="top", offset=(0.0, -3.0), size=7.5)
+
+
+def deflection(data: xr.Dataset, place: int) -> Picture:
+    """Deflection of both shafts along x and y at one operating point."""
+    panels = []
+    for shaft, colour in SHAFTS.items():
+        panel = Panel(
+            Axis("along the shaft, gear at 0 [mm]"),
+            Axis("deflection [µm]"),
+            f"{shaft}'s shaft",
+        )
+        x = 1e3 * data[f"{shaft}_position"].values
+        for state, name in enumerate(names_of(data, "state")):
+            for c, thick in (("x", 1.0), ("y", 2.0)):
+                values = 1e6 * data[f"{shaft}_{c}"].values[state, place]
+                panel.curve(
+                    x,
+                    values,
+                    colour=STATES.get(name, colour),
+                    width=thick,
+                    dash=DASHES.get(name, ()),
+                    label=f"along {c}, {name}",
+                )
+        panels.append(panel)
+    return Picture([panels], size=(WIDE, 3.2), legend=4)
+
+
+def loads(data: xr.Dataset) -> Picture:
+    """Load of every bearing at every operating point, cold and hot."""
+    panel = Panel(Axis(""), Axis("bearing load [N]", low=0.0))
+    names = names_of(data, "bearing")
+    count = data.sizes["operating"]
+    for state, name in enumerate(names_of(data, "state")):
+        for point in range(count):
+            x = np.arange(len(names)) + (state - 0.5) * 0.25 + 0.08 * (point - 0.5 * (count - 1))
+            panel.points(
+                x,
+                data["bearing_load"].values[state, point],
+                colour=STATES.get(name, INK),
+                marker="circle" if state else "square",
+                open=not state,
+                label=name if point == 0 else "",
+            )
+    panel.x.ticks, panel.x.names = np.arange(len(names)), names
+    return Picture([[panel]], size=(WIDE, 3.2))
+
+
+def clearances(data: xr.Dataset) -> Picture:
+    """Radial clearance of every bearing, cold and hot; below zero it is a preload."""
+    panel = Panel(Axis(""), Axis("radial clearance [µm]"))
+    names = names_of(data, "bearing")
+    for state, name in enumerate(names_of(data, "state")):
+        for point in range(data.sizes["operating"]):
+            panel.points(
+                np.arange(len(names)) + (state - 0.5) * 0.25,
+                1e6 * data["radial_clearance"].values[state, point],
+                colour=STATES.get(name, INK),
+                marker="circle" if state else "square",
+                open=not state,
+                label=name if point == 0 else "",
+            )
+    panel.line(y=0.0, colour=QUIET, width=1.0, dash=(4.0, 3.0))
+    panel.x.ticks, panel.x.names = np.arange(len(names)), names
+    return Picture([[panel]], size=(WIDE, 3.0))
+
+
+def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
+    """The lowest modes: deflection of both shafts across (full) and their twist (dashed)."""
+    count = min(MOST_MODES, table.sizes["mode"])
+    rows = []
+    for first in range(0, count, 4):
+        row = []
+        for mode in range(first, min(first + 4, count)):
+            hertz = float(table["natural_frequency"].values[state, mode]) / (2.0 * np.pi)
+            panel = Panel(
+                Axis("along the shaft [mm]", small=True, most=4),
+                Axis("", low=-1.15, high=1.15, most=3),
+                f"{mode + 1}: {hertz:.4g} Hz",
+            )
+            for shaft, colour in SHAFTS.items():
+                x = 1e3 * shapes[f"{shaft}_position"].values
+                parts = {
+                    c: shapes[f"{shaft}_{c}_real"].values[state, mode] for c in ("x", "y", "twist")
+                }
+                axis = max(("x", "y"), key=lambda c: float(np.abs(parts[c]).max()))
+                first_one = mode == 0
+                panel.curve(
+                    x,
+                    parts[axis],
+                    colour=colour,
+                    label=f"{shaft}'s shaft, across" if first_one else "",
+                )
+                panel.curve(
+                    x,
+                    parts["twist"],
+                    colour=colour,
+                    dash=(4.0, 3.0),
+                    width=1.2,
+                    label=f"{shaft}'s shaft, twist times base radius" if first_one else "",
+                )
+            row.append(panel)
+        rows.append(row)
+    return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.4), legend=4, between=0.45, above=0.75)
+
+
+def energies(table: xr.Dataset, state: int) -> Picture:
+    """Which part bends in which mode: shares of the strain energy."""
+    values = 100.0 * table["energy_share"].values[state].T
+    parts, modes_ = names_of(table, "part"), table["mode"].values
+    panel = Panel(
+        Axis("mode", ticks=np.arange(modes_.size) + 0.5, names=[str(int(m)) for m in modes_]),
+        Axis("", ticks=np.arange(len(parts)) + 0.5, names=parts),
+    )
+    from thermogear.views.style import scale
+
+    panel.field(
+        np.arange(modes_.size + 1),
+        np.arange(len(parts) + 1),
+        values,
+        colours=scale("Blues"),
+        low=0.0,
+        high=100.0,
+        words="share of the strain energy [%]",
+    )
+    return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.2), left=2.2)
+
+
+def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) -> Picture:
+    """Natural frequencies over speed with the band of the mesh, the orders, the critical speeds."""
+    rpm = display("pinion_speed")
+    x = rpm(data["pinion_speed"].values)
+    panels = []
+    states = names_of(data, "state")
+    for state, name in enumerate(states):
+        low, mean, high = data["natural_frequency"].values[state] / (2.0 * np.pi)
+        top = 1.05 * float(np.nanmax(high))
+        panel = Panel(
+            Axis("pinion speed [rpm]", low=float(x[0]), high=float(x[-1])),
+            Axis("frequency [Hz]", low=0.0, high=top),
+            name,
+        )
+        for mode in range(mean.shape[1]):
+            panel.band(x, low=low[:, mode], high=high[:, mode], colour=QUIET, opacity=0.35)
+            panel.curve(x, mean[:, mode], colour=INK, width=1.2)
+        for line, words in enumerate(names_of(critical, "line")):
+            order = float(critical["order"].values[line])
+            y = order * data["pinion_speed"].values / (2.0 * np.pi)
+            panel.curve(
+                x,
+                np.where(y <= top, y, np.nan),
+                colour=OKABE_ITO[line % len(OKABE_ITO)],
+                width=1.0,
+                dash=(5.0, 2.0) if line < len(OKABE_ITO) else (1.5, 2.0),
+                label=words if state == 0 else "",
+            )
+            met = critical["critical_speed"].values[state, 1, line]
+            share = critical["participation"].values[state, 1, line]
+            for speed, part in zip(met, share, strict=True):
+                if np.isfinite(speed) and part >= 0.01 and rpm(speed) <= x[-1]:
+                    panel.points(
+                        [float(rpm(speed))],
+                        [order * speed / (2.0 * np.pi)],
+                        colour=OKABE_ITO[line % len(OKABE_ITO)],
+                        size=3.0 + 9.0 * float(np.sqrt(part)),
+                        edge=INK,
+                        edge_width=0.6,
+                        order=3.0,
+                    )
+        for own in np.unique(speeds):
+            panel.line(x=float(rpm(own)), colour=QUIET, width=1.0, dash=(4.0, 3.0))
+        panels.append(panel)
+    return Picture([panels], size=(WIDE, 4.4), legend=4, share_y="row")
+
+
+def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -> Picture:
+    """Amplitude over speed of the hot train, a panel for each bearing, a curve for each source."""
+    rpm = display("pinion_speed")(data["response_speed"].values)
+    hot = names_of(data, "state").index("hot") if "hot" in names_of(data, "state") else 0
+    bearings = names_of(data, "bearing")
+    rows: list[list[Panel]] = []
+    for number, bearing in enumerate(bearings):
+        if number % 2 == 0:
+            rows.append([])
+        panel = Panel(Axis("pinion speed [rpm]"), Axis(words, log="decades"), bearing)
+        for place, source in enumerate(names_of(data, "source")):
+            both = [data[f"{quantity}_{c}"].values[hot, place, :, number] for c in ("x", "y")]
+            size = factor * np.hypot(*both)
+            if np.any(size > 0.0):
+                panel.curve(
+                    rpm,
+                    np.where(size > 0.0, size, np.nan),
+                    colour=OKABE_ITO[place % len(OKABE_ITO)],
+                    width=1.3,
+                    label=source if number == 0 else "",
+                )
+        rows[-1].append(panel)
+    return Picture(rows, size=(WIDE, 2.7 * len(rows) + 0.3), legend=3)
