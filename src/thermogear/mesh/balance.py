@@ -110,6 +110,11 @@ class HeatBalance:
     hot: Mapping[str, Floats]
     lost: Mapping[int, str] = field(default_factory=dict)
 
+    @property
+    def unknown(self) -> Flags:
+        """Which points are ``lost``, (count,)."""
+        return np.isin(np.arange(self.settled.size), list(self.lost))
+
     def hotter(self) -> Floats:
         """How much hotter [K] the hottest node is in the state reached from hot, (count,).
 

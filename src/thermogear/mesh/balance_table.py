@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.mesh.balance import HeatBalance
@@ -89,19 +89,18 @@ OF_OIL = (
 
 
 def blanked(
-    data: xr.Dataset, balance: HeatBalance, names: Sequence[str] | None = None
+    data: xr.Dataset, lost: NDArray[np.bool_], names: Sequence[str] | None = None
 ) -> xr.Dataset:
-    """``data`` with nan in the numbers ``names`` (all) of the points of which nothing is known.
+    """``data`` with nan in the numbers ``names`` (all) of the points that are ``lost``.
 
     Positions, phases and what else belongs to no point stay, and so do flags: the status says
     what they are worth.
     """
-    if not balance.lost:
+    if not lost.any():
         return data
     import xarray as xr
 
-    known = xr.DataArray(np.ones(balance.settled.size, np.bool_), dims="operating")
-    known[list(balance.lost)] = False
+    known = xr.DataArray(~lost, dims="operating")
     asked = set(map(str, data.data_vars) if names is None else names) - set(STATED)
     numbers = {
         str(name): values.where(known).transpose(*values.dims).assign_attrs(values.attrs)
