@@ -121,8 +121,8 @@ class Losses:
                     )
                 mine = [one.loss for name, one in self.bearings.items() if name.startswith(shaft)]
                 object.__setattr__(self, field_name, sum(map(np.asarray, mine), np.zeros(())))
-        numbers = {name: getattr(self, name) for name in _NUMBERS}
-        numbers |= {name: one.loss for name, one in self.bearings.items()}
+        numbers = {name: one.loss for name, one in self.bearings.items()}
+        numbers |= {name: getattr(self, name) for name in _NUMBERS}
         for name, value in numbers.items():
             values = np.asarray(value, dtype=float)
             if name in _NUMBERS:
