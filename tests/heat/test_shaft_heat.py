@@ -29,7 +29,7 @@ OIL = lubricant("M100")
 WARM = 340.0
 PINION = Gear(teeth=25, module=3e-3, bore_radius=0.0125, face_width=0.02)
 WHEEL = Gear(teeth=50, module=3e-3, bore_radius=0.0125, face_width=0.02)
-HUGE = Size(elements=10**12)
+HUGE = Size(elements=10**9)
 """A bearing that conducts as if its rings were one."""
 
 
@@ -90,7 +90,7 @@ def test_without_friction_and_with_huge_conductances_it_is_the_network_without_b
     compared: Compared,
 ) -> None:
     """Same shafts, same seats, at any mix of them."""
-    for length, seat in ((0.06, 10.0), (0.02, 100.0), (0.15, 1e9)):
+    for length, seat in ((0.06, 10.0), (0.02, 100.0), (0.15, 1e3)):
         chain = train(length=length, size=HUGE, friction=SMOOTH, seat=seat)
         known = network(None, shaft_length=length, bearing_conductance=seat).steady()
         found = network(chain).steady()
