@@ -244,3 +244,23 @@ def test_what_cannot_be_is_refused_in_one_line() -> None:
         lever_shares([0.0, 0.01, 0.02], 0.005)
     with pytest.raises(InputError, match=r"bore > 0.83 element diameters"):
         ring_conductance(1.0, elements=9, element_diameter=0.02, bore=0.01)
+
+
+def test_the_temperature_along_a_shaft_is_conductions_own() -> None:
+    """A thermometer half way of a plain shaft shows the mean of both ends; on a thin part more."""
+    assert train().along("wheel", 0.02, 0.03) == ("wheel_bearing_1_inner", pytest.approx(0.5))
+    sections = (
+        Section(length=0.06, outer_diameter=0.03, material=STEEL),
+        Section(length=0.06, outer_diameter=0.06, material=STEEL),
+    )
+    overhung = Shaft(sections=sections, gear_position=0.01)
+    chain = train()
+    bearings = tuple(
+        replace(one, position=place)
+        for one, place in zip(chain.bearings[:2], (0.1, 0.05), strict=True)
+    )
+    bent = ShaftHeat(shafts=(overhung, chain.shafts[1]), bearings=bearings + chain.bearings[2:])
+    node, share = bent.along("pinion", 0.02, 0.015)
+    assert (node, share) == ("pinion_bearing_1_inner", pytest.approx(0.5))
+    with pytest.raises(InputError, match=r"^sensors.ring.distance: got 40 mm; allowed 0..30 mm"):
+        bent.along("pinion", 0.02, 0.04)

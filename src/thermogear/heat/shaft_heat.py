@@ -339,6 +339,31 @@ class ShaftHeat:
             held[f"{name}_inner"] += inner
         return links, held
 
+    def along(self, shaft: str, face_width: float, distance: float) -> tuple[str, float]:
+        """Where heat leaves a gear along its shaft: the next node and how far towards it.
+
+        The inner ring of the next bearing to the left of the gear, to its right where none is on
+        the left, and the share of the fall from the gear's shaft node to it that lies before
+        ``distance`` [m] from the face, 0..1 [-]. Raises beyond the bearing.
+        """
+        drawn = self.shafts[SHAFTS.index(shaft)]
+        middle = drawn.gear_position
+        mine = {n: b.position for n, b in self.named.items() if b.shaft == shaft}
+        left = {n: x for n, x in mine.items() if x < middle}
+        name = max(left, key=mine.__getitem__) if left else min(mine, key=mine.__getitem__)
+        side = -1.0 if left else 1.0
+        face = middle + side * 0.5 * face_width
+        free = side * (mine[name] - face)
+        if not 0.0 <= distance <= free:
+            raise InputError(
+                "sensors.ring.distance",
+                f"{1e3 * distance:g} mm",
+                allowed=f"0..{1e3 * free:g} mm",
+                why=f"it lies between the gear and {name.replace('_', ' ')}",
+            )
+        whole = _between(drawn, face, mine[name]).resistance
+        return f"{name}_inner", _between(drawn, face, face + side * distance).resistance / whole
+
 
 class _Piece(NamedTuple):
     """Of a piece of a shaft: resistance [K/W] along it, heat it holds [J/K]."""
