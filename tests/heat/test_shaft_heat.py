@@ -248,7 +248,10 @@ def test_what_cannot_be_is_refused_in_one_line() -> None:
 
 def test_the_temperature_along_a_shaft_is_conductions_own() -> None:
     """A thermometer half way of a plain shaft shows the mean of both ends; on a thin part more."""
-    assert train().along("wheel", 0.02, 0.03) == ("wheel_bearing_1_inner", pytest.approx(0.5))
+    assert train().along("wheel", face_width=0.02, distance=0.03) == (
+        "wheel_bearing_1_inner",
+        pytest.approx(0.5),
+    )
     sections = (
         Section(length=0.06, outer_diameter=0.03, material=STEEL),
         Section(length=0.06, outer_diameter=0.06, material=STEEL),
@@ -260,7 +263,7 @@ def test_the_temperature_along_a_shaft_is_conductions_own() -> None:
         for one, place in zip(chain.bearings[:2], (0.1, 0.05), strict=True)
     )
     bent = ShaftHeat(shafts=(overhung, chain.shafts[1]), bearings=bearings + chain.bearings[2:])
-    node, share = bent.along("pinion", 0.02, 0.015)
+    node, share = bent.along("pinion", face_width=0.02, distance=0.015)
     assert (node, share) == ("pinion_bearing_1_inner", pytest.approx(0.5))
     with pytest.raises(InputError, match=r"^sensors.ring.distance: got 40 mm; allowed 0..30 mm"):
-        bent.along("pinion", 0.02, 0.04)
+        bent.along("pinion", face_width=0.02, distance=0.04)

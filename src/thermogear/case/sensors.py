@@ -93,7 +93,9 @@ def _ring(pair: GearPair, surroundings: Surroundings, table: RingTable, course: 
     if surroundings.train is None:
         end, fall = "housing", shaft_share(gear, surroundings, table.distance)
     else:
-        end, fall = surroundings.train.along(table.gear, gear.face_width, table.distance)
+        end, fall = surroundings.train.along(
+            table.gear, face_width=gear.face_width, distance=table.distance
+        )
     true = course.temperatures[f"{table.gear}_shaft"]
     shown = true - fall * (true - course.temperatures[end])
     words = f"ring on the {table.gear}'s shaft, {1e3 * table.distance:g} mm from the gear"

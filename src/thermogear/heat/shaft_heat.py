@@ -339,7 +339,7 @@ class ShaftHeat:
             held[f"{name}_inner"] += inner
         return links, held
 
-    def along(self, shaft: str, face_width: float, distance: float) -> tuple[str, float]:
+    def along(self, shaft: str, *, face_width: float, distance: float) -> tuple[str, float]:
         """Where heat leaves a gear along its shaft: the next node and how far towards it.
 
         The inner ring of the next bearing to the left of the gear, to its right where none is on
