@@ -95,7 +95,7 @@ def test_without_friction_and_with_huge_conductances_it_is_the_network_without_b
         known = network(None, shaft_length=length, bearing_conductance=seat).steady()
         found = network(chain).steady()
         apart = [float(found[n] - known[n]) for n in known.temperatures]
-        compared("rings that are one", "one conductance a bearing", np.array(apart), 1e-6)
+        compared("rings that are one", "one conductance a bearing", np.array(apart), 1e-6, "K")
         # nor does any mass go: the rings' is on top
         chain = train(length=length)
         held = network(chain).capacities

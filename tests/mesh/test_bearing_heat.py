@@ -127,7 +127,9 @@ def test_bearings_that_are_not_there_leave_the_loop_as_it_was(
     known = heat_balance(rig, speeds, 100.0, OIL, 125e-6, QUICK, gearbox=box)
     found = settle(rig, bare, speeds, 100.0)
     apart = [found.steady[n] - known.steady[n] for n in known.steady.temperatures]
-    compared("loop with bearings that are not there", "the loop without", np.array(apart), 2e-5)
+    compared(
+        "loop with bearings that are not there", "the loop without", np.array(apart), 2e-5, "K"
+    )
 
 
 def test_a_long_warm_up_ends_in_the_balance(

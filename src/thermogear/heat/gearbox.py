@@ -150,7 +150,11 @@ class Losses:
 
 
 def joined(parts: Sequence[Losses], counts: Sequence[int]) -> Losses:
-    """Losses of ``counts`` points each, one after the other."""
+    """Losses of ``counts`` points each, one after the other.
+
+    >>> joined([Losses(mesh=200.0), Losses(mesh=[100.0])], [2, 1]).mesh
+    array([200., 200., 100.])
+    """
 
     def whole(values: Sequence[ArrayLike]) -> Floats:
         each = zip(values, counts, strict=True)
