@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear import Gear, GearPair
 from thermogear.base.materials import MATERIALS
-from thermogear.heat.shaft_heat import HeatedBearing, ShaftHeat, lever_shares
+from thermogear.heat.shaft_heat import HeatedBearing, ShaftHeat
 from thermogear.shafts.train import SHAFTS, Section, Shaft
 
 STEEL = MATERIALS["steel"]
@@ -64,9 +64,7 @@ def train(
         for d in diameters
     ]
     bearings = tuple(
-        HeatedBearing(
-            shaft=name, position=place, size=size, friction=friction, share=0.5, seat=seat
-        )
+        HeatedBearing(shaft=name, position=place, size=size, friction=friction, seat=seat)
         for name in SHAFTS
         for place in (0.0, whole)
     )
@@ -123,9 +121,8 @@ def random_train(random: np.random.Generator, pair: GearPair) -> ShaftHeat:
                 friction=Rubbing(
                     thick=9e3 * (1.54 * bore) ** 3, arm=float(random.uniform(1e-4, 4e-4)) * bore
                 ),
-                share=share,
                 seat=float(random.uniform(2.0, 40.0)),
             )
-            for place, share in zip(places, lever_shares(places, at), strict=True)
+            for place in places
         ]
     return ShaftHeat(shafts=(shafts[0], shafts[1]), bearings=tuple(bearings))

@@ -86,6 +86,21 @@ def test_lever_shares_balance_force_and_moment(place: float) -> None:
     assert signs[1] * second * 0.2 == pytest.approx(place)
 
 
+def test_each_bearing_carries_what_the_levers_say_or_what_is_given() -> None:
+    chain = train()
+    assert chain.shares == dict.fromkeys(chain.named, 0.5)
+    shaft = replace(chain.shafts[0], gear_position=0.035)
+    bent = replace(chain, shafts=(shaft, chain.shafts[1]))
+    assert bent.shares["pinion_bearing_1"] == pytest.approx(0.75)
+    assert bent.shares["pinion_bearing_2"] == pytest.approx(0.25)
+    third = replace(chain.bearings[0], position=0.1)
+    given = [replace(one, share=0.4) for one in (*chain.bearings[:2], third)]
+    three = replace(chain, bearings=(*given, *chain.bearings[2:]))
+    assert three.shares["pinion_bearing_3"] == 0.4
+    with pytest.raises(InputError, match=r"^bearings: got 3 at 0, 100, 140 mm; allowed two on a"):
+        replace(chain, bearings=(*chain.bearings, third))
+
+
 def test_without_friction_and_with_huge_conductances_it_is_the_network_without_bearings(
     compared: Compared,
 ) -> None:
@@ -237,7 +252,7 @@ def test_what_cannot_be_is_refused_in_one_line() -> None:
     with pytest.raises(InputError, match=r"two bearings in one place; allowed apart"):
         replace(chain, bearings=(*chain.bearings, one))
     with pytest.raises(InputError, match=r"a bearing at 70 mm; allowed beyond the gear's face"):
-        replace(chain, bearings=(*chain.bearings, replace(one, position=0.07))).paths(
+        replace(chain, bearings=(*chain.bearings[1:], replace(one, position=0.07))).paths(
             "pinion", 0.02, 1.0
         )
     with pytest.raises(InputError, match=r"^bearings: got 3 at 0, 10, 20 mm; allowed two on a"):

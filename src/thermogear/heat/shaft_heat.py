@@ -129,21 +129,21 @@ class HeatedBearing:
     """A rolling bearing as a source and a path of heat.
 
     ``shaft`` "pinion" or "wheel"; ``position`` [m] of its middle from the shaft's left end;
-    ``size``; ``friction``; ``share`` of the pair's normal force that it carries [-], from statics
-    (:func:`lever_shares`); ``seat`` [W/K] from the outer ring into the housing.
+    ``size``; ``friction``; ``seat`` [W/K] from the outer ring into the housing; ``share`` of the
+    pair's normal force that it carries [-], None where the levers of two bearings say it.
     """
 
     shaft: str
     position: float
     size: BearingSize
     friction: Friction
-    share: float
     seat: float
+    share: float | None = None
 
     def __post_init__(self) -> None:
         if self.shaft not in SHAFTS:
             raise InputError("bearing.shaft", repr(self.shaft), allowed=" | ".join(SHAFTS))
-        if not (np.isfinite(self.share) and self.share >= 0.0):
+        if self.share is not None and not (np.isfinite(self.share) and self.share >= 0.0):
             raise InputError("bearing.share", self.share, allowed=">= 0, finite")
         if not (np.isfinite(self.seat) and self.seat > 0.0):
             raise InputError("bearing.seat", f"{self.seat} W/K", allowed="> 0 W/K, finite")
@@ -171,12 +171,10 @@ class HeatedBearing:
         )
 
     def loss(self, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike) -> Floats:
-        """Friction moment times speed [W] at the pair's normal ``force`` [N]."""
+        """Friction moment times speed [W] at the bearing's own ``force`` [N]."""
         omega = np.abs(np.asarray(speed, dtype=float))
-        load = self.share * np.asarray(force, dtype=float)
-        return np.asarray(
-            self.friction.moment(force=load, speed=omega, viscosity=viscosity) * omega
-        )
+        moment = self.friction.moment(force=force, speed=omega, viscosity=viscosity)
+        return np.asarray(moment * omega)
 
     def capacities(self, steel: Material) -> tuple[float, float]:
         """Heat [J/K] that inner and outer ring hold, each with half of the elements.
@@ -244,6 +242,7 @@ class ShaftHeat:
                     )
             if len(set(places)) < len(places):
                 raise InputError(f"{name} shaft", "two bearings in one place", allowed="apart")
+        _ = self.shares
         if not (np.isfinite(self.factor) and self.factor > 0.0):
             raise InputError("train.factor", self.factor, allowed="> 0, finite")
 
@@ -257,6 +256,19 @@ class ShaftHeat:
                 sorted((b for b in self.bearings if b.shaft == shaft), key=lambda b: b.position), 1
             )
         }
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Force of each bearing over the pair's normal force [-], by its name."""
+        found = {}
+        for shaft, drawn in zip(SHAFTS, self.shafts, strict=True):
+            mine = {name: one for name, one in self.named.items() if one.shaft == shaft}
+            levers: tuple[float, ...] = ()
+            if any(one.share is None for one in mine.values()):
+                levers = lever_shares([b.position for b in mine.values()], drawn.gear_position)
+            for place, (name, one) in enumerate(mine.items()):
+                found[name] = levers[place] if one.share is None else one.share
+        return found
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -274,12 +286,13 @@ class ShaftHeat:
 
         ``force`` [N] of the pair, ``speeds`` [rad/s] of pinion and wheel; arrays of one shape.
         """
-        found = {}
+        found, shares = {}, self.shares
         for name, one in self.named.items():
             rings = [np.asarray(temperatures[f"{name}_{r}"], float) for r in ("inner", "outer")]
             mean = np.asarray(0.5 * (rings[0] + rings[1]))
             viscosity = kinematic_viscosity(lubricant, mean)
-            loss = one.loss(force, speeds[SHAFTS.index(one.shaft)], viscosity)
+            load = shares[name] * np.asarray(force, dtype=float)
+            loss = one.loss(load, speeds[SHAFTS.index(one.shaft)], viscosity)
             found[name] = BearingLoss(loss=loss, temperature=mean, viscosity=viscosity)
         return found
 
