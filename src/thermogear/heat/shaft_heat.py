@@ -7,7 +7,7 @@ side and on to the next. SI; positions along a shaft from its left end.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import NamedTuple, Protocol
 
@@ -101,8 +101,8 @@ def inner_share(*, element_diameter: float, mean_diameter: float) -> float:
     return float(min(0.5 + 1.08 * element_diameter / mean_diameter, 1.0))
 
 
-def lever_shares(positions: Sequence[float], gear_position: float) -> tuple[float, ...]:
-    """Force on each of two bearings over the force on the gear, by the levers; its size [-].
+def lever_shares(positions: ArrayLike, gear_position: float) -> Floats:
+    """Force on each of two bearings over the force on the gear, by the levers; its size, (2,) [-].
 
     R_1 = |x_2 - x_g|/|x_2 - x_1|, R_2 = |x_g - x_1|/|x_2 - x_1|. ``positions`` x_1, x_2 and
     ``gear_position`` x_g [m] from one end. One is above 1 where the gear overhangs. Raises for
@@ -111,17 +111,16 @@ def lever_shares(positions: Sequence[float], gear_position: float) -> tuple[floa
     >>> [f"{share:.2f}" for share in lever_shares([0.0, 0.2], 0.05)]
     ['0.75', '0.25']
     """
-    if len(positions) != 2 or positions[0] == positions[1]:
+    places = np.asarray(positions, dtype=float)
+    if places.shape != (2,) or places[0] == places[1]:
         raise InputError(
             "bearings",
-            f"{len(positions)} at {', '.join(f'{1e3 * x:g}' for x in positions)} mm",
+            f"{places.size} at {', '.join(f'{1e3 * x:g}' for x in places.ravel())} mm",
             allowed="two on a shaft, apart",
             why="only then the levers alone say what each carries",
             fix="give the shares",
         )
-    first, second = positions
-    span = abs(second - first)
-    return abs(second - gear_position) / span, abs(gear_position - first) / span
+    return np.asarray(np.abs(places[::-1] - gear_position) / np.abs(places[1] - places[0]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -263,11 +262,11 @@ class ShaftHeat:
         found = {}
         for shaft, drawn in zip(SHAFTS, self.shafts, strict=True):
             mine = {name: one for name, one in self.named.items() if one.shaft == shaft}
-            levers: tuple[float, ...] = ()
+            levers = np.empty(0)
             if any(one.share is None for one in mine.values()):
                 levers = lever_shares([b.position for b in mine.values()], drawn.gear_position)
             for place, (name, one) in enumerate(mine.items()):
-                found[name] = levers[place] if one.share is None else one.share
+                found[name] = float(levers[place]) if one.share is None else one.share
         return found
 
     @property
