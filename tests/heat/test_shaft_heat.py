@@ -79,7 +79,7 @@ def test_the_inner_ring_takes_more_of_the_heat_the_larger_the_balls() -> None:
 
 @pytest.mark.parametrize("place", [0.03, 0.1, 0.17, 0.26, -0.05])
 def test_lever_shares_balance_force_and_moment(place: float) -> None:
-    first, second = lever_shares([0.0, 0.2], place)
+    first, second = lever_shares([0.0, 0.2], gear_position=place)
     # with their signs: the nearer support of an overhung gear carries more than the force
     signs = (1.0 if place < 0.2 else -1.0, 1.0 if place > 0.0 else -1.0)
     assert signs[0] * first + signs[1] * second == pytest.approx(1.0)
@@ -256,7 +256,7 @@ def test_what_cannot_be_is_refused_in_one_line() -> None:
             "pinion", 0.02, 1.0
         )
     with pytest.raises(InputError, match=r"^bearings: got 3 at 0, 10, 20 mm; allowed two on a"):
-        lever_shares([0.0, 0.01, 0.02], 0.005)
+        lever_shares([0.0, 0.01, 0.02], gear_position=0.005)
     with pytest.raises(InputError, match=r"bore > 0.83 element diameters"):
         ring_conductance(1.0, elements=9, element_diameter=0.02, bore=0.01)
 

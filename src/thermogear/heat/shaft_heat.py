@@ -101,14 +101,14 @@ def inner_share(*, element_diameter: float, mean_diameter: float) -> float:
     return float(min(0.5 + 1.08 * element_diameter / mean_diameter, 1.0))
 
 
-def lever_shares(positions: ArrayLike, gear_position: float) -> Floats:
+def lever_shares(positions: ArrayLike, *, gear_position: float) -> Floats:
     """Force on each of two bearings over the force on the gear, by the levers; its size, (2,) [-].
 
     R_1 = |x_2 - x_g|/|x_2 - x_1|, R_2 = |x_g - x_1|/|x_2 - x_1|. ``positions`` x_1, x_2 and
     ``gear_position`` x_g [m] from one end. One is above 1 where the gear overhangs. Raises for
     another number of bearings, where statics alone does not decide, and for two in one place.
 
-    >>> [f"{share:.2f}" for share in lever_shares([0.0, 0.2], 0.05)]
+    >>> [f"{share:.2f}" for share in lever_shares([0.0, 0.2], gear_position=0.05)]
     ['0.75', '0.25']
     """
     places = np.asarray(positions, dtype=float)
@@ -264,7 +264,8 @@ class ShaftHeat:
             mine = {name: one for name, one in self.named.items() if one.shaft == shaft}
             levers = np.empty(0)
             if any(one.share is None for one in mine.values()):
-                levers = lever_shares([b.position for b in mine.values()], drawn.gear_position)
+                places = [one.position for one in mine.values()]
+                levers = lever_shares(places, gear_position=drawn.gear_position)
             for place, (name, one) in enumerate(mine.items()):
                 found[name] = float(levers[place]) if one.share is None else one.share
         return found
