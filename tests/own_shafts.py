@@ -20,11 +20,12 @@ class Size:
     """Of a bearing; left out, that of a 6205."""
 
     bore: float = 25e-3
-    outer_diameter: float = 52e-3
+    outside_diameter: float = 52e-3
     width: float = 15e-3
-    mean_diameter: float = 38.5e-3
+    pitch_diameter: float = 38.5e-3
     element_diameter: float = 7.938e-3
     elements: int = 9
+    contact_angle: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,9 +108,9 @@ def random_train(random: np.random.Generator, pair: GearPair) -> ShaftHeat:
         bore = 0.9 * float(outer.min())
         size = Size(
             bore=bore,
-            outer_diameter=2.08 * bore,
+            outside_diameter=2.08 * bore,
             width=0.6 * bore,
-            mean_diameter=1.54 * bore,
+            pitch_diameter=1.54 * bore,
             element_diameter=0.32 * bore,
             elements=int(random.integers(7, 12)),
         )

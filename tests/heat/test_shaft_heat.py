@@ -67,10 +67,14 @@ def test_rings_conduct_what_the_source_says(
 
 
 def test_the_inner_ring_takes_more_of_the_heat_the_larger_the_balls() -> None:
-    assert inner_share(element_diameter=1e-9, mean_diameter=1.0) == pytest.approx(0.5)
-    assert inner_share(element_diameter=11.5e-3, mean_diameter=43.5e-3) == pytest.approx(
+    assert inner_share(element_diameter=1e-9, pitch_diameter=1.0) == pytest.approx(0.5)
+    assert inner_share(element_diameter=11.5e-3, pitch_diameter=43.5e-3) == pytest.approx(
         0.7855, abs=1e-4
     )
+    whole, leaning = (
+        inner_share(angle, element_diameter=9.5e-3, pitch_diameter=46e-3) for angle in (0.0, 0.7)
+    )
+    assert 0.5 < leaning < whole
     chain = train()
     found = chain.sources(watts(chain, 10.0))
     assert sum(map(float, found.values())) == pytest.approx(40.0, rel=1e-15)
@@ -163,7 +167,7 @@ def test_rings_weigh_about_what_catalogues_say() -> None:
         (Size(), 0.128),
         (
             Size(
-                bore=40e-3, outer_diameter=90e-3, width=23e-3, mean_diameter=65e-3,
+                bore=40e-3, outside_diameter=90e-3, width=23e-3, pitch_diameter=65e-3,
                 element_diameter=15.081e-3, elements=8,
             ),
             0.63,
