@@ -10,7 +10,9 @@ import pytest
 import xarray as xr
 
 from said import numbers
+from thermogear.base.display import reach
 from thermogear.base.errors import InputError
+from thermogear.base.materials import MATERIALS
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, load_example
 from thermogear.case.size import require_points
@@ -19,9 +21,12 @@ from thermogear.mesh.balance import heat_balance
 from thermogear.mesh.body_estimates import ESTIMATES, body_estimates
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.trends import _rank, _rank_along, _rises, _verdict
+from thermogear.study.scuffing import load_stage, not_steel
 from thermogear.study.temperature import MESH_POSITIONS, PATH_POSITIONS, thermal_map
+from thermogear.views.pages.temperature import page
 
 RPM = np.pi / 30.0
+STEEL = MATERIALS["steel"]
 SPEEDS = tuple(RPM * np.array([500.0, 1500.0, 2500.0]))
 TORQUES = (50.0, 100.0)
 
@@ -70,12 +75,21 @@ def test_the_scuffing_margin_is_what_the_contact_leaves_of_the_limit(tree: xr.Da
     np.testing.assert_allclose(grid["scuffing_margin"].values, left, rtol=1e-12)
 
 
-@pytest.mark.slow
-def test_without_a_load_stage_there_is_no_margin() -> None:
-    case = rig()
-    bare = thermal_map(replace(case, scuffing_load_stage=None), SPEEDS[:1], TORQUES[:1])
-    assert np.isnan(bare["map"]["scuffing_margin"].values).all()
-    assert "scuffing" in bare.attrs["notices"]
+def test_without_a_load_stage_the_margin_is_that_of_the_stage_the_answers_assume() -> None:
+    case = replace(rig(), scuffing_load_stage=None)
+    bare = thermal_map(case, SPEEDS[:1], TORQUES[:1])
+    grid = bare["map"]
+    left = scuffing_temperature(load_stage(case).stage) - grid["greatest_contact_temperature"]
+    np.testing.assert_allclose(grid["scuffing_margin"].values, left.values, rtol=1e-12)
+    texts = [one["text"] for one in json.loads(bare.attrs["notices"])]
+    (told,) = (one for one in texts if "scuffing_load_stage" in one)
+    assert "stage 12, assumed" in told
+    # the stage is one of steel on steel
+    soft = replace(case.pair.wheel, material=replace(STEEL, youngs_modulus=3e9))
+    other = replace(case, pair=replace(case.pair, wheel=soft))
+    assert load_stage(other).assumed
+    assert not_steel(other) == STEEL.name
+    assert not_steel(case) == ""
 
 
 def test_conclusion_one_on_the_rig(tree: xr.DataTree) -> None:
@@ -179,3 +193,30 @@ def test_the_map_says_where_two_states_are_steady() -> None:
     texts = [one["text"] for one in json.loads(tree.attrs["notices"])]
     (told,) = (one for one in texts if "another steady state" in one)
     assert numbers(told)[:2] == [2.0, 1.0]
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+def test_a_point_that_does_not_settle_has_a_status_and_no_number() -> None:
+    case = rig(
+        'gearbox.housing_coefficient="1 W/(m^2 K)"', 'gearbox.housing_area="0.1 m^2"',
+        'gearbox.ambient="40 degC"',
+    )  # fmt: skip
+    tree = thermal_map(case, tuple(RPM * np.array([100.0, 6000.0])), (10.0, 5000.0))
+    grid = tree["map"]
+    lost = grid["status"].values == STATUS.index("not_converged")
+    assert lost.any()
+    assert not lost.all()
+    for name, values in grid.data_vars.items():
+        if values.dtype.kind != "f":
+            continue
+        known = np.isfinite(values.transpose("pinion_speed", "pinion_torque", ...).values)
+        assert not known[lost].any(), name
+        if name not in ("hot_node_temperature", "proportional_jam_temperature"):
+            assert known[~lost].any(), name
+    assert not (grid["tempered"].values[lost] | grid["within_oil_range"].values[lost]).any()
+    frame = tree.to_frame()
+    rows = frame["status"] == "not_converged"
+    assert int(rows.sum()) == int(lost.sum())
+    assert frame.loc[rows, "greatest_flash [K]"].isna().all()
+    (line,) = (one for one in page(tree).lines() if one.startswith("greatest flash"))
+    assert line.endswith(reach(grid["greatest_flash"].values[~lost]))

@@ -90,9 +90,14 @@ def _thermocouple(pair: GearPair, table: ThermocoupleTable, course: WarmUp) -> S
 
 def _ring(pair: GearPair, surroundings: Surroundings, table: RingTable, course: WarmUp) -> Shown:
     gear = pair.pinion if table.gear == "pinion" else pair.wheel
-    fall = shaft_share(gear, surroundings, table.distance)
+    if surroundings.train is None:
+        end, fall = "housing", shaft_share(gear, surroundings, table.distance)
+    else:
+        end, fall = surroundings.train.along(
+            table.gear, face_width=gear.face_width, distance=table.distance
+        )
     true = course.temperatures[f"{table.gear}_shaft"]
-    shown = true - fall * (true - course.temperatures["housing"])
+    shown = true - fall * (true - course.temperatures[end])
     words = f"ring on the {table.gear}'s shaft, {1e3 * table.distance:g} mm from the gear"
     return Shown(name="ring", words=words, shown=shown, true=true)
 

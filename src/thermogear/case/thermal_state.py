@@ -130,11 +130,11 @@ class ThermalState:
         if balance is None:
             return cycle
         if self == UNDEFORMED:
-            return blanked(cycle, balance, OF_OIL)
+            return blanked(cycle, balance.unknown, OF_OIL)
         status = cycle["status"]
         values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
         kept = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
-        return blanked(kept, balance)
+        return blanked(kept, balance.unknown)
 
 
 StateLike: TypeAlias = "ThermalState | str | float | None"

@@ -8,8 +8,9 @@ and meant to be replaced by a user who knows better.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Protocol
 
 import numpy as np
@@ -22,6 +23,7 @@ from thermogear.heat.convection import rotating_face_convection, transition_piec
 from thermogear.heat.expansion import GearLike
 from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import Link, ThermalNetwork
+from thermogear.heat.shaft_heat import BearingLoss, ShaftHeat
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +54,9 @@ class Surroundings:
     covers (0..1), pinion and wheel; ``shaft_length`` [m] from the gear to its bearings on
     each side; ``bearing_conductance`` [W/K] of one bearing into the housing; ``oil_mass``,
     ``housing_mass`` [kg] for the warm-up. ``oil_flow`` [m^3/s] of oil supplied at
-    ``supply_temperature`` [K] and drawn off as warm as the bath; 0 for a closed bath.
+    ``supply_temperature`` [K] and drawn off as warm as the bath; 0 for a closed bath. ``train``:
+    shafts and bearings as they are drawn, in place of length and conductance; None has a shaft with
+    two like bearings at each gear.
 
     >>> Surroundings(ambient=303.15).oil_flow
     0.0
@@ -70,11 +74,14 @@ class Surroundings:
     housing_specific_heat: float = 470.0
     oil_flow: float = 0.0
     supply_temperature: float = 333.15
+    train: ShaftHeat | None = None
 
     def __post_init__(self) -> None:
         for name in ("ambient", "supply_temperature"):
             BODY.require(f"surroundings.{name}", getattr(self, name))
         for entry in fields(self):
+            if entry.name == "train":
+                continue
             values = np.asarray(getattr(self, entry.name), dtype=float)
             least = values >= 0.0 if entry.name == "oil_flow" else values > 0.0
             if not np.all(np.isfinite(values) & least):
@@ -89,7 +96,9 @@ class Losses:
 
     ``mesh`` and the share ``partition_1`` of it that enters the pinion's flank; ``churning`` into
     the oil; ``bearing_1``, ``bearing_2`` (with seals) into the shafts. ``contact`` [W/K] is no
-    loss but comes of the same contact: the conductance between both flanks.
+    loss but comes of the same contact: the conductance between both flanks. ``bearings``: of each
+    bearing of a drawn train into its rings, by its name; then ``bearing_1`` and ``bearing_2`` are
+    the sums of both shafts.
 
     >>> float(Losses(mesh=200.0, bearing_1=20.0).partition_1)
     0.5
@@ -101,24 +110,73 @@ class Losses:
     bearing_1: ArrayLike = 0.0
     bearing_2: ArrayLike = 0.0
     contact: ArrayLike = 0.0
+    bearings: Mapping[str, BearingLoss] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for entry in fields(self):
-            values = np.asarray(getattr(self, entry.name), dtype=float)
-            object.__setattr__(self, entry.name, values)
+        if self.bearings:
+            for field_name, shaft in (("bearing_1", "pinion"), ("bearing_2", "wheel")):
+                if np.any(getattr(self, field_name)):
+                    raise InputError(
+                        f"losses.{field_name}", "beside the bearings one by one", fix="leave it out"
+                    )
+                mine = [one.loss for name, one in self.bearings.items() if name.startswith(shaft)]
+                object.__setattr__(self, field_name, sum(map(np.asarray, mine), np.zeros(())))
+        numbers = {name: one.loss for name, one in self.bearings.items()}
+        numbers |= {name: getattr(self, name) for name in _NUMBERS}
+        for name, value in numbers.items():
+            values = np.asarray(value, dtype=float)
+            if name in _NUMBERS:
+                object.__setattr__(self, name, values)
             if not np.all(np.isfinite(values) & (values >= 0.0)):
-                unit = "W/K" if entry.name == "contact" else "W"
-                raise InputError(f"losses.{entry.name}", f"{values} {unit}", allowed=">= 0, finite")
+                unit = "W/K" if name == "contact" else "W"
+                raise InputError(f"losses.{name}", f"{values} {unit}", allowed=">= 0, finite")
         if np.any(np.asarray(self.partition_1) > 1.0):
             raise InputError("losses.partition_1", self.partition_1, allowed="0 .. 1")
 
+    def changed(self, change: Callable[[ArrayLike], Floats]) -> Losses:
+        """The same with every number changed, not checked: nan heats no network."""
+        found = copy(self)
+        for name in _NUMBERS:
+            object.__setattr__(found, name, change(getattr(self, name)))
+        each = {name: one.changed(change) for name, one in self.bearings.items()}
+        object.__setattr__(found, "bearings", each)
+        return found
+
     def unknown_where(self, lost: NDArray[np.bool_]) -> Losses:
         """The same with nan where nothing is known; such losses heat no network."""
-        found = copy(self)
-        for entry in fields(self):
-            values = np.broadcast_to(np.asarray(getattr(self, entry.name), float), lost.shape)
-            object.__setattr__(found, entry.name, np.where(lost, np.nan, values))
-        return found
+        return self.changed(
+            lambda v: np.where(lost, np.nan, np.broadcast_to(np.asarray(v, float), lost.shape))
+        )
+
+
+def joined(parts: Sequence[Losses], counts: Sequence[int]) -> Losses:
+    """Losses of ``counts`` points each, one after the other.
+
+    >>> joined([Losses(mesh=200.0), Losses(mesh=[100.0])], [2, 1]).mesh
+    array([200., 200., 100.])
+    """
+
+    def whole(values: Sequence[ArrayLike]) -> Floats:
+        each = zip(values, counts, strict=True)
+        return np.concatenate([np.broadcast_to(np.asarray(v, float), (n,)) for v, n in each])
+
+    found = copy(parts[0])
+    for name in _NUMBERS:
+        object.__setattr__(found, name, whole([getattr(one, name) for one in parts]))
+    bearings = {
+        name: BearingLoss(
+            **{
+                entry.name: whole([getattr(one.bearings[name], entry.name) for one in parts])
+                for entry in fields(BearingLoss)
+            }
+        )
+        for name in found.bearings
+    }
+    object.__setattr__(found, "bearings", bearings)
+    return found
+
+
+_NUMBERS = ("mesh", "partition_1", "churning", "bearing_1", "bearing_2", "contact")
 
 
 def oil_prandtl(lubricant: Lubricant, temperature: ArrayLike) -> Floats:
@@ -256,7 +314,8 @@ def thermal_network(
     """The heat balance of a gear pair as a :class:`ThermalNetwork`.
 
     Nodes ambient, housing, oil (and supply with an oil flow), pinion_tooth, pinion_body,
-    pinion_shaft, wheel_tooth, wheel_body, wheel_shaft.
+    pinion_shaft, wheel_tooth, wheel_body, wheel_shaft; with a drawn train inner and outer ring of
+    every bearing (:class:`~thermogear.heat.shaft_heat.ShaftHeat`).
 
     ``speed`` pinion [rad/s], ``losses``, ``oil_temperature`` [K] at which the oil's properties
     are taken (a guess; repeat with the result), ``surroundings`` (default: ours), ``measured``
@@ -308,30 +367,37 @@ def thermal_network(
             oil_temperature=oil_temperature,
         )
         steel, bore = gear.material, gear.bore_radius
-        along = steel.thermal_conductivity * np.pi * bore**2 / around.shaft_length
-        mount = 2.0 / (1.0 / along + 1.0 / around.bearing_conductance)
         links += [
             Link(tooth, body, outer),
             Link(body, shaft, inner),
             Link(tooth, "oil", share * film * flanks),
             Link(body, "oil", share * faces),
-            Link(shaft, "housing", mount),
         ]
         ring = np.pi * (gear.root_radius**2 - bore**2)
         rim = 0.5 * np.pi * (gear.tip_radius**2 - gear.root_radius**2)
         capacities[tooth] = _heat_capacity(steel, rim, gear.face_width)
         capacities[body] = _heat_capacity(steel, ring, gear.face_width)
-        capacities[shaft] = _heat_capacity(
-            steel, np.pi * bore**2, gear.face_width + 2.0 * around.shaft_length
-        )
+        if around.train is None:
+            along = steel.thermal_conductivity * np.pi * bore**2 / around.shaft_length
+            mount = 2.0 / (1.0 / along + 1.0 / around.bearing_conductance)
+            links.append(Link(shaft, "housing", mount))
+            capacities[shaft] = _heat_capacity(
+                steel, np.pi * bore**2, gear.face_width + 2.0 * around.shaft_length
+            )
+        else:
+            paths, held = around.train.paths(name, gear.face_width, omega)
+            links += paths
+            capacities |= held
     links.append(Link("pinion_tooth", "wheel_tooth", losses.contact))
     heat = np.asarray(losses.mesh)
-    sources = {
+    sources: dict[str, ArrayLike] = {
         "pinion_tooth": heat * losses.partition_1,
         "wheel_tooth": heat * (1.0 - np.asarray(losses.partition_1)),
         "oil": losses.churning,
-        "pinion_shaft": losses.bearing_1,
-        "wheel_shaft": losses.bearing_2,
     }
+    if around.train is None:
+        sources |= {"pinion_shaft": losses.bearing_1, "wheel_shaft": losses.bearing_2}
+    else:
+        sources |= around.train.sources(losses.bearings)
     fixed.update(measured or {})
     return ThermalNetwork(tuple(links), sources, fixed, capacities)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,7 +52,7 @@ NODES = (
     "housing",
     "oil",
 )
-"""The nodes of the network whose temperature is computed."""
+"""The nodes of the network whose temperature is computed; a drawn train has more."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,8 +61,9 @@ class Gearbox:
 
     ``surroundings`` of the network; ``immersion`` of the wheel, depth over tip radius (0: spray);
     ``bearing_coefficient`` of the four shaft bearings, each of the bore's diameter and carrying
-    half the normal force; ``measured`` temperatures [K] that hold single nodes of the network
-    ("oil", "housing", "pinion_tooth", ...), numbers or arrays over operating points.
+    half the normal force, where ``surroundings`` have no drawn train; ``measured`` temperatures [K]
+    that hold single nodes of the network ("oil", "housing", "pinion_tooth", ...), numbers or arrays
+    over operating points.
 
     >>> Gearbox(immersion=0.5).bearing_coefficient
     0.0015
@@ -71,6 +73,12 @@ class Gearbox:
     immersion: float = 0.3
     bearing_coefficient: float = 0.0015
     measured: Mapping[str, ArrayLike] = field(default_factory=dict)
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """:data:`NODES` and the rings of the bearings of a drawn train."""
+        train = self.surroundings.train
+        return NODES if train is None else (*NODES, *train.nodes)
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.immersion <= 1.0:
@@ -110,12 +118,17 @@ class HeatBalance:
     hot: Mapping[str, Floats]
     lost: Mapping[int, str] = field(default_factory=dict)
 
+    @property
+    def unknown(self) -> Flags:
+        """Which points are ``lost``, (count,)."""
+        return np.isin(np.arange(self.settled.size), list(self.lost))
+
     def hotter(self) -> Floats:
         """How much hotter [K] the hottest node is in the state reached from hot, (count,).
 
         0 where it is the same state, nan where from hot none is reached.
         """
-        each = [self.hot[name] - self.steady.temperatures[name] for name in NODES]
+        each = [hot - self.steady.temperatures[name] for name, hot in self.hot.items()]
         return np.where(self.several, np.max(each, axis=0), 0.0)
 
 
@@ -186,7 +199,10 @@ def heat_balance(
         tuple(deviations),
     )
     loop.refuse_what_never_works()
-    stand_in, held = np.full((loop.count, len(NODES)), max(STAND_IN, reference + OVER)), loop.held
+    stand_in, held = (
+        np.full((loop.count, len(box.nodes)), max(STAND_IN, reference + OVER)),
+        loop.held,
+    )
 
     def course(kelvin: float) -> Course:
         return follow(
@@ -223,7 +239,7 @@ def heat_balance(
         residual=np.where(lost, np.nan, cold.residual),
         settled=settled & known & ~lost,
         several=several,
-        hot={name: hot[:, place] for place, name in enumerate(NODES)},
+        hot={name: hot[:, place] for place, name in enumerate(box.nodes)},
         lost=dict(sorted(cold.lost.items())),
     )
 
@@ -274,15 +290,16 @@ class _Loop:
     @property
     def held(self) -> Flags:
         """Which nodes are held at a given temperature, (count, nodes)."""
-        row = np.array([name in self.box.measured for name in NODES])
+        row = np.array([name in self.box.measured for name in self.box.nodes])
         return np.broadcast_to(row, (self.count, row.size))
 
     def at(self, kelvin: float) -> Floats:
         """The state with every free node at one temperature."""
-        nodes = np.full((self.count, len(NODES)), float(kelvin))
+        names = self.box.nodes
+        nodes = np.full((self.count, len(names)), float(kelvin))
         for name, values in self.measured.items():
-            if name in NODES:
-                nodes[:, NODES.index(name)] = values
+            if name in names:
+                nodes[:, names.index(name)] = values
         return nodes
 
     def refuse_what_never_works(self) -> None:
@@ -295,9 +312,13 @@ class _Loop:
             if len(lost) == self.count:
                 self.respond(nodes[:1], self.everything[:1])
 
+    def named(self, nodes: Floats) -> dict[str, Floats]:
+        """The temperatures [K] of a state by node."""
+        return dict(zip(self.box.nodes, nodes.T, strict=True))
+
     def operating(self, nodes: Floats, index: Indices) -> Operating:
         """The operating points ``index`` in the state ``nodes``."""
-        t = dict(zip(NODES, nodes.T, strict=True))
+        t = self.named(nodes)
         return Operating(
             self.speed[index],
             self.torque[index],
@@ -313,7 +334,7 @@ class _Loop:
         """The network with the losses of the state, and whether its loaded contact is known."""
         here = self.operating(nodes, index)
         elastic = elastic_pair(HotPair(self.pair, here, self.model), self.deviations)
-        losses, known = pair_losses(self.pair, here, elastic, self.box)
+        losses, known = pair_losses(self.pair, here, elastic, self.box, self.named(nodes))
         network = thermal_network(
             self.pair.pinion,
             self.pair.wheel,
@@ -330,7 +351,7 @@ class _Loop:
         """The steady state of that network; one beyond 700 K is none."""
         network, _, known = self.network(nodes, index)
         steady = network.steady()
-        found = [np.broadcast_to(steady[name], (index.size,)) for name in NODES]
+        found = [np.broadcast_to(steady[name], (index.size,)) for name in self.box.nodes]
         reached = np.stack(found, axis=1)
         return Response(np.minimum(reached, HOTTEST), known & (reached < HOTTEST).all(axis=1))
 
@@ -350,12 +371,17 @@ def node_temperatures(nodes: Mapping[str, ArrayLike], reference: float) -> Tempe
 
 
 def pair_losses(
-    pair: GearPair, operating: Operating, elastic: ElasticPair, box: Gearbox
+    pair: GearPair,
+    operating: Operating,
+    elastic: ElasticPair,
+    box: Gearbox,
+    nodes: Mapping[str, ArrayLike],
 ) -> tuple[Losses, Flags]:
     """Mesh, churning and bearing losses [W] and the flanks' conductance [W/K], (count,).
 
-    At the present temperatures; with them whether the loaded contact is known, (count,). Warns
-    where the film at the flanks leaves the range of the oil's viscosity line.
+    At the present temperatures, the rings' those of ``nodes`` [K]; with them whether the loaded
+    contact is known, (count,). Warns where the film at the flanks leaves the range of the oil's
+    viscosity line.
     """
     means = mesh_heat(elastic)
     FrictionPath(elastic, np.array([pair.path.c])).warn_beyond_oil()
@@ -372,17 +398,22 @@ def pair_losses(
         if box.immersion > 0.0
         else np.zeros_like(means.power)
     )
-    half = 0.5 * elastic.force
-    first, second = (
-        2.0 * bearing_loss(half, 2.0 * gear.bore_radius, omega, box.bearing_coefficient)
-        for gear, omega in ((pair.pinion, operating.speed), (pair.wheel, wheel_speed))
-    )
+    train = box.surroundings.train
+    if train is None:
+        half = 0.5 * elastic.force
+        first, second = (
+            2.0 * bearing_loss(half, 2.0 * gear.bore_radius, omega, box.bearing_coefficient)
+            for gear, omega in ((pair.pinion, operating.speed), (pair.wheel, wheel_speed))
+        )
+        bearings: dict[str, Any] = {"bearing_1": first, "bearing_2": second}
+    else:
+        speeds = operating.speed, wheel_speed
+        bearings = {"bearings": train.losses(nodes, oil, elastic.force, speeds)}
     losses = Losses(
         mesh=means.power,
         partition_1=means.partition,
         churning=churning,
-        bearing_1=first,
-        bearing_2=second,
         contact=means.conductance,
+        **bearings,
     )
     return losses, means.settled

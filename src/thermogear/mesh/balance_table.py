@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.vocabulary import STATUS, label
+from thermogear.heat.gearbox import Losses
 from thermogear.mesh.balance import HeatBalance
 
 if TYPE_CHECKING:
@@ -31,10 +32,36 @@ _MEANING = {
 }
 
 
+def of_bearings(
+    losses: Losses, along: str, count: int
+) -> tuple[dict[str, tuple[Any, ...]], dict[str, list[str]]]:
+    """Loss, temperature and viscosity of every bearing over (``along``, bearing), for ``label``.
+
+    With the coordinate of their names; nothing without a drawn train.
+    """
+    if not losses.bearings:
+        return {}, {}
+
+    def stacked(name: str) -> NDArray[np.float64]:
+        each = [getattr(one, name) for one in losses.bearings.values()]
+        return np.stack([np.broadcast_to(np.asarray(v, float), (count,)) for v in each], axis=-1)
+
+    found = {
+        f"bearing_{name}": ((along, "bearing"), stacked(name), unit, words)
+        for name, unit, words in (
+            ("loss", "W", "friction of a bearing"),
+            ("temperature", "K", "mean temperature of both rings of a bearing"),
+            ("viscosity", "m^2/s", "kinematic viscosity of the oil at a bearing's temperature"),
+        )
+    }
+    return found, {"bearing": list(losses.bearings)}
+
+
 def balance_dataset(balance: HeatBalance) -> xr.Dataset:
     """Node temperatures, losses, iterations, residual and status, axis ``operating`` first.
 
-    Status not_converged where the loop did not settle.
+    Of each bearing of a drawn train its loss, temperature and viscosity. Status not_converged where
+    the loop did not settle.
     """
     count = balance.operating.speed.size
     nodes = {
@@ -56,14 +83,16 @@ def balance_dataset(balance: HeatBalance) -> xr.Dataset:
         "several": (("operating",), balance.several.astype(np.int8)),
     }
     described: dict[str, Any] = {n: (*entry, *_MEANING[n]) for n, entry in values.items()}
+    bearings, names = of_bearings(balance.losses, "operating", count)
     status = np.where(balance.settled, STATUS.index("ok"), STATUS.index("not_converged"))
     return label(
-        described | {"status": (("operating",), status)},
+        described | bearings | {"status": (("operating",), status)},
         {
             "node": list(nodes),
             "loss_kind": list(LOSSES),
             "pinion_speed": ("operating", balance.operating.speed),
             "pinion_torque": ("operating", balance.operating.torque),
+            **names,
         },
         {"lost": json.dumps({str(place): why for place, why in balance.lost.items()})},
     )
@@ -89,19 +118,18 @@ OF_OIL = (
 
 
 def blanked(
-    data: xr.Dataset, balance: HeatBalance, names: Sequence[str] | None = None
+    data: xr.Dataset, lost: NDArray[np.bool_], names: Sequence[str] | None = None
 ) -> xr.Dataset:
-    """``data`` with nan in the numbers ``names`` (all) of the points of which nothing is known.
+    """``data`` with nan in the numbers ``names`` (all) of the points that are ``lost``.
 
     Positions, phases and what else belongs to no point stay, and so do flags: the status says
     what they are worth.
     """
-    if not balance.lost:
+    if not lost.any():
         return data
     import xarray as xr
 
-    known = xr.DataArray(np.ones(balance.settled.size, np.bool_), dims="operating")
-    known[list(balance.lost)] = False
+    known = xr.DataArray(~lost, dims="operating")
     asked = set(map(str, data.data_vars) if names is None else names) - set(STATED)
     numbers = {
         str(name): values.where(known).transpose(*values.dims).assign_attrs(values.attrs)

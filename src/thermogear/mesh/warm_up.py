@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,10 +19,10 @@ from thermogear.base.progress import Progress, silent
 from thermogear.gears.deviations import Deviation
 from thermogear.gears.pair import GearPair
 from thermogear.heat.free_convection import with_free_convection
-from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
+from thermogear.heat.gearbox import Losses, Surroundings, joined, thermal_network
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.transient import Course, State, Stretch, follow
-from thermogear.mesh.balance import NODES, Gearbox, node_temperatures, pair_losses
+from thermogear.mesh.balance import Gearbox, node_temperatures, pair_losses
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.cycle import mesh_cycle
 from thermogear.mesh.elastic import elastic_pair
@@ -239,6 +239,7 @@ def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Su
     known = _known(factors)
     wetted, shafts = known.get("wetted", 1.0), known.get("shafts", 1.0)
     first, second = surroundings.wetted_share
+    train = surroundings.train
     return replace(
         surroundings,
         housing_coefficient=surroundings.housing_coefficient * known.get("housing", 1.0),
@@ -247,6 +248,7 @@ def with_factors(surroundings: Surroundings, factors: Mapping[str, float]) -> Su
         wetted_share=(first * wetted, second * wetted),
         shaft_length=surroundings.shaft_length / shafts,
         bearing_conductance=surroundings.bearing_conductance * shafts,
+        train=None if train is None else replace(train, factor=train.factor * shafts),
     )
 
 
@@ -271,7 +273,7 @@ def _group(first: str, second: str) -> str | None:
     kinds = {end.rpartition("_")[2] for end in ends}
     if "oil" in ends and kinds & {"tooth", "body"}:
         return "wetted"
-    if "housing" in ends and "shaft" in kinds:
+    if kinds & {"inner", "outer"} or ("housing" in ends and "shaft" in kinds):
         return "shafts"
     return None
 
@@ -302,16 +304,23 @@ class _Chain:
         named = given if isinstance(given, Mapping) else {}
         whole = cold if given is None or isinstance(given, Mapping) else float(given)
         bounds.BODY.require("start", [whole, *named.values()])
-        free = self.network_of(0)({name: np.array([whole]) for name in NODES}).free
+        free = self.network_of(0)({name: np.array([whole]) for name in self.box.nodes}).free
         for name in named:
             if name not in free:
                 raise InputError("start", repr(name), allowed=" | ".join(free))
         return {name: float(named.get(name, whole)) for name in free}
 
+    def nodes(self, state: State) -> dict[str, Floats]:
+        """Temperatures [K] of all nodes, held ones too, (count,)."""
+        whole = np.broadcast_shapes(*(np.shape(t) for t in state.values()))
+        return {
+            n: np.full(whole, self.held[n]) if n in self.held else state[n] for n in self.box.nodes
+        }
+
     def operating(self, state: State, piece: ArrayLike) -> Operating:
         """The operating points of temperatures (count,) in ``piece`` of the duty."""
         whole = np.broadcast_shapes(*(np.shape(t) for t in state.values()))
-        at = {n: np.full(whole, self.held[n]) if n in self.held else state[n] for n in NODES}
+        at = self.nodes(state)
         place = np.broadcast_to(np.asarray(piece, dtype=int), whole)
         return Operating(
             self.duty.speed[place],
@@ -323,10 +332,10 @@ class _Chain:
             self.housing,
         )
 
-    def losses(self, at: Operating) -> Losses:
-        """Of the whole chain at operating points, no interpolation."""
-        hot = HotPair(self.pair, at, self.model)
-        losses, known = pair_losses(self.pair, at, elastic_pair(hot, self.deviations), self.box)
+    def losses(self, state: State, at: Operating) -> Losses:
+        """Of the whole chain at the operating points of a state, no interpolation."""
+        elastic = elastic_pair(HotPair(self.pair, at, self.model), self.deviations)
+        losses, known = pair_losses(self.pair, at, elastic, self.box, self.nodes(state))
         if not known.all():
             count = int(np.count_nonzero(~known))
             raise ConvergenceError(
@@ -345,7 +354,7 @@ class _Chain:
                 self.pair.pinion,
                 self.pair.wheel,
                 at.speed,
-                self.losses(at),
+                self.losses(state, at),
                 self.lubricant,
                 at.oil_temperature,
                 around,
@@ -417,19 +426,10 @@ class _Chain:
             for first in range(0, course.time.size, BLOCK):
                 here = slice(first, first + BLOCK)
                 state = {name: t[here] for name, t in course.temperatures.items()}
-                parts.append(self.losses(self.operating(state, course.stretch[here])))
+                parts.append(self.losses(state, self.operating(state, course.stretch[here])))
         for text in dict.fromkeys(str(one.message) for one in told):
             warnings.warn(text, ValidityWarning, stacklevel=3)
-        shape = (course.time.size,)
-
-        def whole(name: str) -> Floats:
-            values = [np.asarray(getattr(part, name), dtype=float) for part in parts]
-            sizes = [min(BLOCK, shape[0] - BLOCK * k) for k in range(len(parts))]
-            return np.concatenate(
-                [np.broadcast_to(v, (n,)) for v, n in zip(values, sizes, strict=True)]
-            )
-
-        return Losses(**{entry.name: whole(entry.name) for entry in fields(Losses)})
+        return joined(parts, [min(BLOCK, course.time.size - BLOCK * k) for k in range(len(parts))])
 
 
 MESHING = {

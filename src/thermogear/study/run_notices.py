@@ -411,6 +411,11 @@ def _balance_facts(groups: Mapping[str, xr.Dataset]) -> list[Fact]:
                 found.append(Fact(group, f"{node} temperature", CELSIUS.text(float(kelvin), 1)))
             for kind, watts in zip(here["loss_kind"].values, here["loss"].values, strict=True):
                 found.append(Fact(group, f"{kind} loss", float(watts), "W"))
+            for name in here["bearing"].values if "bearing" in here.coords else ():
+                one = here.sel(bearing=name)
+                thin = 1e6 * float(one["bearing_viscosity"])
+                found.append(Fact(group, f"{name} loss", float(one["bearing_loss"]), "W"))
+                found.append(Fact(group, f"{name} viscosity", thin, "mm^2/s"))
             found.append(Fact(group, "iterations", int(here["iterations"])))
             found.append(Fact(group, "residual", float(here["residual"]), "K"))
     return found

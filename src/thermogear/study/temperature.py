@@ -29,6 +29,7 @@ from thermogear.mesh.operating import Operating
 from thermogear.mesh.trends import conclusion, verdicts
 from thermogear.results.result import Notice, Result
 from thermogear.study.notices import reasons, several_words
+from thermogear.study.scuffing import load_stage, not_steel
 
 Floats = NDArray[np.float64]
 KIND = "temperature"
@@ -40,6 +41,7 @@ PATH_POSITIONS = 81
 MESH_POSITIONS = 64
 BLOCK = 60
 """Operating points that are solved together: progress and memory, not the result."""
+LOST = STATUS.index("not_converged")
 GRID = ("pinion_speed", "pinion_torque")
 
 
@@ -57,7 +59,7 @@ def thermal_map(
     alone: :func:`~thermogear.study.warm_up.warm_up_survey` has the way there.
 
     Groups: ``map`` over (pinion_speed, pinion_torque), ``status`` per point (ok, jammed,
-    not_converged; nan where a law has no value) with ``iterations`` and ``residual``, and
+    not_converged; then every number is nan) with ``iterations`` and ``residual``, and
     ``several`` where from hot another state is steady than the one told, from cold;
     ``conclusion`` (friction, flash and growth, mixed and dry, with rank correlations).
     For the thesis's rig ``verdicts`` (attribute) say what holds of the
@@ -144,10 +146,10 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     friction = (cycle["friction_coefficient"] * weight).sum("path_position").values
     weighed = weight.sum("path_position").values
     contact = greatest("contact_temperature")
-    stage = case.scuffing_load_stage
+    stage, assumed = load_stage(case)
     margin = (
         np.full(contact.shape, np.nan)
-        if stage is None
+        if assumed and not_steel(case)
         else scuffing_margin(limit=scuffing_temperature(stage), temperature=contact)
     )
     least = cycle["half_backlash_curve"].min("mesh_phase").values
@@ -200,20 +202,21 @@ def _gathered(case: GearCase, settled: HeatBalance, cycle: xr.Dataset) -> xr.Dat
     for name in ("friction_coefficient", "flash_temperature"):
         variables[f"{name.partition('_')[0]}_along"] = labelled(name, (by, cycle[name].values))
     merged = data.assign(variables)
-    status = np.where(settled.settled, cycle["status"].values, STATUS.index("not_converged"))
+    status = np.where(settled.settled, cycle["status"].values, LOST)
+    lost = np.asarray(status == LOST)
     merged["status"] = labelled("status", (along, status))
     low, high = operating.lubricant.temperature_range
     oil = np.asarray(operating.oil_temperature)
     hottest = case.pair.pinion.material.tempering_temperature
     teeth = np.asarray(operating.temperatures.pinion_addendum)
-    valid = settled.settled & (oil >= low) & (oil <= high)
+    valid = ~lost & (oil >= low) & (oil <= high)
     merged["within_oil_range"] = dressed(
         along, valid.astype(np.int8), "1", "1 where the oil stays on its viscosity line"
     )
     merged["tempered"] = dressed(
-        along, (teeth > hottest).astype(np.int8), "1", "1 where the steel is tempered"
+        along, (~lost & (teeth > hottest)).astype(np.int8), "1", "1 where the steel is tempered"
     )
-    return blanked(merged, settled).assign_coords(
+    return blanked(merged, lost).assign_coords(
         regime_name=list(REGIMES),
         estimate=list(ESTIMATES),
         path_position=labelled("path_position", cycle["path_position"].values),
@@ -242,7 +245,7 @@ def _notices(
     case: GearCase, grid: xr.Dataset, seconds: float, why: Sequence[str]
 ) -> Iterator[Notice]:
     status = grid["status"].values
-    settled = status != STATUS.index("not_converged")
+    settled = status != LOST
     count = status.size
     told = f"{count} points have" if count > 1 else "1 point has"
     if not settled.all():
@@ -290,8 +293,18 @@ def _notices(
     yield Notice(
         "info", "The way there, and the least backlash on it: thermogear warmup CASE -o DIR."
     )
-    if case.scuffing_load_stage is None:
-        yield Notice("info", "oil.scuffing_load_stage is not given: no scuffing margin.")
+    stage, assumed = load_stage(case)
+    if assumed:
+        other = not_steel(case)
+        yield Notice(
+            "info",
+            "oil.scuffing_load_stage is not given: "
+            + (
+                f"no scuffing margin, the stage assumed is for steel on steel, not {other}."
+                if other
+                else f"the scuffing margin is that of stage {stage:g}, assumed."
+            ),
+        )
     yield Notice(
         "info",
         f"{count} point{'s' * (count > 1)}, lubricated and dry, in {seconds:.2f} s; at most "

@@ -19,7 +19,7 @@ from thermogear.case.case import GearCase
 from thermogear.case.duty import Measured, chosen_point, point_duty
 from thermogear.case.gearbox_schema import NODES
 from thermogear.case.sensors import Shown, shown_by
-from thermogear.mesh.balance_table import LOSSES
+from thermogear.mesh.balance_table import LOSSES, of_bearings
 from thermogear.mesh.clearance import Clearance
 from thermogear.mesh.thermal import HotPair
 from thermogear.mesh.warm_up import PHASES, Duty, WarmUp, meshing, warm_up, with_factors
@@ -205,10 +205,12 @@ def _course_dataset(
             ALONG, course.course.imbalance, "1", "|kept - in + out| over the heat turned over"
         ),
     }  # fmt: skip
+    bearings, names = of_bearings(course.losses, ALONG[0], count)
     meshed = meshing(case.pair, course.operating, case.models[0], case.deviations, progress)
     return label(
-        each | meshed,
+        each | bearings | meshed,
         {
+            **names,
             "node": nodes,
             "loss_kind": list(LOSSES),
             "sensor": [one.name for one in shown],

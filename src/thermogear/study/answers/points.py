@@ -13,7 +13,8 @@ from thermogear.case.allowed import LANE
 from thermogear.case.case import GearCase
 from thermogear.case.family import BESIDE, GearFamily
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
-from thermogear.study.answers.steady import STAGE, unrated
+from thermogear.study.answers.steady import unrated
+from thermogear.study.scuffing import load_stage
 
 Floats = NDArray[np.float64]
 
@@ -116,7 +117,7 @@ def _rated(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     nan = np.full(torque.shape, np.nan)
     margin, safety = nan.copy(), nan.copy()
-    stage = float(case.scuffing_load_stage or STAGE)
+    stage = load_stage(case).stage
     for place in range(torque.size):
         load, turning, warm = float(torque[place]), float(speed[place]), float(oil[place])
         if unrated(case, load, warm):

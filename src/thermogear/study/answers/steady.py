@@ -16,6 +16,7 @@ from thermogear.case.case import GearCase
 from thermogear.mesh.scuffing_rating import Scuffing, flash_rating, integral_rating
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
+from thermogear.study.scuffing import load_stage, not_steel, steel
 
 Floats = NDArray[np.float64]
 
@@ -23,8 +24,6 @@ MESH, HEAT, GAP = "Does it mesh?", "How hot does it run?", "What is left of the 
 FILM = "Is there a film, does it scuff?"
 
 UNSETTLED = "the heat balance did not settle"
-STAGE = 12.0
-"""FZG load stage of an oil of which none is given: the least of CLP oils (DIN 51517-3; usual)."""
 
 
 # --- does it mesh -----------------------------------------------------------------------------
@@ -187,9 +186,8 @@ def _worst_moment(asked: Asked) -> Answer:
 
 def film(asked: Asked) -> Iterator[Answer]:
     case, oil = asked.case, asked.bodies[0]
-    given = case.scuffing_load_stage is not None
-    stage = float(case.scuffing_load_stage or STAGE)
-    whose = f"stage {stage:g}" + ("" if given else ", assumed")
+    stage, assumed = load_stage(case)
+    whose = f"stage {stage:g}" + ", assumed" * assumed
     for point in asked.points:
         at = asked.at(point)
         film = asked.hot["film_parameter"][point].values
@@ -221,17 +219,11 @@ def film(asked: Asked) -> Iterator[Answer]:
 
 def unrated(case: GearCase, torque: float, oil: float) -> str:
     """Why scuffing is not rated at ``torque`` [N m] and ``oil`` [K]; empty where it is."""
-    for gear in (case.pair.pinion, case.pair.wheel):
-        if not steel(gear.material):
-            return f"the rating is for steel on steel, not {gear.material.name}"
+    if other := not_steel(case):
+        return f"the rating is for steel on steel, not {other}"
     if torque <= 0.0:
         return "there is no load"
     return "" if np.isfinite(oil) else UNSETTLED
-
-
-def steel(material: Material) -> bool:
-    """Whether a material has the stiffness and the density of steel."""
-    return 180e9 <= material.youngs_modulus <= 230e9 and 7500.0 <= material.density <= 8200.0
 
 
 def _rated(name: str, make: Callable[[], tuple[str, float]], at: str) -> Answer:

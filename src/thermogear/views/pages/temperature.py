@@ -127,7 +127,8 @@ def _estimate_table(data: xr.Dataset) -> Table:
         cells = []
         for value in here["body_estimate"].values:
             difference = float(value) - float(np.mean(teeth))
-            cells.append(f"{_degrees(float(value))} ({difference:+.1f})".replace("-", "−"))
+            apart = f" ({difference:+.1f})" if np.isfinite(difference) else ""
+            cells.append(f"{_degrees(float(value))}{apart}".replace("-", "−"))
         rows.append([*_point_name(data, i, j), _degrees(float(np.mean(teeth))), *cells])
     return Table(
         "Body temperature [°C]: mean of both gears' teeth by the heat balance, and the estimates "

@@ -52,9 +52,10 @@ def thermal_map(data: xr.Dataset) -> Picture:
     if min(gap.shape) > 1:
         _jam(left, data, gap)
     values, words = kept(data["scuffing_margin"].values), "scuffing margin [K]"
-    if np.isfinite(values).any():
+    if np.isfinite(values).any() or not settled.any():
         # red is always below 0 K and the deepest green the greatest margin
-        ends = (min(-SAFE, float(np.nanmin(values))), max(2.0 * SAFE, float(np.nanmax(values))))
+        known = values[np.isfinite(values)]
+        ends = (float(np.min(known, initial=-SAFE)), float(np.max(known, initial=2.0 * SAFE)))
         margin = _panel(data, values, words, "RdYlGn", ends)
         if min(values.shape) < 2:
             for level in (0.0, SAFE):
@@ -62,7 +63,7 @@ def thermal_map(data: xr.Dataset) -> Picture:
         _lines(margin, data, values, [0.0, SAFE], ["0 K", f"{SAFE:.0f} K"])
     else:
         margin = Panel(Axis(AXES[0]), Axis(AXES[1])) if min(values.shape) > 1 else Panel()
-        margin.note("scuffing margin: oil.scuffing_load_stage is not given")
+        margin.note("no scuffing margin: the load stage of the oil is not known")
     mean = kept(data["mean_friction"].values)
     friction = _panel(data, mean, "mean friction coefficient [–]", "PuBu")
     panels = [[boundary, flash, body], [left, margin, friction]]
