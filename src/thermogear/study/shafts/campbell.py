@@ -75,6 +75,45 @@ def orders_of(case: GearCase) -> list[Order]:
     return found
 
 
+@dataclass(frozen=True, kw_only=True)
+class Critical:
+    """A speed [rad/s] of the pinion at which an ``order`` meets a mode of ``frequency`` [rad/s]."""
+
+    speed: float
+    frequency: float
+    order: str
+    mode: int
+    mostly: str
+    amplification: float
+
+
+def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[Critical]:
+    """Where mesh and shaft orders meet modes up to ``highest`` [rad/s], at mean stiffness."""
+    rings, found = bearing_parts(case), []
+    for order in orders_of(case):
+        if order.kind == "bearing":
+            continue
+        speeds, shapes = state.linear.critical(order.order)
+        count = int(np.sum(speeds <= highest))
+        speeds, shapes = speeds[:count], shapes[:, :count]
+        shares = participation(state.linear, order, shapes)
+        ratios = damping_ratios(state.linear, shapes, speeds * order.order)
+        parts = strain_shares(state.linear, shapes)
+        for mode in range(count):
+            here = {name: float(value[mode]) for name, value in parts.items()}
+            found.append(
+                Critical(
+                    speed=float(speeds[mode]),
+                    frequency=float(speeds[mode] * order.order),
+                    order=order.name,
+                    mode=mode + 1,
+                    mostly=name_of(here, rings),
+                    amplification=float(shares[mode] / (2.0 * ratios[mode])),
+                )
+            )
+    return found
+
+
 def campbell(
     case: GearCase,
     *,

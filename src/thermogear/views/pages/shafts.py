@@ -209,8 +209,8 @@ def _modes(result: Result) -> Page:
         Shown(
             "energies",
             f"Which part gives, {states[last]}",
-            "Share of each part in the strain energy of each mode, in per cent. A mode with energy in the mesh "
-            "is one that the teeth drive and hear.",
+            "Share of each part in the strain energy of each mode, in per cent. A mode with energy "
+            "in the mesh is one that the teeth drive and hear.",
             partial(plots.energies, table, last),
             wide=True,
         ),
