@@ -181,7 +181,7 @@ def ring_capacities(size: BearingSize, steel: Material) -> tuple[float, float]:
     >>> from thermogear.shafts.bearings.catalogue import catalogue_bearing
     >>> inner, outer = ring_capacities(catalogue_bearing("6205"), MATERIALS["steel"])
     >>> f"{inner:.0f} J/K, {outer:.0f} J/K"
-    '25 J/K, 39 J/K'
+    '24 J/K, 38 J/K'
     """
     away = RACE * size.element_diameter
     balls = 0.5 * size.elements * np.pi / 6.0 * size.element_diameter**3
