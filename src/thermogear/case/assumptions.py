@@ -201,12 +201,19 @@ def _defaults(
             for key, entry in value.items():
                 if isinstance(entry, BaseModel):
                     found += _defaults(entry, (*above, name, key), decided)
+        elif isinstance(value, tuple) and value and name in _LISTS and _tables(value):
+            each = [one for entry in value for one in _defaults(entry, (*above, name), decided)]
+            found += list({one.field: one for one in each}.values())
         elif name not in table.model_fields_set and field.description and name not in _SILENT:
             path = dotted((*above, name))
             text = decided.get(path) or _shown(value, field)
             reason = f"{_LEFT}{field.description}"
             found.append(Assumption(path, text, reason))
     return found
+
+
+def _tables(entries: tuple[Any, ...]) -> bool:
+    return all(isinstance(entry, BaseModel) for entry in entries)
 
 
 def _shown(value: Any, field: FieldInfo) -> str:
@@ -217,4 +224,6 @@ def _shown(value: Any, field: FieldInfo) -> str:
     return readers[0].shown(value) if readers else in_words(value)
 
 
+_LISTS = ("shafts", "bearings", "discs")
+"""Lists of tables whose defaults are told once, whatever number of tables left them out."""
 _SILENT = ("materials", "ours", "row", "pictures", "base_sets", "expected")

@@ -32,11 +32,13 @@ from thermogear.case.dimensionless import Point, points_of
 from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import accuracy, deviations
-from thermogear.case.gearbox import Reading, gearbox
+from thermogear.case.gearbox import Reading, gearbox, heated
 from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
+from thermogear.case.shaft_plan import TrainPlan
+from thermogear.case.shafts import train_plan
 from thermogear.case.source import case_text, folder_of
 from thermogear.case.units import shown
 from thermogear.gears.deviations import Deviation
@@ -75,12 +77,11 @@ class GearCase(Case):
     ``gear_temperatures`` [K] is the row of addendum temperatures of both gears; ``follow`` says how
     the other temperatures go along with it (:data:`~thermogear.case.fields.FOLLOW`).
     ``deviations`` of the flanks, their ``accuracy`` class where they follow from one, the
-    ``charts`` they were measured in;
-    ``readings`` of thermometers; ``sensors`` that watch a warm-up; ``scuffing_load_stage`` of the
-    oil in the FZG test, None where unknown. ``inertias`` [kg m^2];
-    ``transmission_error`` the kinematic one [m] over the mesh phase; ``models`` the bundles to
-    compute with. ``data``: the tables of the file with the overrides in them, ``file``: what was
-    read in them.
+    ``charts`` they were measured in; ``readings`` of thermometers; ``sensors`` that watch a
+    warm-up; ``train`` of shafts, if drawn; ``scuffing_load_stage`` of the oil in the FZG test, None
+    where unknown. ``inertias`` [kg m^2]; ``transmission_error`` the kinematic one [m] over the mesh
+    phase; ``models`` the bundles to compute with. ``data``: the tables of the file with the
+    overrides in them, ``file``: what was read in them.
     """
 
     kind = "gear"
@@ -107,6 +108,7 @@ class GearCase(Case):
     gearbox: Gearbox = field(default_factory=Gearbox)
     readings: tuple[Reading, ...] = ()
     sensors: SensorsTable = field(default_factory=SensorsTable)
+    train: TrainPlan | None = None
     scuffing_load_stage: float | None = None
     computed: bool = False
     follow: str = "proportional"
@@ -439,6 +441,9 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
             fix="split the case",
         )
     inertias, inertia_kind = parts.inertias(file, pair)
+    train = train_plan(file, pair, materials, inertias)
+    if train is not None:
+        box = heated(box, train)
     measured = charts(file, pair)
     return GearCase(
         pair=pair,
@@ -472,6 +477,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
         gearbox=box,
         readings=readings,
         sensors=file.sensors or SensorsTable(),
+        train=train,
         scuffing_load_stage=file.oil.scuffing_load_stage,
         computed=rule is None,
         follow=given.follow,

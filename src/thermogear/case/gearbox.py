@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from thermogear.base.errors import InputError
 from thermogear.base.materials import Material
 from thermogear.case.gearbox_schema import NODES, GearboxTable, ReadingTable
 from thermogear.case.schema import GearFile
+from thermogear.case.shaft_plan import TrainPlan
 from thermogear.gears.pair import GearPair
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading, ThermocoupleReading
@@ -101,6 +102,11 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
         bearing_coefficient=table.bearing_coefficient,
         measured=held,
     ), readings
+
+
+def heated(box: Gearbox, train: TrainPlan) -> Gearbox:
+    """The gearbox with shafts and bearings as nodes, where the inside of every bearing is known."""
+    return replace(box, surroundings=replace(box.surroundings, train=train.heat()))
 
 
 def _stated(file: GearFile, held: Mapping[str, float]) -> dict[str, float]:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
-from thermogear.case.fields import Measure, Number, Words, measure
+from thermogear.case.fields import Measure, Number, Several, Words, measure
 from thermogear.case.table import Below, Body, Table, not_both
 
 
@@ -37,6 +37,23 @@ class HousingTable(Table):
         description="expands like the gears. Decides how far the axes move "
         "apart, and so how much of the backlash heat takes",
     )
+    mass: Annotated[float, Measure("mass", "0.01 kg", "1e6 kg", example="40 kg")] | None = Field(
+        default=None, title="of the part that vibrates on its feet; left out: it stands still"
+    )
+    mount_stiffness: Annotated[
+        tuple[float, ...] | None,
+        Several(Measure("stiffness", "1 N/m", "1e13 N/m", example="50 N/um"), least=1, most=2),
+    ] = Field(default=None, title="of the feet, along x and y")
+    mount_damping: Annotated[
+        float, Measure("damping", "0 N s/m", "1e8 N s/m", example="2000 N s/m")
+    ] = Field(default=0.0, title="of the feet")
+
+    @model_validator(mode="after")
+    def _on_feet(self) -> HousingTable:
+        if (self.mass is None) != (self.mount_stiffness is None):
+            missing = "mass" if self.mass is None else "mount_stiffness"
+            raise InputError(missing, "nothing", why="mass and mount_stiffness go together")
+        return self
 
 
 class OilTable(Table):

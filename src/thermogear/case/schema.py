@@ -15,6 +15,7 @@ from pydantic.json_schema import models_json_schema
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.backlash_schema import BacklashTable
 from thermogear.case.dimensionless_schema import DimensionlessFile, SimulationTable
 from thermogear.case.fields import (
     BODY,
@@ -38,17 +39,25 @@ from thermogear.case.friction_schema import FRICTION, FrictionTable
 from thermogear.case.gearbox_schema import GearboxTable
 from thermogear.case.material_schema import HousingTable, MaterialTable, OilTable
 from thermogear.case.sensor_schema import SensorsTable
-from thermogear.case.table import Below, Body, Length, Table, not_both, one_of
+from thermogear.case.shaft_schema import (
+    MOST_BEARINGS,
+    MOST_DISCS,
+    BearingTable,
+    DiscTable,
+    EndTable,
+    MotorTable,
+    ShaftTable,
+    TrainTable,
+    at_the_ends,
+    require_few,
+)
+from thermogear.case.table import Below, Body, Length, Table, one_of
 from thermogear.mesh.model import CHOICES
 
 PICTURES = ("path", "profile", "stiffness", "motion", "temperature", "base-sets")
 BASE_SETS = ("table-4.2", "section-4.1")
 
 Shape = Annotated[float, Number(low=bounds.RACK.low, high=bounds.RACK.high, example="1.25")]
-Allowance = Annotated[
-    tuple[float, ...],
-    Several(Measure("length", "-10 mm", "10 mm", example="-0.08 mm"), least=1, most=2),
-]
 Inertia = Annotated[float, Measure("moment of inertia", "1e-9 kg m^2", "1e6 kg m^2")]
 
 
@@ -270,58 +279,6 @@ def _no_addendum(field: str) -> InputError:
     )
 
 
-class TolerancesTable(Table):
-    """Backlash out of the drawing: tooth-thickness allowances and centre-distance tolerance."""
-
-    pinion_tooth_thickness: Allowance
-    wheel_tooth_thickness: Allowance
-    centre_distance: Allowance
-
-
-class BacklashTable(Table):
-    """The backlash, with its kind named: a value, or the tolerances it follows from."""
-
-    value: Annotated[
-        float | None,
-        Measure(
-            "length",
-            "1e-5 mm",
-            "50 mm",
-            "a pair without backlash jams as soon as it warms up",
-            example="0.25 mm",
-        ),
-    ] = Field(
-        default=None,
-        description="the least normal backlash that ISO/TR 10064-2 recommends, 2/3 (0.06 mm + "
-        "0.0005 a + 0.03 m). The unit of length of the vibration; decides when the pair jams",
-    )
-    direction: Annotated[str | None, Choice("normal", "circumferential")] = None
-    extent: Annotated[str | None, Choice("total", "half")] = None
-    temperature: Body | None = Field(
-        default=None,
-        description="holds at temperatures.reference. Decides how much growth it has seen",
-    )
-    tolerances: TolerancesTable | None = None
-
-    @model_validator(mode="after")
-    def _complete(self) -> BacklashTable:
-        not_both(self, "value", "tolerances")
-        kinds = {"direction": '"normal" or "circumferential"', "extent": '"total" or "half"'}
-        for name, allowed in kinds.items():
-            given = getattr(self, name) is not None
-            if self.value is not None and not given:
-                raise InputError(
-                    name,
-                    "nothing",
-                    allowed=allowed,
-                    why="a backlash means nothing without its kind",
-                    fix=f"write {name} = {allowed.split(' or ')[0]}",
-                )
-            if self.value is None and given:
-                raise InputError(name, "a kind", why="tolerances need none", fix="leave it out")
-        return self
-
-
 class DynamicsTable(Table):
     """What vibration needs besides the mesh."""
 
@@ -438,6 +395,12 @@ class GearFile(Table):
     temperatures: TemperaturesTable = TemperaturesTable()
     gearbox: GearboxTable | None = Field(default=None, title="every value ours")
     sensors: SensorsTable | None = Field(default=None, title="every thermometer ours")
+    shafts: tuple[ShaftTable, ...] = Field(default=(), title="left out: the gear pair alone")
+    bearings: tuple[BearingTable, ...] = Field(default=(), title="besides those at shafts' ends")
+    discs: tuple[DiscTable, ...] = Field(default=(), title="none")
+    motor: MotorTable | None = Field(default=None, title="its torque alone")
+    load: EndTable | None = Field(default=None, title="its torque alone")
+    train: TrainTable | None = Field(default=None, title="every value ours")
     backlash: BacklashTable = BacklashTable()
     dynamics: DynamicsTable = DynamicsTable()
     flanks: FlanksTable | None = Field(default=None, title="left out: an accuracy class")
@@ -467,6 +430,10 @@ class GearFile(Table):
             data = {"gearbox": {}, **data}
         if "transmission_error" not in data:
             data = {"flanks": {}, **data}
+        if data.get("shafts"):
+            data = at_the_ends({"train": {}, **data})
+        for name, most in (("bearings", MOST_BEARINGS), ("discs", MOST_DISCS)):
+            require_few(data.get(name), name, most)
         return data
 
     @model_validator(mode="after")

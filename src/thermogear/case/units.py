@@ -66,6 +66,12 @@ KINDS: dict[str, Kind] = {
         Kind("heat flux", "W/m^2", "kW/m^2", "20 kW/m^2"),
         Kind("mass", "kg", "kg", "3 kg"),
         Kind("volume flow", "m^3/s", "l/min", "2 l/min"),
+        Kind("force", "N", "N", "1000 N"),
+        Kind("stiffness", "N/m", "N/um", "200 N/um"),
+        Kind("damping", "N s/m", "N s/m", "500 N s/m"),
+        Kind("torsional stiffness", "N m/rad", "N m/rad", "20000 N m/rad", ("newton", "pound")),
+        Kind("torsional damping", "N m s/rad", "N m s/rad", "1 N m s/rad", ("newton", "pound")),
+        Kind("unbalance", "kg m", "g mm", "20 g mm"),
     )
 }
 
@@ -90,6 +96,12 @@ _USUAL: dict[str, dict[str, float]] = {
     "heat flux": {"W/m^2": 1.0, "kW/m^2": 1e3},
     "mass": {"kg": 1.0},
     "volume flow": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05},
+    "force": {"N": 1.0, "kN": 1e3},
+    "stiffness": {"N/m": 1.0, "N/um": 1e6, "N/mm": 1e3},
+    "damping": {"N s/m": 1.0},
+    "torsional stiffness": {"N m/rad": 1.0},
+    "torsional damping": {"N m s/rad": 1.0},
+    "unbalance": {"kg m": 1.0, "g mm": 1e-6},
 }
 """Units of nearly every file, by their factor to SI: bit for bit what pint makes of
 them, without loading it, which takes longer than many a command."""

@@ -26,6 +26,7 @@ from thermogear.front import (
     motion_commands,
     new_command,
     rexs_commands,
+    shaft_commands,
     sweep_commands,
     thesis_commands,
     verify_commands,
@@ -36,6 +37,9 @@ from thermogear.front.lines import say, system_error, warnings_as_lines
 if TYPE_CHECKING:
     from thermogear.base.progress import Progress
     from thermogear.results.result import Result
+
+# the matrices here are small: threads of the linear algebra only wait for one another
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 USER_ERROR = 2
 INTERRUPTED = 130
@@ -219,6 +223,7 @@ for _list in (
     rexs_commands,
     draw_command,
     gear_commands,
+    shaft_commands,
     motion_commands,
     sweep_commands,
     measure_commands,

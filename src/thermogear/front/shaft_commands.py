@@ -114,3 +114,6 @@ def _range(text: str) -> tuple[float, float]:
             "--rpm", repr(text), allowed="LOW:HIGH", fix="write --rpm 0:6000"
         ) from None
     return low * RPM, high * RPM
+
+
+COMMANDS = (statics, modes, campbell)

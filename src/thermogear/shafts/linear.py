@@ -127,16 +127,21 @@ class LinearTrain:
                 shape=(t @ shape / np.sqrt(2.0 * square)).astype(complex),
                 damping_ratio=np.zeros(square.size),
             )
-        low, lowk = np.linalg.cholesky(mass), np.linalg.cholesky(stiff)
-        solve = scipy.linalg.solve_triangular
-        gyro = solve(
-            low, solve(low, omega * t.T @ train.gyroscopic @ t, lower=True).T, lower=True
-        ).T
-        cross = solve(low, lowk, lower=True)
-        whole = np.block([[gyro, cross], [-cross.T, np.zeros((n, n))]])
+        gyro, cross, lowk = self._reduced
+        whole = np.block([[omega * gyro, cross], [-cross.T, np.zeros((n, n))]])
         found, vectors = scipy.linalg.eigh(1j * whole, subset_by_index=(n, n + wanted - 1))
-        shape = solve(lowk, vectors[n:], lower=True, trans="T")
+        shape = scipy.linalg.solve_triangular(lowk, vectors[n:], lower=True, trans="T")
         return Modes(frequency=found, shape=t @ shape, damping_ratio=np.zeros(wanted))
+
+    @cached_property
+    def _reduced(self) -> tuple[Floats, Floats, Floats]:
+        """L^-1 G L^-T, L^-1 L_k and L_k of M = L L^T and K = L_k L_k^T, rotation left out."""
+        mass, stiff = self.held
+        low, lowk = np.linalg.cholesky(mass), np.linalg.cholesky(stiff)
+        turned = self.basis.T @ self.assembly.gyroscopic @ self.basis
+        solve = scipy.linalg.solve_triangular
+        half = solve(low, turned, lower=True)
+        return solve(low, half.T, lower=True).T, solve(low, lowk, lower=True), lowk
 
     @cached_property
     def held(self) -> tuple[Floats, Floats]:
@@ -228,7 +233,7 @@ def _scaled(modes: Modes, mass: Floats) -> Floats:
 def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
     """Where the strain energy of ``shape`` (n, modes) sits: part -> share of all [-], (modes,).
 
-    Parts: "mesh", each shaft's "bending" and "torsion", each bearing by name, each coupling,
+    Parts: "mesh", each shaft's "bending" and "torsion", every "bearing ..." by name, each coupling,
     each seat, "housing feet". The shares of a symmetric K sum to 1.
     """
     own, q = train.assembly, np.asarray(shape)
@@ -255,7 +260,7 @@ def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
             whole = _energy(own.elastic[np.ix_(both, both)], q[both])
             found[shaft] = whole - found[f"{end} coupling"]
     for place, k in zip(own.bearings, train.bearings, strict=True):
-        found[place.bearing.name] = _energy(k, place.directions.T @ q)
+        found[f"bearing {place.bearing.name}"] = _energy(k, place.directions.T @ q)
     rest = own.stiffness - own.elastic
     found["seats and feet"] = _energy(rest, q)
     if not np.any(rest):
@@ -264,8 +269,18 @@ def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
     return {name: np.asarray(value / total) for name, value in found.items()}
 
 
+def damping_ratios(train: LinearTrain, shape: ArrayLike, frequency: ArrayLike) -> Floats:
+    """Damping ratio of every undamped mode (n, modes) by its own loss [-], (modes,).
+
+    w q^H C q/(w^2 q^H M q + q^H K q), exact for light damping; ``frequency`` w [rad/s].
+    """
+    q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
+    energy = w**2 * _energy(train.assembly.mass, q) + _energy(train.stiffness, q)
+    return np.asarray(w * _energy(train.damping, q) / energy)
+
+
 def _energy(stiffness: Floats, q: NDArray[np.complex128] | Floats) -> Floats:
-    return np.asarray(np.einsum("im,ij,jm->m", q.conj(), stiffness, q).real)
+    return np.asarray(np.sum(q.conj() * (stiffness @ q), axis=0).real)
 
 
 def whirl(train: Assembly, shape: ArrayLike) -> dict[str, Floats]:

@@ -25,7 +25,8 @@ STUDIES = {
     "cascade": "Period doublings", "shared": "Two forms of the mesh force",
     "drawing": "Drawing", "versus": "Comparison of cases", "thesis": "The thesis's claims",
     "measurement": "Measurement", "comparison": "Comparison with a record",
-    "sensitivity": "Sensitivity",
+    "sensitivity": "Sensitivity", "statics": "Loads of shafts and bearings",
+    "modes": "Modes of the drive train", "campbell": "Campbell diagram",
 }  # fmt: skip
 MODEL = {
     "damping_ratio": "ζ", "frequency": "mesh over natural frequency",

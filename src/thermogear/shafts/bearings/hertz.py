@@ -71,7 +71,7 @@ def ellipse_ratio(difference: float) -> float:
         ratio = np.exp(log_ratio)
         rest = 1.0 / ratio**2
         k, e = float(ellipkm1(rest)), float(ellipe(1.0 - rest))
-        return 1.0 - 2.0 / (ratio**2 - 1.0) * (k / e - 1.0) - difference
+        return float(1.0 - 2.0 / (ratio**2 - 1.0) * (k / e - 1.0) - difference)
 
     if difference < 1e-9:
         return 1.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +16,10 @@ from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
-from thermogear.shafts.linear import LinearTrain, Modes, strain_shares
+from thermogear.shafts.linear import LinearTrain, Modes, damping_ratios, strain_shares
 from thermogear.shafts.response import Response, error_response, unbalance_response
 from thermogear.shafts.train import SHAFTS
-from thermogear.study.shafts.modes import name_of
+from thermogear.study.shafts.modes import bearing_parts, name_of
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
@@ -29,15 +29,13 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 KIND = "campbell"
-SPEEDS = 13
+SPEEDS = 9
 """Speeds at which the natural frequencies are computed; they change little in between."""
 FINE = 240
 """Speeds of the response."""
 MODES = 12
 MESH_HARMONICS = 3
 LEVELS = ("least", "mean", "greatest")
-NIL = 0.01
-"""Participation below which an order leaves a mode alone."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +100,8 @@ def campbell(
     found = [row[0] for row in settled(case, [place], progress=progress)]
     grid = np.linspace(low, high, SPEEDS)
     orders = orders_of(case)
-    curves, participation, levels, responses, names = [], [], [], [], []
+    rings = bearing_parts(case)
+    curves, participation, gains, levels, responses, names = [], [], [], [], [], []
     fine = np.linspace(max(low, high / FINE), high, FINE)
     for number, state in enumerate(found):
         trains = [state.rest.linear(k) for k in state.band]
@@ -113,10 +112,11 @@ def campbell(
             curve.append([m.frequency for m in followed])
             kept.append(followed)
         curves.append(curve)
-        names.append([_name(trains[1], kept[1][0], mode) for mode in range(count)])
+        names.append([_name(trains[1], kept[1][0], mode, rings) for mode in range(count)])
         crossed = [[_critical(t, one, count) for one in orders] for t in trains]
-        levels.append([[speed for speed, _ in row] for row in crossed])
-        participation.append([[share for _, share in row] for row in crossed])
+        levels.append([[one[0] for one in row] for row in crossed])
+        participation.append([[one[1] for one in row] for row in crossed])
+        gains.append([[one[2] for one in row] for row in crossed])
         progress("campbell", number * (len(trains) + 1) + len(trains), 2 * (len(trains) + 1))
         responses.append(_responses(case, state, fine, orders))
     progress("campbell", 1, 1)
@@ -125,8 +125,8 @@ def campbell(
         "order": (("line",), [one.order for one in orders], "1", "per turn of the pinion"),
     }
     states = [one.state.kind for one in found]
-    number = (("mode",), np.arange(1, count + 1), "1", "number of the mode")
-    level_names = {"state": states, "stiffness_level": list(LEVELS), "mode": number}
+    numbered = (("mode",), np.arange(1, count + 1), "1", "number of the mode")
+    level_names = {"state": states, "stiffness_level": list(LEVELS), "mode": numbered}
     return Result.of(
         KIND,
         f"Campbell diagram: {case.title}",
@@ -156,6 +156,12 @@ def campbell(
                         participation,
                         "1",
                         "how much of the mode the order can drive",
+                    ),
+                    "amplification": (
+                        ("state", "stiffness_level", "line", "mode"),
+                        gains,
+                        "1",
+                        "participation over twice the damping ratio: how far the resonance rises",
                     ),
                 },
                 level_names | lines,
@@ -197,24 +203,27 @@ def _taken(modes: Modes, which: Any) -> Modes:
     )
 
 
-def _name(train: LinearTrain, modes: Modes, place: int) -> str:
+def _name(train: LinearTrain, modes: Modes, place: int, rings: Mapping[str, str]) -> str:
     shares = strain_shares(train, modes.shape[:, place : place + 1])
-    return name_of({name: float(value[0]) for name, value in shares.items()})
+    return name_of({name: float(value[0]) for name, value in shares.items()}, rings)
 
 
-def _critical(train: LinearTrain, order: Order, count: int) -> tuple[Floats, Floats]:
-    """Speeds [rad/s] and participations of the ``count`` lowest modes; nan where there is none."""
+def _critical(train: LinearTrain, order: Order, count: int) -> Floats:
+    """Speeds [rad/s], participations and amplifications of the ``count`` lowest modes, (3, count).
+
+    Nan where there is none.
+    """
     speed, shape = train.critical(order.order)
-    shares = participation(train, order, shape, speed * order.order)
-    rows = np.full((2, count), np.nan)
-    kept = min(count, speed.size)
-    rows[0, :kept], rows[1, :kept] = speed[:kept], shares[:kept]
-    return rows[0], rows[1]
+    speed, shape = speed[:count], shape[:, :count]
+    share = participation(train, order, shape)
+    ratio = damping_ratios(train, shape, speed * order.order)
+    rows = np.full((3, count), np.nan)
+    with np.errstate(divide="ignore"):
+        rows[:, : speed.size] = speed, share, share / (2.0 * ratio)
+    return rows
 
 
-def participation(
-    train: LinearTrain, order: Order, shape: NDArray[np.complex128], frequency: Floats
-) -> Floats:
+def participation(train: LinearTrain, order: Order, shape: NDArray[np.complex128]) -> Floats:
     """How much of each mode (n, modes) an order can drive [-].
 
     Mesh and bearing orders: the strain energy of the teeth, or of that bearing, over all. Shaft
@@ -222,15 +231,16 @@ def participation(
     forward.
     """
     if order.kind != "shaft":
-        return strain_shares(train, shape)[order.part]
+        part = f"bearing {order.part}" if order.kind == "bearing" else order.part
+        return strain_shares(train, shape)[part]
     own = train.assembly
     turns = own.frame.sense * (1.0 if order.part == SHAFTS[0] else -1.0)
     nodes = range(own.nodes[SHAFTS.index(order.part)].size)
     rows = [[own.index[f"{order.part}.{i}.{c}"] for i in nodes] for c in ("x", "y")]
     forward = 0.5 * (shape[rows[0]] + 1j * turns * shape[rows[1]])
     moving = own.mass[np.ix_(rows[0], rows[0])]
-    energy = 2.0 * np.einsum("im,ij,jm->m", forward.conj(), moving, forward).real
-    total = np.einsum("im,ij,jm->m", shape.conj(), own.mass, shape).real
+    energy = 2.0 * np.sum(forward.conj() * (moving @ forward), axis=0).real
+    total = np.sum(shape.conj() * (own.mass @ shape), axis=0).real
     return np.asarray(energy / total)
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.case.one_point import counted
 from thermogear.results.result import Result
-from thermogear.shafts.linear import LinearTrain, Modes, strain_shares, whirl
+from thermogear.shafts.linear import LinearTrain, Modes, damping_ratios, strain_shares, whirl
 from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
@@ -57,7 +57,10 @@ def modes(
     return Result.of(
         KIND,
         f"Modes of the drive train: {case.title}",
-        {"modes": _table(linear, found, free), "shapes": _shapes(linear, free, found)},
+        {
+            "modes": _table(linear, found, free, bearing_parts(case)),
+            "shapes": _shapes(linear, free, found),
+        },
         notices(case, [[one] for one in found]),
         **case.provenance,
         bundle=case.models[0].name,
@@ -67,33 +70,38 @@ def modes(
     )
 
 
-def damping_of(train: LinearTrain, shape: NDArray[np.complex128], frequency: Floats) -> Floats:
-    """Ratio of every mode by its own loss: w q^H C q/(w^2 q^H M q + q^H K q) [-].
+def name_of(shares: Mapping[str, float], bearings: Mapping[str, str]) -> str:
+    """The part with most strain energy, and the next where it has much too.
 
-    Exact for light damping; the energy of each mode is 1 J in that sum.
+    ``bearings``: the shaft of each bearing by its part's name; those of one shaft count together.
     """
-    loss = np.einsum("im,ij,jm->m", shape.conj(), train.damping, shape).real
-    return np.asarray(frequency * loss)
+    joined: dict[str, float] = {}
+    for part, share in shares.items():
+        whole = f"{bearings[part]} bearings" if part in bearings else part
+        joined[whole] = joined.get(whole, 0.0) + share
+    first, second = sorted(joined, key=lambda name: -joined[name])[:2]
+    return f"{first} and {second}" if joined[second] > 0.6 * joined[first] else first
 
 
-def name_of(shares: dict[str, float]) -> str:
-    """The part with most strain energy, and the next where it has much too."""
-    ranked = sorted(shares, key=lambda name: -shares[name])
-    first, second = ranked[0], ranked[1] if len(ranked) > 1 else ranked[0]
-    if len(ranked) > 1 and shares[second] > 0.6 * shares[first]:
-        return f"{first} and {second}"
-    return first
+def bearing_parts(case: GearCase) -> dict[str, str]:
+    """The shaft of every bearing by the name of its part."""
+    return {f"bearing {one.name}": one.shaft for one in plan_of(case).bearings}
 
 
 def _table(
-    linear: Sequence[LinearTrain], found: Sequence[TrainState], free: Sequence[Modes]
+    linear: Sequence[LinearTrain],
+    found: Sequence[TrainState],
+    free: Sequence[Modes],
+    rings: Mapping[str, str],
 ) -> xr.Dataset:
     shares = [strain_shares(one, m.shape) for one, m in zip(linear, free, strict=True)]
     parts = list(shares[0])
     energy = np.array([[one[part] for part in parts] for one in shares]).swapaxes(1, 2)
     senses = [whirl(one.assembly, m.shape) for one, m in zip(linear, free, strict=True)]
-    ratio = [damping_of(a, m.shape, m.frequency) for a, m in zip(linear, free, strict=True)]
-    names = [[name_of(dict(zip(parts, mode, strict=True))) for mode in one] for one in energy]
+    ratio = [damping_ratios(a, m.shape, m.frequency) for a, m in zip(linear, free, strict=True)]
+    names = [
+        [name_of(dict(zip(parts, mode, strict=True)), rings) for mode in one] for one in energy
+    ]
     variables = {
         "natural_frequency": (
             MODE,
@@ -128,7 +136,8 @@ def _shapes(
     """Shapes of both shafts, scaled so that the largest of x, y and r_b tz is 1."""
     assembly = linear[0].assembly
     radii = assembly.frame.base_radii
-    variables, places = {}, {"state": [one.state.kind for one in found]}
+    variables: dict[str, Any] = {}
+    places: dict[str, Any] = {"state": [one.state.kind for one in found]}
     kinds = ("x", "y", "tz")
     rows = {}
     for number, shaft in enumerate(SHAFTS):
@@ -163,10 +172,10 @@ def _shapes(
                     "1",
                     f"{words}, {name} part, over the largest of all",
                 )
-        nodes = assembly.nodes[number]
+        along = assembly.nodes[number]
         places[f"{shaft}_position"] = (
             (f"{shaft}_position",),
-            nodes - nodes[assembly.gear_nodes[number]],
+            along - along[assembly.gear_nodes[number]],
             "m",
             "distance along the shaft from the middle of the gear",
         )

@@ -18,7 +18,7 @@ from thermogear.base.errors import GeometryError, InputError, ValidityWarning
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
-from thermogear.case.shafts import TrainPlan
+from thermogear.case.shaft_plan import TrainPlan
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.cycle import mesh_cycle
@@ -156,7 +156,7 @@ def settled(
     for number, state in enumerate(states):
         at = replace(state.operating(case, chosen), housing=case.housing)
         balance = None if state == UNDEFORMED else state.balance(case, chosen)
-        rings = plan.bearing_temperatures(case, at, balance)
+        rings = plan.bearing_temperatures(at, balance)
         row = []
         for count, place in enumerate(places):
             progress("shafts", number * len(places) + count, whole)

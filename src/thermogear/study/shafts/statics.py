@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
@@ -63,7 +64,7 @@ def coordinates(found: Sequence[Sequence[TrainState]]) -> dict[str, object]:
     }
 
 
-def _grid(found: Sequence[Sequence[TrainState]], of: Callable[[TrainState], object]) -> Floats:
+def _grid(found: Sequence[Sequence[TrainState]], of: Callable[[TrainState], ArrayLike]) -> Floats:
     """A number of every equilibrium over (state, operating, ...), nan where there is none."""
     shape = next(
         (np.shape(of(one)) for row in found for one in row if one.equilibrium is not None), ()
@@ -144,10 +145,14 @@ def of_mesh(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset
 def of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
     """Load, clearance, displacement and stiffness of every bearing, hot and cold."""
     plan = plan_of(case)
-    limits = [[plan.bearing_limits(one) for one in row] for row in found]
+    ratio = case.pair.pinion.teeth / case.pair.wheel.teeth
 
     def limit(name: str) -> Floats:
-        return np.array([[[b[name] for b in one] for one in row] for row in limits], dtype=float)
+        def of(one: TrainState) -> Floats:
+            loads = np.linalg.norm(one.rest.bearing_force, axis=-1)
+            return plan.limits(loads, one.speed, ratio)[name]
+
+        return _grid(found, of)
 
     def given(name: str) -> Floats:
         return np.array([[getattr(one, name) for one in row] for row in found], dtype=float)
@@ -199,7 +204,7 @@ def _deflections(found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
         for c, at in rows.items():
             variables[f"{shaft}_{c}"] = (
                 (*POINT, f"{shaft}_position"),
-                _grid(found, lambda s, at=at: s.rest.displacement[at]),
+                _grid(found, partial(_displaced, at)),
                 "m",
                 f"deflection of the {shaft}'s shaft along {c}",
             )
@@ -210,6 +215,10 @@ def _deflections(found: Sequence[Sequence[TrainState]]) -> xr.Dataset:
             "distance along the shaft from the middle of the gear",
         )
     return label(variables, coordinates(found) | places)
+
+
+def _displaced(rows: list[int], one: TrainState) -> Floats:
+    return one.rest.displacement[rows]
 
 
 def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[Notice]:
@@ -243,4 +252,22 @@ def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[N
                     f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: heat "
                     "balance or loaded contact did not settle; no numbers.",
                 )
-    yield from plan_of(case).notices([one for row in found for one in row])
+    yield from _of_bearings(case, found)
+
+
+def _of_bearings(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[Notice]:
+    plan = plan_of(case)
+    for words in plan.misfits():
+        yield Notice("warning", f"{words}.")
+    for row in found:
+        tight = [
+            f"{name} {1e6 * c:.1f} um"
+            for place, name in enumerate(plan.bearing_names)
+            if (c := min(float(one.clearances[place]) for one in row)) < 0.0
+        ]
+        if tight:
+            yield Notice(
+                "important",
+                f"Preloaded {row[0].state.words} (radial clearance below zero): "
+                f"{', '.join(tight)}. A preload adds to the load, and heat adds to the preload.",
+            )

@@ -25,8 +25,8 @@ SKETCH = (
     "Both shafts to scale along their length, one centre distance apart; crossed boxes are "
     "bearings. Look here first: a slip in a position is seen at once."
 )
-NIL = 0.01
-"""Participation below which an order leaves a mode alone."""
+NIL = 0.1
+"""Amplification below which a resonance does not rise over the load that drives it."""
 
 
 def page(result: Result) -> Page:
@@ -287,8 +287,9 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
         for line, words in enumerate(names_of(data, "line")):
             low, mean, high = data["critical_speed"].values[s, :, line]
             share = data["participation"].values[s, 1, line]
+            gain = data["amplification"].values[s, 1, line]
             for m in range(mean.size):
-                if share[m] >= NIL and low[m] <= limit:
+                if gain[m] >= NIL and low[m] <= limit:
                     found.append(
                         {
                             "state": state,
@@ -299,6 +300,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
                             "rpm_greatest": high[m] / RPM,
                             "frequency_Hz": mean[m] * float(data["order"].values[line]) / 2 / np.pi,
                             "participation": float(share[m]),
+                            "amplification": float(gain[m]),
                             "mostly": str(modes["mode_name"].values[s, m]),
                         }
                     )
@@ -308,7 +310,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
 def _campbell(result: Result) -> Page:
     data, critical = result.groups["campbell"], result.groups["critical"]
     answer = result.groups["response"]
-    own = [float(v) for v in np.ravel(result.attributes["speeds"])]
+    own = [float(v) for v in result.values("speeds")]
     found = list(criticals(result))
     pictures = [
         _sketch(result),
@@ -316,7 +318,7 @@ def _campbell(result: Result) -> Page:
             "campbell",
             "Campbell diagram",
             "Natural frequencies (black; the grey band is the mesh stiffness from its least to its "
-            "greatest), the orders that excite them, and a dot where an order can drive a mode: "
+            "greatest), the orders that excite them, and a dot where an order lifts a mode: "
             "the larger, the more. Dashed uprights are the case's speeds.",
             partial(plots.campbell, data, critical, own),
             wide=True,
@@ -341,7 +343,7 @@ def _campbell(result: Result) -> Page:
         )
     head = [
         "state", "speed [rpm]", "over the mesh's stiffness [rpm]", "frequency [Hz]", "excited by",
-        "mode", "participation", "mostly",
+        "mode", "participation", "amplification", "mostly",
     ]  # fmt: skip
     rows = [
         [
@@ -351,20 +353,23 @@ def _campbell(result: Result) -> Page:
             f"{one['frequency_Hz']:.1f}",
             one["order"],
             str(one["mode"]),
-            f"{one['participation']:.2f}",
+            f"{one['participation']:.4f}",
+            f"{one['amplification']:.2f}",
             one["mostly"],
         ]
         for one in found
     ]
     hot = [one for one in found if one["state"] == names_of(data, "state")[-1]]
-    strong = max(hot, key=lambda one: one["participation"], default=None)
+    strong = max(hot, key=lambda one: one["amplification"], default=None)
     summary = "No order meets a mode it can drive in this range."
     if strong is not None:
         summary = (
             f"{len(hot)} critical speeds hot; the strongest at {strong['rpm']:.0f} rpm, where "
             f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']})."
         )
-    table = Table("Critical speeds with a participation of 0.01 and more.", head, rows)
+    table = Table(
+        "Critical speeds: where an order meets a mode that it lifts by 0.1 or more.", head, rows
+    )
     return survey(
         result, summary, pictures, [table], numbers=_critical_numbers, lines=_critical_lines
     )
@@ -375,12 +380,12 @@ def _critical_numbers(result: Result) -> dict[str, Any]:
 
 
 def _critical_lines(result: Result) -> list[str]:
-    found = [f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'part':>7}  excited by, mostly"]
+    found = [f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'rises':>7}  excited by, mostly"]
     for one in criticals(result):
         band = f"{one['rpm_least']:.0f}..{one['rpm_greatest']:.0f}"
         found.append(
             f"{one['state']:<12}{one['rpm']:>8.0f}{band:>16}{one['frequency_Hz']:>9.1f}"
-            f"{one['participation']:>7.2f}  {one['order']}, {one['mostly']}"
+            f"{one['amplification']:>7.2f}  {one['order']}: {one['mostly']}"
         )
     if len(found) == 1:
         return ["no order meets a mode it can drive in this range"]

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 PINION, WHEEL = OKABE_ITO[0], OKABE_ITO[1]
 SHAFTS = {"pinion": PINION, "wheel": WHEEL}
 DASHES = {"undeformed": (4.0, 3.0), "hot": ()}
+LEAST_GAIN = 0.1
+"""Amplification from which a critical speed is drawn."""
 MOST_MODES = 8
 """Modes that are drawn."""
 
@@ -238,14 +240,14 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
                 label=words if state == 0 else "",
             )
             met = critical["critical_speed"].values[state, 1, line]
-            share = critical["participation"].values[state, 1, line]
-            for speed, part in zip(met, share, strict=True):
-                if np.isfinite(speed) and part >= 0.01 and rpm(speed) <= x[-1]:
+            gains = critical["amplification"].values[state, 1, line]
+            for speed, gain in zip(met, gains, strict=True):
+                if np.isfinite(speed) and gain >= LEAST_GAIN and rpm(speed) <= x[-1]:
                     panel.points(
                         [float(rpm(speed))],
                         [order * speed / (2.0 * np.pi)],
                         colour=OKABE_ITO[line % len(OKABE_ITO)],
-                        size=3.0 + 9.0 * float(np.sqrt(part)),
+                        size=3.0 + 2.0 * float(min(np.sqrt(gain), 4.0)),
                         edge=INK,
                         edge_width=0.6,
                         order=3.0,
