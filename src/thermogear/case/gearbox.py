@@ -105,8 +105,9 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
 
 
 def heated(box: Gearbox, train: TrainPlan) -> Gearbox:
-    """The gearbox with shafts and bearings as nodes, where the inside of every bearing is known."""
-    return replace(box, surroundings=replace(box.surroundings, train=train.heat()))
+    """The gearbox with shafts and bearings as nodes, where two bearings hold each shaft."""
+    drawn = train.heat(coefficient=box.bearing_coefficient)
+    return replace(box, surroundings=replace(box.surroundings, train=drawn))
 
 
 def _stated(file: GearFile, held: Mapping[str, float]) -> dict[str, float]:
