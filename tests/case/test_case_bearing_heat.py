@@ -7,6 +7,7 @@ import pytest
 
 from own_pair import OWN_PAIR
 from thermogear.case.case import GearCase, load_case
+from thermogear.case.gearbox import housing_box
 from thermogear.heat.shaft_heat import CoefficientFriction
 
 BEGIN = OWN_PAIR.index("[temperatures]")
@@ -48,6 +49,13 @@ def test_a_case_with_shafts_has_their_bearings_in_its_balance() -> None:
     assert train.named["wheel_bearing_1"].seat == 20.0
     # by the levers, 31 of 93 mm from the left bearing
     assert train.shares["wheel_bearing_2"] == pytest.approx((40.0 - 9.0) / (102.0 - 9.0))
+    # what no longer decides anything says so; the housing is as wide as the pinion's shaft
+    said = {one.field: one.value for one in case.assumptions}
+    for name in ("shaft_length", "bearing_conductance", "bearing_coefficient"):
+        assert said[f"gearbox.{name}"].startswith("none: the ")
+    apart = 105e-3 - case.pair.face_width
+    walls = housing_box(case.pair, 0.5 * apart, case.gearbox.immersion)
+    assert case.gearbox.surroundings.housing_area == pytest.approx(walls.area, rel=1e-12)
     assert case.computed
     balance = case.balance(case.models[0])
     assert balance.settled.all()
