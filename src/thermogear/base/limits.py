@@ -121,6 +121,25 @@ LIMITS: dict[str, Limit] = {
         source="manufactured pairs of the class, and 0.43 w/c' of the load on flanks as they are",
         confirmed=False,
     ),
+    "critical_speed": Limit(
+        "%",
+        what="own speeds off it by",
+        least=15.0,
+        source="the margin of ISO 6336-1 for the main resonance, taken over",
+        confirmed=False,
+    ),
+    "bearing_safety": Limit(
+        "", what="safety", least=1.5, source="C0/P0 of 1 to 2 is usual", confirmed=False
+    ),
+    "bearing_clearance": Limit(
+        "µm", least=0.0, source="a hot bearing without play is preloaded; aim at 0 to 10 µm"
+    ),
+    "tilt": Limit(
+        "",
+        what="of the teeth's deflection",
+        most=0.5,
+        source="ours: beyond it the load leans to one end",
+    ),
     "relief": Limit(
         "%", what="gain", most=30.0, source="ours: a relief that takes more is worth cutting"
     ),

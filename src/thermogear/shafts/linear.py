@@ -141,7 +141,8 @@ class LinearTrain:
         turned = self.basis.T @ self.assembly.gyroscopic @ self.basis
         solve = scipy.linalg.solve_triangular
         half = solve(low, turned, lower=True)
-        return solve(low, half.T, lower=True).T, solve(low, lowk, lower=True), lowk
+        gyro, cross = solve(low, half.T, lower=True).T, solve(low, lowk, lower=True)
+        return np.asarray(gyro, float), np.asarray(cross, float), np.asarray(lowk, float)
 
     @cached_property
     def held(self) -> tuple[Floats, Floats]:

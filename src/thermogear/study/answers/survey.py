@@ -17,7 +17,7 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.mesh.model import MeshModel
 from thermogear.results.answer import Answer
 from thermogear.results.result import Notice, Result
-from thermogear.study.answers import moving, steady
+from thermogear.study.answers import moving, shafts, steady
 from thermogear.study.answers.asked import MOST_POINTS, Asked
 from thermogear.study.speeds import Speeds
 
@@ -33,6 +33,7 @@ MAKERS = (
     moving.speeds,
     moving.loads,
     moving.errors,
+    shafts.answers,
 )
 """What answers each question, in the order of the page."""
 

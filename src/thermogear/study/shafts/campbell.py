@@ -45,7 +45,7 @@ class Order:
     name: str
     order: float
     kind: str
-    part: str
+    parts: tuple[str, ...]
 
 
 def orders_of(case: GearCase) -> list[Order]:
@@ -54,19 +54,63 @@ def orders_of(case: GearCase) -> list[Order]:
     z1, ratio = pair.pinion.teeth, pair.pinion.teeth / pair.wheel.teeth
     found = [
         Order(
-            name="mesh" if h == 1 else f"{h} x mesh", order=float(h * z1), kind="mesh", part="mesh"
+            name="mesh" if h == 1 else f"{h} x mesh",
+            order=float(h * z1),
+            kind="mesh",
+            parts=("mesh",),
         )
         for h in range(1, MESH_HARMONICS + 1)
     ]
     found += [
-        Order(name=f"{shaft} shaft", order=turns, kind="shaft", part=shaft)
+        Order(name=f"{shaft} shaft", order=turns, kind="shaft", parts=(shaft,))
         for shaft, turns in zip(SHAFTS, (1.0, ratio), strict=True)
     ]
     for name, shaft, passing in plan_of(case).passing_orders:
-        turns = 1.0 if shaft == SHAFTS[0] else ratio
-        found.append(
-            Order(name=f"elements of {name}", order=passing * turns, kind="bearing", part=name)
-        )
+        turns = passing * (1.0 if shaft == SHAFTS[0] else ratio)
+        same = [one for one in found if one.kind == "bearing" and one.order == turns]
+        parts = (*(same[0].parts if same else ()), name)
+        found = [one for one in found if one not in same]
+        words = f"elements of {' and '.join(parts)}"
+        found.append(Order(name=words, order=turns, kind="bearing", parts=parts))
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Critical:
+    """A speed [rad/s] of the pinion at which an ``order`` meets a mode of ``frequency`` [rad/s]."""
+
+    speed: float
+    frequency: float
+    order: str
+    mode: int
+    mostly: str
+    amplification: float
+
+
+def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[Critical]:
+    """Where mesh and shaft orders meet modes up to ``highest`` [rad/s], at mean stiffness."""
+    rings, found = bearing_parts(case), []
+    for order in orders_of(case):
+        if order.kind == "bearing":
+            continue
+        speeds, shapes = state.linear.critical(order.order)
+        count = int(np.sum(speeds <= highest))
+        speeds, shapes = speeds[:count], shapes[:, :count]
+        shares = participation(state.linear, order, shapes)
+        ratios = damping_ratios(state.linear, shapes, speeds * order.order)
+        parts = strain_shares(state.linear, shapes)
+        for mode in range(count):
+            here = {name: float(value[mode]) for name, value in parts.items()}
+            found.append(
+                Critical(
+                    speed=float(speeds[mode]),
+                    frequency=float(speeds[mode] * order.order),
+                    order=order.name,
+                    mode=mode + 1,
+                    mostly=name_of(here, rings),
+                    amplification=float(shares[mode] / (2.0 * ratios[mode])),
+                )
+            )
     return found
 
 
@@ -231,12 +275,13 @@ def participation(train: LinearTrain, order: Order, shape: NDArray[np.complex128
     forward.
     """
     if order.kind != "shaft":
-        part = f"bearing {order.part}" if order.kind == "bearing" else order.part
-        return strain_shares(train, shape)[part]
-    own = train.assembly
-    turns = own.frame.sense * (1.0 if order.part == SHAFTS[0] else -1.0)
-    nodes = range(own.nodes[SHAFTS.index(order.part)].size)
-    rows = [[own.index[f"{order.part}.{i}.{c}"] for i in nodes] for c in ("x", "y")]
+        shares = strain_shares(train, shape)
+        ring = "bearing " if order.kind == "bearing" else ""
+        return np.asarray(sum((shares[ring + part] for part in order.parts), np.zeros(())))
+    own, (shaft,) = train.assembly, order.parts
+    turns = own.frame.sense * (1.0 if shaft == SHAFTS[0] else -1.0)
+    nodes = range(own.nodes[SHAFTS.index(shaft)].size)
+    rows = [[own.index[f"{shaft}.{i}.{c}"] for i in nodes] for c in ("x", "y")]
     forward = 0.5 * (shape[rows[0]] + 1j * turns * shape[rows[1]])
     moving = own.mass[np.ix_(rows[0], rows[0])]
     energy = 2.0 * np.sum(forward.conj() * (moving @ forward), axis=0).real

@@ -138,7 +138,9 @@ def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
 
 
 def _told(value: Any, factor: float, digits: int) -> str:
-    found = factor * float(value)
+    found = factor * float(value) + 0.0
+    if abs(found) < 0.5 * 10.0**-digits:
+        found = 0.0
     return f"{found:.{digits}f}" if np.isfinite(found) else "–"
 
 
@@ -207,8 +209,8 @@ def _modes(result: Result) -> Page:
         Shown(
             "energies",
             f"Which part gives, {states[last]}",
-            "Share of each part in the strain energy of each mode. A mode with energy in the mesh "
-            "is one that the teeth drive and hear.",
+            "Share of each part in the strain energy of each mode, in per cent. A mode with energy "
+            "in the mesh is one that the teeth drive and hear.",
             partial(plots.energies, table, last),
             wide=True,
         ),
@@ -360,7 +362,8 @@ def _campbell(result: Result) -> Page:
         for one in found
     ]
     hot = [one for one in found if one["state"] == names_of(data, "state")[-1]]
-    strong = max(hot, key=lambda one: one["amplification"], default=None)
+    driven = [one for one in hot if not one["order"].startswith("elements")] or hot
+    strong = max(driven, key=lambda one: one["amplification"], default=None)
     summary = "No order meets a mode it can drive in this range."
     if strong is not None:
         summary = (

@@ -9,7 +9,16 @@ import numpy as np
 
 from thermogear.base.display import display
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, STATES, WIDE, names_of
+from thermogear.views.style import (
+    FAINT,
+    INK,
+    OKABE_ITO,
+    QUIET,
+    STATES,
+    WIDE,
+    names_of,
+    scale,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +35,9 @@ MOST_MODES = 8
 def sketch(said: Mapping[str, Any]) -> Picture:
     """Both shafts side by side, as far apart as their centres are, to one scale, in mm."""
     shafts, apart = said["shafts"], 1e3 * float(said["centre_distance"])
-    panel = Panel(Axis("along the shafts [mm]", grid=False), Axis(grid=False), equal=True)
+    panel = Panel(
+        Axis("along the shafts [mm]", grid=False), Axis("across [mm]", grid=False), equal=True
+    )
     for number, shaft in enumerate(shafts):
         centre, colour = -number * apart, SHAFTS[shaft["name"]]
         ends = [1e3 * shaft["sections"][0][0], 1e3 * shaft["sections"][-1][1]]
@@ -55,8 +66,6 @@ def sketch(said: Mapping[str, Any]) -> Picture:
             panel.points([at + side * long], [centre], colour=QUIET, marker="square", size=11.0)
             panel.text(at + side * long, centre, name, up="bottom", offset=(0.0, 8.0), size=8.0)
         panel.curve([ends[0], ends[1]], [centre] * 2, colour=QUIET, width=0.7, dash=(8.0, 2.0))
-    panel.y.ticks = [0.0]
-    panel.y.names = [""]
     return Picture([[panel]], size=(WIDE, 4.2))
 
 
@@ -128,6 +137,7 @@ def loads(data: xr.Dataset) -> Picture:
                 label=name if point == 0 else "",
             )
     panel.x.ticks, panel.x.names = np.arange(len(names)), names
+    panel.y.high = 1.1 * float(np.nanmax(data["bearing_load"].values, initial=1.0))
     return Picture([[panel]], size=(WIDE, 3.2))
 
 
@@ -192,23 +202,18 @@ def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
 def energies(table: xr.Dataset, state: int) -> Picture:
     """Which part bends in which mode: shares of the strain energy."""
     values = 100.0 * table["energy_share"].values[state].T
-    parts, modes_ = names_of(table, "part"), table["mode"].values
+    parts = names_of(table, "part")
+    columns = np.arange(table.sizes["mode"] + 1) - 0.5
+    rows = np.arange(len(parts) + 1) - 0.5
     panel = Panel(
-        Axis("mode", ticks=np.arange(modes_.size) + 0.5, names=[str(int(m)) for m in modes_]),
-        Axis("", ticks=np.arange(len(parts)) + 0.5, names=parts),
+        Axis("mode", ticks=columns[:-1] + 0.5, names=[str(int(m)) for m in table["mode"].values]),
+        Axis(low=rows[-1], high=rows[0], ticks=rows[:-1] + 0.5, names=parts),
     )
-    from thermogear.views.style import scale
-
-    panel.field(
-        np.arange(modes_.size + 1),
-        np.arange(len(parts) + 1),
-        values,
-        colours=scale("Blues"),
-        low=0.0,
-        high=100.0,
-        words="share of the strain energy [%]",
-    )
-    return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.2), left=2.2)
+    panel.field(columns, rows, values, colours=scale("Blues"), low=0.0, high=100.0)
+    for r, c in np.argwhere(values >= 5.0).tolist():
+        share = float(values[r, c])
+        panel.text(c, r, f"{share:.0f}", size=7.4, colour="#ffffff" if share > 60.0 else INK)
+    return Picture([[panel]], size=(WIDE, 0.28 * len(parts) + 1.0), left=2.2)
 
 
 def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) -> Picture:
