@@ -443,7 +443,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     inertias, inertia_kind = parts.inertias(file, pair)
     train = train_plan(file, pair, materials, inertias)
     if train is not None:
-        box = heated(box, train)
+        box = heated(file, pair, box, train)
     measured = charts(file, pair)
     return GearCase(
         pair=pair,
