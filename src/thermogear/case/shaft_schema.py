@@ -52,8 +52,8 @@ class ShaftTable(Table):
         "bearings share the load",
     )
     bearings: Annotated[
-        tuple[str, ...], Several(Words('"6205"'), least=1, most=2, distinct=False)
-    ] = Field(default=(), title="types of one at each end, half their width inside")
+        tuple[str, ...] | None, Several(Words('"6205"'), least=1, most=2, distinct=False)
+    ] = Field(default=None, title="types of one at each end, half their width inside")
     unbalance: Annotated[float, Measure("unbalance", "0 g mm", "1e6 g mm", example="20 g mm")] = (
         Field(default=0.0, description="balanced. Decides the vibration at shaft order")
     )
