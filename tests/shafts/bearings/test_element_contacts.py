@@ -1,10 +1,13 @@
 """Contacts and laws of rolling elements: Hertz's integrals, ISO 281's ratings, random laws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 from conftest import Compared
+from thermogear.base.errors import InputError
 from thermogear.shafts.bearings.catalogue import CATALOGUE, catalogue_bearing
 from thermogear.shafts.bearings.geometry import RollingBearing
 from thermogear.shafts.bearings.hertz import (
@@ -41,7 +44,7 @@ def test_races_hold_hertz_by_quadrature(compared: Compared) -> None:
         load, inner = 10 ** rng.uniform(0, 4), bool(rng.integers(2))
         race = ball / g * (1.0 - g if inner else -(1.0 + g)) / 2.0
         narrow, wide = 0.5 * (2 / ball + 1 / race), 0.5 * (2 / ball - 1 / (f * ball))
-        one = race_contact(ball, g, f, inner=inner)
+        one = race_contact(ball, diameter_ratio=g, conformity=f, inner=inner)
         a = one.half_length(load)
         b, p0 = a / one.ratio, one.pressure(load)
         whole = [
@@ -66,7 +69,9 @@ def test_stiffness_follows_the_root_of_the_ball(compared: Compared) -> None:
     """98 430 sqrt(D_w) N/mm^1.5 at f 0.52/0.53 and 210 GPa; what conformity changes."""
 
     def scaled(one: RollingBearing, f: tuple[float, float] = (0.52, 0.53)) -> float:
-        k = ball_coefficient(one.element_diameter, one.ratio, f, youngs_modulus=210e9)
+        k = ball_coefficient(
+            one.element_diameter, diameter_ratio=one.ratio, conformities=f, youngs_modulus=210e9
+        )
         return k * 1e-3**1.5 / np.sqrt(1e3 * one.element_diameter)
 
     compared(
@@ -84,7 +89,9 @@ def test_ellipse_near_the_customary_fits(compared: Compared) -> None:
     """Brewe-Hamrock is +1.7 % off at the inner race in K, -0.2 % at the outer."""
     one, found = catalogue_bearing("6205"), []
     for inner, f in ((True, 0.52), (False, 0.53)):
-        exact = race_contact(one.element_diameter, one.ratio, f, inner=inner)
+        exact = race_contact(
+            one.element_diameter, diameter_ratio=one.ratio, conformity=f, inner=inner
+        )
         q = one.ratio / (1 - one.ratio) if inner else -one.ratio / (1 + one.ratio)
         r = 2.0 * (1.0 + q) / (2.0 - 1.0 / f)
         k, e, first = 1.0339 * r**0.636, 1.0003 + 0.5968 / r, 1.5277 + 0.6023 * np.log(r)
@@ -135,11 +142,14 @@ def test_many_elements_are_sjovalls_integral(compared: Compared) -> None:
         )  # fmt: skip
         zone = 0.5 * (1.0 - clearance / x)
         known = (
-            4000 * 1e9 * (x - clearance) ** law.exponent * load_zone_integral(zone, law.exponent)
+            4000
+            * 1e9
+            * (x - clearance) ** law.exponent
+            * load_zone_integral(zone, exponent=law.exponent)
         )
         away.append(-law.force([x, 0.0])[0] / known - 1.0)
     compared("4000 elements", "Sjovall's load zone", away, 2e-6)
-    heaviest = [1.0 / load_zone_integral(0.5, n) for n in (1.5, 10 / 9)]
+    heaviest = [1.0 / load_zone_integral(0.5, exponent=n) for n in (1.5, 10 / 9)]
     compared("Q_max Z/F without clearance", "4.37, 4.08", np.array(heaviest) - [4.37, 4.08], 6e-3)
 
 
@@ -148,6 +158,7 @@ def test_direction_matters_less_the_more_elements(compared: Compared) -> None:
     angles = np.linspace(0.0, 2.0 * np.pi, 500)
     u = 2.5e-5 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     counts = np.array([9, 10, 18, 20, 36, 72, 144])
+    finest = []
     for clearance in (0.0, 5e-6):
         spreads = []
         for count in counts:
@@ -155,7 +166,8 @@ def test_direction_matters_less_the_more_elements(compared: Compared) -> None:
             size = np.linalg.norm(law.force(u), axis=-1)
             spreads.append(np.ptp(size) / size.mean())
         assert np.all(np.array(spreads) * counts**2.5 < 4.0)
-        compared("force of 144 elements over direction", "one force", spreads[-1], 1e-5)
+        finest.append(spreads[-1])
+    compared("force of 144 elements over direction", "one force", finest, 1e-5)
 
 
 def test_random_tangents_are_derivatives_away_from_a_first_touch(compared: Compared) -> None:
@@ -231,3 +243,41 @@ def test_a_roller_bearing_over_its_cage(compared: Compared) -> None:
     stiffer = palmgren / roller_coefficient(9e-3)
     # deflections are 3.4 % apart, stiffnesses their power 10/9
     compared("Palmgren's roller", "3.8 % stiffer than ISO 16281's", stiffer - 1.038, 5e-4)
+
+
+def test_suffixes_do_not_hide_a_bearing() -> None:
+    said = {
+        "6205": "6205-2RS1/C3 6205ZZC3 6205.2RSR.C3 6205-2Z/C3WT 6205-2RSH/C3GJN 6205LLUC3/5K "
+        "6205DDU 6205-2RS-P6 6205TN9 62052Z",
+        "NU206E": "NU206ECP/C3 nu206e NU-206-E-TVP2 NU206ECML NU206",
+        "NU2206E": "NU2206ECPH NU2206-E",
+        "7206B": "7206B-TVP 7206-B",
+    }
+    for name, ways in said.items():
+        for way in ways.split():
+            assert catalogue_bearing(way).designation == name, way
+    # another inside: reinforced, another angle or series, or nothing at all
+    for other in ("6205ETN9", "7206", "7206C", "16205", "6302Z", "NU305ECP", "", "/C3"):
+        with pytest.raises(InputError, match="type") as told:
+            catalogue_bearing(other)
+        assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "field"),
+    [
+        ("6205", {"contact_angle": 1.0}, "contact_angle"),
+        ("6205", {"contact_angle": float("nan")}, "contact_angle"),
+        ("6205", {"width": 5e-3}, "element_diameter"),
+        ("6205", {"dynamic_rating": -1.0}, "dynamic_rating"),
+        ("6205", {"static_rating": float("inf")}, "static_rating"),
+        ("6205", {"pitch_diameter": 45e-3}, "pitch_diameter"),
+        ("6205", {"outside_diameter": float("nan")}, "outside_diameter"),
+        ("NU206E", {"element_length": 17e-3}, "element_length"),
+        ("NU206E", {"element_length": 0.0}, "element_length"),
+    ],
+)
+def test_more_impossible_bearings(name: str, changes: dict[str, float], field: str) -> None:
+    with pytest.raises(InputError, match=field) as told:
+        replace(catalogue_bearing(name), **changes)  # type: ignore[arg-type]
+    assert "\n" not in str(told.value)
