@@ -1,6 +1,8 @@
 """Contacts and laws of rolling elements: Hertz's integrals, ISO 281's ratings, random laws."""
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +20,7 @@ from thermogear.shafts.bearings.hertz import (
 )
 from thermogear.shafts.bearings.laws import ElementLaw
 
+CASES = json.loads((Path(__file__).parents[1] / "truth.json").read_text())
 RADIAL = [one for one in CATALOGUE.values() if one.kind == "ball" and one.contact_angle == 0.0]
 
 
@@ -29,6 +32,23 @@ def random_law(rng: np.random.Generator, clearance: float) -> ElementLaw:
         clearance=clearance,
         cage_angle=rng.uniform(0.0, 7.0),
     )
+
+
+def test_truth_b1_from_far_away(compared: Compared) -> None:
+    """Newton from 60 um beside the load, at the three cage angles."""
+    case = CASES["B1"]
+    p, away = case["params"], []
+    push = np.array([p["load"], 0.0])
+    for name, share in (("element_under_load", 0.0), ("gap_under_load", 1.0), ("quarter", 0.5)):
+        law = ElementLaw(
+            elements=p["elements"], coefficient=p["K"], exponent=p["exponent"],
+            clearance=p["radial_clearance"], cage_angle=share * np.pi / p["elements"],
+        )  # fmt: skip
+        u = np.array([5e-5, 3e-5])
+        for _ in range(60):
+            u = u + np.linalg.solve(law.stiffness(u), law.force(u) + push)
+        away.append((u - case["values"][name]) / np.linalg.norm(u))
+    compared("journal in its elements, from afar", "truth B1", away, case["tolerance"])
 
 
 def test_races_hold_hertz_by_quadrature(compared: Compared) -> None:

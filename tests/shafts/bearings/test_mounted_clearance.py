@@ -1,6 +1,8 @@
 """Fits and hot clearance against thick cylinders solved afresh, and their limits."""
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from thermogear.shafts.bearings.catalogue import CATALOGUE, catalogue_bearing
 from thermogear.shafts.bearings.clearance import Fit, mounted_clearance, ring_growth
 from thermogear.shafts.bearings.geometry import RollingBearing
 
+CASES = json.loads((Path(__file__).parents[1] / "truth.json").read_text())
 STEEL = material("steel")
 ALUMINIUM = replace(
     STEEL, name="aluminium", youngs_modulus=70e9, poisson_ratio=0.34, thermal_expansion=23e-6
@@ -122,6 +125,24 @@ def test_mounted_and_hot_as_thick_cylinders_solved_afresh(compared: Compared) ->
         away.append(mounted(one, play, fit, warm, shaft, housing) - known)
     assert len(kinds) == 4
     compared("mounted and hot radial clearance", "thick cylinders solved afresh", away, 1e-15, "m")
+
+
+def test_truth_t1_of_a_whole_bearing(compared: Compared) -> None:
+    """The same circles as a bearing in loose fits."""
+    for name in ("T1", "T1u"):
+        p, values = CASES[name]["params"], CASES[name]["values"]
+        one = RollingBearing(
+            kind="ball", bore=35e-3, outside_diameter=80e-3, width=18e-3, elements=9,
+            element_diameter=p["ball"], pitch_diameter=p["inner_raceway"] + p["ball"],
+        )  # fmt: skip
+        steel = replace(STEEL, thermal_expansion=p["expansion_inner"])
+        play = p["outer_raceway"] - p["inner_raceway"] - 2.0 * p["ball"]
+        warm = np.array([p[f"T_{part}"] - p["T_ref"] for part in ("inner", "ball", "outer")])
+        loose = Fit(ring=steel, shaft=steel, housing=steel, shaft_interference=-1e-4,
+                    housing_interference=-1e-4)  # fmt: skip
+        found = [mounted(one, play, loose, at, at[0], at[2]) for at in (0.0 * warm, warm)]
+        away = np.array(found) / [values["cold"], values["hot"]] - 1.0
+        compared(f"clearance of a whole bearing, {name}", "truth", away, CASES[name]["tolerance"])
 
 
 def test_fit_limits(compared: Compared) -> None:
