@@ -43,6 +43,23 @@ def test_life_factor_is_smooth_enough_and_bounded(compared: Compared) -> None:
         life_factor("needle", viscosity_ratio=1.0, fatigue_ratio=1.0)
 
 
+@pytest.mark.parametrize(
+    ("kind", "kappa", "known"),
+    [
+        # (1 - (2.5671 - A/kappa^B)^0.83 r^(1/3))^-9.3/10 at r = 0.1, by hand
+        ("ball", 0.2, (1 - (2.5671 - 2.2649 / 0.2**0.054381) ** 0.83 * 0.1 ** (1 / 3)) ** -9.3),
+        ("ball", 0.7, (1 - (2.5671 - 1.9987 / 0.7**0.19087) ** 0.83 * 0.1 ** (1 / 3)) ** -9.3),
+        ("ball", 3.0, (1 - (2.5671 - 1.9987 / 3.0**0.071739) ** 0.83 * 0.1 ** (1 / 3)) ** -9.3),
+        ("roller", 0.2, (1 - (1.5859 - 1.3993 / 0.2**0.054381) * 0.1**0.4) ** -9.185),
+        ("roller", 0.7, (1 - (1.5859 - 1.2348 / 0.7**0.19087) * 0.1**0.4) ** -9.185),
+        ("roller", 3.0, (1 - (1.5859 - 1.2348 / 3.0**0.071739) * 0.1**0.4) ** -9.185),
+    ],
+)
+def test_life_factor_by_hand(kind: str, kappa: float, known: float) -> None:
+    found = float(life_factor(kind, viscosity_ratio=kappa, fatigue_ratio=0.1))
+    assert found == pytest.approx(0.1 * known, rel=1e-12)
+
+
 def test_viscosity_ratio_over_speed(compared: Compared) -> None:
     one = catalogue_bearing("6205")
     n = np.array([10.0, 100.0, 999.999, 1000.001, 3000.0, 20000.0])
@@ -76,6 +93,23 @@ def test_friction_of_a_6205_by_its_parts(compared: Compared) -> None:
     watts = float(skf.moment(force=1000.0, speed=speed, viscosity=20e-6)) * speed
     compared("its loss", "6.5 W; 1.047e-4 n M", [watts / 6.5 - 1, watts / (0.10472 * 3 * 20.6) - 1],
              6e-3)  # fmt: skip
+
+
+def test_skf_by_hand_where_inlet_and_starving_count(compared: Compared) -> None:
+    """6308 in grease, 6000 rpm, 80 mm^2/s, 3000 N: every factor far from one."""
+    n, nu, load, d, outside = 6000.0, 80.0, 3000.0, 40.0, 90.0
+    dm = 0.5 * (d + outside)
+    inlet = 1.0 / (1.0 + 1.84e-9 * (n * dm) ** 1.28 * nu**0.64)
+    left = np.exp(-6e-8 * nu * n * (d + outside) * np.sqrt(3.1 / (2.0 * (outside - d))))
+    weight = np.exp(-2.6e-8 * (n * nu) ** 1.4 * dm)
+    rolling = inlet * left * 3.7e-7 * dm**1.96 * load**0.54 * (nu * n) ** 0.6
+    mu = 0.12 * weight + 0.04 * (1.0 - weight)
+    known = rolling + mu * 2.84e-3 * dm**-0.26 * load ** (5 / 3)
+    assert inlet < 0.7
+    assert left < 0.7
+    law = SkfFriction(bearing=catalogue_bearing("6308"), lubrication="grease", sliding=0.04)
+    found = 1e3 * float(law.moment(force=load, speed=n * RPM, viscosity=nu * 1e-6))
+    compared("SKF's friction of a 6308", "by hand", found / known - 1.0, 1e-12)
 
 
 def test_limits_of_random_friction(compared: Compared) -> None:
