@@ -53,20 +53,25 @@ def _made(name: str) -> RollingBearing:
 
 CATALOGUE = {name: _made(name) for name in _ROWS}
 """Ready bearings by designation."""
-_TAIL = re.compile(r"(2RS1?H?|2RSR|2Z|ZZ|RS|RZ|Z|DDU|LLU|TN9?|TVP2?|ECP?|ECJ|C[2-5]|CN|P[56])+$")
+_TAIL = re.compile(
+    r"(2?RS[12HLR]?H?|2?RZ|2?Z|ZZ|DDU?|LL[UB]|VV"  # seals and shields
+    r"|TN9?|TVP2?|M[AB]?|EC(P|PH|J|M|ML)?"  # cages
+    r"|C[2-5]|CN|CM|P[456])+$"  # clearance and tolerances
+)
 
 
 def catalogue_bearing(name: str) -> RollingBearing:
     """The bearing of that designation; seals, cages and classes behind it do not matter.
 
-    Raises InputError with the nearest name.
+    What follows a slash never tells of the inside. NU206 is NU206E, as made today; the contact
+    angle of a 7206 has to be said (7206B). Raises InputError with the nearest name.
 
     >>> catalogue_bearing("6205-2RS/C3").elements
     9
     """
-    bare = re.sub(r"[\s/_-]", "", name.upper())
+    bare = re.sub(r"[\s._-]", "", name.upper().split("/")[0])
     short = _TAIL.sub("", bare)
-    for tried in (bare, short, f"{short}E", f"{short}B"):
+    for tried in (bare, short, f"{short}E"):
         if tried in CATALOGUE:
             return CATALOGUE[tried]
     raise InputError(

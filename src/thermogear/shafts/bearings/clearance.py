@@ -101,6 +101,13 @@ def ring_growth(
     inner diameter, as an outer ring in its housing. With one material k (1 - k0^2)/(1 - k^2 k0^2)
     and h (1 - h0^2)/(1 - h^2 h0^2).
     """
+    if not 0.0 <= inner < fit < outer:
+        raise InputError(
+            "fit",
+            " / ".join(f"{1e3 * one:.6g}" for one in (inner, fit, outer)) + " mm",
+            allowed="bore < seat < outside",
+            why="one ring lies within the other",
+        )
     hole, wall = inner / fit, fit / outer
     # radial compliance of each part at the fit, u = p fit/2 times these
     inside = ((1.0 + hole**2) / (1.0 - hole**2) - within.poisson_ratio) / within.youngs_modulus

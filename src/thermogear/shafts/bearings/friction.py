@@ -75,8 +75,8 @@ class SkfFriction:
     M = p_i p_r R1 d_m^1.96 F^0.54 (nu n)^0.6 + mu S1 d_m^-0.26 F^(5/3) [N mm], p_i = 1/(1 +
     1.84e-9 (n d_m)^1.28 nu^0.64) for the heat of the inlet, p_r = exp(-K_rs nu n (d + D)
     sqrt(3.1/(2 (D - d)))) for the film that is used up, mu = w 0.12 + (1 - w) ``sliding`` with w =
-    exp(-2.6e-8 (n nu)^1.4 d_m). mm, rpm, mm^2/s, N. Series 60, 62 and 63. Source: SKF's catalogue
-    by public code.
+    exp(-2.6e-8 (n nu)^1.4 d_m), d_m = (d + D)/2. mm, rpm, mm^2/s, N. Series 60, 62 and 63. Source:
+    SKF's catalogue by public code.
 
     >>> from thermogear.shafts.bearings.catalogue import catalogue_bearing
     >>> law = SkfFriction(bearing=catalogue_bearing("6205"))
@@ -103,7 +103,8 @@ class SkfFriction:
         """M [N m] at ``force`` [N], ``speed`` [rad/s] and ``viscosity`` [m^2/s], any shape."""
         one = self.bearing
         rolling, sliding = SERIES[one.designation[:2]]
-        d, outside, dm = (1e3 * v for v in (one.bore, one.outside_diameter, one.pitch_diameter))
+        d, outside = 1e3 * one.bore, 1e3 * one.outside_diameter
+        dm = 0.5 * (d + outside)
         n = np.abs(np.asarray(speed, dtype=float)) * _RPM
         nu = _MM2 * np.asarray(viscosity, dtype=float)
         f = np.abs(np.asarray(force, dtype=float))

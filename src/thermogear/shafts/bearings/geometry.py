@@ -14,6 +14,8 @@ from thermogear.shafts.bearings.laws import ElementLaw
 STEEL = 7800.0
 """Density of the rings [kg/m^3]."""
 KINDS = ("ball", "roller")
+MOST_ANGLE = np.pi / 4.0
+"""Greatest contact angle [rad] of a radial bearing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,8 +73,34 @@ class RollingBearing:
                 why=f"raceways of {_mm(self.inner_raceway)} and {_mm(self.outer_raceway)} in rings "
                 f"of {_mm(self.bore)} and {_mm(self.outside_diameter)}",
             )
-        if self.kind == "roller" and not (self.element_length and self.element_length > 0.0):
-            raise InputError("element_length", "nothing", why="a roller needs its length")
+        self._require_elements()
+
+    def _require_elements(self) -> None:
+        if not 0.0 <= self.contact_angle <= MOST_ANGLE:
+            raise InputError(
+                "contact_angle",
+                f"{np.degrees(self.contact_angle):.6g} deg",
+                allowed=f"0..{np.degrees(MOST_ANGLE):.0f} deg, a radial bearing",
+            )
+        if self.element_diameter > self.width and self.kind == "ball":
+            raise InputError(
+                "element_diameter",
+                _mm(self.element_diameter),
+                allowed=f"<= {_mm(self.width)}",
+                why="a ball is no wider than its rings",
+            )
+        if self.kind == "roller":
+            length = self.element_length
+            if length is None:
+                raise InputError("element_length", "nothing", why="a roller needs its length")
+            if not 0.0 < length <= self.width:
+                raise InputError(
+                    "element_length", _mm(length), allowed=f"0..{_mm(self.width)}, the width"
+                )
+        for name in ("dynamic_rating", "static_rating"):
+            value = getattr(self, name)
+            if value is not None and not (np.isfinite(value) and value > 0.0):
+                raise InputError(name, f"{value:.6g} N", allowed="> 0 N")
         if self.kind == "ball" and not all(0.5 < f < 0.7 for f in self.conformities):
             raise InputError("conformities", list(self.conformities), allowed="0.5 < f < 0.7")
 
