@@ -10,7 +10,7 @@ from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.shafts.assembly import Assembly, assemble, lumped
 from thermogear.shafts.bearings.laws import ElementLaw, LinearLaw, RingLaw
-from thermogear.shafts.linear import LinearTrain, strain_shares, whirl
+from thermogear.shafts.linear import LinearTrain, damping_ratios, strain_shares, whirl
 from thermogear.shafts.response import (
     error_response,
     loaded_error,
@@ -368,3 +368,34 @@ def test_places_off_the_shaft_are_refused() -> None:
     with pytest.raises(InputError, match="position"):
         assemble(replace(train, bearings=(far, *train.bearings[1:])))
     assert isinstance(assemble(train), Assembly)
+
+
+def test_a_motor_that_gives_way_damps_its_own_mode(compared: Compared) -> None:
+    """The peak of a slow mode falls as its ratio says; a lag takes the damper away above 1/T."""
+    (train,) = trains(30)[:1]
+    assert train.motor is not None
+    soft = replace(isotropic(train), motor=replace(train.motor, stiffness=2e3, inertia=0.05))
+
+    def slowest(slip: float, lag: float) -> tuple[float, float]:
+        assert soft.motor is not None
+        made = linear(replace(soft, motor=replace(soft.motor, slip_damping=slip, lag=lag)))
+        modes = made.modes(0.0, count=2)
+        return float(damping_ratios(made, modes.shape, frequency=modes.frequency)[0]), float(
+            modes.frequency[0]
+        )
+
+    bare, frequency = slowest(0.0, 0.0)
+    damped, _ = slowest(0.5, 0.0)
+    late, _ = slowest(0.5, 10.0 / frequency)
+    assert damped > bare
+    compared(
+        "damper behind a lag", "1/(1 + (w T)^2)", (late - bare) / (damped - bare) * 101 - 1, 1e-6
+    )
+    peaks = []
+    for slip in (0.2, 0.5):
+        assert soft.motor is not None
+        made = linear(replace(soft, motor=replace(soft.motor, slip_damping=slip)))
+        found = error_response(made, [frequency], order=1.0, error=1e-6)
+        ratio = slowest(slip, 0.0)[0]
+        peaks.append(np.abs(found.displacement[0, made.assembly.index["motor.tz"]]) * ratio)
+    compared("height of the motor's resonance", "one over its ratio", peaks[0] / peaks[1] - 1, 0.02)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,7 +61,8 @@ class Assembly:
     and feet; ``drive`` and ``back`` (n,) are the gradients of delta_d and delta_b; ``weight`` (n,)
     is the force of gravity [N]. ``nodes`` are the positions [m] of the nodes of both shafts from
     their left ends, ``gear_nodes`` the gears' among them. ``mesh_mass`` m_e = I1 I2/(I1 r_b2^2 +
-    I2 r_b1^2) [kg] of the two gears alone.
+    I2 r_b1^2) [kg] of the two gears alone. ``slip`` (d [N m s], T [s]): the motor's torque falls
+    by d with its speed, behind a lag T.
     """
 
     frame: MeshFrame
@@ -78,6 +80,7 @@ class Assembly:
     nodes: tuple[Floats, Floats]
     gear_nodes: tuple[int, int]
     mesh_mass: float
+    slip: tuple[float, float] = (0.0, 0.0)
 
     @property
     def size(self) -> int:
@@ -168,8 +171,7 @@ def assemble(train: DriveTrain) -> Assembly:
         frame=train.frame,
         damping=train.damping,
         coordinates=tuple(names),
-        **{name: np.zeros((n, n)) for name in _MATRICES},
-        **{name: np.zeros(n) for name in ("drive", "back", "weight")},
+        **_empty(n),
         bearings=(),
         nodes=(nodes[0], nodes[1]),
         gear_nodes=(_nearest(nodes[0], train.shafts[0]), _nearest(nodes[1], train.shafts[1])),
@@ -193,7 +195,8 @@ def assemble(train: DriveTrain) -> Assembly:
     casing = _put_casing(empty, train.casing)
     places = tuple(_put_bearing(empty, one, casing) for one in train.bearings)
     _weigh(empty, train.gravity)
-    return replace(empty, drive=drive, back=back, bearings=places)
+    slip = (0.0, 0.0) if train.motor is None else (train.motor.slip_damping, train.motor.lag)
+    return replace(empty, drive=drive, back=back, bearings=places, slip=slip)
 
 
 def lumped(
@@ -216,9 +219,7 @@ def lumped(
         frame=frame,
         damping=damping or Damping(),
         coordinates=names,
-        **{name: np.zeros((6, 6)) for name in _MATRICES},
-        **dict(zip(("drive", "back"), frame.columns, strict=True)),
-        weight=np.zeros(6),
+        **(_empty(6) | dict(zip(("drive", "back"), frame.columns, strict=True))),
         bearings=(),
         nodes=(np.zeros(1), np.zeros(1)),
         gear_nodes=(0, 0),
@@ -239,6 +240,12 @@ def mesh_mass(frame: MeshFrame, *, pinion: float, wheel: float) -> float:
 
 def _nearest(positions: Floats, shaft: Shaft) -> int:
     return int(np.argmin(np.abs(positions - shaft.gear_position)))
+
+
+def _empty(size: int) -> dict[str, Any]:
+    """Zeros for every matrix and vector."""
+    square = {name: np.zeros((size, size)) for name in _MATRICES}
+    return square | {name: np.zeros(size) for name in ("drive", "back", "weight")}
 
 
 _MATRICES = ("mass", "stiffness", "elastic", "gyroscopic", "viscous")

@@ -87,6 +87,14 @@ class LinearTrain:
             raise InputError("damping", repr(model.kind), allowed="bearings | proportional | modal")
         return np.asarray(train.viscous + model.shafts * train.elastic + mesh)
 
+    def slip_damping(self, frequency: ArrayLike) -> Complexes:
+        """d/(1 + i w T) of the motor's characteristic [N m s] at ``frequency`` w [rad/s].
+
+        Its real part takes energy; beyond 1/T little of it is left.
+        """
+        size, lag = self.assembly.slip
+        return np.asarray(size / (1.0 + 1j * np.asarray(frequency, dtype=float) * lag))
+
     @cached_property
     def _moving_mass(self) -> Floats:
         """M without the rigid rotation, which no damping of the train may brake."""
@@ -112,8 +120,9 @@ class LinearTrain:
 
         Undamped: lambda A z = -B z with A = diag(M, K), B = ((Omega G, K), (-K, 0)), Hermitian once
         A is reduced. ``damped``, or with bearings whose K is not symmetric: the eigenvalues of the
-        state matrix; a ratio below zero is unstable, over-damped pairs are left out. Raises
-        InputError where a motion is free besides the rotation.
+        state matrix, the motor's characteristic left out; a ratio below zero is unstable,
+        over-damped pairs are left out. Raises InputError where a motion is free besides the
+        rotation.
         """
         if damped or not self.symmetric:
             return self._damped_modes(speed, damped, count)
@@ -218,11 +227,16 @@ class LinearTrain:
         t, train = self.basis, self.assembly
         parts = [t.T @ one @ t for one in (train.mass, self.damping, train.gyroscopic)]
         stiff = t.T @ self.stiffness @ t
+        motor = np.zeros(t.shape[1])
+        if self.assembly.slip[0]:
+            motor = t[train.index["motor.tz"]]
+        slips = self.slip_damping(w)
         pushed = np.broadcast_to(np.asarray(force, complex), (*w.shape, train.size)) @ t
         found = np.empty((*w.shape, t.shape[1]), complex)
         for at in np.ndindex(w.shape):
             turning = train.frame.sense * omega[at] * parts[2]
-            dynamic = stiff - w[at] ** 2 * parts[0] + 1j * w[at] * (parts[1] + turning)
+            loss = parts[1] + turning + slips[at] * np.outer(motor, motor)
+            dynamic = stiff - w[at] ** 2 * parts[0] + 1j * w[at] * loss
             found[at] = np.linalg.solve(dynamic, pushed[at])
         return np.asarray(found @ t.T, dtype=complex)
 
@@ -279,7 +293,11 @@ def damping_ratios(train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike
     """
     q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
     energy = w**2 * _energy(train.assembly.mass, q) + _energy(train.stiffness, q)
-    return np.asarray(w * _energy(train.damping, q) / energy)
+    loss = _energy(train.damping, q)
+    if train.assembly.slip[0]:
+        turning = np.abs(q[train.assembly.index["motor.tz"]]) ** 2
+        loss = loss + train.slip_damping(w).real * turning
+    return np.asarray(w * loss / energy)
 
 
 def _energy(stiffness: Floats, q: NDArray[np.complex128] | Floats) -> Floats:
