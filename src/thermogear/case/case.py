@@ -33,7 +33,7 @@ from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import accuracy, deviations
 from thermogear.case.gearbox import Reading, gearbox, heated
-from thermogear.case.ranges import warn_of_temperatures, warn_of_torque
+from thermogear.case.ranges import warn_of_temperatures, warn_of_torque, warn_of_train
 from thermogear.case.refusals import complaints, together
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
@@ -489,6 +489,8 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
 def _warn_of(case: GearCase) -> None:
     """Warn where the case leaves the range of its data."""
     warn_of_torque(case.pair, case.torques)
+    if case.train is not None:
+        warn_of_train(case.train)
     if not case.computed:
         warn_of_temperatures(case.pair, {"temperatures": case.stated} | _row_of(case))
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
+from thermogear.case.shaft_plan import TrainPlan
 from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.operating import Operating
@@ -56,6 +57,12 @@ def warn_of_torque(pair: GearPair, torques: ArrayLike) -> None:
             ValidityWarning,
             stacklevel=3,
         )
+
+
+def warn_of_train(train: TrainPlan) -> None:
+    """Warn of bearings that do not fit their shaft, and of preloads."""
+    for said in train.misfits():
+        warnings.warn(said, ValidityWarning, stacklevel=3)
 
 
 def crushing_torque(pair: GearPair) -> float:

@@ -271,15 +271,21 @@ class TrainPlan:
         return found
 
     def misfits(self) -> Iterator[str]:
-        """Bearings whose bore is not the diameter of the shaft they sit on, in words."""
+        """What of the bearings is unusual, in words: bores beside the shaft's size, preloads."""
         for one in self.bearings:
             if one.rolling is None:
                 continue
             under = section_at(self.shafts[SHAFTS.index(one.shaft)], one.position).outer_diameter
             if abs(under / one.rolling.bore - 1.0) > MISFIT:
                 yield (
-                    f"{one.name} has a bore of {1e3 * one.rolling.bore:.4g} mm on a shaft of "
-                    f"{1e3 * under:.4g} mm"
+                    f"{one.field}: got a bore of {1e3 * one.rolling.bore:.4g} mm on a shaft of "
+                    f"{1e3 * under:.4g} mm; usual the same; {one.name} is computed with its own "
+                    "bore"
+                )
+            if one.play < 0.0:
+                yield (
+                    f"{one.field}.play: got {1e6 * one.play:.4g} um; usual 0 um or more; {one.name} "
+                    "is preloaded as delivered"
                 )
 
 

@@ -340,9 +340,12 @@ def at_the_ends(data: dict[str, Any]) -> dict[str, Any]:
     for one in shafts:
         named = one.get("bearings") if isinstance(one, dict) else None
         types = [named] if isinstance(named, str) else named
-        if isinstance(types, list) and 1 <= len(types) <= 2:
+        known = isinstance(one, dict) and one.get("gear") in ("pinion", "wheel")
+        if not known or not isinstance(types, list) or not 1 <= len(types) <= 2:
+            continue  # the shaft itself says what is wrong
+        if all(isinstance(t, str) for t in types):
             ends = zip(("left", "right"), (types[0], types[-1]), strict=True)
-            more += [{"shaft": one.get("gear"), "end": end, "type": t} for end, t in ends]
+            more += [{"shaft": one["gear"], "end": end, "type": t} for end, t in ends]
     return {**data, "bearings": [*bearings, *more]} if more else data
 
 
