@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from own_trains import FOUR, OWN, PAIR, PINION, TRAIN, WHEEL, bare, bearing, random_train
 
+from own_trains import FOUR, OWN, PAIR, PINION, TRAIN, WHEEL, bare, bearing, random_train
 from thermogear import InputError, ValidityWarning
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.shaft_plan import TrainPlan

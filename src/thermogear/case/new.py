@@ -7,14 +7,16 @@ from pathlib import Path
 
 from thermogear.base.errors import InputError
 from thermogear.base.toml import line, table
-from thermogear.case.case import load_case
+from thermogear.case.case import gear_case, load_case
+from thermogear.case.new_shafts import shaft_lines
 
 
 @dataclass(frozen=True, kw_only=True)
 class NewCase:
     """What a new case file states; texts as a file holds them, "3 mm", pairs pinion first.
 
-    What is None is left out of the file, so that its default acts.
+    What is None is left out of the file, so that its default acts. ``shafts``: two with four
+    bearings of the catalogue, sized by the torque.
     """
 
     teeth: tuple[int, int]
@@ -32,6 +34,7 @@ class NewCase:
     accuracy: int | None = None
     pinion_flanks: str | None = None
     wheel_flanks: str | None = None
+    shafts: bool = False
 
     def text(self, folder: Path | None = None) -> str:
         """The file; InputError where the case it describes is impossible.
@@ -40,7 +43,10 @@ class NewCase:
         """
         text = "\n".join(self._lines()) + "\n"
         try:
-            load_case(text, folder=folder)
+            case = load_case(text, folder=folder)
+            if self.shafts:
+                text += "\n".join(shaft_lines(gear_case(case))) + "\n"
+                load_case(text, folder=folder)
         except InputError as error:
             for one in getattr(error, "errors", (error,)):
                 one.line = None

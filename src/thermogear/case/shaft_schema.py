@@ -51,9 +51,9 @@ class ShaftTable(Table):
         description="in the middle. From the left end to the middle of the face; decides how the "
         "bearings share the load",
     )
-    bearings: Annotated[
-        tuple[str, ...], Several(Words('"6205"'), least=1, most=2, distinct=False)
-    ] = Field(default=(), title="types of one at each end, half their width inside")
+    bearings: (
+        Annotated[tuple[str, ...], Several(Words('"6205"'), least=1, most=2, distinct=False)] | None
+    ) = Field(default=None, title="types of one at each end, half their width inside")
     unbalance: Annotated[float, Measure("unbalance", "0 g mm", "1e6 g mm", example="20 g mm")] = (
         Field(default=0.0, description="balanced. Decides the vibration at shaft order")
     )
@@ -171,14 +171,17 @@ class BearingTable(Table):
         "zero a preload. Decides load zone, stiffness and rattle",
     )
     clearance_class: Annotated[str, Choice("C2", "CN", "C3", "C4")] | None = Field(
-        default=None, description="CN, the normal one of ISO 5753-1"
+        default=None, description="CN, the normal one of ISO 5753-1. Decides the play"
     )
     shaft_interference: Interference = Field(
         default=11e-6,
-        description="11 um, the middle of k5 on 18 to 50 mm. On the diameter; takes clearance",
+        description="11 um, the middle of k5 on 18 to 50 mm. On the diameter. Decides how much "
+        "clearance mounting takes",
     )
     housing_interference: Interference = Field(
-        default=0.0, description="none, the ring can slide. On the diameter; takes clearance"
+        default=0.0,
+        description="none, the ring can slide. On the diameter. Decides how much clearance "
+        "mounting takes",
     )
     damping: Damper | None = Field(
         default=None,
@@ -283,7 +286,9 @@ class EndTable(Table):
         float, Measure("torsional damping", "0 N m s/rad", "1e9 N m s/rad")
     ] = Field(default=0.0, description="none. Decides how long slow torsion rings")
     position: Place | None = Field(
-        default=None, description="the left end of the pinion's shaft, the right of the wheel's"
+        default=None,
+        description="the left end of the pinion's shaft, the right of the wheel's. Decides where the "
+        "shaft twists",
     )
 
 
@@ -291,10 +296,11 @@ class MotorTable(EndTable):
     """The motor on the pinion's shaft; without a characteristic its torque is constant."""
 
     slip_damping: Annotated[float, Measure("torsional damping", "0 N m s/rad", "1e9 N m s/rad")] = (
-        Field(default=0.0, description="constant torque. How the torque falls with speed")
+        Field(default=0.0, description="constant torque. Decides how the torque falls with speed")
     )
     lag: Annotated[float, Measure("time", "0 s", "100 s", example="0.021 s")] = Field(
-        default=0.0, description="none: the torque follows at once"
+        default=0.0,
+        description="none: the torque follows at once. Decides how slow torsion is damped",
     )
 
 
