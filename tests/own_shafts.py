@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear import Gear, GearPair
 from thermogear.base.materials import MATERIALS
-from thermogear.heat.shaft_heat import HeatedBearing, ShaftHeat
+from thermogear.heat.shaft_heat import Friction, HeatedBearing, ShaftHeat
 from thermogear.shafts.train import SHAFTS, Section, Shaft
 
 STEEL = MATERIALS["steel"]
@@ -50,8 +50,8 @@ def train(
     length: float = 60e-3,
     diameters: tuple[float, float] = (25e-3, 25e-3),
     face: float = 20e-3,
-    size: Size = Size(),
-    friction: Rubbing = Rubbing(),
+    size: Size | None = Size(),
+    friction: Friction = Rubbing(),
     seat: float = 10.0,
     factor: float = 1.0,
 ) -> ShaftHeat:

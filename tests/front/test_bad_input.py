@@ -452,9 +452,9 @@ SEVERAL = {
         "title = 'x'\n\"a\\nb\" = 3\n",
         [
             "line 2: 'a\\nb': got an unknown key; the case file does not have it; known: backlash, "
-            "draw, dynamics, flanks, gearbox, gears, grid, housing, inertia, kind, materials, "
-            "model, oil, operating, ours, sensors, simulation, temperatures, title, "
-            "transmission_error",
+            "bearings, discs, draw, dynamics, flanks, gearbox, gears, grid, housing, inertia, "
+            "kind, load, materials, model, motor, oil, operating, ours, sensors, shafts, "
+            "simulation, temperatures, title, train, transmission_error",
             "gears: got nothing; needed; add the table [gears]",
             "operating: got nothing; needed; add the table [operating]",
         ],

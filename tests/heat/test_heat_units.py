@@ -404,6 +404,6 @@ def test_printed_deformation_is_no_length() -> None:
 def test_no_public_formula_is_left_out() -> None:
     covered = set(RESULTS) | set(DECLARED) | IMPOSSIBLE | NOT_FORMULAS | NUMBERS | set(GROWTHS)
     covered |= {"flash_temperature", "peclet_flash", "peclet_partition", "body_conductances"}
-    covered |= {"body_places", "body_radius", "tooth_radius"}
+    covered |= {"body_places", "body_radius", "ring_capacities", "tooth_radius"}
     assert set(FUNCTIONS) ^ covered == set()
     assert math.isclose(factor("m"), 1.0 / 0.37)

@@ -13,14 +13,17 @@ from thermogear.base.errors import InputError
 from thermogear.base.materials import lubricant
 from thermogear.gears.geometry import Gear
 from thermogear.heat.gearbox import Losses, Surroundings, thermal_network
+from thermogear.heat.losses import bearing_loss
 from thermogear.heat.lubrication import kinematic_viscosity
 from thermogear.heat.network import ThermalNetwork
 from thermogear.heat.shaft_heat import (
     BearingLoss,
+    CoefficientFriction,
     HeatedBearing,
     ShaftHeat,
     inner_share,
     lever_shares,
+    ring_capacities,
     ring_conductance,
 )
 from thermogear.shafts.train import Section, Shaft
@@ -118,7 +121,7 @@ def test_without_friction_and_with_huge_conductances_it_is_the_network_without_b
         # nor does any mass go: the rings' is on top
         chain = train(length=length)
         held = network(chain).capacities
-        rings = sum(sum(one.capacities(STEEL)) for one in chain.bearings[:2])
+        rings = 2.0 * sum(ring_capacities(Size(), STEEL))
         mine = sum(
             c for name, c in held.items() if name.startswith(("pinion_bearing", "pinion_shaft"))
         )
@@ -158,7 +161,7 @@ def test_sections_conduct_in_series_and_the_far_bearing_through_the_near_one() -
     )
     # no mass is lost or counted twice
     mass = STEEL.density * STEEL.specific_heat * (0.11 * thin + 0.04 * thick)
-    rings = sum(sum(b.capacities(STEEL)) for b in overhung)
+    rings = 2.0 * sum(ring_capacities(Size(), STEEL))
     assert sum(held.values()) == pytest.approx(mass + rings, rel=1e-12)
 
 
@@ -173,8 +176,9 @@ def test_rings_weigh_about_what_catalogues_say() -> None:
             0.63,
         ),
     ):  # fmt: skip
-        one = replace(train().bearings[0], size=size)
-        assert sum(one.capacities(STEEL)) / STEEL.specific_heat == pytest.approx(kilograms, rel=0.1)
+        assert sum(ring_capacities(size, STEEL)) / STEEL.specific_heat == pytest.approx(
+            kilograms, rel=0.1
+        )
 
 
 def test_rings_over_the_shaft_they_sit_on() -> None:
@@ -182,10 +186,11 @@ def test_rings_over_the_shaft_they_sit_on() -> None:
     chain = train(seat=1e12)
     found = network(chain, value=6.0).steady()
     held = network(chain, value=6.0).with_fixed(pinion_shaft=300.0, housing=300.0).steady()
-    ring = float(chain.bearings[0].conductance(200.0))
+    ring = float(ring_conductance(200.0, elements=9, element_diameter=7.938e-3, bore=25e-3))
     along = STEEL.thermal_conductivity * 0.25 * np.pi * 0.025**2 / 0.06
+    share = inner_share(element_diameter=7.938e-3, pitch_diameter=38.5e-3)
     hotter = float(held["pinion_bearing_1_inner"]) - 300.0
-    assert hotter * (ring + along) == pytest.approx(6.0 * chain.bearings[0].inner_share, rel=1e-9)
+    assert hotter * (ring + along) == pytest.approx(6.0 * share, rel=1e-9)
     # both ends alike: so are their bearings
     assert float(found["pinion_bearing_1_inner"]) == pytest.approx(
         float(found["pinion_bearing_2_inner"]), abs=1e-9
@@ -286,3 +291,46 @@ def test_the_temperature_along_a_shaft_is_conductions_own() -> None:
     assert (node, share) == ("pinion_bearing_1_inner", pytest.approx(0.5))
     with pytest.raises(InputError, match=r"^sensors.ring.distance: got 40 mm; allowed 0..30 mm"):
         bent.along("pinion", face_width=0.02, distance=0.04)
+
+
+def test_a_bearing_of_which_no_more_is_known_is_one_node_with_a_coefficient() -> None:
+    """Its friction and its conductance as without a train, only where it sits."""
+    rubbing = CoefficientFriction(coefficient=0.0015, diameter=0.025)
+    chain = train(friction=rubbing, size=None)
+    assert chain.nodes == tuple(f"{name}_inner" for name in chain.named)
+    known = thermal_network(
+        PINION,
+        WHEEL,
+        200.0,
+        Losses(mesh=300.0, churning=20.0),
+        OIL,
+        WARM,
+        Surroundings(),
+    ).steady()
+    found = thermal_network(
+        PINION,
+        WHEEL,
+        200.0,
+        Losses(mesh=300.0, churning=20.0, bearings=watts(chain, 0.0)),
+        OIL,
+        WARM,
+        Surroundings(train=chain),
+    ).steady()
+    for node in known.temperatures:
+        assert float(found[node]) == pytest.approx(float(known[node]), abs=1e-9)
+    at = dict.fromkeys(chain.nodes, np.array(WARM))
+    losses = chain.losses(at, OIL, 4000.0, (200.0, 100.0))
+    expected = bearing_loss(2000.0, 0.025, 100.0)
+    assert float(np.asarray(losses["wheel_bearing_1"].loss)) == pytest.approx(float(expected))
+    assert chain.sources(losses).keys() == set(chain.nodes)
+
+
+def test_ring_temperatures_are_in_the_order_the_bearings_are_given_in() -> None:
+    chain = train()
+    turned = replace(chain, bearings=(chain.bearings[1], *chain.bearings[2:], chain.bearings[0]))
+    at = {node: 300.0 + i * np.ones(2) for i, node in enumerate(chain.nodes)}
+    found = turned.ring_temperatures(at)
+    assert found.shape == (2, 4, 3)
+    np.testing.assert_allclose(found[0], 300.0 + np.array(
+        [[2.0, 2.5, 3.0], [4.0, 4.5, 5.0], [6.0, 6.5, 7.0], [0.0, 0.5, 1.0]]
+    ))  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -14,10 +15,12 @@ from thermogear.base.errors import ValidityWarning
 from thermogear.base.materials import lubricant
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.lubrication import kinematic_viscosity
-from thermogear.heat.shaft_heat import ShaftHeat
+from thermogear.heat.shaft_heat import Friction, ShaftHeat
 from thermogear.mesh.balance import Gearbox, HeatBalance, heat_balance
 from thermogear.mesh.balance_table import balance_dataset
 from thermogear.mesh.warm_up import Duty, warm_up, with_factors
+from thermogear.shafts.bearings.catalogue import catalogue_bearing
+from thermogear.shafts.bearings.friction import PalmgrenFriction, SkfFriction
 
 OIL = lubricant("M100")
 QUICK = MeshModel.consistent().override(
@@ -95,6 +98,35 @@ def test_20_random_gearboxes_settle_and_close(compared: Compared) -> None:
         residuals.append(found.residual)
     compared("residual of 20 random gearboxes with bearings", "0", np.array(residuals), 1e-6, "K")
     compared("heat out of them", "their losses", np.array(gaps), 1e-9)
+
+
+@pytest.mark.parametrize("law", [SkfFriction, PalmgrenFriction])
+@pytest.mark.parametrize("lubrication", ["bath", "grease"])
+def test_laws_of_catalogues_settle_everywhere_and_warm_the_rings_as_usual(
+    rig: GearPair, law: Callable[..., Friction], lubrication: str
+) -> None:
+    """From 5 rpm on; 5 to 20 K across the rings is what makers expect of fast bearings."""
+    size = catalogue_bearing("6308")
+    chain = train(
+        diameters=(40e-3, 40e-3),
+        face=rig.face_width,
+        size=size,
+        friction=law(bearing=size, lubrication=lubrication),
+    )
+    rpm, torque = np.meshgrid([5.0, 40.0, 200.0, 1000.0, 3000.0], [0.0, 50.0, 200.0])
+    speed = rpm.ravel() * np.pi / 30.0
+    found = settle(rig, chain, list(speed), list(torque.ravel()))
+    assert found.settled.all()
+    made = sum(
+        np.asarray(getattr(found.losses, n)) for n in ("mesh", "churning", "bearing_1", "bearing_2")
+    )
+    np.testing.assert_allclose(found.steady.heat_out["ambient"], made, rtol=1e-9, atol=1e-9)
+    across = (
+        found.steady["pinion_bearing_1_inner"] - found.steady["pinion_bearing_1_outer"]
+    ).reshape(rpm.shape)
+    assert np.all(np.diff(across, axis=1) > 0.0)
+    assert np.all(across[:, -1] < 20.0)
+    assert across[1, -1] > 1.0
 
 
 def test_hotter_with_speed_and_with_load(rig: GearPair, chain: ShaftHeat) -> None:

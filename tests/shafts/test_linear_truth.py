@@ -52,7 +52,7 @@ def pinned(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 def test_beam_meets_its_closed_form_and_truth_l1(compared: Compared) -> None:
     values = TRUTH["L1"]["values"]
-    assert float(shear_coefficient(0.0, 0.3125)) == pytest.approx(
+    assert float(shear_coefficient(0.0, poisson_ratio=0.3125)) == pytest.approx(
         TRUTH["L1"]["params"]["shear_coefficient"], rel=1e-12
     )
     for count in (8, 16):
@@ -171,7 +171,7 @@ def test_response_to_the_transmission_error_as_truth_r1(compared: Compared) -> N
     error = p["e_re"][0] + 1j * p["e_im"][0]
     w = TWO_PI * p["z1"] * p["rpm"] / 60.0
     push = (p["k_mean"] + 1j * w * train.mesh_damping) * parts.drive
-    q = train.respond(w, p["rpm"] * np.pi / 30.0, push * error)
+    q = train.respond(w, speed=p["rpm"] * np.pi / 30.0, force=push * error)
     outputs = [parts.drive @ q, parts.back @ q, *q[[0, 1, 3, 4]]]
     known = np.asarray(case["values"]["1"]) @ [1.0, 1j]
     away = np.asarray(outputs) - known

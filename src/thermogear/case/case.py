@@ -33,7 +33,7 @@ from thermogear.case.dimensionless_schema import DimensionlessFile
 from thermogear.case.examples import example_text
 from thermogear.case.flanks import accuracy, deviations
 from thermogear.case.gearbox import Reading, gearbox, heated
-from thermogear.case.ranges import warn_of_temperatures, warn_of_torque, warn_of_train
+from thermogear.case.ranges import in_proportion, warn_of_temperatures, warn_of_torque
 from thermogear.case.refusals import complaints, together
 from thermogear.case.schema import PICTURES, GearFile
 from thermogear.case.sensor_schema import SensorsTable
@@ -259,7 +259,7 @@ class GearCase(Case):
         """
         chosen = model or self.models[0]
         if self.follow == "proportional":
-            return _in_proportion(self.operating_of(chosen), gear_temperature)
+            return in_proportion(self.operating_of(chosen), gear_temperature)
         if self.temperature_rule is None:
             return self.balance(chosen, gear_temperature).operating
         return replace(
@@ -269,23 +269,6 @@ class GearCase(Case):
                 pinion_addendum=gear_temperature, wheel_addendum=gear_temperature
             ),
         )
-
-
-def _in_proportion(hot: Operating, gear_temperature: ArrayLike) -> Operating:
-    """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
-    try:
-        return hot.with_gears_at(gear_temperature)
-    except InputError as error:
-        why = f"in the hot state {error.why}"
-        if error.field != "gear temperature":
-            name = error.field.rpartition(".")[2]
-            why = f"{name} in proportion to it would be at {error.got}; allowed {error.allowed}"
-        raise InputError(
-            "gear temperature",
-            shown(float(np.ravel(gear_temperature)[0]), "temperature"),
-            why=why,
-            fix='give the addenda other temperatures, or write temperatures.follow = "fixed"',
-        ) from error
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -443,7 +426,7 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
     inertias, inertia_kind = parts.inertias(file, pair)
     train = train_plan(file, pair, materials, inertias)
     if train is not None:
-        box = heated(box, train)
+        box = heated(file, pair, box, train)
     measured = charts(file, pair)
     return GearCase(
         pair=pair,
@@ -489,8 +472,6 @@ def _gear_case(file: GearFile, common: dict[str, Any]) -> GearCase:
 def _warn_of(case: GearCase) -> None:
     """Warn where the case leaves the range of its data."""
     warn_of_torque(case.pair, case.torques)
-    if case.train is not None:
-        warn_of_train(case.train)
     if not case.computed:
         warn_of_temperatures(case.pair, {"temperatures": case.stated} | _row_of(case))
 

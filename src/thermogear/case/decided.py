@@ -32,6 +32,11 @@ def decided(
         "gearbox.housing_mass": shown(around.housing_mass, "mass", 3),
         "gearbox.oil_mass": shown(around.oil_mass, "mass", 3),
     }
+    if around.train is not None:
+        drawn = "none: the shafts are drawn"
+        found |= {"gearbox.shaft_length": drawn, "gearbox.bearing_conductance": drawn}
+        if all(one.size is not None for one in around.train.bearings):
+            found["gearbox.bearing_coefficient"] = "none: the bearings have laws of their own"
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         found |= {
             f"gears.{name}.{field}": shown(value, "length")

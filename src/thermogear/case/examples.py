@@ -15,7 +15,7 @@ EXAMPLES = {
     "bgu-18-35": "18:35, lightly loaded: the same rig, wider gears",
     "loaded-27-35": "27:35 at 80 kW: tip relief, heavy load",
     "pom-steel": "POM on steel, 20:20: plastic that grows and softens as it warms",
-    "motor-train": "motor, 23:57, two shafts in four ball bearings: modes, critical speeds, loads",
+    "motor-train": "motor, two shafts, four ball bearings, 23:47: critical speeds, bearings",
     "table-4.2": "the dimensionless rows of the thesis's table 4.2",
     "section-4.1": "the dimensionless temperature row of the thesis's section 4.1",
 }

@@ -15,6 +15,7 @@ from thermogear.gears.pair import GearPair
 from thermogear.heat.gearbox import Surroundings
 from thermogear.heat.measured_temperature import InfraredReading, ThermocoupleReading
 from thermogear.mesh.balance import Gearbox
+from thermogear.shafts.train import SHAFTS
 
 STATED = {
     "housing": "housing",
@@ -104,9 +105,26 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
     ), readings
 
 
-def heated(box: Gearbox, train: TrainPlan) -> Gearbox:
-    """The gearbox with shafts and bearings as nodes, where the inside of every bearing is known."""
-    return replace(box, surroundings=replace(box.surroundings, train=train.heat()))
+def heated(file: GearFile, pair: GearPair, box: Gearbox, train: TrainPlan) -> Gearbox:
+    """The gearbox with shafts and bearings as nodes, where two bearings hold each shaft.
+
+    A housing that is left out is as wide as the longer shaft between its bearings.
+    """
+    drawn = train.heat(coefficient=box.bearing_coefficient)
+    if drawn is None:
+        return box
+    table = GearboxTable() if file.gearbox is None else file.gearbox
+    places = [[b.position for b in train.bearings if b.shaft == name] for name in SHAFTS]
+    width = max(max(mine) - min(mine) for mine in places)
+    walls = housing_box(pair, max(0.0, 0.5 * (width - pair.face_width)), table.immersion)
+    around = replace(
+        box.surroundings,
+        train=drawn,
+        housing_area=walls.area if table.housing_area is None else table.housing_area,
+        housing_mass=walls.mass if table.housing_mass is None else table.housing_mass,
+        oil_mass=walls.oil_mass if table.oil_mass is None else table.oil_mass,
+    )
+    return replace(box, surroundings=around)
 
 
 def _stated(file: GearFile, held: Mapping[str, float]) -> dict[str, float]:

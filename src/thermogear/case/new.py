@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from thermogear.base.errors import InputError
 from thermogear.base.toml import line, table
-from thermogear.case.case import gear_case, load_case
-from thermogear.case.new_shafts import shaft_lines
+from thermogear.case.case import load_case
+from thermogear.case.units import read_quantity
+from thermogear.shafts.bearings.catalogue import CATALOGUE
+
+SHEAR = 20e6
+"""Torsional stress [Pa] that a new shaft is sized for; usual of gearboxes (ours)."""
+BESIDE = 15e-3
+"""Room [m] between a gear's face and a bearing; ours."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class NewCase:
     """What a new case file states; texts as a file holds them, "3 mm", pairs pinion first.
 
-    What is None is left out of the file, so that its default acts. ``shafts``: two with four
-    bearings of the catalogue, sized by the torque.
+    What is None is left out of the file, so that its default acts.
     """
 
     teeth: tuple[int, int]
@@ -43,10 +49,7 @@ class NewCase:
         """
         text = "\n".join(self._lines()) + "\n"
         try:
-            case = load_case(text, folder=folder)
-            if self.shafts:
-                text += "\n".join(shaft_lines(gear_case(case))) + "\n"
-                load_case(text, folder=folder)
+            load_case(text, folder=folder)
         except InputError as error:
             for one in getattr(error, "errors", (error,)):
                 one.line = None
@@ -86,8 +89,39 @@ class NewCase:
             line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
             line("wheel", self.wheel_flanks),
         )
+        found += self._shafts() if self.shafts else []
         return found + table(
             "operating",
             line("speed", self.speed, "of the pinion, which drives"),
             line("torque", self.torque, "at the pinion"),
         )
+
+    def _shafts(self) -> list[str]:
+        """Two plain shafts sized by their torque, each between two bearings of the catalogue."""
+        torque = read_quantity(self.torque, "torque")
+        face = read_quantity(self.face_width, "length")
+        found = []
+        ratio = self.teeth[1] / self.teeth[0]
+        for gear, moment in (("pinion", torque), ("wheel", torque * ratio)):
+            least = (16.0 * moment / (math.pi * SHEAR)) ** (1.0 / 3.0)
+            fitting = [one for name, one in CATALOGUE.items() if name.startswith("62")]
+            fitting = [one for one in fitting if one.bore >= least]
+            if not fitting:
+                largest = max(one.bore for one in CATALOGUE.values())
+                raise InputError(
+                    "--shafts",
+                    f"a shaft of {1e3 * least:.0f} mm for {moment:.4g} N m",
+                    allowed=f"up to {1e3 * largest:.0f} mm, the largest ready bearing",
+                    fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
+                )
+            one = min(fitting, key=lambda b: b.bore)
+            length = 5.0 * math.ceil(1e3 * (face + 2.0 * (one.width + BESIDE)) / 5.0)
+            found += [
+                "",
+                "[[shafts]]",
+                f'gear = "{gear}"',
+                f'length = "{length:.0f} mm"',
+                f'diameter = "{1e3 * one.bore:.0f} mm"',
+                f'bearings = "{one.designation}" # one at each end',
+            ]
+        return found

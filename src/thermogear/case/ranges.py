@@ -1,4 +1,4 @@
-"""Warnings where a case leaves the range of its material, load and oil data."""
+"""Where a case leaves the range of its material, load and oil data, or of a case file."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import warnings
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermogear.base.errors import ValidityWarning
+from thermogear.base.errors import InputError, ValidityWarning
 from thermogear.base.materials import Material
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.case.shaft_plan import TrainPlan
+from thermogear.case.units import shown
 from thermogear.gears.contact import hertz_pressure, pair_reduced_modulus, reduced_radius
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.operating import Operating
@@ -59,12 +59,6 @@ def warn_of_torque(pair: GearPair, torques: ArrayLike) -> None:
         )
 
 
-def warn_of_train(train: TrainPlan) -> None:
-    """Warn of bearings that do not fit their shaft, and of preloads."""
-    for said in train.misfits():
-        warnings.warn(said, ValidityWarning, stacklevel=3)
-
-
 def crushing_torque(pair: GearPair) -> float:
     """The pinion torque [N m] that presses the flanks with 4 GPa; see :func:`warn_of_torque`."""
     unit = 1.0 / pair.pinion.base_radius / pair.face_width
@@ -89,3 +83,20 @@ def _say(where: str, value: float, low: float, high: float, why: str) -> None:
         ValidityWarning,
         stacklevel=5,
     )
+
+
+def in_proportion(hot: Operating, gear_temperature: ArrayLike) -> Operating:
+    """``hot`` with the gears at ``gear_temperature`` [K]; refused where no case file can say it."""
+    try:
+        return hot.with_gears_at(gear_temperature)
+    except InputError as error:
+        why = f"in the hot state {error.why}"
+        if error.field != "gear temperature":
+            name = error.field.rpartition(".")[2]
+            why = f"{name} in proportion to it would be at {error.got}; allowed {error.allowed}"
+        raise InputError(
+            "gear temperature",
+            shown(float(np.ravel(gear_temperature)[0]), "temperature"),
+            why=why,
+            fix='give the addenda other temperatures, or write temperatures.follow = "fixed"',
+        ) from error

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.materials import MATERIALS
 from thermogear.gears.pair import GearPair
-from thermogear.heat.shaft_heat import HeatedBearing, ShaftHeat
+from thermogear.heat.shaft_heat import CoefficientFriction, Friction, HeatedBearing, ShaftHeat
 from thermogear.shafts.bearings.clearance import Fit, mounted_clearance
 from thermogear.shafts.bearings.friction import PalmgrenFriction, SkfFriction
 from thermogear.shafts.bearings.geometry import RollingBearing
@@ -200,9 +200,10 @@ class TrainPlan:
         cold = all(np.all(t == at.temperatures.reference) for t in at.temperatures.bodies.values())
         for place, one in enumerate(self.bearings):
             bore = getattr(at.temperatures, f"{one.shaft}_bore")
+            inner = f"{names[one.name]}_inner"
             rings = [
-                nodes.get(f"{names[one.name]}_inner", bore),
-                nodes.get(f"{names[one.name]}_outer", at.temperatures.housing),
+                nodes.get(inner, bore),
+                nodes.get(f"{names[one.name]}_outer", nodes.get(inner, at.temperatures.housing)),
             ]
             if not cold:
                 rings = [
@@ -225,14 +226,13 @@ class TrainPlan:
             found |= {one.name: f"{shaft}_bearing_{n}" for n, one in enumerate(mine, 1)}
         return found
 
-    def heat(self) -> ShaftHeat | None:
-        """Shafts and bearings for the heat network; None unless every bearing's inside is known.
+    def heat(self, *, coefficient: float) -> ShaftHeat | None:
+        """Shafts and bearings for the heat network; None with a third bearing on a shaft.
 
-        A third bearing on a shaft takes its share by no lever: then the network stays as it is
-        without shafts.
+        Its share follows from no lever: then the network stays as it is without shafts. A bearing
+        whose inside is not known turns with the friction ``coefficient`` [-] at the shaft's
+        diameter, and its rings are one node.
         """
-        if any(one.rolling is None for one in self.bearings):
-            return None
         if any(sum(b.shaft == s for b in self.bearings) != 2 for s in SHAFTS):
             return None
         return ShaftHeat(
@@ -242,13 +242,19 @@ class TrainPlan:
                     shaft=one.shaft,
                     position=one.position,
                     size=one.rolling,
-                    friction=_friction(one),
+                    friction=self._friction(one, coefficient),
                     seat=one.seat_conductance,
                 )
                 for one in self.bearings
-                if one.rolling is not None
             ),
         )
+
+    def _friction(self, one: BearingPlan, coefficient: float) -> Friction:
+        if one.rolling is None:
+            under = section_at(self.shafts[SHAFTS.index(one.shaft)], one.position)
+            return CoefficientFriction(coefficient=coefficient, diameter=under.outer_diameter)
+        made = SkfFriction if one.friction == "skf" else PalmgrenFriction
+        return made(bearing=one.rolling, lubrication=one.lubrication)
 
     def limits(self, loads: Floats, speed: float, ratio: float) -> dict[str, Floats]:
         """Static safety, load over least load and L10 [s] of every bearing; nan where unknown.
@@ -278,15 +284,11 @@ class TrainPlan:
             under = section_at(self.shafts[SHAFTS.index(one.shaft)], one.position).outer_diameter
             if abs(under / one.rolling.bore - 1.0) > MISFIT:
                 yield (
-                    f"{one.field}: got a bore of {1e3 * one.rolling.bore:.4g} mm on a shaft of "
-                    f"{1e3 * under:.4g} mm; usual the same; {one.name} is computed with its own "
-                    "bore"
+                    f"{one.name} has a bore of {1e3 * one.rolling.bore:.4g} mm on a shaft of "
+                    f"{1e3 * under:.4g} mm"
                 )
             if one.play < 0.0:
-                yield (
-                    f"{one.field}.play: got {1e6 * one.play:.4g} um; usual 0 um or more; {one.name} "
-                    "is preloaded as delivered"
-                )
+                yield f"{one.name} is preloaded: a play of {1e6 * one.play:.4g} um as delivered"
 
 
 def loaded_stiffness(law: BearingLaw, load: float) -> float:
@@ -312,9 +314,3 @@ def section_at(shaft: Shaft, position: float) -> Section:
             found.append(one)
         start += one.length
     return max(found or shaft.sections[-1:], key=lambda one: one.outer_diameter)
-
-
-def _friction(one: BearingPlan) -> PalmgrenFriction | SkfFriction:
-    assert one.rolling is not None
-    made = SkfFriction if one.friction == "skf" else PalmgrenFriction
-    return made(bearing=one.rolling, lubrication=one.lubrication)

@@ -287,8 +287,8 @@ class EndTable(Table):
     ] = Field(default=0.0, description="none. Decides how long slow torsion rings")
     position: Place | None = Field(
         default=None,
-        description="the left end of the pinion's shaft, the right of the wheel's. Decides where the "
-        "shaft twists",
+        description="the left end of the pinion's shaft, the right of the wheel's. Decides where "
+        "the shaft twists",
     )
 
 

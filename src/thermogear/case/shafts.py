@@ -232,8 +232,9 @@ def _bearings(
             )
         for first, second in pairwise(mine):
             if second.position - first.position < 1e-6:
+                written = [one.field for one in (second, first) if not one.field.startswith("sh")]
                 raise InputError(
-                    f"{second.field}.position",
+                    f"{written[0]}.position",
                     f"{1e3 * second.position:.6g} mm",
                     allowed="another place than the other bearings'",
                     fix="join both in one bearing, or move one",

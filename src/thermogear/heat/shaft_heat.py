@@ -135,15 +135,16 @@ class HeatedBearing:
     """A rolling bearing as a source and a path of heat.
 
     ``shaft`` "pinion" or "wheel"; ``position`` [m] of its middle from the shaft's left end;
-    ``size``; ``friction``; ``seat`` [W/K] from the outer ring into the housing; ``share`` of the
-    pair's normal force that it carries [-], None where the levers of two bearings say it.
+    ``friction``; ``seat`` [W/K] from the outer ring into the housing; ``size``, None where it is
+    not known: then the bearing is one node, the inner ring's, on its seat. ``share`` of the pair's
+    normal force that it carries [-], None where the levers of two bearings say it.
     """
 
     shaft: str
     position: float
-    size: BearingSize
     friction: Friction
     seat: float
+    size: BearingSize | None = None
     share: float | None = None
 
     def __post_init__(self) -> None:
@@ -154,6 +155,8 @@ class HeatedBearing:
         if not (np.isfinite(self.seat) and self.seat > 0.0):
             raise InputError("bearing.seat", f"{self.seat} W/K", allowed="> 0 W/K, finite")
         size = self.size
+        if size is None:
+            return
         room = 0.5 * (size.outside_diameter - size.bore)
         if not 0.0 < size.element_diameter < room or size.elements < 1 or not size.width > 0.0:
             raise InputError(
@@ -163,41 +166,46 @@ class HeatedBearing:
                 allowed="one or more elements that fit between both rings",
             )
 
-    @property
-    def inner_share(self) -> float:
-        """Share of the friction that heats the inner ring."""
-        size = self.size
-        return inner_share(
-            size.contact_angle,
-            element_diameter=size.element_diameter,
-            pitch_diameter=size.pitch_diameter,
-        )
-
-    def conductance(self, speed: ArrayLike) -> Floats:
-        """:func:`ring_conductance` at ``speed`` [rad/s] of the shaft."""
-        size = self.size
-        return ring_conductance(
-            speed, elements=size.elements, element_diameter=size.element_diameter, bore=size.bore
-        )
-
     def loss(self, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike) -> Floats:
         """Friction moment times speed [W] at the bearing's own ``force`` [N]."""
         omega = np.abs(np.asarray(speed, dtype=float))
         moment = self.friction.moment(force=force, speed=omega, viscosity=viscosity)
         return np.asarray(moment * omega)
 
-    def capacities(self, steel: Material) -> tuple[float, float]:
-        """Heat [J/K] that inner and outer ring hold, each with half of the elements.
 
-        Rings end at d_m -+ 0.7 D_w, elements are balls: catalogue masses to about a tenth.
-        """
-        size = self.size
-        away = RACE * size.element_diameter
-        balls = 0.5 * size.elements * np.pi / 6.0 * size.element_diameter**3
-        inner = _area(size.pitch_diameter - away, size.bore) * size.width
-        outer = _area(size.outside_diameter, size.pitch_diameter + away) * size.width
-        held = steel.density * steel.specific_heat
-        return held * (inner + balls), held * (outer + balls)
+def ring_capacities(size: BearingSize, steel: Material) -> tuple[float, float]:
+    """Heat [J/K] that inner and outer ring hold, each with half of the elements.
+
+    Rings end at d_m -+ 0.7 D_w, elements are balls: catalogue masses to about a tenth.
+
+    >>> from thermogear.shafts.bearings.catalogue import catalogue_bearing
+    >>> inner, outer = ring_capacities(catalogue_bearing("6205"), MATERIALS["steel"])
+    >>> f"{inner:.0f} J/K, {outer:.0f} J/K"
+    '24 J/K, 38 J/K'
+    """
+    away = RACE * size.element_diameter
+    balls = 0.5 * size.elements * np.pi / 6.0 * size.element_diameter**3
+    inner = _area(size.pitch_diameter - away, size.bore) * size.width
+    outer = _area(size.outside_diameter, size.pitch_diameter + away) * size.width
+    held = steel.density * steel.specific_heat
+    return held * (inner + balls), held * (outer + balls)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoefficientFriction:
+    """M = mu F d/2 of a bearing of which no more is known: ``coefficient`` mu, ``diameter`` d [m].
+
+    >>> law = CoefficientFriction(coefficient=0.0015, diameter=40e-3)
+    >>> f"{1e3 * law.moment(force=2000.0, speed=300.0, viscosity=20e-6):.0f} N mm"
+    '60 N mm'
+    """
+
+    coefficient: float
+    diameter: float
+
+    def moment(self, *, force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike) -> Floats:
+        """M [N m] at ``force`` [N], whatever speed and viscosity; shape of the force."""
+        return np.asarray(0.5 * self.coefficient * self.diameter * np.asarray(force, dtype=float))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -284,7 +292,24 @@ class ShaftHeat:
     @property
     def nodes(self) -> tuple[str, ...]:
         """The nodes of the rings: "pinion_bearing_1_inner", "pinion_bearing_1_outer", ..."""
-        return tuple(f"{name}_{ring}" for name in self.named for ring in ("inner", "outer"))
+        return tuple(f"{name}_{ring}" for name, one in self.named.items() for ring in _rings(one))
+
+    def ring_temperatures(self, temperatures: Mapping[str, ArrayLike]) -> Floats:
+        """Temperatures [K] of inner ring, elements and outer ring, (..., bearing, 3).
+
+        ``temperatures`` [K] by node; the bearings in the order they are given in. The elements have
+        the mean of both rings.
+        """
+        names = {(one.shaft, one.position): name for name, one in self.named.items()}
+        rows = []
+        for one in self.bearings:
+            each = _rings(one)
+            inner, outer = (
+                np.asarray(temperatures[f"{names[one.shaft, one.position]}_{ring}"], dtype=float)
+                for ring in (each[0], each[-1])
+            )
+            rows.append(np.stack([inner, 0.5 * (inner + outer), outer], axis=-1))
+        return np.stack(rows, axis=-2)
 
     def losses(
         self,
@@ -299,8 +324,8 @@ class ShaftHeat:
         """
         found, shares = {}, self.shares
         for name, one in self.named.items():
-            rings = [np.asarray(temperatures[f"{name}_{r}"], float) for r in ("inner", "outer")]
-            mean = np.asarray(0.5 * (rings[0] + rings[1]))
+            rings = [np.asarray(temperatures[f"{name}_{r}"], float) for r in _rings(one)]
+            mean = np.asarray(0.5 * (rings[0] + rings[-1]))
             viscosity = kinematic_viscosity(lubricant, mean)
             load = shares[name] * np.asarray(force, dtype=float)
             loss = one.loss(load, speeds[SHAFTS.index(one.shaft)], viscosity)
@@ -316,8 +341,16 @@ class ShaftHeat:
             )
         found = {}
         for name, one in named.items():
-            watts = np.asarray(losses[name].loss, dtype=float)
-            found[f"{name}_inner"] = one.inner_share * watts
+            watts, size = np.asarray(losses[name].loss, dtype=float), one.size
+            if size is None:
+                found[f"{name}_inner"] = watts
+                continue
+            share = inner_share(
+                size.contact_angle,
+                element_diameter=size.element_diameter,
+                pitch_diameter=size.pitch_diameter,
+            )
+            found[f"{name}_inner"] = share * watts
             found[f"{name}_outer"] = watts - found[f"{name}_inner"]
         return found
 
@@ -356,11 +389,18 @@ class ShaftHeat:
                 held[node] = 0.5 * piece.capacity
             held[node] += _between(drawn, at, drawn.length if side > 0.0 else 0.0).capacity
         for name, one in mine.items():
-            ring = self.factor * one.conductance(speed)
-            links.append(Link(f"{name}_inner", f"{name}_outer", ring))
-            links.append(Link(f"{name}_outer", "housing", self.factor * one.seat))
-            inner, held[f"{name}_outer"] = one.capacities(RINGS)
-            held[f"{name}_inner"] += inner
+            size, rings = one.size, _rings(one)
+            if size is not None:
+                ring = self.factor * ring_conductance(
+                    speed,
+                    elements=size.elements,
+                    element_diameter=size.element_diameter,
+                    bore=size.bore,
+                )
+                links.append(Link(f"{name}_inner", f"{name}_outer", ring))
+                inner, held[f"{name}_outer"] = ring_capacities(size, RINGS)
+                held[f"{name}_inner"] += inner
+            links.append(Link(f"{name}_{rings[-1]}", "housing", self.factor * one.seat))
         return links, held
 
     def along(self, shaft: str, *, face_width: float, distance: float) -> tuple[str, float]:
@@ -387,6 +427,11 @@ class ShaftHeat:
             )
         whole = _between(drawn, face, mine[name]).resistance
         return f"{name}_inner", _between(drawn, face, face + side * distance).resistance / whole
+
+
+def _rings(bearing: HeatedBearing) -> tuple[str, ...]:
+    """The nodes of a bearing."""
+    return ("inner",) if bearing.size is None else ("inner", "outer")
 
 
 class _Piece(NamedTuple):

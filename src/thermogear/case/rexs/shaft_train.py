@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from thermogear.base.errors import InputError
 from thermogear.case.rexs import gearbox
@@ -93,7 +94,7 @@ def _shaft(reader: Reader, name: str, gear: Component, shaft: Component, *, mirr
     pieces.sort(key=lambda one: one[0])
     if not pieces:
         raise InputError(f"{shaft.called}", "no section", allowed="one or more")
-    for one, following in zip(pieces, pieces[1:], strict=False):
+    for one, following in pairwise(pieces):
         if abs(one[0] + one[1] - following[0]) > _GAP:
             raise InputError(
                 f"{shaft.called}",
