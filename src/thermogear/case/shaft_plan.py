@@ -52,7 +52,7 @@ RINGS = MATERIALS["steel"]
 
 @dataclass(frozen=True, kw_only=True)
 class BearingPlan:
-    """A bearing as drawn: rolling with its play and fits, or a ``law`` of its own.
+    """A bearing of the drawing: rolling with its play and fits, or a ``law`` of its own.
 
     ``position`` [m] from the shaft's left end; ``play`` G_r [m] as delivered; ``seat`` in the
     housing; ``given`` temperatures [K] of inner and outer ring, None where computed; ``field`` of

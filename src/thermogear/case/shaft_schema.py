@@ -51,9 +51,9 @@ class ShaftTable(Table):
         description="in the middle. From the left end to the middle of the face; decides how the "
         "bearings share the load",
     )
-    bearings: (
-        Annotated[tuple[str, ...], Several(Words('"6205"'), least=1, most=2, distinct=False)] | None
-    ) = Field(default=None, title="types of one at each end, half their width inside")
+    bearings: Annotated[
+        tuple[str, ...] | None, Several(Words('"6205"'), least=1, most=2, distinct=False)
+    ] = Field(default=None, title="types of one at each end, half their width inside")
     unbalance: Annotated[float, Measure("unbalance", "0 g mm", "1e6 g mm", example="20 g mm")] = (
         Field(default=0.0, description="balanced. Decides the vibration at shaft order")
     )

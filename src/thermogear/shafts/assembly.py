@@ -174,7 +174,9 @@ def assemble(train: DriveTrain) -> Assembly:
         nodes=(nodes[0], nodes[1]),
         gear_nodes=(_nearest(nodes[0], train.shafts[0]), _nearest(nodes[1], train.shafts[1])),
         mesh_mass=mesh_mass(
-            train.frame, train.gears[0].polar_inertia, train.gears[1].polar_inertia
+            train.frame,
+            pinion=train.gears[0].polar_inertia,
+            wheel=train.gears[1].polar_inertia,
         ),
     )
     start = 0
@@ -220,7 +222,7 @@ def lumped(
         bearings=(),
         nodes=(np.zeros(1), np.zeros(1)),
         gear_nodes=(0, 0),
-        mesh_mass=mesh_mass(frame, *inertias),
+        mesh_mass=mesh_mass(frame, pinion=inertias[0], wheel=inertias[1]),
     )
     own = [value for m, inertia in zip(masses, inertias, strict=True) for value in (m, m, inertia)]
     empty.mass[...] = np.diag(own)
@@ -229,7 +231,7 @@ def lumped(
     return replace(empty, bearings=places)
 
 
-def mesh_mass(frame: MeshFrame, pinion: float, wheel: float) -> float:
+def mesh_mass(frame: MeshFrame, *, pinion: float, wheel: float) -> float:
     """m_e = I1 I2/(I1 r_b2^2 + I2 r_b1^2) [kg] of two polar inertias [kg m^2]."""
     r1, r2 = frame.base_radii
     return pinion * wheel / (pinion * r2**2 + wheel * r1**2)
@@ -349,7 +351,7 @@ def _weigh(into: Assembly, gravity: float) -> None:
 
 
 def linear_stiffness(
-    assembly: Assembly, mesh: float, bearings: ArrayLike, *, back: float = 0.0
+    assembly: Assembly, *, mesh: float, bearings: ArrayLike, back: float = 0.0
 ) -> Floats:
     """K of the train with closed contacts, (n, n) [N/m].
 

@@ -55,7 +55,9 @@ class BeamElements:
     @property
     def shear_ratio(self) -> Floats:
         """Phi = 12 E I/(kappa G A L^2) [-]: 0 for a slender beam."""
-        kappa = shear_coefficient(self.inner_diameter / self.outer_diameter, self.poisson_ratio)
+        kappa = shear_coefficient(
+            self.inner_diameter / self.outer_diameter, poisson_ratio=self.poisson_ratio
+        )
         rigid = kappa * self.shear_modulus * self.area * self.length**2
         return np.asarray(12.0 * self.youngs_modulus * self.second_moment / rigid)
 
@@ -116,12 +118,12 @@ class BeamElements:
         return across[:, None, None] * moving, rotary[:, None, None] * turning
 
 
-def shear_coefficient(diameter_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Floats:
+def shear_coefficient(diameter_ratio: ArrayLike, *, poisson_ratio: ArrayLike) -> Floats:
     """Cowper's kappa of a hollow round section [-]; ``diameter_ratio`` inner over outer.
 
     kappa = 6 (1 + nu)(1 + r^2)^2/((7 + 6 nu)(1 + r^2)^2 + (20 + 12 nu) r^2).
 
-    >>> f"{shear_coefficient(0.0, 0.3):.4f}"
+    >>> f"{shear_coefficient(0.0, poisson_ratio=0.3):.4f}"
     '0.8864'
     """
     r, nu = np.asarray(diameter_ratio, dtype=float), np.asarray(poisson_ratio, dtype=float)

@@ -53,7 +53,9 @@ class LinearTrain:
     @cached_property
     def stiffness(self) -> Floats:
         """K with every closed contact, (n, n) [N/m]."""
-        return linear_stiffness(self.assembly, self.mesh, self.bearings, back=self.back)
+        return linear_stiffness(
+            self.assembly, mesh=self.mesh, bearings=self.bearings, back=self.back
+        )
 
     @cached_property
     def basis(self) -> Floats:
@@ -79,7 +81,7 @@ class LinearTrain:
             return np.asarray(m @ np.diag(2.0 * model.ratio * modes.frequency) @ m.T)
         mesh = self.mesh_damping * np.outer(train.drive, train.drive)
         if model.kind == "proportional":
-            bare = linear_stiffness(train, 0.0, self.bearings)
+            bare = linear_stiffness(train, mesh=0.0, bearings=self.bearings)
             return np.asarray(model.mass * self._moving_mass + model.shafts * bare + mesh)
         if model.kind != "bearings":
             raise InputError("damping", repr(model.kind), allowed="bearings | proportional | modal")
@@ -206,7 +208,7 @@ class LinearTrain:
         rising = np.argsort(value)
         return np.asarray(value[rising] / order), (t @ shape[:, rising]).astype(complex)
 
-    def respond(self, frequency: ArrayLike, speed: ArrayLike, force: ArrayLike) -> Complexes:
+    def respond(self, frequency: ArrayLike, *, speed: ArrayLike, force: ArrayLike) -> Complexes:
         """q of M q'' + (C + Omega G) q' + K q = Re(``force`` e^{i w t}), (..., n) complex [m, rad].
 
         ``frequency`` w [rad/s] and ``speed`` [rad/s] of one shape (...), ``force`` (..., n) [N,
@@ -270,7 +272,7 @@ def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
     return {name: np.asarray(value / total) for name, value in found.items()}
 
 
-def damping_ratios(train: LinearTrain, shape: ArrayLike, frequency: ArrayLike) -> Floats:
+def damping_ratios(train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike) -> Floats:
     """Damping ratio of every undamped mode (n, modes) by its own loss [-], (modes,).
 
     w q^H C q/(w^2 q^H M q + q^H K q), exact for light damping; ``frequency`` w [rad/s].

@@ -123,7 +123,7 @@ def _outputs(
     train: LinearTrain, omega: Floats, w: Floats, force: ArrayLike, error: complex
 ) -> Response:
     own = train.assembly
-    q = train.respond(w, omega, force)
+    q = train.respond(w, speed=omega, force=force)
     through = train.mesh + 1j * w * train.mesh_damping
     pushed, shaken = [], []
     for place, k in zip(own.bearings, train.bearings, strict=True):

@@ -100,7 +100,9 @@ class RollingBearing:
     def element_coefficient(self) -> float:
         """K of Q = K delta^n between both races [N/m^n]."""
         if self.kind == "ball":
-            return ball_coefficient(self.element_diameter, self.ratio, self.conformities)
+            return ball_coefficient(
+                self.element_diameter, diameter_ratio=self.ratio, conformities=self.conformities
+            )
         return roller_coefficient(float(self.element_length or 0.0))
 
     @property

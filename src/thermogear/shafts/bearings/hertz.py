@@ -15,8 +15,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipkm1
 
 YOUNGS_MODULUS, POISSON_RATIO = 210e9, 0.3
 """Of bearing steel [Pa], [-]; customary values lie between 206 and 210 GPa."""
@@ -28,7 +26,8 @@ class PointContact:
 
     ``modulus`` E* [Pa].
 
-    >>> f"{race_contact(11.5e-3, 0.264, 0.52, inner=True).deflection(1000.0) * 1e6:.2f} um"
+    >>> contact = race_contact(11.5e-3, diameter_ratio=0.264, conformity=0.52, inner=True)
+    >>> f"{contact.deflection(1000.0) * 1e6:.2f} um"
     '10.19 um'
     """
 
@@ -38,8 +37,7 @@ class PointContact:
 
     @property
     def _integrals(self) -> tuple[float, float]:
-        rest = 1.0 / self.ratio**2
-        return float(ellipkm1(rest)), float(ellipe(1.0 - rest))
+        return complete_integrals(self.ratio)
 
     def half_length(self, load: float) -> float:
         """a [m], the longer half axis, under ``load`` [N]."""
@@ -60,6 +58,14 @@ class PointContact:
         return 3.0 * load * self.ratio / (2.0 * np.pi * self.half_length(load) ** 2)
 
 
+def complete_integrals(ratio: float) -> tuple[float, float]:
+    """K and E, the complete elliptic integrals of m = 1 - 1/``ratio``^2."""
+    from scipy.special import ellipe, ellipkm1
+
+    rest = 1.0 / ratio**2
+    return float(ellipkm1(rest)), float(ellipe(1.0 - rest))
+
+
 def ellipse_ratio(difference: float) -> float:
     """k >= 1 of the contact ellipse for the curvature difference F in 0..1.
 
@@ -67,10 +73,11 @@ def ellipse_ratio(difference: float) -> float:
     '6.713'
     """
 
+    from scipy.optimize import brentq
+
     def away(log_ratio: float) -> float:
         ratio = np.exp(log_ratio)
-        rest = 1.0 / ratio**2
-        k, e = float(ellipkm1(rest)), float(ellipe(1.0 - rest))
+        k, e = complete_integrals(ratio)
         return float(1.0 - 2.0 / (ratio**2 - 1.0) * (k / e - 1.0) - difference)
 
     if difference < 1e-9:
@@ -80,9 +87,9 @@ def ellipse_ratio(difference: float) -> float:
 
 def race_contact(
     element_diameter: float,
+    *,
     diameter_ratio: float,
     conformity: float,
-    *,
     inner: bool,
     youngs_modulus: float = YOUNGS_MODULUS,
     poisson_ratio: float = POISSON_RATIO,
@@ -105,6 +112,7 @@ def race_contact(
 @lru_cache(maxsize=256)
 def ball_coefficient(
     element_diameter: float,
+    *,
     diameter_ratio: float,
     conformities: tuple[float, float] = (0.52, 0.53),
     youngs_modulus: float = YOUNGS_MODULUS,
@@ -114,15 +122,15 @@ def ball_coefficient(
 
     (d_i + d_o)^-1.5 with d = delta/Q^(2/3). ``conformities`` of inner and outer race.
 
-    >>> k = ball_coefficient(11.5e-3, 11.5 / 43.5)
+    >>> k = ball_coefficient(11.5e-3, diameter_ratio=11.5 / 43.5)
     >>> f"{k * 1e-3**1.5:.0f} N/mm^1.5"
     '333592 N/mm^1.5'
     """
     total = sum(
         race_contact(
             element_diameter,
-            diameter_ratio,
-            f,
+            diameter_ratio=diameter_ratio,
+            conformity=f,
             inner=inner,
             youngs_modulus=youngs_modulus,
             poisson_ratio=poisson_ratio,
@@ -143,14 +151,14 @@ def roller_coefficient(length: float) -> float:
     return float(35948.0 * (1e3 * length) ** (8.0 / 9.0) * 1e3 ** (10.0 / 9.0))
 
 
-def load_zone_integral(zone: float, exponent: float) -> float:
+def load_zone_integral(zone: float, *, exponent: float) -> float:
     """Sjovall's J_r = (1/2 pi) int (1 - (1 - cos psi)/(2 eps))^n cos psi d psi [-].
 
     ``zone`` eps = (1 - c_r/x)/2, 0.5 without clearance; ``exponent`` n. Over the loaded elements.
     F = Z K (x - c_r)^n J_r.
 
-    >>> f"{load_zone_integral(0.5, 1.5):.4f} {load_zone_integral(0.5, 10 / 9):.4f}"
-    '0.2288 0.2448'
+    >>> [f"{load_zone_integral(0.5, exponent=n):.4f}" for n in (1.5, 10 / 9)]
+    ['0.2288', '0.2448']
     """
     half = np.arccos(np.clip(1.0 - 2.0 * zone, -1.0, 1.0))
     nodes, weights = np.polynomial.legendre.leggauss(200)

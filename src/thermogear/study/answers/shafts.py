@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,8 +11,9 @@ from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
-from thermogear.study.shafts.campbell import Critical, critical_speeds
-from thermogear.study.shafts.state import TrainState, plan_of, settled
+
+if TYPE_CHECKING:
+    from thermogear.study.shafts.state import TrainState
 
 CRITICAL, LOADS = "Which speeds are critical on the shafts?", "How large are the bearing loads?"
 CLEARANCE = "Does a bearing lose its clearance when hot?"
@@ -26,6 +28,8 @@ def answers(asked: Asked) -> Iterator[Answer]:
     case = asked.case
     if case.train is None:
         return
+    from thermogear.study.shafts.state import settled
+
     at = asked.at(asked.hardest)
     try:
         found = settled(case, [asked.hardest], model=asked.model, progress=asked.progress)
@@ -58,9 +62,11 @@ def answers(asked: Asked) -> Iterator[Answer]:
 
 
 def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
+    from thermogear.study.shafts.campbell import critical_speeds
+
     own = np.unique(asked.case.stated.speed)
     found = critical_speeds(asked.case, hot, 1.5 * float(own.max()))
-    strong: Sequence[Critical] = [one for one in found if one.amplification >= STRONG]
+    strong = [one for one in found if one.amplification >= STRONG]
     if not strong:
         return answer(
             CRITICAL,
@@ -81,7 +87,8 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
 
 
 def _loads(asked: Asked, hot: TrainState, loads: np.ndarray, at: str) -> Answer:
-    plan = plan_of(asked.case)
+    plan = asked.case.train
+    assert plan is not None
     ratio = asked.case.pair.pinion.teeth / asked.case.pair.wheel.teeth
     limits = plan.limits(loads, hot.speed, ratio)
     most = int(np.argmax(loads))
@@ -104,7 +111,8 @@ def _clearance(asked: Asked, cold: TrainState, hot: TrainState, at: str) -> Answ
         return undecided(CLEARANCE, "bearing_clearance", "no bearing says its clearance", at=at)
     least = int(np.nanargmin(hot.clearances))
     play, before = 2e6 * hot.clearances[least], 2e6 * cold.clearances[least]
-    name = plan_of(asked.case).bearing_names[least]
+    assert asked.case.train is not None
+    name = asked.case.train.bearing_names[least]
     return answer(
         CLEARANCE,
         "bearing_clearance",

@@ -97,7 +97,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
         count = int(np.sum(speeds <= highest))
         speeds, shapes = speeds[:count], shapes[:, :count]
         shares = participation(state.linear, order, shapes)
-        ratios = damping_ratios(state.linear, shapes, speeds * order.order)
+        ratios = damping_ratios(state.linear, shapes, frequency=speeds * order.order)
         parts = strain_shares(state.linear, shapes)
         for mode in range(count):
             here = {name: float(value[mode]) for name, value in parts.items()}
@@ -260,7 +260,7 @@ def _critical(train: LinearTrain, order: Order, count: int) -> Floats:
     speed, shape = train.critical(order.order)
     speed, shape = speed[:count], shape[:, :count]
     share = participation(train, order, shape)
-    ratio = damping_ratios(train, shape, speed * order.order)
+    ratio = damping_ratios(train, shape, frequency=speed * order.order)
     rows = np.full((3, count), np.nan)
     with np.errstate(divide="ignore"):
         rows[:, : speed.size] = speed, share, share / (2.0 * ratio)

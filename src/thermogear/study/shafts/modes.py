@@ -98,7 +98,9 @@ def _table(
     parts = list(shares[0])
     energy = np.array([[one[part] for part in parts] for one in shares]).swapaxes(1, 2)
     senses = [whirl(one.assembly, m.shape) for one, m in zip(linear, free, strict=True)]
-    ratio = [damping_ratios(a, m.shape, m.frequency) for a, m in zip(linear, free, strict=True)]
+    ratio = [
+        damping_ratios(a, m.shape, frequency=m.frequency) for a, m in zip(linear, free, strict=True)
+    ]
     names = [
         [name_of(dict(zip(parts, mode, strict=True)), rings) for mode in one] for one in energy
     ]
