@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-paths chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -59,6 +59,9 @@ validation: $(STAMP)  ## measure the numbers of the site's validation and thesis
 $(DOCS_STAMP): $(STAMP) requirements/docs.txt
 	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/uv pip install --quiet --require-hashes -r requirements/docs.txt
 	@touch $@
+
+bench-shafts: $(BENCH_STAMP)  ## matrices of geared shafts beside ROSS's
+	PYTHONPATH=src $(BENCH_BIN)/python -W ignore bench/shafts.py 2> .bench-venv/shafts.log
 
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
