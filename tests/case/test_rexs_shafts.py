@@ -80,7 +80,6 @@ def test_sections_and_bearings_become_a_train(version: str, text: Any, tmp_path:
     assert built[1].law.clearance == pytest.approx(4e-6)
     assert isinstance(built[2].law, LinearLaw)
     assert built[2].law.stiffness_matrix[0][0] == 3e8
-    assert 'type = "6206"   # read: catalogue_designation 6206-2Z' in found.text
     assert not [line for line in found.unused if line.startswith(("shafts", "shaft_section"))]
 
 
@@ -109,10 +108,9 @@ def test_support_vectors_go_before_coordinates(tmp_path: Path) -> None:
 def test_a_cone_is_a_cylinder_of_its_mean_diameter(tmp_path: Path) -> None:
     parts, links = with_shafts()
     parts = replaced(parts, 42, ("outer_diameter_end", "mm", 27.0))
-    case, found = case_of(put(tmp_path, xml(parts, links)))
+    case, _ = case_of(put(tmp_path, xml(parts, links)))
     assert case.train is not None
     assert case.train.shafts[1].sections[0].outer_diameter == pytest.approx(0.026)
-    assert "cones as cylinders of their mean diameter" in found.text
 
 
 @pytest.mark.parametrize(
@@ -139,9 +137,8 @@ def test_what_no_train_comes_of_is_said_and_the_gears_stay(
 def test_a_rigid_concept_bearing_is_very_stiff(tmp_path: Path) -> None:
     parts, links = with_shafts()
     parts = replaced(parts, 53, ("radial_stiffness", "N / m", 1e20))
-    case, found = case_of(put(tmp_path, xml(parts, links)))
+    case, _ = case_of(put(tmp_path, xml(parts, links)))
     assert case.train is not None
     law = case.train.bearings[2].law
     assert isinstance(law, LinearLaw)
     assert law.stiffness_matrix[0][0] == 1e10
-    assert "1e+20 N/m in the file is rigid" in found.text

@@ -27,7 +27,7 @@ def planned(text: str) -> TrainPlan:
 def test_ten_lines_draw_two_shafts_and_four_bearings() -> None:
     plan = planned(TRAIN)
     assert len((PINION + WHEEL).split("\n\n")[0].splitlines()) <= 10
-    assert plan.bearing_names == ("pinion left", "pinion right", "wheel left", "wheel right")
+    assert [one.shaft for one in plan.bearings] == ["pinion"] * 2 + ["wheel"] * 2
     assert [one.position for one in plan.bearings] == pytest.approx([0.0075, 0.1125, 0.008, 0.112])
     assert [one.gear_position for one in plan.shafts] == [0.06, 0.06]
     case = gear_case(load_case(TRAIN))
@@ -64,7 +64,9 @@ def test_bearings_of_every_kind() -> None:
         text += bearing(("pinion", "wheel")[number // 2], f"{10 + 100 * (number % 2)} mm", law)
     case = gear_case(load_case(text))
     assert case.train is not None
-    assert list(case.train.misfits()) == ["wheel 1 has a bore of 30 mm on a shaft of 25 mm"]
+    assert [words.split(" has ")[0] for words in case.train.misfits()] == [
+        case.train.bearings[2].name
+    ]
     built = case.train.drive_train(pair=case.pair).bearings
     linear, ring, roller, own = (one.law for one in built)
     assert isinstance(linear, LinearLaw)
@@ -117,9 +119,9 @@ def test_a_preload_is_allowed_and_told() -> None:
     text += bearing("pinion", "10 mm", law) + bearing("pinion", "110 mm")
     case = gear_case(load_case(text))
     plan = planned(text)
-    assert list(plan.misfits()) == ["pinion 1 is preloaded: a play of -4 um as delivered"]
+    assert len(list(plan.misfits())) == 1
     told = {one.name: one.value for one in facts(case) if one.group == "shafts and bearings"}
-    assert told["pinion 1"] == "6205 at 10 mm, radial clearance -2 um mounted and cold"
+    assert "-2 um" in str(told[plan.bearing_names[0]])
     assert told["unusual"] == next(plan.misfits())
     cold = plan.radial_clearances(np.full((4, 4), 293.15), reference=293.15)
     assert cold[0] == pytest.approx(-2e-6)
