@@ -193,7 +193,7 @@ def test_the_heat_balance_has_the_bearings_as_nodes() -> None:
         ('length = "150 mm"', 'length = "0 mm"', "shafts[0].length", "0.1"),
         ('diameter = "30 mm"', 'diameter = "64 mm"', "shafts[0].diameter", "root circle"),
         ('bearings = "6206"', "", "bearings", "no bearings on the pinion's shaft"),
-        ('bearings = "6206"', 'bearings = "6260"', "bearings[0].type", "6206"),
+        ('bearings = "6206"', 'bearings = "6260"', "shafts[0].bearings", "6206"),
         (
             'diameter = "30 mm"',
             'diameter = "30 mm"\ninner_diameter = "30 mm"',
@@ -232,7 +232,7 @@ def test_impossible_shafts_are_one_line(old: str, new: str, field: str, words: s
 
 BAD = {
     'shaft = "pinion"\nposition = "400 mm"\ntype = "6206"': "bearings[0].position",
-    'shaft = "pinion"\nposition = "8 mm"\ntype = "6206"': "bearings[1].position",
+    'shaft = "pinion"\nposition = "8 mm"\ntype = "6206"': "bearings[0].position",
     'shaft = "pinion"\nposition = "40 mm"': "bearings[0]",
     'shaft = "pinion"\nposition = "40 mm"\ntype = "6206"\nstiffness = "1 N/um"': "bearings[0]",
     'shaft = "pinion"\ntype = "6206"': "bearings[0].position",

@@ -17,6 +17,7 @@ from thermogear.gears.deviations import Deviation
 from thermogear.gears.geometry import Gear
 from thermogear.gears.graded_flanks import WavyProfile
 from thermogear.heat.lubrication import kinematic_viscosity
+from thermogear.shafts.train import SHAFTS
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ def facts(case: Case) -> tuple[Fact, ...]:
             *_gear("pinion", case.pair.pinion),
             *_gear("wheel", case.pair.wheel),
             *_dynamics(case),
+            *_train(case),
             *_oil(case.stated.lubricant),
             *_operating(case),
             *_held(case),
@@ -93,6 +95,27 @@ def _dynamics(case: GearCase) -> list[Fact]:
         Fact(group, "equivalent mass on the line of action", case.equivalent_mass, "kg"),
         Fact(group, "model", case.inertia_kind),
     ]
+
+
+def _train(case: GearCase) -> list[Fact]:
+    """Shafts, bearings with their clearance as mounted and cold, and what of them is unusual."""
+    plan = case.train
+    if plan is None:
+        return []
+    group = "shafts and bearings"
+    found = []
+    for name, shaft in zip(SHAFTS, plan.shafts, strict=True):
+        text = f"{1e3 * shaft.length:.6g} mm, gear at {1e3 * shaft.gear_position:.6g} mm"
+        found.append(Fact(group, f"{name}'s shaft", text))
+    even = np.full((len(plan.bearings), 4), plan.reference)
+    clearances = plan.radial_clearances(even, reference=plan.reference)
+    for one, clearance in zip(plan.bearings, clearances, strict=True):
+        kind = "of its own law" if one.rolling is None else one.rolling.designation or "own inside"
+        text = f"{kind} at {1e3 * one.position:.6g} mm"
+        if np.isfinite(clearance):
+            text += f", radial clearance {1e6 * clearance:.3g} um mounted and cold"
+        found.append(Fact(group, one.name, text))
+    return found + [Fact(group, "unusual", words) for words in plan.misfits()]
 
 
 def _oil(oil: Lubricant) -> list[Fact]:

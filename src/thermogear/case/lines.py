@@ -17,7 +17,7 @@ def line_of(text: str, field: str) -> int | None:
     None where neither is written: a table left out, a value put in from elsewhere.
     """
     places = _places(text)
-    parts = _parts(re.sub(r"\[\d+\]", "", field))
+    parts = _parts(field)
     for length in range(len(parts), 0, -1):
         if parts[:length] in places:
             return places[parts[:length]]
@@ -25,17 +25,22 @@ def line_of(text: str, field: str) -> int | None:
 
 
 def _parts(path: str) -> tuple[str, ...]:
-    found = re.findall(r"""[A-Za-z0-9_-]+|"[^"]*"|'[^']*'""", path)
-    return tuple(part.strip("\"'") for part in found)
+    """The keys of a path; the first of a list of tables counts as the table itself."""
+    found = re.findall(r"""\[\d+\]|[A-Za-z0-9_-]+|"[^"]*"|'[^']*'""", path)
+    return tuple(part.strip("\"'") for part in found if part != "[0]")
 
 
 def _places(text: str) -> dict[tuple[str, ...], int]:
     """Line of every table and key; of what is written twice the first."""
     found: dict[tuple[str, ...], int] = {}
     table: tuple[str, ...] = ()
+    seen: dict[tuple[str, ...], int] = {}
     for number, line in enumerate(text.splitlines(), 1):
         if header := _HEADER.match(line):
             table = _parts(header["path"])
+            if line.lstrip().startswith("[["):
+                nth = seen[table] = seen.get(table, -1) + 1
+                table = (*table, f"[{nth}]") if nth else table
             found.setdefault(table, number)
         elif key := _KEY.match(line):
             path = (*table, *_parts(key["path"]))

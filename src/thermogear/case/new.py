@@ -8,8 +8,7 @@ from pathlib import Path
 
 from thermogear.base.errors import InputError
 from thermogear.base.toml import line, table
-from thermogear.case.case import load_case
-from thermogear.case.units import read_quantity
+from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.shafts.bearings.catalogue import CATALOGUE
 
 SHEAR = 20e6
@@ -49,7 +48,10 @@ class NewCase:
         """
         text = "\n".join(self._lines()) + "\n"
         try:
-            load_case(text, folder=folder)
+            case = load_case(text, folder=folder)
+            if self.shafts:
+                text += "\n".join(self._shafts(gear_case(case))) + "\n"
+                load_case(text, folder=folder)
         except InputError as error:
             for one in getattr(error, "errors", (error,)):
                 one.line = None
@@ -89,23 +91,29 @@ class NewCase:
             line("pinion", self.pinion_flanks, "inspection chart, beside this file"),
             line("wheel", self.wheel_flanks),
         )
-        found += self._shafts() if self.shafts else []
         return found + table(
             "operating",
             line("speed", self.speed, "of the pinion, which drives"),
             line("torque", self.torque, "at the pinion"),
         )
 
-    def _shafts(self) -> list[str]:
+    def _shafts(self, case: GearCase) -> list[str]:
         """Two plain shafts sized by their torque, each between two bearings of the catalogue."""
-        torque = read_quantity(self.torque, "torque")
-        face = read_quantity(self.face_width, "length")
+        pair, torque = case.pair, max(case.torques)
         found = []
-        ratio = self.teeth[1] / self.teeth[0]
-        for gear, moment in (("pinion", torque), ("wheel", torque * ratio)):
+        for gear, body in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+            moment = torque * body.teeth / pair.pinion.teeth
             least = (16.0 * moment / (math.pi * SHEAR)) ** (1.0 / 3.0)
             fitting = [one for name, one in CATALOGUE.items() if name.startswith("62")]
             fitting = [one for one in fitting if one.bore >= least]
+            if fitting and min(one.bore for one in fitting) > 2.0 * body.root_radius:
+                raise InputError(
+                    "--shafts",
+                    f"a bearing of {1e3 * min(one.bore for one in fitting):.0f} mm for "
+                    f"{moment:.4g} N m on the {gear}'s shaft",
+                    allowed=f"<= {2e3 * body.root_radius:.4g} mm, the root circle of the {gear}",
+                    fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
+                )
             if not fitting:
                 largest = max(one.bore for one in CATALOGUE.values())
                 raise InputError(
@@ -115,7 +123,7 @@ class NewCase:
                     fix="leave --shafts out and describe [[shafts]] and [[bearings]] yourself",
                 )
             one = min(fitting, key=lambda b: b.bore)
-            length = 5.0 * math.ceil(1e3 * (face + 2.0 * (one.width + BESIDE)) / 5.0)
+            length = 5.0 * math.ceil(1e3 * (body.face_width + 2.0 * (one.width + BESIDE)) / 5.0)
             found += [
                 "",
                 "[[shafts]]",

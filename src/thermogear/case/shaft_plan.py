@@ -277,7 +277,7 @@ class TrainPlan:
         return found
 
     def misfits(self) -> Iterator[str]:
-        """Bearings whose bore is not the diameter of the shaft they sit on, in words."""
+        """What of the bearings is unusual, in words: bores beside the shaft's size, preloads."""
         for one in self.bearings:
             if one.rolling is None:
                 continue
@@ -287,6 +287,8 @@ class TrainPlan:
                     f"{one.name} has a bore of {1e3 * one.rolling.bore:.4g} mm on a shaft of "
                     f"{1e3 * under:.4g} mm"
                 )
+            if one.play < 0.0:
+                yield f"{one.name} is preloaded: a play of {1e6 * one.play:.4g} um as delivered"
 
 
 def loaded_stiffness(law: BearingLaw, load: float) -> float:

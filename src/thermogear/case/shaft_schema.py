@@ -171,14 +171,17 @@ class BearingTable(Table):
         "zero a preload. Decides load zone, stiffness and rattle",
     )
     clearance_class: Annotated[str, Choice("C2", "CN", "C3", "C4")] | None = Field(
-        default=None, description="CN, the normal one of ISO 5753-1"
+        default=None, description="CN, the normal one of ISO 5753-1. Decides the play"
     )
     shaft_interference: Interference = Field(
         default=11e-6,
-        description="11 um, the middle of k5 on 18 to 50 mm. On the diameter; takes clearance",
+        description="11 um, the middle of k5 on 18 to 50 mm. On the diameter. Decides how much "
+        "clearance mounting takes",
     )
     housing_interference: Interference = Field(
-        default=0.0, description="none, the ring can slide. On the diameter; takes clearance"
+        default=0.0,
+        description="none, the ring can slide. On the diameter. Decides how much clearance "
+        "mounting takes",
     )
     damping: Damper | None = Field(
         default=None,
@@ -283,7 +286,9 @@ class EndTable(Table):
         float, Measure("torsional damping", "0 N m s/rad", "1e9 N m s/rad")
     ] = Field(default=0.0, description="none. Decides how long slow torsion rings")
     position: Place | None = Field(
-        default=None, description="the left end of the pinion's shaft, the right of the wheel's"
+        default=None,
+        description="the left end of the pinion's shaft, the right of the wheel's. Decides where "
+        "the shaft twists",
     )
 
 
@@ -291,10 +296,11 @@ class MotorTable(EndTable):
     """The motor on the pinion's shaft; without a characteristic its torque is constant."""
 
     slip_damping: Annotated[float, Measure("torsional damping", "0 N m s/rad", "1e9 N m s/rad")] = (
-        Field(default=0.0, description="constant torque. How the torque falls with speed")
+        Field(default=0.0, description="constant torque. Decides how the torque falls with speed")
     )
     lag: Annotated[float, Measure("time", "0 s", "100 s", example="0.021 s")] = Field(
-        default=0.0, description="none: the torque follows at once"
+        default=0.0,
+        description="none: the torque follows at once. Decides how slow torsion is damped",
     )
 
 
@@ -340,9 +346,12 @@ def at_the_ends(data: dict[str, Any]) -> dict[str, Any]:
     for one in shafts:
         named = one.get("bearings") if isinstance(one, dict) else None
         types = [named] if isinstance(named, str) else named
-        if isinstance(types, list) and 1 <= len(types) <= 2:
+        known = isinstance(one, dict) and one.get("gear") in ("pinion", "wheel")
+        if not known or not isinstance(types, list) or not 1 <= len(types) <= 2:
+            continue  # the shaft itself says what is wrong
+        if all(isinstance(t, str) for t in types):
             ends = zip(("left", "right"), (types[0], types[-1]), strict=True)
-            more += [{"shaft": one.get("gear"), "end": end, "type": t} for end, t in ends]
+            more += [{"shaft": one["gear"], "end": end, "type": t} for end, t in ends]
     return {**data, "bearings": [*bearings, *more]} if more else data
 
 

@@ -130,14 +130,37 @@ def _shafts(file: GearFile, pair: GearPair, known: Mapping[str, Material]) -> tu
             )
     order = [names.index(name) for name in SHAFTS]
     made = [_shaft(f"shafts[{n}]", file.shafts[n], pair, known) for n in order]
-    outer = [section_at(one, one.gear_position).outer_diameter for one in made]
-    if 0.5 * sum(outer) >= pair.centre_distance:
-        raise InputError(
-            "shafts",
-            f"radii of {1e3 * sum(outer) / 2:.6g} mm together",
-            allowed=f"< {1e3 * pair.centre_distance:.6g} mm, the centre distance",
-        )
+    for place, one in enumerate(made):
+        _apart(f"shafts[{order[place]}]", place, one, made[1 - place], pair)
     return made[0], made[1]
+
+
+def _apart(field: str, place: int, shaft: Shaft, other: Shaft, pair: GearPair) -> None:
+    """Refuse a shaft that runs into the other gear or the other shaft; gears lie in z = 0."""
+    gear = (pair.wheel, pair.pinion)[place]
+    half = 0.5 * gear.face_width
+    bodies = [(-half, half, gear.tip_radius, f"tip circle of the {SHAFTS[1 - place]}")]
+    thick = [(a, b, r, f"shaft of the {SHAFTS[1 - place]}") for a, b, r in _pieces(other)]
+    for start, end, radius in _pieces(shaft):
+        for first, last, reach, called in (*bodies, *(one for one in thick if one[2] <= radius)):
+            within = min(end, last) - max(start, first) > 1e-9
+            if within and radius + reach >= pair.centre_distance:
+                raise InputError(
+                    field,
+                    f"{2e3 * radius:.6g} mm thick beside the {called}",
+                    allowed=f"< {2e3 * (pair.centre_distance - reach):.6g} mm there",
+                    why=f"the axes are {1e3 * pair.centre_distance:.6g} mm apart",
+                    fix="take a thinner shaft",
+                )
+
+
+def _pieces(shaft: Shaft) -> list[tuple[float, float, float]]:
+    """(from, to, radius) of every section [m], from the middle of the gear's face."""
+    found, start = [], -shaft.gear_position
+    for one in shaft.sections:
+        found.append((start, start + one.length, 0.5 * one.outer_diameter))
+        start += one.length
+    return found
 
 
 def _shaft(at: str, table: ShaftTable, pair: GearPair, known: Mapping[str, Material]) -> Shaft:
@@ -191,9 +214,12 @@ def _bearings(
             fix='write bearings = "6205" in each of [[shafts]], or [[bearings]]',
         )
     found: list[BearingPlan] = []
-    for number, table in enumerate(file.bearings):
+    ends = [f"shafts[{n}].bearings" for n, one in enumerate(file.shafts) if one.bearings]
+    fields = [f"bearings[{n}]" for n in range(len(file.bearings) - 2 * len(ends))]
+    fields += [field for field in ends for _ in range(2)]
+    for number, (at, table) in enumerate(zip(fields, file.bearings, strict=True)):
         shaft = shafts[SHAFTS.index(table.shaft)]
-        found.append(_bearing(number, table, shaft, file, known))
+        found.append(_bearing(at, number, table, shaft, file, known))
     for name in SHAFTS:
         mine = sorted((b for b in found if b.shaft == name), key=lambda b: b.position)
         if len(mine) < 2:
@@ -206,10 +232,12 @@ def _bearings(
             )
         for first, second in pairwise(mine):
             if second.position - first.position < 1e-6:
+                written = [one.field for one in (second, first) if not one.field.startswith("sh")]
                 raise InputError(
-                    f"{second.field}.position",
+                    f"{written[0]}.position",
                     f"{1e3 * second.position:.6g} mm",
                     allowed="another place than the other bearings'",
+                    fix="join both in one bearing, or move one",
                 )
     named = [one.name for one in found]
     for one in found:
@@ -219,13 +247,17 @@ def _bearings(
 
 
 def _bearing(
-    number: int, table: BearingTable, shaft: Shaft, file: GearFile, known: Mapping[str, Material]
+    at: str,
+    number: int,
+    table: BearingTable,
+    shaft: Shaft,
+    file: GearFile,
+    known: Mapping[str, Material],
 ) -> BearingPlan:
-    at = f"bearings[{number}]"
     rolling, play = None, 0.0
     law: RingLaw | LinearLaw | None = None
     if table.type is not None or table.inside is not None:
-        rolling = _under(at, lambda: _rolling(table))
+        rolling = _under(at, lambda: _rolling(table), alone=at.startswith("shafts"))
         play = _under(at, lambda: _play(table, rolling))
     elif table.ring is not None:
         ring = table.ring
@@ -240,6 +272,13 @@ def _bearing(
         cross = table.cross_stiffness or 0.0
         law = _under(at, lambda: LinearLaw(stiffness_matrix=((kx, cross), (cross, ky))))
     half = 0.0 if rolling is None else 0.5 * rolling.width
+    if table.end is not None and 2.0 * half >= shaft.length:
+        raise InputError(
+            at if at.startswith("shafts") else f"{at}.end",
+            f"a bearing {2e3 * half:.6g} mm wide on a shaft of {1e3 * shaft.length:.6g} mm",
+            allowed="a bearing narrower than its shaft is long",
+            fix="give a longer shaft",
+        )
     place = {"left": half, "right": shaft.length - half}.get(table.end or "", table.position)
     assert place is not None
     _on_shaft(f"{at}.position", place, shaft.length, table.shaft)
@@ -380,9 +419,9 @@ def _end(name: str, table: Any, shaft: Shaft, left_out: float) -> DriveEnd:
     )
 
 
-def _under(prefix: str, make: Callable[[], _Made]) -> _Made:
-    """What ``make`` makes; its complaints speak of the table of the file."""
+def _under(prefix: str, make: Callable[[], _Made], *, alone: bool = False) -> _Made:
+    """What ``make`` makes; its complaints speak of the table of the file, or of it ``alone``."""
     try:
         return make()
     except InputError as error:
-        raise error.named(f"{prefix}.{error.field}") from error
+        raise error.named(prefix if alone else f"{prefix}.{error.field}") from error

@@ -36,6 +36,8 @@ _SPELLED: dict[str, tuple[float, str]] = {
     "N m": (1.0, "N m"),
     "N mm": (1e-3, "N m"),
     "kN m": (1e3, "N m"),
+    "N / m": (1.0, "N/m"),
+    "N / mm": (1e3, "N/m"),
     "N / mm^2": (1.0, "MPa"),
     "MPa": (1.0, "MPa"),
     "GPa": (1.0, "GPa"),
@@ -111,7 +113,12 @@ MEANINGS: dict[str, Meaning] = (
             "root_relief_datum_diameter",
             "root_relief_evaluation_reference",
             "u_coordinate_on_shaft",
+            "u_coordinate_on_shaft_inner_side",
             "length",
+            "outer_diameter_begin",
+            "outer_diameter_end",
+            "inner_diameter_begin",
+            "inner_diameter_end",
         ),
         _LENGTH,
     )
@@ -121,6 +128,7 @@ MEANINGS: dict[str, Meaning] = (
             "averaged_peak_to_valley_height_flank",
             "upper_center_distance_allowance",
             "lower_center_distance_allowance",
+            "operating_radial_bearing_clearance",
         ),
         _MICRO,
     )
@@ -159,6 +167,7 @@ MEANINGS: dict[str, Meaning] = (
         "torque_around_u_axis": Meaning("torque", "N m"),
         "torque": Meaning("torque", "N m"),
         "power": Meaning("power", "kW"),
+        "radial_stiffness": Meaning("stiffness", "N / m"),
     }
 )
 """Attributes that are numbers with a kind, by the name of REXS 1.x."""
@@ -190,6 +199,8 @@ WORDS = (
     "bevel_cone_orientation",
     "is_engaged",
     "gear_shift_index",
+    "catalogue_designation",
+    "radial_force_absorption",
     "name",
     "material_designation",
     "reference_component_for_position",

@@ -26,7 +26,10 @@ class Operating:
 
 @dataclass
 class Draft:
-    """What is found on the way to a case: lines, loads, and what could not be used."""
+    """What is found on the way to a case: lines, loads, and what could not be used.
+
+    ``train``: the sections of shafts and the bearings that lines came from.
+    """
 
     stage: Stage
     pinion: Component
@@ -34,6 +37,7 @@ class Draft:
     lines: list[Line] = field(default_factory=list)
     loads: list[Operating] = field(default_factory=list)
     unused: list[str] = field(default_factory=list)
+    train: list[Component] = field(default_factory=list)
 
     def put(self, path: str, value: object, origin: str, note: str = "") -> None:
         """One more line."""

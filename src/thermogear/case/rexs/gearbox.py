@@ -142,7 +142,7 @@ def shafts_of_gears(model: Model) -> dict[int, int]:
             for role, part in relation.refs:
                 if role == "part":
                     found[part] = shaft.id
-    for inner, outer, by in _sides(model):
+    for inner, outer, by in sides(model):
         if not _turns(by):
             continue
         for mine, other in ((inner, outer), (outer, inner)):
@@ -155,7 +155,7 @@ def joined_shafts(model: Model) -> list[tuple[int, int]]:
     """Pairs of shafts that a connection always turns alike."""
     return [
         (inner.id, outer.id)
-        for inner, outer, by in _sides(model)
+        for inner, outer, by in sides(model)
         if inner.type == outer.type == "shaft" and _turns(by)
     ]
 
@@ -164,7 +164,7 @@ def switched_shafts(model: Model) -> list[tuple[int, int, Component]]:
     """Pairs of shafts that turn alike while a coupling between them is engaged."""
     return [
         (inner.id, outer.id, by)
-        for inner, outer, by in _sides(model)
+        for inner, outer, by in sides(model)
         if inner.type == outer.type == "shaft" and by.type == _SWITCHED
     ]
 
@@ -174,7 +174,7 @@ def _turns(by: Component) -> bool:
     return by.type != _SWITCHED and any(part in by.type for part in _JOINS)
 
 
-def _sides(model: Model) -> Iterator[tuple[Component, Component, Component]]:
+def sides(model: Model) -> Iterator[tuple[Component, Component, Component]]:
     """(inner part, outer part, what is between them); "coupling" is REXS 1.0."""
     for relation in model.related("side", "coupling"):
         by = model.at(relation.role("assembly"))

@@ -20,6 +20,7 @@ from thermogear.case.rexs.drive import Drive
 from thermogear.case.rexs.gearbox import Stage
 from thermogear.case.rexs.lines import Line, stored, toml
 from thermogear.case.rexs.model import Component, Model
+from thermogear.case.rexs.shaft_train import without_train
 from thermogear.case.rexs.stage_case import draft, require_spur
 
 CASE = f"{EXACT}case"
@@ -170,6 +171,11 @@ def imported(
     if data is not None:
         text = _restored(data, made, _head(model, one, unused))
     else:
+        if made.train:
+            try:
+                _checked(one, toml(made.lines, (), ()))
+            except InputError as error:
+                without_train(made, error)
         shapes = _modifications(model, made)
         unused += [*made.unused, *shapes]
         unused += left_out(model, _used(model, made), told=shapes.values())
@@ -287,7 +293,7 @@ def _root(one: Line) -> str:
 def _used(model: Model, made: Draft) -> list[Component]:
     """The components that a stage takes its case from."""
     stage = made.stage.component
-    found: list[Component | None] = [stage, gearbox.lubricant_of(model, stage)]
+    found: list[Component | None] = [stage, gearbox.lubricant_of(model, stage), *made.train]
     of_gear = gearbox.shafts_of_gears(model)
     for _, gear in made.both:
         flanks = gearbox.flanks_of(model, gear)

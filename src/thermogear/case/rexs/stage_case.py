@@ -16,6 +16,7 @@ from thermogear.case.rexs.flank_relief import relief_lines
 from thermogear.case.rexs.gearbox import Stage
 from thermogear.case.rexs.lines import DERIVED, GIVEN, READ, Line
 from thermogear.case.rexs.model import Component
+from thermogear.case.rexs.shaft_train import train_lines
 from thermogear.case.rexs.substances import material_lines, oil_lines
 from thermogear.case.rexs.tolerances import accuracy_lines, backlash_lines
 from thermogear.gears.geometry import Rack
@@ -84,6 +85,7 @@ def draft(
         relief_lines(reader, made, name, gear, sense[name], (module, angle))
     accuracy_lines(reader, made)
     backlash_lines(reader, made)
+    train_lines(reader, made)
     _operating(made, loads, driver, teeth, speed, torque)
     if drive.changed:
         made.lines = [
