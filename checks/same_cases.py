@@ -281,7 +281,7 @@ CHOICES = (
 )
 COMMANDS = [
     *("new", "import", "export", "draw", "answers", "run", "report", "check", "example", "schema"),
-    *("friction", "temperature", "warmup", "relief", "contact"),
+    *("friction", "temperature", "warmup", "relief", "contact", "statics", "modes", "campbell"),
     *("orbit", "lyapunov", "continue", "shared-force"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
     *("measure", "compare", "thesis", "sensitivity", "verify", "versus"),
@@ -525,6 +525,14 @@ CASES = (
             "draw own.toml -o gears.png --phase 0.5 --enlarge 20 --state 80 --show hot --json",
         ),
         MINE,
+    ),
+    Case(
+        "shafts",
+        (
+            "statics motor-train -o out --json",
+            "modes motor-train -o modes --count 6 --json",
+            "campbell motor-train -o campbell --rpm 0:4000 --count 6 --json",
+        ),
     ),
     # --- records
     Case(

@@ -18,6 +18,7 @@ from thermogear.views.plots import (
     loaded,
     one_motion,
     relief,
+    shafts,
     speeds,
     sweeps,
     thermal_map,
@@ -33,7 +34,9 @@ SIZES = {
     "regime_name": 3, "temperature": 2, "mesh_phase": 8, "pair": 2, "temperature_difference": 3,
     "pair_kind": 2, "speeds": 4, "torques": 3, "node": 2, "time": 12, "piece": 2, "sensor": 2,
     "channel": 1, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2, "entry": 2,
-    "output": 2, "input": 3, "gears.pinion.face_width": 3,
+    "output": 2, "input": 3, "gears.pinion.face_width": 3, "bearing": 2,
+    "pinion_position": 12, "wheel_position": 12, "mode": 5, "stiffness_level": 3, "line": 3,
+    "source": 3, "response_speed": 12,
 }  # fmt: skip
 S = "path_position"
 
@@ -265,6 +268,62 @@ def of_claims() -> dict[str, Picture]:
     }
 
 
+def of_shafts() -> dict[str, Picture]:
+    heat, two = {"state": ["undeformed", "hot"]}, ["left", "right"]
+    rings = made(
+        "state operating bearing", "bearing_load", radial_clearance=rising("state", "operating",
+        "bearing", low=-1e-6, high=5e-6),
+    ).assign_coords(heat | {"bearing": two})  # fmt: skip
+    lines = (
+        made("state operating pinion_position", "pinion_x", "pinion_y")
+        .merge(made("state operating wheel_position", "wheel_x", "wheel_y"))
+        .assign_coords(
+            heat | {"pinion_position": np.arange(12.0), "wheel_position": np.arange(12.0)}
+        )
+    )
+    table = made("state mode part", "energy_share").assign_coords(
+        heat | {"part": ["mesh", "bearing"]}
+    )
+    count = table.sizes["mode"]
+    table = table.assign(natural_frequency=rising("state", "mode", low=500.0, high=9e3))
+    table = table.assign_coords(mode=np.arange(1, count + 1))
+    shapes = xr.merge(
+        made(f"state mode {s}_position", *(f"{s}_{c}_real" for c in ("x", "y", "twist")))
+        .assign_coords({f"{s}_position": np.arange(12.0)})
+        for s in ("pinion", "wheel")
+    ).assign_coords(heat)  # fmt: skip
+    curves = made("state stiffness_level pinion_speed mode", "natural_frequency").assign_coords(
+        heat | {"pinion_speed": rising("pinion_speed", low=1.0, high=300.0)[1]}
+    )
+    met = made("state stiffness_level line mode", "critical_speed", "amplification").assign_coords(
+        heat | {"line": ["mesh", "shaft", "elements"], "order": ("line", [20.0, 1.0, 3.5])}
+    )
+    answer = made(
+        "state source response_speed bearing", "bearing_force_x", "bearing_force_y"
+    ).assign_coords(
+        heat | {"bearing": two, "source": ["mesh", "one", "two"], "response_speed": np.arange(12.0)}
+    )
+    shaft = {
+        "name": "pinion",
+        "sections": [[-0.05, 0.02, 0.03, 0.01], [0.02, 0.08, 0.025, 0.0]],
+        "gear": [0.02, 0.06],
+        "bearings": [["left", -0.04], ["right", 0.07]],
+        "discs": [["flange", 0.06]],
+        "end": ["motor", -0.05],
+    }
+    both = [shaft, shaft | {"name": "wheel", "discs": [], "end": None}]
+    return {
+        "train-sketch": shafts.sketch({"shafts": both, "centre_distance": 0.06}),
+        "train-loads": shafts.loads(rings),
+        "train-clearances": shafts.clearances(rings),
+        "train-deflection": shafts.deflection(lines, 0),
+        "train-modes": shafts.modes(table, shapes, 1),
+        "train-energies": shafts.energies(table, 1),
+        "train-campbell": shafts.campbell(curves, met, [100.0, 200.0]),
+        "train-response": shafts.response(answer, "bearing_force", "force [N]"),
+    }
+
+
 def every() -> dict[str, Picture]:
     """All of them by name."""
-    return of_sweeps() | of_orbits() | of_surveys() | of_claims()
+    return of_sweeps() | of_orbits() | of_surveys() | of_claims() | of_shafts()

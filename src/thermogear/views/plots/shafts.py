@@ -162,41 +162,44 @@ def clearances(data: xr.Dataset) -> Picture:
 
 def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
     """The lowest modes: deflection of both shafts across (full) and their twist (dashed)."""
-    count = min(MOST_MODES, table.sizes["mode"])
-    rows = []
-    for first in range(0, count, 4):
-        row = []
-        for mode in range(first, min(first + 4, count)):
-            hertz = float(table["natural_frequency"].values[state, mode]) / (2.0 * np.pi)
-            panel = Panel(
-                Axis("along the shaft [mm]", small=True, most=4),
-                Axis("", low=-1.15, high=1.15, most=3),
-                f"{mode + 1}: {hertz:.4g} Hz",
+    panels = []
+    for mode in range(min(MOST_MODES, table.sizes["mode"])):
+        hertz = float(table["natural_frequency"].values[state, mode]) / (2.0 * np.pi)
+        panel = Panel(
+            Axis("along the shaft [mm]", small=True, most=4),
+            Axis("shape [–]", low=-1.15, high=1.15, most=3, small=True),
+            f"{mode + 1}: {hertz:.4g} Hz",
+        )
+        for shaft, colour in SHAFTS.items():
+            x = 1e3 * shapes[f"{shaft}_position"].values
+            parts = {
+                c: shapes[f"{shaft}_{c}_real"].values[state, mode] for c in ("x", "y", "twist")
+            }
+            across = max(("x", "y"), key=lambda c: float(np.abs(parts[c]).max()))
+            words = f"{shaft}'s shaft, " if mode == 0 else ""
+            panel.curve(x, parts[across], colour=colour, label=words and f"{words}across")
+            panel.curve(
+                x,
+                parts["twist"],
+                colour=colour,
+                dash=(4.0, 3.0),
+                width=1.2,
+                label=words and f"{words}twist times base radius",
             )
-            for shaft, colour in SHAFTS.items():
-                x = 1e3 * shapes[f"{shaft}_position"].values
-                parts = {
-                    c: shapes[f"{shaft}_{c}_real"].values[state, mode] for c in ("x", "y", "twist")
-                }
-                axis = max(("x", "y"), key=lambda c: float(np.abs(parts[c]).max()))
-                first_one = mode == 0
-                panel.curve(
-                    x,
-                    parts[axis],
-                    colour=colour,
-                    label=f"{shaft}'s shaft, across" if first_one else "",
-                )
-                panel.curve(
-                    x,
-                    parts["twist"],
-                    colour=colour,
-                    dash=(4.0, 3.0),
-                    width=1.2,
-                    label=f"{shaft}'s shaft, twist times base radius" if first_one else "",
-                )
-            row.append(panel)
-        rows.append(row)
-    return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.4), legend=4, between=0.45, above=0.75)
+        panels.append(panel)
+    rows = _rows(panels, 4)
+    return Picture(rows, size=(WIDE, 2.4 * len(rows) + 0.4), legend=4, between=0.75, above=0.85)
+
+
+def _rows(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
+    """Rows of at most so many panels; the last is filled up with empty ones."""
+    columns = min(columns, len(panels))
+    rows = [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
+    for _ in range(columns - len(rows[-1])):
+        empty = Panel(panels[0].x, panels[0].y)
+        empty.note("no more of them")
+        rows[-1].append(empty)
+    return rows
 
 
 def energies(table: xr.Dataset, state: int) -> Picture:
@@ -267,11 +270,8 @@ def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -
     """Amplitude over speed of the hot train, a panel for each bearing, a curve for each source."""
     rpm = display("pinion_speed")(data["response_speed"].values)
     hot = names_of(data, "state").index("hot") if "hot" in names_of(data, "state") else 0
-    bearings = names_of(data, "bearing")
-    rows: list[list[Panel]] = []
-    for number, bearing in enumerate(bearings):
-        if number % 2 == 0:
-            rows.append([])
+    panels = []
+    for number, bearing in enumerate(names_of(data, "bearing")):
         panel = Panel(Axis("pinion speed [rpm]"), Axis(words, log="decades"), bearing)
         for place, source in enumerate(names_of(data, "source")):
             both = [data[f"{quantity}_{c}"].values[hot, place, :, number] for c in ("x", "y")]
@@ -279,10 +279,11 @@ def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -
             if np.any(size > 0.0):
                 panel.curve(
                     rpm,
-                    np.where(size > 0.0, size, np.nan),
+                    np.where(size > 1e-6 * size.max(), size, np.nan),
                     colour=OKABE_ITO[place % len(OKABE_ITO)],
                     width=1.3,
                     label=source if number == 0 else "",
                 )
-        rows[-1].append(panel)
+        panels.append(panel)
+    rows = _rows(panels, 2)
     return Picture(rows, size=(WIDE, 2.7 * len(rows) + 0.3), legend=3)
