@@ -273,6 +273,12 @@ def test_impossible_bearings_are_one_line(table: str) -> None:
         ('[motor]\ninertia = "0.1 kg m^2"', "motor.coupling_stiffness"),
         ('[motor]\ninertia = "0.1 kg m^2"\ncoupling_stiffness = "9 N m/rad"\nposition = "1 m"',
          "motor.position"),
+        ('[motor]\ninertia = "0.1 kg m^2"\ncoupling_stiffness = "9 N m/rad"\n[motor.plate]\n'
+         'rated_torque = "49 N m"\nrated_speed = "2954 rpm"\npole_pairs = 2',
+         "motor.plate.rated_speed"),
+        ('[motor]\ninertia = "0.1 kg m^2"\ncoupling_stiffness = "9 N m/rad"\nlag = "1 s"\n'
+         '[motor.plate]\nrated_torque = "49 N m"\nrated_speed = "1454 rpm"\npole_pairs = 2',
+         "motor.plate"),
         ('[housing]\nmass = "40 kg"', "housing.mount_stiffness"),
         ('[train]\nsense = "left"', "train.sense"),
         ('[train]\ncentre_lime = "1 deg"', "train.centre_lime"),

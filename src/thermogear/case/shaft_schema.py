@@ -292,6 +292,23 @@ class EndTable(Table):
     )
 
 
+class PlateTable(Table):
+    """The plate of an induction motor: near its rated speed it is a damper behind a lag."""
+
+    rated_torque: Annotated[float, Measure("torque", "0.001 N m", "1e7 N m", example="49 N m")]
+    rated_speed: Annotated[
+        float, Measure("rotational speed", "1 rpm", "100000 rpm", example="1454 rpm")
+    ]
+    pole_pairs: Annotated[int, Count(low=1, high=50, example="2")]
+    overload: Annotated[float, Number(low=1.01, high=10.0, example="2.3")] = Field(
+        default=2.5,
+        description="at most 2.5 times the rated torque; 2.3 to 3.2 are usual. Decides the lag",
+    )
+    line_frequency: Annotated[float, Number(low=1.0, high=1000.0, example="50.0")] = Field(
+        default=50.0, description="50 Hz mains. Decides the synchronous speed"
+    )
+
+
 class MotorTable(EndTable):
     """The motor on the pinion's shaft; without a characteristic its torque is constant."""
 
@@ -302,6 +319,18 @@ class MotorTable(EndTable):
         default=0.0,
         description="none: the torque follows at once. Decides how slow torsion is damped",
     )
+    plate: PlateTable | None = Field(default=None, title="slip_damping and lag as they are given")
+
+    @model_validator(mode="after")
+    def _once(self) -> MotorTable:
+        if self.plate is not None and (self.slip_damping or self.lag):
+            raise InputError(
+                "plate",
+                "one beside slip_damping or lag",
+                allowed="one of the two",
+                fix="leave slip_damping and lag out: they follow from the plate",
+            )
+        return self
 
 
 class TrainTable(Table):

@@ -21,6 +21,7 @@ from thermogear.shafts.bearings.clearance import Fit, class_clearance
 from thermogear.shafts.bearings.friction import has_skf
 from thermogear.shafts.bearings.geometry import RollingBearing
 from thermogear.shafts.bearings.laws import LinearLaw, RingLaw
+from thermogear.shafts.drive_ends import InductionMotor
 from thermogear.shafts.train import (
     SHAFTS,
     Casing,
@@ -409,13 +410,18 @@ def _disc(
 def _end(name: str, table: Any, shaft: Shaft, left_out: float) -> DriveEnd:
     place = left_out if table.position is None else table.position
     _on_shaft(f"{name}.position", place, shaft.length, "pinion" if name == "motor" else "wheel")
+    slip, lag = getattr(table, "slip_damping", 0.0), getattr(table, "lag", 0.0)
+    plate = getattr(table, "plate", None)
+    if plate is not None:
+        motor = _under("motor.plate", lambda: InductionMotor(**plate.model_dump()))
+        slip, lag = motor.slip_damping, motor.lag
     return DriveEnd(
         position=place,
         inertia=table.inertia,
         stiffness=table.coupling_stiffness,
         damping=table.coupling_damping,
-        slip_damping=getattr(table, "slip_damping", 0.0),
-        lag=getattr(table, "lag", 0.0),
+        slip_damping=slip,
+        lag=lag,
     )
 
 

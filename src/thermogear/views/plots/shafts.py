@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 PINION, WHEEL = OKABE_ITO[0], OKABE_ITO[1]
 SHAFTS = {"pinion": PINION, "wheel": WHEEL}
 DASHES = {"undeformed": (4.0, 3.0), "hot": ()}
+LEAST_SHARE = 1e-5
+"""Of the greatest amplitude of a panel, below which nothing is drawn."""
 LEAST_GAIN = 0.1
 """Amplification from which a critical speed is drawn."""
 MOST_MODES = 8
@@ -273,13 +275,15 @@ def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -
     panels = []
     for number, bearing in enumerate(names_of(data, "bearing")):
         panel = Panel(Axis("pinion speed [rpm]"), Axis(words, log="decades"), bearing)
+        parts = [data[f"{quantity}_{c}"].values[hot, ..., number] for c in ("x", "y")]
+        floor = LEAST_SHARE * factor * float(np.hypot(*parts).max())
         for place, source in enumerate(names_of(data, "source")):
             both = [data[f"{quantity}_{c}"].values[hot, place, :, number] for c in ("x", "y")]
             size = factor * np.hypot(*both)
-            if np.any(size > 0.0):
+            if np.any(size > floor):
                 panel.curve(
                     rpm,
-                    np.where(size > 1e-6 * size.max(), size, np.nan),
+                    np.where(size > floor, size, np.nan),
                     colour=OKABE_ITO[place % len(OKABE_ITO)],
                     width=1.3,
                     label=source if number == 0 else "",
