@@ -52,6 +52,7 @@ from thermogear.study.dial import dial
 from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
+from thermogear.study.shafts.sketch import sketch
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,6 +86,8 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
             "choices": run_notices.choice_meanings(),
             "answers": [one.row for one in found],
         }
+        if case.train is not None:
+            own["train"] = sketch(case.train.drive_train(pair=case.pair), case.pair)
     else:
         raise InputError("case", type(case).__name__, allowed="GearCase or DimensionlessCase")
     return Result.of(

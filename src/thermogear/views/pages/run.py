@@ -17,6 +17,7 @@ from thermogear.views.pages import (
     gear_sections,
     headline,
     row_sections,
+    shafts,
 )
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ORDER = (
+    shafts.section,
     drawn.section,
     flank_sections.measured,
     gear_sections.friction,
@@ -41,13 +43,14 @@ ORDER = (
 
 
 FIRST = (
+    ("sketch",),
     ("gears", "gap-temperature", "gap-phase"),
     ("dial", "stiffness-0"),
     ("dynamic-factor",),
     ("flash-own", "flash-mixed", "friction"),
     ("motion-0-0",),
 )
-"""The pictures that carry the answers: gears or gap, temperature, speeds, friction, motion."""
+"""The pictures that carry the answers: shafts, gears or gap, heat, speeds, friction, motion."""
 KINDS = ("gear", "dimensionless")
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from thermogear.base.display import exactly, number
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.results.result import Result
-from thermogear.views.page import Page, Shown, Table
+from thermogear.views.page import Page, Pictures, Section, Shown, Table
 from thermogear.views.pages.survey import operating_rows, survey
 from thermogear.views.plots import shafts as plots
 from thermogear.views.style import names_of
@@ -37,6 +37,14 @@ def page(result: Result) -> Page:
 def _sketch(result: Result) -> Shown:
     said = result.table("train")
     return Shown("sketch", "The drive train", SKETCH, partial(plots.sketch, said), wide=True)
+
+
+def section(result: Result, pictures: Pictures) -> Section | None:
+    """The sketch of a run's drive train; None where the case draws none."""
+    if not result.table("train"):
+        return None
+    pictures.found.append(_sketch(result))
+    return Section("train", "Shafts and bearings", pictures.take())
 
 
 # --- loads at rest ----------------------------------------------------------------------------
