@@ -26,6 +26,7 @@ FLOORS = {
     "dynamics": "equations of motion with a dead zone, event-exact maps, Runge-Kutta lanes",
     "analysis": "sections, orbits, continuation, Lyapunov exponents, labels, maps, basins",
     "measured": "readers of records, reduction to lines and orders",
+    "shafts": "drive train, bearings, modes, statics, response",
     "gears": "geometry, contact, loaded contact, deviations, stiffness",
     "heat": "lubricant, friction, temperature, thermal deformation",
     "mesh": "the choices of the mesh model, the quasi-static cycle, the heat balance",

@@ -11,6 +11,7 @@ RESULTS = Path(__file__).parents[1] / "validation.json"
 
 FLOORS = {
     "gears": "Geometry, contact, stiffness",
+    "shafts": "Shafts and bearings",
     "heat": "Friction, film, temperature, growth",
     "mesh": "The mesh cycle and the heat balance",
     "verify": "Finite elements",

@@ -335,8 +335,9 @@ def _campbell(result: Result) -> Page:
         ),
         Shown(
             "bearing_forces",
-            "Dynamic bearing forces over speed, hot",
-            "Amplitude by the loaded transmission error's harmonics and by unbalance, linear.",
+            "Dynamic bearing forces over speed",
+            "Amplitude by the loaded transmission error's harmonics and by unbalance, linear; hot "
+            "full, undeformed dashed.",
             partial(plots.response, answer, "bearing_force", "force [N]"),
             wide=True,
         ),
@@ -345,7 +346,7 @@ def _campbell(result: Result) -> Page:
         pictures.append(
             Shown(
                 "accelerations",
-                "Acceleration of the bearing rings over speed, hot",
+                "Acceleration of the bearing rings over speed",
                 "What a sensor on the bearing's housing would show of each source.",
                 partial(plots.response, answer, "ring_acceleration", "acceleration [m/s²]"),
                 wide=True,

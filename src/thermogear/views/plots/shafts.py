@@ -68,7 +68,9 @@ def sketch(said: Mapping[str, Any]) -> Picture:
             panel.points([at + side * long], [centre], colour=QUIET, marker="square", size=11.0)
             panel.text(at + side * long, centre, name, up="bottom", offset=(0.0, 8.0), size=8.0)
         panel.curve([ends[0], ends[1]], [centre] * 2, colour=QUIET, width=0.7, dash=(8.0, 2.0))
-    return Picture([[panel]], size=(WIDE, 4.2))
+    (left, right), (low, high) = panel.extent("x"), panel.extent("y")
+    tall = (WIDE - 1.0) * (high - low) / (right - left)
+    return Picture([[panel]], size=(WIDE, 1.0 + float(np.clip(tall, 2.5, 5.5))))
 
 
 def _box(
@@ -166,11 +168,13 @@ def modes(table: xr.Dataset, shapes: xr.Dataset, state: int) -> Picture:
     """The lowest modes: deflection of both shafts across (full) and their twist (dashed)."""
     panels = []
     for mode in range(min(MOST_MODES, table.sizes["mode"])):
-        hertz = float(table["natural_frequency"].values[state, mode]) / (2.0 * np.pi)
+        both = table["natural_frequency"].values[:, mode] / (2.0 * np.pi)
+        names = names_of(table, "state")
+        others = [f"{v:.4g} {n}" for v, n in zip(both, names, strict=True) if n != names[state]]
         panel = Panel(
             Axis("along the shaft [mm]", small=True, most=4),
             Axis("shape [–]", low=-1.15, high=1.15, most=3, small=True),
-            f"{mode + 1}: {hertz:.4g} Hz",
+            f"{mode + 1}: {both[state]:.4g} Hz ({', '.join(others)})",
         )
         for shaft, colour in SHAFTS.items():
             x = 1e3 * shapes[f"{shaft}_position"].values
@@ -269,25 +273,25 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
 
 
 def response(data: xr.Dataset, quantity: str, words: str, factor: float = 1.0) -> Picture:
-    """Amplitude over speed of the hot train, a panel for each bearing, a curve for each source."""
+    """Amplitude over speed, hot full, undeformed dashed; a panel a bearing, a colour a source."""
     rpm = display("pinion_speed")(data["response_speed"].values)
-    hot = names_of(data, "state").index("hot") if "hot" in names_of(data, "state") else 0
     panels = []
     for number, bearing in enumerate(names_of(data, "bearing")):
         panel = Panel(Axis("pinion speed [rpm]"), Axis(words, log="decades"), bearing)
-        parts = [data[f"{quantity}_{c}"].values[hot, ..., number] for c in ("x", "y")]
+        parts = [data[f"{quantity}_{c}"].values[..., number] for c in ("x", "y")]
         floor = LEAST_SHARE * factor * float(np.hypot(*parts).max())
         for place, source in enumerate(names_of(data, "source")):
-            both = [data[f"{quantity}_{c}"].values[hot, place, :, number] for c in ("x", "y")]
-            size = factor * np.hypot(*both)
-            if np.any(size > floor):
-                panel.curve(
-                    rpm,
-                    np.where(size > floor, size, np.nan),
-                    colour=OKABE_ITO[place % len(OKABE_ITO)],
-                    width=1.3,
-                    label=source if number == 0 else "",
-                )
+            for state, name in enumerate(names_of(data, "state")):
+                size = factor * np.hypot(*(part[state, place] for part in parts))
+                if np.any(size > floor):
+                    panel.curve(
+                        rpm,
+                        np.where(size > floor, size, np.nan),
+                        colour=OKABE_ITO[place % len(OKABE_ITO)],
+                        width=1.3 if name == "hot" else 0.9,
+                        dash=DASHES.get(name, ()),
+                        label=source if number == 0 and name == "hot" else "",
+                    )
         panels.append(panel)
     rows = _rows(panels, 2)
     return Picture(rows, size=(WIDE, 2.7 * len(rows) + 0.3), legend=3)
