@@ -323,7 +323,7 @@ def test_an_aluminium_housing_loosens_the_outer_ring() -> None:
     assert values[-1] == pytest.approx(float(free), rel=1e-9)  # loose: no influence left
 
 
-def test_classes_rise_and_cover(compared: Compared) -> None:
+def test_classes_rise_and_cover() -> None:
     for kind, bores in (("ball", (12, 20, 25, 35, 45, 60, 75)), ("roller", (25, 35, 45, 60, 75))):
         for bore in bores:
             rows = np.array([class_clearance(kind, 1e-3 * bore, name) for name in CLASSES])

@@ -59,7 +59,7 @@ class PointContact:
 
 
 def complete_integrals(ratio: float) -> tuple[float, float]:
-    """K and E, the complete elliptic integrals of m = 1 - 1/``ratio``^2."""
+    """K and E, the complete elliptic integrals of m = 1 - 1/k^2, of the ``ratio`` k."""
     from scipy.special import ellipe, ellipkm1
 
     rest = 1.0 / ratio**2

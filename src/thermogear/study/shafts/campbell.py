@@ -17,7 +17,12 @@ from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
 from thermogear.shafts.linear import LinearTrain, Modes, damping_ratios, strain_shares
-from thermogear.shafts.response import Response, error_response, unbalance_response
+from thermogear.shafts.response import (
+    Response,
+    error_response,
+    run_out_error,
+    unbalance_response,
+)
 from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.modes import bearing_parts, name_of
 from thermogear.study.shafts.sketch import sketch
@@ -292,7 +297,7 @@ def participation(train: LinearTrain, order: Order, shape: NDArray[np.complex128
 def _responses(
     case: GearCase, state: TrainState, speeds: Floats, orders: Sequence[Order]
 ) -> list[Response]:
-    """The response to the mesh's harmonics, then to the unbalance of either shaft."""
+    """The response to the mesh's harmonics, to the unbalance and to the run-out of either shaft."""
     error = state.loaded_error
     found = [
         error_response(
@@ -303,8 +308,16 @@ def _responses(
         )
         for h, one in enumerate(one for one in orders if one.kind == "mesh")
     ]
-    unbalances = plan_of(case).drive_train(pair=case.pair).unbalances
-    return found + [unbalance_response(state.linear, speeds, s, unbalances) for s in SHAFTS]
+    plan = plan_of(case)
+    found += [unbalance_response(state.linear, speeds, s, plan.unbalances) for s in SHAFTS]
+    ratio = case.pair.pinion.teeth / case.pair.wheel.teeth
+    for shaft, turns in zip(SHAFTS, (1.0, ratio), strict=True):
+        moved = sum(
+            (run_out_error(state.assembly, one) for one in plan.run_outs if one.shaft == shaft),
+            0j,
+        )
+        found.append(error_response(state.linear, speeds, order=turns, error=moved))
+    return found
 
 
 def _response_table(
@@ -335,6 +348,7 @@ def _response_table(
             variables[f"{name}_{axis}"] = (dims, values[..., c], unit, words + axis)
     sources = [f"mesh harmonic {h}" for h in range(1, MESH_HARMONICS + 1)]
     sources += [f"unbalance of the {shaft}'s shaft" for shaft in SHAFTS]
+    sources += [f"run-out of the {shaft}" for shaft in SHAFTS]
     return label(
         variables,
         {

@@ -336,7 +336,7 @@ def _campbell(result: Result) -> Page:
         Shown(
             "bearing_forces",
             "Dynamic bearing forces over speed",
-            "Amplitude by the loaded transmission error's harmonics and by unbalance, linear; hot "
+            "Amplitude by the loaded transmission error, by unbalance and by run-out, linear; hot "
             "full, undeformed dashed.",
             partial(plots.response, answer, "bearing_force", "force [N]"),
             wide=True,
