@@ -26,6 +26,8 @@ from thermogear.shafts.train import (
     DriveTrain,
     RunOut,
     Seat,
+    Section,
+    Shaft,
     Unbalance,
 )
 
@@ -399,3 +401,96 @@ def test_a_motor_that_gives_way_damps_its_own_mode(compared: Compared) -> None:
         ratio = slowest(slip, 0.0)[0]
         peaks.append(np.abs(found.displacement[0, made.assembly.index["motor.tz"]]) * ratio)
     compared("height of the motor's resonance", "one over its ratio", peaks[0] / peaks[1] - 1, 0.02)
+
+
+def test_statics_of_two_masses_as_truth_s1(compared: Compared) -> None:
+    case = TRUTH["S1"]
+    p, values = case["params"], case["values"]
+    parts = six(p)
+    found = equilibrium(parts, p["T1"], mesh=p["k_mean"], half_backlash=p["b"])
+    twist = np.array([parts.at_gear(s)[:, 4] @ found.displacement for s in SHAFTS])
+    away = [
+        found.mesh_force / values["mesh_force"] - 1.0,
+        *(np.linalg.norm(found.bearing_force, axis=1) / values["bearing_force"] - 1.0),
+        *(found.centre("pinion") / values["pinion"] - 1.0),
+        *(found.centre("wheel") / values["wheel"] - 1.0),
+        found.drive / values["delta"] - 1.0,
+        parts.frame.base_radii @ twist / values["twist_p"] - 1.0,
+        found.centre_distance_growth / values["centre_distance_growth"] - 1.0,
+        np.sin(parts.frame.pressure_angle) * found.centre_distance_growth
+        / values["backlash_growth_one_flank"] - 1.0,
+    ]  # fmt: skip
+    compared("two masses in clearance", "closed form; Newton", away, 1e-9)
+
+
+def test_three_bearings_share_by_stiffness(compared: Compared) -> None:
+    """Clapeyron's three moments: a slender shaft on three stiff bearings, the load in one span."""
+    rng = np.random.default_rng(31)
+    worst = 0.0
+    for train in trains(32):
+        spans = rng.uniform(0.8, 2.0, 2)
+        at = float(rng.uniform(0.2, 0.8) * spans[0])
+        made = train.shafts[0].sections[0].material
+        thin = Section(length=float(spans.sum()), outer_diameter=0.02, material=made)
+        shaft = Shaft(sections=(thin,), gear_position=at)
+        places = [0.0, float(spans[0]), float(spans.sum())]
+        mine = tuple(
+            Bearing(name=f"p{n}", shaft="pinion", position=z, law=own(1e13))
+            for n, z in enumerate(places)
+        )
+        others = tuple(b for b in train.bearings if b.shaft == "wheel")
+        whole = replace(
+            train, shafts=(shaft, train.shafts[1]), bearings=mine + others, motor=None,
+            least_elements=24,
+        )  # fmt: skip
+        found = equilibrium(assemble(whole), 0.05, mesh=3e8, half_backlash=0.0)
+        force = 0.05 / whole.frame.base_radii[0]
+        moment = -force * at * (spans[0] ** 2 - at**2) / spans[0] / (2.0 * spans.sum())
+        left = force * (spans[0] - at) / spans[0] + moment / spans[0]
+        right = moment / spans[1]
+        expected = np.array([left, force - left - right, right])
+        loads = found.bearing_force[:3] @ -whole.frame.normals[0]
+        worst = max(worst, np.abs(loads - expected).max() / force)
+    compared("three bearings on a slender shaft", "three moments", worst, 1e-3)
+
+
+def test_an_overhung_gear_lifts_the_far_bearing() -> None:
+    (train,) = trains(33)[:1]
+    shaft = replace(train.shafts[0], gear_position=0.0)
+    mine = [
+        replace(b, position=z * shaft.length)
+        for b, z in zip(train.bearings[:2], (0.4, 0.9), strict=True)
+    ]
+    whole = isotropic(
+        replace(train, shafts=(shaft, train.shafts[1]), bearings=(*mine, *train.bearings[2:]))
+    )
+    found = equilibrium(assemble(whole), 50.0, mesh=3e8, half_backlash=1e-5)
+    loads = found.bearing_force[:2] @ -whole.frame.normals[0] * whole.frame.base_radii[0] / 50.0
+    assert loads == pytest.approx([0.9 / 0.5, -0.4 / 0.5], rel=1e-8)
+
+
+def test_the_gears_tilt_as_a_simply_supported_shaft_does(compared: Compared) -> None:
+    """Slope under the load F a b (b - a)/(3 E I L) of a slender shaft against a rigid one."""
+    rng = np.random.default_rng(34)
+    worst = 0.0
+    for train in trains(35):
+        span, share = float(rng.uniform(1.0, 2.0)), float(rng.uniform(0.2, 0.8))
+        made = train.shafts[0].sections[0].material
+        thin = Section(length=span, outer_diameter=0.015, material=made)
+        thick = Section(length=span, outer_diameter=0.6, material=made)
+        drawn = tuple(Shaft(sections=(s,), gear_position=share * span) for s in (thin, thick))
+        bearings = tuple(
+            Bearing(name=f"{name} {z}", shaft=name, position=z * span, law=own(1e14))
+            for name in SHAFTS
+            for z in (0.0, 1.0)
+        )
+        whole = replace(
+            train, shafts=(drawn[0], drawn[1]), bearings=bearings, motor=None, load=None
+        )
+        found = equilibrium(assemble(whole), 0.05, mesh=3e8, half_backlash=0.0)
+        force = 0.05 / whole.frame.base_radii[0]
+        stiff = made.youngs_modulus * np.pi / 64.0 * 0.015**4
+        a, b = share * span, (1.0 - share) * span
+        slope = -force * a * b * (b - a) / (3.0 * stiff * span)
+        worst = max(worst, abs(found.misalignment - slope) / abs(force * span**2 / stiff))
+    compared("tilt of a gear on a slender shaft", "F a b (b - a)/(3 E I L)", worst, 1e-4)
