@@ -106,13 +106,11 @@ def gearbox(file: GearFile, pair: GearPair) -> tuple[Gearbox, tuple[Reading, ...
 
 
 def heated(file: GearFile, pair: GearPair, box: Gearbox, train: TrainPlan) -> Gearbox:
-    """The gearbox with shafts and bearings as nodes, where two bearings hold each shaft.
+    """The gearbox with shafts and bearings as nodes.
 
     A housing that is left out is as wide as the longer shaft between its bearings.
     """
-    drawn = train.heat(coefficient=box.bearing_coefficient)
-    if drawn is None:
-        return box
+    drawn = train.heat(pair, coefficient=box.bearing_coefficient)
     table = GearboxTable() if file.gearbox is None else file.gearbox
     places = [[b.position for b in train.bearings if b.shaft == name] for name in SHAFTS]
     width = max(max(mine) - min(mine) for mine in places)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -226,15 +226,14 @@ class TrainPlan:
             found |= {one.name: f"{shaft}_bearing_{n}" for n, one in enumerate(mine, 1)}
         return found
 
-    def heat(self, *, coefficient: float) -> ShaftHeat | None:
-        """Shafts and bearings for the heat network; None with a third bearing on a shaft.
+    def heat(self, pair: GearPair, *, coefficient: float) -> ShaftHeat:
+        """Shafts and bearings for the heat network.
 
-        Its share follows from no lever: then the network stays as it is without shafts. A bearing
-        whose inside is not known turns with the friction ``coefficient`` [-] at the shaft's
-        diameter, and its rings are one node.
+        Two bearings of a shaft share the mesh force by their levers, more by their stiffness under
+        the greatest torque. A bearing whose inside is not known turns with the friction
+        ``coefficient`` [-] at the shaft's diameter, and its rings are one node.
         """
-        if any(sum(b.shaft == s for b in self.bearings) != 2 for s in SHAFTS):
-            return None
+        shares = self._shares(pair)
         return ShaftHeat(
             shafts=self.shafts,
             bearings=tuple(
@@ -244,10 +243,25 @@ class TrainPlan:
                     size=one.rolling,
                     friction=self._friction(one, coefficient),
                     seat=one.seat_conductance,
+                    share=shares.get(one.name),
                 )
                 for one in self.bearings
             ),
         )
+
+    def _shares(self, pair: GearPair) -> dict[str, float]:
+        """Part of the mesh force on every bearing where a shaft has more than two; else nothing."""
+        if all(sum(b.shaft == s for b in self.bearings) == 2 for s in SHAFTS):
+            return {}
+        from thermogear.shafts.assembly import assemble
+        from thermogear.shafts.statics import equilibrium
+
+        force = max(self.nominal_force, 1.0)
+        parts = assemble(replace(self, gravity=0.0).drive_train(pair=pair))
+        torque = force * pair.pinion.base_radius
+        found = equilibrium(parts, torque, mesh=1e8, half_backlash=0.0).bearing_force
+        loads = np.linalg.norm(found, axis=1) / force
+        return dict(zip(self.bearing_names, loads.tolist(), strict=True))
 
     def _friction(self, one: BearingPlan, coefficient: float) -> Friction:
         if one.rolling is None:

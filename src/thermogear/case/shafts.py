@@ -61,7 +61,7 @@ def train_plan(
     shafts = _shafts(file, pair, known)
     force = max(file.operating.torque) / pair.pinion.base_radius
     table = file.train or TrainTable()
-    bearings = _bearings(file, shafts, known)
+    bearings = _bearings(file, shafts, known, pair)
     given = inertias if file.inertia.model == "given" else (None, None)
     gears = (pair.pinion, pair.wheel)
     bodies = tuple(
@@ -204,8 +204,22 @@ def _on_shaft(field: str, place: float, total: float, shaft: str) -> None:
         )
 
 
+def _beside_the_gear(one: BearingPlan, shaft: Shaft, pair: GearPair) -> None:
+    """Refuse a bearing in the middle of which the gear sits."""
+    face = pair.pinion.face_width if one.shaft == SHAFTS[0] else pair.wheel.face_width
+    if abs(one.position - shaft.gear_position) <= 0.5 * face:
+        ends = [1e3 * (shaft.gear_position + side * 0.5 * face) for side in (-1.0, 1.0)]
+        field = one.field if one.field.startswith("shafts") else f"{one.field}.position"
+        raise InputError(
+            field,
+            f"a bearing at {1e3 * one.position:.6g} mm",
+            allowed=f"beyond the {one.shaft}'s face, {ends[0]:.6g} to {ends[1]:.6g} mm",
+            fix="move the bearing, or the gear by gear_position",
+        )
+
+
 def _bearings(
-    file: GearFile, shafts: Sequence[Shaft], known: Mapping[str, Material]
+    file: GearFile, shafts: Sequence[Shaft], known: Mapping[str, Material], pair: GearPair
 ) -> tuple[BearingPlan, ...]:
     if not file.bearings:
         raise InputError(
@@ -240,6 +254,8 @@ def _bearings(
                     allowed="another place than the other bearings'",
                     fix="join both in one bearing, or move one",
                 )
+    for one in found:
+        _beside_the_gear(one, shafts[SHAFTS.index(one.shaft)], pair)
     named = [one.name for one in found]
     for one in found:
         if named.count(one.name) > 1:

@@ -104,10 +104,18 @@ class LinearTrain:
 
     @property
     def mesh_damping(self) -> float:
-        """c_m = 2 zeta sqrt(k m_e) [N s/m], m_e of the two gears alone."""
+        """c_m = 2 zeta sqrt(k m_e) [N s/m], m_e of the two gears alone; modal damping has none."""
         own = self.assembly.damping
-        zeta = own.ratio if own.kind == "modal" else own.mesh
+        zeta = 0.0 if own.kind == "modal" else own.mesh
         return float(2.0 * zeta * np.sqrt(self.mesh * self.assembly.mesh_mass))
+
+    def bearing_damping(self, place: int) -> Floats:
+        """c (2, 2) [N s/m] of one bearing by the named kind; modal damping has no place."""
+        kind, own = self.assembly.damping.kind, self.assembly.bearings[place].bearing
+        if kind == "bearings":
+            return np.asarray(own.damping * np.eye(2))
+        beta = self.assembly.damping.shafts if kind == "proportional" else 0.0
+        return np.asarray(beta * self.bearings[place])
 
     @property
     def symmetric(self) -> bool:
@@ -286,6 +294,33 @@ def strain_shares(train: LinearTrain, shape: ArrayLike) -> dict[str, Floats]:
     return {name: np.asarray(value / total) for name, value in found.items()}
 
 
+def resonant_forces(
+    train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike, force: ArrayLike
+) -> Floats:
+    """Greatest force on a bearing [N] of every mode alone at its resonance, (modes,).
+
+    q = phi (phi^H f)/(i w phi^H C phi): ``shape`` phi (n, modes), ``frequency`` w [rad/s] and
+    ``force`` f (modes, n) [N, N m] at it.
+    """
+    q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
+    push = np.sum(q.conj() * np.asarray(force, dtype=complex).T, axis=0)
+    loss = _energy(train.damping, q) + train.slip_damping(w).real * _motor_turn(train, q)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        moved = q * (push / (1j * w * loss))
+    found = np.zeros(w.size)
+    for place, k in zip(train.assembly.bearings, train.bearings, strict=True):
+        each = np.linalg.norm(np.asarray(k) @ (place.directions.T @ moved), axis=0)
+        found = np.maximum(found, each)
+    return found
+
+
+def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:
+    """|motor's angle|^2 of every mode where it has a characteristic, else 0."""
+    if not train.assembly.slip[0]:
+        return np.zeros(q.shape[1])
+    return np.asarray(np.abs(q[train.assembly.index["motor.tz"]]) ** 2)
+
+
 def damping_ratios(train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike) -> Floats:
     """Damping ratio of every undamped mode (n, modes) by its own loss [-], (modes,).
 
@@ -293,10 +328,7 @@ def damping_ratios(train: LinearTrain, shape: ArrayLike, *, frequency: ArrayLike
     """
     q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
     energy = w**2 * _energy(train.assembly.mass, q) + _energy(train.stiffness, q)
-    loss = _energy(train.damping, q)
-    if train.assembly.slip[0]:
-        turning = np.abs(q[train.assembly.index["motor.tz"]]) ** 2
-        loss = loss + train.slip_damping(w).real * turning
+    loss = _energy(train.damping, q) + train.slip_damping(w).real * _motor_turn(train, q)
     return np.asarray(w * loss / energy)
 
 

@@ -80,11 +80,18 @@ def unbalance_response(
     omega = _rising(speed)
     ratio = 1.0 if shaft == SHAFTS[0] else train.assembly.frame.ratio
     w = abs(ratio) * omega
-    pull = np.zeros(train.assembly.size, complex)
+    pull = unbalance_pull(train.assembly, shaft, unbalances)
+    return _outputs(train, omega, w, np.multiply.outer(w**2, pull), 0.0)
+
+
+def unbalance_pull(assembly: Assembly, shaft: str, unbalances: Sequence[Unbalance]) -> Complexes:
+    """Complex force (n,) of one shaft's ``unbalances`` over the square of its speed [kg m]."""
+    ratio = 1.0 if shaft == SHAFTS[0] else assembly.frame.ratio
+    pull = np.zeros(assembly.size, complex)
     for one in unbalances:
         if one.shaft == shaft:
-            pull += _turning(train.assembly, one, ratio)
-    return _outputs(train, omega, w, np.multiply.outer(w**2, pull), 0.0)
+            pull += _turning(assembly, one, ratio)
+    return pull
 
 
 def run_out_error(assembly: Assembly, run_out: RunOut) -> complex:
@@ -126,9 +133,10 @@ def _outputs(
     q = train.respond(w, speed=omega, force=force)
     through = train.mesh + 1j * w * train.mesh_damping
     pushed, shaken = [], []
-    for place, k in zip(own.bearings, train.bearings, strict=True):
+    for number, (place, k) in enumerate(zip(own.bearings, train.bearings, strict=True)):
         u = q @ place.directions
-        pushed.append(u @ np.asarray(k).T + 1j * w[:, None] * place.bearing.damping * u)
+        lost = u @ train.bearing_damping(number).T
+        pushed.append(u @ np.asarray(k).T + 1j * w[:, None] * lost)
         shaken.append(-(w[:, None] ** 2) * (q @ place.ring))
     casing = np.zeros((omega.size, 2), complex)
     if "casing.x" in own.index:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 CRITICAL, LOADS = "Which speeds are critical on the shafts?", "How large are the bearing loads?"
 CLEARANCE = "Does a bearing lose its clearance when hot?"
 TILT = "How much do the gears tilt?"
-STRONG = 1.0
-"""Amplification from which a critical speed is one to keep away from."""
+STRONG = 0.1
+"""Dynamic force on a bearing over the greatest static load, from which a critical speed counts."""
 TOLD = 4
 
 
@@ -66,21 +66,22 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
 
     own = np.unique(asked.case.stated.speed)
     found = critical_speeds(asked.case, hot, 1.5 * float(own.max()))
-    strong = [one for one in found if one.amplification >= STRONG]
+    loads = np.linalg.norm(hot.rest.bearing_force, axis=-1)
+    strong = [one for one in found if one.force >= STRONG * float(loads.max())]
     if not strong:
         return answer(
             CRITICAL,
             "critical_speed",
-            f"Up to {1.5 * own.max() / RPM:.0f} rpm no order lifts a mode of the shafts above the "
-            "load that drives it.",
+            f"Up to {1.5 * own.max() / RPM:.0f} rpm no resonance of the shafts shakes a bearing "
+            f"with {100.0 * STRONG:.0f} % of the greatest static load, {loads.max():.0f} N.",
             100.0,
             at=at,
         )
     away = np.abs(own[:, None] / np.array([one.speed for one in strong]) - 1.0)
-    ranked = sorted(strong, key=lambda one: -one.amplification)[:TOLD]
+    ranked = sorted(strong, key=lambda one: -one.force)[:TOLD]
     told = ", ".join(
         f"{one.speed / RPM:.0f} rpm ({one.order} meets {one.frequency / (2.0 * np.pi):.0f} Hz, "
-        f"{one.mostly})"
+        f"{one.mostly}, {one.force:.0f} N on a bearing)"
         for one in sorted(ranked, key=lambda one: one.speed)
     )
     return answer(CRITICAL, "critical_speed", f"Critical: {told}.", 100.0 * away.min(), at=at)

@@ -15,16 +15,24 @@ from thermogear.base.progress import Progress, silent
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import label
 from thermogear.case.case import GearCase
+from thermogear.case.shaft_plan import TrainPlan
 from thermogear.results.result import Notice, Result
-from thermogear.shafts.linear import LinearTrain, Modes, damping_ratios, strain_shares
+from thermogear.shafts.linear import (
+    LinearTrain,
+    Modes,
+    damping_ratios,
+    resonant_forces,
+    strain_shares,
+)
 from thermogear.shafts.response import (
     Response,
     error_response,
     run_out_error,
+    unbalance_pull,
     unbalance_response,
 )
 from thermogear.shafts.train import SHAFTS
-from thermogear.study.shafts.modes import bearing_parts, name_of
+from thermogear.study.shafts.modes import MOST_MODES, bearing_parts, name_of
 from thermogear.study.shafts.sketch import sketch
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 from thermogear.study.shafts.statics import notices
@@ -33,6 +41,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 KIND = "campbell"
 SPEEDS = 9
 """Speeds at which the natural frequencies are computed; they change little in between."""
@@ -40,6 +49,8 @@ FINE = 240
 """Speeds of the response."""
 MODES = 12
 MESH_HARMONICS = 3
+FASTEST = 500_000 * RPM
+"""No pinion turns faster [rad/s]."""
 LEVELS = ("least", "mean", "greatest")
 
 
@@ -82,7 +93,10 @@ def orders_of(case: GearCase) -> list[Order]:
 
 @dataclass(frozen=True, kw_only=True)
 class Critical:
-    """A speed [rad/s] of the pinion at which an ``order`` meets a mode of ``frequency`` [rad/s]."""
+    """A speed [rad/s] of the pinion at which an ``order`` meets a mode of ``frequency`` [rad/s].
+
+    ``force`` [N]: the greatest on a bearing there, by this mode alone.
+    """
 
     speed: float
     frequency: float
@@ -90,6 +104,7 @@ class Critical:
     mode: int
     mostly: str
     amplification: float
+    force: float
 
 
 def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[Critical]:
@@ -104,6 +119,9 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
         shares = participation(state.linear, order, shapes)
         ratios = damping_ratios(state.linear, shapes, frequency=speeds * order.order)
         parts = strain_shares(state.linear, shapes)
+        w = speeds * order.order
+        push = pushes(plan_of(case), state, order, w)
+        forces = resonant_forces(state.linear, shapes, frequency=w, force=push)
         for mode in range(count):
             here = {name: float(value[mode]) for name, value in parts.items()}
             found.append(
@@ -114,6 +132,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
                     mode=mode + 1,
                     mostly=name_of(here, rings),
                     amplification=float(shares[mode] / (2.0 * ratios[mode])),
+                    force=float(forces[mode]),
                 )
             )
     return found
@@ -142,15 +161,21 @@ def campbell(
         case = case.with_values({"torque": torque})
         place = int(np.argmax(case.stated.speed * case.stated.torque))
     low, high = speeds or (0.0, 1.5 * float(at.speed.max()))
-    if not 0.0 <= low < high:
+    if not 1 <= count <= MOST_MODES:
+        raise InputError("--count", count, allowed=f"1..{MOST_MODES}")
+    if not 0.0 <= low < high <= FASTEST:
         raise InputError(
-            "--rpm", f"{low / RPM:.6g}:{high / RPM:.6g} rpm", allowed="0 <= LOW < HIGH"
+            "--rpm",
+            f"{low / RPM:.6g}:{high / RPM:.6g} rpm",
+            allowed="0 <= LOW < HIGH <= 500000 rpm",
         )
     found = [row[0] for row in settled(case, [place], progress=progress)]
     grid = np.linspace(low, high, SPEEDS)
     orders = orders_of(case)
     rings = bearing_parts(case)
+    plan = plan_of(case)
     curves, participation, gains, levels, responses, names = [], [], [], [], [], []
+    forces: list[Any] = []
     fine = np.linspace(max(low, high / FINE), high, FINE)
     for number, state in enumerate(found):
         trains = [state.rest.linear(k) for k in state.band]
@@ -162,7 +187,8 @@ def campbell(
             kept.append(followed)
         curves.append(curve)
         names.append([_name(trains[1], kept[1][0], mode, rings) for mode in range(count)])
-        crossed = [[_critical(t, one, count) for one in orders] for t in trains]
+        crossed = [[_critical(plan, state, t, one, count) for one in orders] for t in trains]
+        forces.append([[one[3] for one in row] for row in crossed])
         levels.append([[one[0] for one in row] for row in crossed])
         participation.append([[one[1] for one in row] for row in crossed])
         gains.append([[one[2] for one in row] for row in crossed])
@@ -212,6 +238,12 @@ def campbell(
                         "1",
                         "participation over twice the damping ratio: how far the resonance rises",
                     ),
+                    "resonant_force": (
+                        ("state", "stiffness_level", "line", "mode"),
+                        forces,
+                        "N",
+                        "greatest dynamic force on a bearing at the resonance, by this mode alone",
+                    ),
                 },
                 level_names | lines,
             ),
@@ -257,18 +289,43 @@ def _name(train: LinearTrain, modes: Modes, place: int, rings: Mapping[str, str]
     return name_of({name: float(value[0]) for name, value in shares.items()}, rings)
 
 
-def _critical(train: LinearTrain, order: Order, count: int) -> Floats:
-    """Speeds [rad/s], participations and amplifications of the ``count`` lowest modes, (3, count).
+def pushes(plan: TrainPlan, state: TrainState, order: Order, frequency: Floats) -> Complexes:
+    """What an order pushes with at ``frequency`` [rad/s], (frequency, n); nan where unknown.
 
-    Nan where there is none.
+    Mesh harmonics by the loaded error, shafts by unbalance and run-out; how elements shake their
+    ring no table says.
+    """
+    train = state.assembly
+    if order.kind == "bearing":
+        return np.full((frequency.size, train.size), np.nan, complex)
+    through = state.linear.mesh + 1j * frequency * state.linear.mesh_damping
+    if order.kind == "mesh":
+        errors, harmonic = state.loaded_error, round(order.order / train.frame.teeth[0])
+        error = complex(errors[harmonic - 1]) if harmonic <= errors.size else 0j
+        return np.asarray(np.multiply.outer(through * error, train.drive))
+    (shaft,) = order.parts
+    error = sum((run_out_error(train, r) for r in plan.run_outs if r.shaft == shaft), 0j)
+    pull = unbalance_pull(train, shaft, plan.unbalances)
+    whole = np.multiply.outer(through * error, train.drive)
+    return np.asarray(whole + np.multiply.outer(frequency**2, pull))
+
+
+def _critical(
+    plan: TrainPlan, state: TrainState, train: LinearTrain, order: Order, count: int
+) -> Floats:
+    """Speeds [rad/s], participations, amplifications and bearing forces [N], (4, count).
+
+    Of the ``count`` lowest modes; nan where there is none.
     """
     speed, shape = train.critical(order.order)
     speed, shape = speed[:count], shape[:, :count]
+    w = speed * order.order
+    force = resonant_forces(train, shape, frequency=w, force=pushes(plan, state, order, w))
     share = participation(train, order, shape)
     ratio = damping_ratios(train, shape, frequency=speed * order.order)
-    rows = np.full((3, count), np.nan)
+    rows = np.full((4, count), np.nan)
     with np.errstate(divide="ignore"):
-        rows[:, : speed.size] = speed, share, share / (2.0 * ratio)
+        rows[:, : speed.size] = speed, share, share / (2.0 * ratio), force
     return rows
 
 

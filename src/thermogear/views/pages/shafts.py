@@ -25,6 +25,8 @@ SKETCH = (
     "Both shafts to scale along their length, one centre distance apart; crossed boxes are "
     "bearings. Look here first: a slip in a position is seen at once."
 )
+FELT = 0.05
+"""Of the greatest resonant force on a bearing, from which a critical speed is told."""
 NIL = 0.1
 """Amplification below which a resonance does not rise over the load that drives it."""
 
@@ -65,14 +67,7 @@ def _statics(result: Result) -> Page:
             partial(plots.loads, rings),
             wide=True,
         ),
-        Shown(
-            "clearances",
-            "Clearance of the bearings",
-            "Radial clearance as mounted, cold and hot: half of the play. Below the dashed line "
-            "the bearing is preloaded.",
-            partial(plots.clearances, rings),
-            wide=True,
-        ),
+        *([] if np.isnan(rings["radial_clearance"].values).all() else [_clearances(rings)]),
         Shown(
             "deflection",
             f"Deflection at {names[last]}",
@@ -88,6 +83,17 @@ def _statics(result: Result) -> Page:
         f"{1e6 * float(np.nanmax(mesh['centre_distance_growth'].values)):.1f} µm."
     )
     return survey(result, summary, pictures, tables, numbers=_static_numbers, lines=_static_lines)
+
+
+def _clearances(rings: xr.Dataset) -> Shown:
+    return Shown(
+        "clearances",
+        "Clearance of the bearings",
+        "Radial clearance as mounted, cold and hot: half of the play. Below the dashed line "
+        "the bearing is preloaded.",
+        partial(plots.clearances, rings),
+        wide=True,
+    )
 
 
 def _mesh_table(data: xr.Dataset, names: list[str]) -> Table:
@@ -146,6 +152,8 @@ def _ring_table(data: xr.Dataset, names: list[str]) -> Table:
 
 
 def _told(value: Any, factor: float, digits: int) -> str:
+    if value is None:
+        return "–"
     found = factor * float(value) + 0.0
     if abs(found) < 0.5 * 10.0**-digits:
         found = 0.0
@@ -294,12 +302,17 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
     limit = float(modes["pinion_speed"].values[-1])
     for s, state in enumerate(names_of(data, "state")):
         found = []
+        inside = data["critical_speed"].values[s, 1] <= limit
+        known = np.where(inside, data["resonant_force"].values[s, 1], np.nan)
+        most = float(np.nanmax(known, initial=0.0))
         for line, words in enumerate(names_of(data, "line")):
             low, mean, high = data["critical_speed"].values[s, :, line]
             share = data["participation"].values[s, 1, line]
             gain = data["amplification"].values[s, 1, line]
+            force = data["resonant_force"].values[s, 1, line]
             for m in range(mean.size):
-                if gain[m] >= NIL and low[m] <= limit:
+                felt = np.isfinite(force[m]) and force[m] >= FELT * most
+                if (gain[m] >= NIL or felt) and low[m] <= limit:
                     found.append(
                         {
                             "state": state,
@@ -311,6 +324,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
                             "frequency_Hz": mean[m] * float(data["order"].values[line]) / 2 / np.pi,
                             "participation": float(share[m]),
                             "amplification": float(gain[m]),
+                            "bearing_force_N": None if np.isnan(force[m]) else float(force[m]),
                             "mostly": str(modes["mode_name"].values[s, m]),
                         }
                     )
@@ -328,8 +342,8 @@ def _campbell(result: Result) -> Page:
             "campbell",
             "Campbell diagram",
             "Natural frequencies (black; the grey band is the mesh stiffness from its least to its "
-            "greatest), the orders that excite them, and a dot where an order lifts a mode: "
-            "the larger, the more. Dashed uprights are the case's speeds.",
+            "greatest), the orders that excite them, and a dot where an order meets a mode "
+            "and shakes a bearing: the larger, the more. Dashed uprights are the case's speeds.",
             partial(plots.campbell, data, critical, own),
             wide=True,
         ),
@@ -354,7 +368,7 @@ def _campbell(result: Result) -> Page:
         )
     head = [
         "state", "speed [rpm]", "over the mesh's stiffness [rpm]", "frequency [Hz]", "excited by",
-        "mode", "participation", "amplification", "mostly",
+        "mode", "bearing force [N]", "participation", "amplification", "mostly",
     ]  # fmt: skip
     rows = [
         [
@@ -364,6 +378,7 @@ def _campbell(result: Result) -> Page:
             f"{one['frequency_Hz']:.1f}",
             one["order"],
             str(one["mode"]),
+            _told(one["bearing_force_N"], 1.0, 1),
             f"{one['participation']:.4f}",
             f"{one['amplification']:.2f}",
             one["mostly"],
@@ -371,17 +386,20 @@ def _campbell(result: Result) -> Page:
         for one in found
     ]
     hot = [one for one in found if one["state"] == names_of(data, "state")[-1]]
-    driven = [one for one in hot if not one["order"].startswith("elements")] or hot
-    strong = max(driven, key=lambda one: one["amplification"], default=None)
+    strong = max(hot, key=lambda one: one["bearing_force_N"] or 0.0, default=None)
     summary = "No order meets a mode it can drive in this range."
     if strong is not None:
         summary = (
-            f"{len(hot)} critical speeds hot; the strongest at {strong['rpm']:.0f} rpm, where "
-            f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']})."
+            f"{len(hot)} critical speeds hot; the loudest at {strong['rpm']:.0f} rpm, where "
+            f"{strong['order']} meets {strong['frequency_Hz']:.0f} Hz ({strong['mostly']}): "
+            f"{_told(strong['bearing_force_N'], 1.0, 0)} N on a bearing."
         )
-    table = Table(
-        "Critical speeds: where an order meets a mode that it lifts by 0.1 or more.", head, rows
+    caption = (
+        "Critical speeds: where an order meets a mode that it lifts by 0.1 or more, or that shakes "
+        "a bearing with a twentieth of the greatest such force. The force is that of the mode "
+        "alone; the response has all of them together."
     )
+    table = Table(caption, head, rows)
     return survey(
         result, summary, pictures, [table], numbers=_critical_numbers, lines=_critical_lines
     )
@@ -392,12 +410,14 @@ def _critical_numbers(result: Result) -> dict[str, Any]:
 
 
 def _critical_lines(result: Result) -> list[str]:
-    found = [f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'rises':>7}  excited by, mostly"]
+    head = f"{'state':<12}{'rpm':>8}{'band [rpm]':>16}{'Hz':>9}{'force [N]':>11}{'rises':>7}"
+    found = [f"{head}  by: mostly"]
     for one in criticals(result):
         band = f"{one['rpm_least']:.0f}..{one['rpm_greatest']:.0f}"
         found.append(
             f"{one['state']:<12}{one['rpm']:>8.0f}{band:>16}{one['frequency_Hz']:>9.1f}"
-            f"{one['amplification']:>7.2f}  {one['order']}: {one['mostly']}"
+            f"{_told(one['bearing_force_N'], 1.0, 1):>11}{one['amplification']:>7.2f}"
+            f"  {one['order']}: {one['mostly']}"
         )
     if len(found) == 1:
         return ["no order meets a mode it can drive in this range"]

@@ -28,8 +28,8 @@ SHAFTS = {"pinion": PINION, "wheel": WHEEL}
 DASHES = {"undeformed": (4.0, 3.0), "hot": ()}
 LEAST_SHARE = 1e-5
 """Of the greatest amplitude of a panel, below which nothing is drawn."""
-LEAST_GAIN = 0.1
-"""Amplification from which a critical speed is drawn."""
+LEAST_FORCE = 0.05
+"""Of the greatest resonant force on a bearing, from which a critical speed is drawn."""
 MOST_MODES = 8
 """Modes that are drawn."""
 
@@ -231,6 +231,9 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
     x = rpm(data["pinion_speed"].values)
     panels = []
     states = names_of(data, "state")
+    inside = critical["critical_speed"].values <= data["pinion_speed"].values[-1]
+    known = np.where(inside, critical["resonant_force"].values, np.nan)
+    most = max(float(np.nanmax(known, initial=0.0)), 1e-12)
     for state, name in enumerate(states):
         low, mean, high = data["natural_frequency"].values[state] / (2.0 * np.pi)
         top = 1.05 * float(np.nanmax(high))
@@ -254,14 +257,14 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
                 label=words if state == 0 else "",
             )
             met = critical["critical_speed"].values[state, 1, line]
-            gains = critical["amplification"].values[state, 1, line]
-            for speed, gain in zip(met, gains, strict=True):
-                if np.isfinite(speed) and gain >= LEAST_GAIN and rpm(speed) <= x[-1]:
+            shares = critical["resonant_force"].values[state, 1, line] / most
+            for speed, share in zip(met, shares, strict=True):
+                if np.isfinite(speed) and share >= LEAST_FORCE and rpm(speed) <= x[-1]:
                     panel.points(
                         [float(rpm(speed))],
                         [order * speed / (2.0 * np.pi)],
                         colour=OKABE_ITO[line % len(OKABE_ITO)],
-                        size=3.0 + 2.0 * float(min(np.sqrt(gain), 4.0)),
+                        size=3.0 + 7.0 * float(np.sqrt(share)),
                         edge=INK,
                         edge_width=0.6,
                         order=3.0,
