@@ -58,7 +58,7 @@ def random_train(random: np.random.Generator) -> str:
     """Any pair that turns, on stepped shafts in bearings of every kind."""
     text = PAIR
     for shaft in ("pinion", "wheel"):
-        lengths = random.uniform(15.0, 60.0, int(random.integers(2, 6)))
+        lengths = random.uniform(30.0, 60.0, int(random.integers(2, 6)))
         sections = ", ".join(
             f'{{ length = "{x!r} mm", diameter = "{float(random.uniform(20.0, 40.0))!r} mm", '
             f'inner_diameter = "{float(random.uniform(0.0, 15.0))!r} mm" }}'
@@ -71,7 +71,8 @@ def random_train(random: np.random.Generator) -> str:
             f'gear_position = "{at!r} mm"\nunbalance = "{float(random.uniform(0, 30))!r} g mm"\n'
         )
         text += f'eccentricity = "{float(random.uniform(0, 10))!r} um"\n'
-        for share in np.sort(random.choice(np.arange(21), int(random.integers(2, 5)), False)):
+        beside = [k for k in range(21) if abs(k / 20.0 * whole - at) > 16.0]
+        for share in np.sort(random.choice(beside, int(random.integers(2, 5)), False)):
             law = _LAWS[int(random.integers(len(_LAWS)))]
             text += bearing(shaft, f"{float(share) / 20.0 * whole!r} mm", law)
         if random.integers(2):

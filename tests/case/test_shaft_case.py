@@ -131,7 +131,7 @@ pitch_diameter = "60 mm"
     assert seat is not None
     assert seat.stiffness == (3e8, 3e8)
     assert seat.mass == pytest.approx(0.1, rel=0.5)
-    assert found.heat(coefficient=0.0015) is not None
+    assert found.heat(read().pair, coefficient=0.0015) is not None
 
 
 def test_clearances_follow_temperatures_and_fits() -> None:

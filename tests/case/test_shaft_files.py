@@ -218,7 +218,7 @@ BAD = {
         "bearings[4].position: got 10 mm; allowed another place",
     ),
     "one name twice": (
-        OWN + bearing("wheel", "50 mm", 'type = "6205"\nname = "pinion 1"'),
+        OWN + bearing("wheel", "30 mm", 'type = "6205"\nname = "pinion 1"'),
         "name: got 'pinion 1'; allowed each name once",
     ),
     "unknown type": (TRAIN.replace('"6205"', '"6299"'), "shafts[0].bearings: got '6299'"),

@@ -252,7 +252,7 @@ class ShaftHeat:
             if not places:
                 raise InputError(f"{name} shaft", "no bearing", allowed="one or more")
             for place in (*places, shaft.gear_position):
-                if not 0.0 <= place <= shaft.length:
+                if not 0.0 <= place <= shaft.length * (1.0 + 1e-12):
                     raise InputError(
                         f"{name} shaft",
                         f"a bearing or gear at {1e3 * place:g} mm",

@@ -78,5 +78,5 @@ def catalogue_bearing(name: str) -> RollingBearing:
         "type",
         repr(name),
         allowed=" | ".join(CATALOGUE),
-        fix=f"{nearest(short, CATALOGUE)} Or describe its elements",
+        fix=f"{nearest(short, CATALOGUE)}; or describe its elements",
     )
