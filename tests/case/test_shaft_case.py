@@ -130,7 +130,8 @@ pitch_diameter = "60 mm"
     seat = train.bearings[2].seat
     assert seat is not None
     assert seat.stiffness == (3e8, 3e8)
-    assert seat.mass == pytest.approx(0.1, rel=0.5)
+    ring = 0.25 * math.pi * (0.062**2 - 0.0555**2) * 0.016
+    assert seat.mass == pytest.approx(7800.0 * ring)
     assert found.heat(read().pair, coefficient=0.0015) is not None
 
 

@@ -7,7 +7,7 @@ import pytest
 from trains import TRUTH, random_train, six
 
 from conftest import Compared
-from thermogear.base.errors import InputError
+from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.shafts.assembly import Assembly, assemble, lumped
 from thermogear.shafts.bearings.laws import ElementLaw, LinearLaw, RingLaw
 from thermogear.shafts.linear import LinearTrain, damping_ratios, strain_shares, whirl
@@ -362,6 +362,15 @@ def test_a_shaft_that_nothing_holds_is_refused() -> None:
         linear(loose).modes(0.0)
     with pytest.raises(InputError, match="free motion"):
         equilibrium(assemble(loose), 10.0, mesh=3e8, half_backlash=1e-5)
+
+
+def test_a_stiffness_that_is_no_number_ends_and_does_not_hang() -> None:
+    (train,) = trains(36)[:1]
+    parts = assemble(train)
+    with pytest.raises((ConvergenceError, InputError, ValueError)):
+        equilibrium(parts, 10.0, mesh=float("nan"), half_backlash=1e-5)
+    with pytest.raises(ConvergenceError, match="no number"):
+        equilibrium(parts, 10.0, mesh=3e8, half_backlash=float("nan"))
 
 
 def test_places_off_the_shaft_are_refused() -> None:

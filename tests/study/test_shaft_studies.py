@@ -17,6 +17,8 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.results.result import Result
 from thermogear.study.answers.survey import answers
+from thermogear.study.shafts import campbell as campbell_study
+from thermogear.study.shafts import modes as modes_study
 from thermogear.study.shafts import state
 from thermogear.study.shafts.campbell import campbell, orders_of
 from thermogear.study.shafts.modes import modes
@@ -272,6 +274,24 @@ def test_speeds_and_counts_are_checked() -> None:
         modes(case(), count=0)
     with pytest.raises(InputError):
         modes(case(), operating=9)
+
+
+def test_more_modes_than_a_coarse_train_has_are_those_it_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for module in (campbell_study, modes_study):
+        monkeypatch.setattr(module, "MOST_MODES", 1000)
+    coarse = gear_case(load_case(CASE, ["train.elements=2"]))
+    kept = campbell(coarse, count=500).groups["campbell"].sizes["mode"]
+    assert kept < 500
+    assert modes(coarse, count=500).groups["modes"].sizes["mode"] == kept
+
+
+def test_a_train_without_damping_has_no_finite_resonance() -> None:
+    bare = gear_case(load_case(CASE, ['train.damping="modal"', "train.modal_ratio=0.0"]))
+    gain = campbell(bare, count=6).groups["critical"]["amplification"].values
+    driven = np.isfinite(gain) & (gain > 0.0)
+    assert not np.any(driven)
 
 
 def test_a_stiffer_mesh_never_lowers_a_frequency() -> None:

@@ -300,18 +300,17 @@ def resonant_forces(
     """Greatest force on a bearing [N] of every mode alone at its resonance, (modes,).
 
     q = phi (phi^H f)/(i w phi^H C phi): ``shape`` phi (n, modes), ``frequency`` w [rad/s] and
-    ``force`` f (modes, n) [N, N m] at it.
+    ``force`` f (modes, n) [N, N m] at it. Infinite where nothing damps.
     """
     q, w = np.asarray(shape), np.asarray(frequency, dtype=float)
     push = np.sum(q.conj() * np.asarray(force, dtype=complex).T, axis=0)
     loss = _energy(train.damping, q) + train.slip_damping(w).real * _motor_turn(train, q)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        moved = q * (push / (1j * w * loss))
-    found = np.zeros(w.size)
+    felt = np.zeros(w.size)
     for place, k in zip(train.assembly.bearings, train.bearings, strict=True):
-        each = np.linalg.norm(np.asarray(k) @ (place.directions.T @ moved), axis=0)
-        found = np.maximum(found, each)
-    return found
+        each = np.linalg.norm(np.asarray(k) @ (place.directions.T @ q), axis=0)
+        felt = np.maximum(felt, each)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(felt * np.abs(push) / (w * loss))
 
 
 def _motor_turn(train: LinearTrain, q: NDArray[np.complex128] | Floats) -> Floats:

@@ -124,6 +124,11 @@ def equilibrium(
             if move.size and np.all(np.isfinite(move)) and slope < 0.0:
                 break
             shift = max(10.0 * shift, 1e-12)
+            if shift > 1e12:
+                raise ConvergenceError(
+                    "static equilibrium: no direction lowers the residual; the stiffness of the "
+                    "mesh or of a bearing is no number"
+                )
         share = 1.0
         for _ in range(60):
             after = problem.residual(p + share * move)

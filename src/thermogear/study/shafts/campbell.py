@@ -113,16 +113,10 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
     for order in orders_of(case):
         if order.kind == "bearing":
             continue
-        speeds, shapes = state.linear.critical(order.order)
-        count = int(np.sum(speeds <= highest))
-        speeds, shapes = speeds[:count], shapes[:, :count]
-        shares = participation(state.linear, order, shapes)
-        ratios = damping_ratios(state.linear, shapes, frequency=speeds * order.order)
+        rows, shapes = _critical(plan_of(case), state, state.linear, order)
+        speeds, _, gains, forces = rows
         parts = strain_shares(state.linear, shapes)
-        w = speeds * order.order
-        push = pushes(plan_of(case), state, order, w)
-        forces = resonant_forces(state.linear, shapes, frequency=w, force=push)
-        for mode in range(count):
+        for mode in range(int(np.sum(speeds <= highest))):
             here = {name: float(value[mode]) for name, value in parts.items()}
             found.append(
                 Critical(
@@ -131,7 +125,7 @@ def critical_speeds(case: GearCase, state: TrainState, highest: float) -> list[C
                     order=order.name,
                     mode=mode + 1,
                     mostly=name_of(here, rings),
-                    amplification=float(shares[mode] / (2.0 * ratios[mode])),
+                    amplification=float(gains[mode]),
                     force=float(forces[mode]),
                 )
             )
@@ -170,6 +164,7 @@ def campbell(
             allowed="0 <= LOW < HIGH <= 500000 rpm",
         )
     found = [row[0] for row in settled(case, [place], progress=progress)]
+    count = min(count, found[0].linear.basis.shape[1])
     grid = np.linspace(low, high, SPEEDS)
     orders = orders_of(case)
     rings = bearing_parts(case)
@@ -187,7 +182,9 @@ def campbell(
             kept.append(followed)
         curves.append(curve)
         names.append([_name(trains[1], kept[1][0], mode, rings) for mode in range(count)])
-        crossed = [[_critical(plan, state, t, one, count) for one in orders] for t in trains]
+        crossed = [
+            [_first(_critical(plan, state, t, one)[0], count) for one in orders] for t in trains
+        ]
         forces.append([[one[3] for one in row] for row in crossed])
         levels.append([[one[0] for one in row] for row in crossed])
         participation.append([[one[1] for one in row] for row in crossed])
@@ -311,22 +308,27 @@ def pushes(plan: TrainPlan, state: TrainState, order: Order, frequency: Floats) 
 
 
 def _critical(
-    plan: TrainPlan, state: TrainState, train: LinearTrain, order: Order, count: int
-) -> Floats:
-    """Speeds [rad/s], participations, amplifications and bearing forces [N], (4, count).
+    plan: TrainPlan, state: TrainState, train: LinearTrain, order: Order
+) -> tuple[Floats, Complexes]:
+    """Speeds [rad/s], participations, amplifications and bearing forces [N], (4, found); shapes.
 
-    Of the ``count`` lowest modes; nan where there is none.
+    An undamped mode has infinite amplification, or nan where the order does not drive it.
     """
     speed, shape = train.critical(order.order)
-    speed, shape = speed[:count], shape[:, :count]
     w = speed * order.order
     force = resonant_forces(train, shape, frequency=w, force=pushes(plan, state, order, w))
     share = participation(train, order, shape)
-    ratio = damping_ratios(train, shape, frequency=speed * order.order)
-    rows = np.full((4, count), np.nan)
-    with np.errstate(divide="ignore"):
-        rows[:, : speed.size] = speed, share, share / (2.0 * ratio), force
-    return rows
+    ratio = damping_ratios(train, shape, frequency=w)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.stack([speed, share, share / (2.0 * ratio), force]), shape
+
+
+def _first(rows: Floats, count: int) -> Floats:
+    """The ``count`` first columns; nan where there are fewer."""
+    found = np.full((rows.shape[0], count), np.nan)
+    kept = min(count, rows.shape[1])
+    found[:, :kept] = rows[:, :kept]
+    return found
 
 
 def participation(train: LinearTrain, order: Order, shape: NDArray[np.complex128]) -> Floats:
