@@ -323,14 +323,3 @@ def test_a_bearing_of_which_no_more_is_known_is_one_node_with_a_coefficient() ->
     expected = bearing_loss(2000.0, 0.025, 100.0)
     assert float(np.asarray(losses["wheel_bearing_1"].loss)) == pytest.approx(float(expected))
     assert chain.sources(losses).keys() == set(chain.nodes)
-
-
-def test_ring_temperatures_are_in_the_order_the_bearings_are_given_in() -> None:
-    chain = train()
-    turned = replace(chain, bearings=(chain.bearings[1], *chain.bearings[2:], chain.bearings[0]))
-    at = {node: 300.0 + i * np.ones(2) for i, node in enumerate(chain.nodes)}
-    found = turned.ring_temperatures(at)
-    assert found.shape == (2, 4, 3)
-    np.testing.assert_allclose(found[0], 300.0 + np.array(
-        [[2.0, 2.5, 3.0], [4.0, 4.5, 5.0], [6.0, 6.5, 7.0], [0.0, 0.5, 1.0]]
-    ))  # fmt: skip

@@ -294,23 +294,6 @@ class ShaftHeat:
         """The nodes of the rings: "pinion_bearing_1_inner", "pinion_bearing_1_outer", ..."""
         return tuple(f"{name}_{ring}" for name, one in self.named.items() for ring in _rings(one))
 
-    def ring_temperatures(self, temperatures: Mapping[str, ArrayLike]) -> Floats:
-        """Temperatures [K] of inner ring, elements and outer ring, (..., bearing, 3).
-
-        ``temperatures`` [K] by node; the bearings in the order they are given in. The elements have
-        the mean of both rings.
-        """
-        names = {(one.shaft, one.position): name for name, one in self.named.items()}
-        rows = []
-        for one in self.bearings:
-            each = _rings(one)
-            inner, outer = (
-                np.asarray(temperatures[f"{names[one.shaft, one.position]}_{ring}"], dtype=float)
-                for ring in (each[0], each[-1])
-            )
-            rows.append(np.stack([inner, 0.5 * (inner + outer), outer], axis=-1))
-        return np.stack(rows, axis=-2)
-
     def losses(
         self,
         temperatures: Mapping[str, ArrayLike],

@@ -81,10 +81,14 @@ def _critical(asked: Asked, hot: TrainState, at: str) -> Answer:
     ranked = sorted(strong, key=lambda one: -one.force)[:TOLD]
     told = ", ".join(
         f"{one.speed / RPM:.0f} rpm ({one.order} meets {one.frequency / (2.0 * np.pi):.0f} Hz, "
-        f"{one.mostly}, {one.force:.0f} N on a bearing)"
+        f"{one.mostly}, {_felt(one.force)})"
         for one in sorted(ranked, key=lambda one: one.speed)
     )
     return answer(CRITICAL, "critical_speed", f"Critical: {told}.", 100.0 * away.min(), at=at)
+
+
+def _felt(force: float) -> str:
+    return f"{force:.0f} N on a bearing" if np.isfinite(force) else "undamped"
 
 
 def _loads(asked: Asked, hot: TrainState, loads: np.ndarray, at: str) -> Answer:

@@ -302,8 +302,9 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
     limit = float(modes["pinion_speed"].values[-1])
     for s, state in enumerate(names_of(data, "state")):
         found = []
+        every = data["resonant_force"].values[s, 1]
         inside = data["critical_speed"].values[s, 1] <= limit
-        known = np.where(inside, data["resonant_force"].values[s, 1], np.nan)
+        known = np.where(inside & np.isfinite(every), every, np.nan)
         most = float(np.nanmax(known, initial=0.0))
         for line, words in enumerate(names_of(data, "line")):
             low, mean, high = data["critical_speed"].values[s, :, line]
@@ -311,7 +312,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
             gain = data["amplification"].values[s, 1, line]
             force = data["resonant_force"].values[s, 1, line]
             for m in range(mean.size):
-                felt = np.isfinite(force[m]) and force[m] >= FELT * most
+                felt = force[m] >= FELT * most
                 if (gain[m] >= NIL or felt) and low[m] <= limit:
                     found.append(
                         {
@@ -324,7 +325,7 @@ def criticals(result: Result) -> Iterator[dict[str, Any]]:
                             "frequency_Hz": mean[m] * float(data["order"].values[line]) / 2 / np.pi,
                             "participation": float(share[m]),
                             "amplification": float(gain[m]),
-                            "bearing_force_N": None if np.isnan(force[m]) else float(force[m]),
+                            "bearing_force_N": float(force[m]) if np.isfinite(force[m]) else None,
                             "mostly": str(modes["mode_name"].values[s, m]),
                         }
                     )

@@ -232,7 +232,8 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
     panels = []
     states = names_of(data, "state")
     inside = critical["critical_speed"].values <= data["pinion_speed"].values[-1]
-    known = np.where(inside, critical["resonant_force"].values, np.nan)
+    force = critical["resonant_force"].values
+    known = np.where(inside & np.isfinite(force), force, np.nan)
     most = max(float(np.nanmax(known, initial=0.0)), 1e-12)
     for state, name in enumerate(states):
         low, mean, high = data["natural_frequency"].values[state] / (2.0 * np.pi)
@@ -257,7 +258,7 @@ def campbell(data: xr.Dataset, critical: xr.Dataset, speeds: Sequence[float]) ->
                 label=words if state == 0 else "",
             )
             met = critical["critical_speed"].values[state, 1, line]
-            shares = critical["resonant_force"].values[state, 1, line] / most
+            shares = np.minimum(force[state, 1, line] / most, 1.0)
             for speed, share in zip(met, shares, strict=True):
                 if np.isfinite(speed) and share >= LEAST_FORCE and rpm(speed) <= x[-1]:
                     panel.points(
