@@ -294,6 +294,25 @@ def test_a_train_without_damping_has_no_finite_resonance() -> None:
     assert not np.any(driven)
 
 
+def test_a_jammed_pair_presses_its_shafts_apart() -> None:
+    """Both flanks carry: F_d - F_b is the torque's force, the bearings feel the sum outwards."""
+    small = '[backlash]\nvalue = "10 um"\ndirection = "normal"\nextent = "total"\n'
+    hot = CASE.replace('housing = "55 degC"', 'housing = "-40 degC"') + small
+    one = settled(gear_case(load_case(hot)), [0])[1][0]
+    rest, frame = one.rest, one.assembly.frame
+    assert STATUS[one.status] == "jammed"
+    assert rest.back_force > 0.0
+    force = 60.0 / frame.base_radii[0]
+    assert rest.mesh_force - rest.back_force == pytest.approx(force, rel=1e-8)
+    pinion = [n for n, b in enumerate(one.assembly.bearings) if b.bearing.shaft == "pinion"]
+    outwards = -rest.bearing_force[pinion].sum(axis=0) @ frame.along
+    pressed = (rest.mesh_force + rest.back_force) * np.sin(frame.pressure_angle)
+    assert outwards == pytest.approx(pressed, rel=0.02)  # and a little weight
+    assert one.linear.back > 0.0
+    told = statics(gear_case(load_case(hot))).notices
+    assert sum("jammed" in notice.text for notice in told) == 2
+
+
 def test_a_stiffer_mesh_never_lowers_a_frequency() -> None:
     """Rayleigh: K grows, so does every natural frequency; the same for the bearings."""
     one = settled(case(), [1])[1][0].linear

@@ -83,11 +83,16 @@ class Equilibrium:
         return float(self.assembly.frame.normals[0] @ (both["pinion"] - both["wheel"]))
 
     def linear(self, mesh: float | None = None) -> LinearTrain:
-        """The train linear about this equilibrium; ``mesh`` [N/m] in place of its stiffness."""
+        """The train linear about this equilibrium; ``mesh`` [N/m] in place of its stiffness.
+
+        A back flank that carries, as of a jammed pair, is a spring as stiff as the drive flank.
+        """
+        k = self.mesh_stiffness if mesh is None else mesh
         return LinearTrain(
             assembly=self.assembly,
-            mesh=self.mesh_stiffness if mesh is None else mesh,
+            mesh=k,
             bearings=self.bearing_stiffness,
+            back=k if self.back_force > 0.0 else 0.0,
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -246,7 +246,7 @@ def campbell(
             ),
             "response": _response_table(case, states, fine, responses),
         },
-        [*notices(case, [[one] for one in found]), *_own_notices(found)],
+        [*notices(case, [[one] for one in found]), LINEAR],
         **case.provenance,
         bundle=case.models[0].name,
         speeds=[float(s) for s in at.speed],
@@ -419,13 +419,8 @@ def _response_table(
     )
 
 
-def _own_notices(found: Sequence[TrainState]) -> Iterator[Notice]:
-    yield Notice(
-        "info",
-        "Linear about the equilibrium at the greatest power: teeth and bearings stay in contact, "
-        "the mesh has its mean stiffness in the response, its least and greatest in the band.",
-    )
-    if any(one.status != 0 for one in found):
-        yield Notice(
-            "important", "The pair is jammed in one of the states; its back flanks carry too."
-        )
+LINEAR = Notice(
+    "info",
+    "Linear about the equilibrium at the greatest power: teeth and bearings stay in contact, "
+    "the mesh has its mean stiffness in the response, its least and greatest in the band.",
+)

@@ -16,7 +16,7 @@ from thermogear.case.case import GearCase
 from thermogear.results.result import Notice, Result
 from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.sketch import sketch
-from thermogear.study.shafts.state import TrainState, places_of, plan_of, settled
+from thermogear.study.shafts.state import JAMMED, TrainState, places_of, plan_of, settled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -251,6 +251,12 @@ def notices(case: GearCase, found: Sequence[Sequence[TrainState]]) -> Iterator[N
                     "important",
                     f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: heat "
                     "balance or loaded contact did not settle; no numbers.",
+                )
+            elif one.status == JAMMED:
+                yield Notice(
+                    "important",
+                    f"{one.state.words}, {one.speed / RPM:.6g} rpm, {one.torque:.6g} N m: the pair "
+                    "is jammed; its back flanks carry too, and press on the bearings.",
                 )
     yield from _of_bearings(case, found)
 
