@@ -26,3 +26,12 @@ def part(function: _Function) -> _Function:
     """Compile what only kernels call."""
     alone = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True}
     return cast(_Function, _njit(**alone, **_OPTIONS)(function))
+
+
+def small(function: _Function) -> _Function:
+    """Compile what only kernels call, often: its code is put where it is called.
+
+    A call hands over every array of a tuple, which costs more than a short function.
+    """
+    alone = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True, "forceinline": True}
+    return cast(_Function, _njit(**alone, **_OPTIONS)(function))

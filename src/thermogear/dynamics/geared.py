@@ -1,0 +1,184 @@
+"""Two geared shafts as their vibration sees them: matrices, two flanks, bearings with clearance.
+
+M q'' + C q' + K q = f0 - F_d g_d + c_m e' g_d - F_b g_b + F_d (chi_0 p_0 + chi_1 p_1) + bearings,
+F_d = k <g_d.q - e - b'>+, F_b = k <g_b.q + e - b'>+ with k, e, chi_0, chi_1 functions of the mesh
+phase. C holds the mesh damping c_m g_d g_d^T. Plain arrays in SI: nothing here knows of shafts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.base.excitation import Periodic
+from thermogear.dynamics.tables import Pieces
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+Function = Periodic | Pieces
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LocalBearing:
+    """A bearing with clearance or a power law between two directions of the train.
+
+    ``directions`` (n, 2): u = their transpose times q [m]. ``elements`` 0: a ring, F = -k <|u| -
+    c>^n u/|u|; else the sum over so many rolling elements, the first at ``angle`` [rad].
+    ``coefficient`` k [N/m^n], ``exponent`` n, ``clearance`` c [m]. ``base`` (2, 2) [N/m]: stiffness
+    of the linear system behind, best the tangent at rest; it changes the cost, not the result.
+    """
+
+    directions: Floats
+    coefficient: float
+    exponent: float = 1.0
+    clearance: float = 0.0
+    elements: int = 0
+    angle: float = 0.0
+    base: Floats = field(default_factory=lambda: np.zeros((2, 2)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OuterForce:
+    """A force on ``vector`` (n,) that turns with a shaft: cos(2 pi order phase + shift) of it.
+
+    ``order`` in turns per mesh period, ``shift`` [rad]. ``rotating``: times the square of the
+    angular frequency 2 pi order n(t), with the term of its rate in a run-up, as of an unbalance.
+    """
+
+    vector: Floats
+    order: float
+    shift: float = 0.0
+    rotating: bool = False
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GearedModel:
+    """The equation of motion of a drive train without its rigid rotation, n coordinates, SI.
+
+    ``mass``, ``damping`` (gyroscopics and the mesh's c_m included), ``stiffness`` (n, n) without
+    the mesh and without ``bearings``; ``force`` f0 (n,). ``drive`` and ``back`` g_d, g_b (n,);
+    ``friction`` p_0, p_1 (2, n) with ``friction_at_pitch`` chi_0 and ``friction_per_metre`` chi_1
+    [m]. ``mesh_stiffness`` k [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b'
+    [m], ``mesh_damping`` c_m [N s/m], ``mesh_frequency`` [Hz]. ``slip`` (vector (n,), d [N m s],
+    lag [s]): a motor whose torque falls with its speed. ``cycle``: mesh periods after which all
+    forces come again.
+    """
+
+    mass: Floats
+    damping: Floats
+    stiffness: Floats
+    force: Floats
+    drive: Floats
+    back: Floats
+    mesh_stiffness: Function
+    error: Function
+    half_backlash: float
+    mesh_damping: float
+    mesh_frequency: float
+    bearings: tuple[LocalBearing, ...] = ()
+    friction: Floats | None = None
+    friction_at_pitch: Function | None = None
+    friction_per_metre: Function | None = None
+    outer: tuple[OuterForce, ...] = ()
+    slip: tuple[Floats, float, float] | None = None
+    cycle: int = 1
+
+    def __post_init__(self) -> None:
+        for name in ("half_backlash", "mesh_frequency"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0.0):
+                raise InputError(name, value, allowed="> 0, finite")
+        n = self.size
+        for name in ("mass", "damping", "stiffness"):
+            value = getattr(self, name)
+            if value.shape != (n, n) or not np.all(np.isfinite(value)):
+                raise InputError(name, f"shape {value.shape}", allowed=f"({n}, {n}) finite numbers")
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n."""
+        return int(self.drive.size)
+
+    @property
+    def dimension(self) -> int:
+        """Length of a state: (q, q') and, with ``slip``, the motor's torque."""
+        return 2 * self.size + (1 if self.slip is not None else 0)
+
+    @property
+    def period(self) -> float:
+        """One mesh period [s]."""
+        return 1.0 / self.mesh_frequency
+
+    @property
+    def base_stiffness(self) -> float:
+        """Mean of k [N/m], which the linear system behind has on the drive flank."""
+        return float(self.mesh_stiffness.mean)
+
+    @cached_property
+    def state_matrix(self) -> Floats:
+        """A of x' = A x + B f for the base: the drive flank and the bearings closed."""
+        n = self.size
+        stiff = self.stiffness + self.base_stiffness * np.outer(self.drive, self.drive)
+        for one in self.bearings:
+            stiff = stiff + one.directions @ one.base @ one.directions.T
+        matrix = np.zeros((self.dimension, self.dimension))
+        matrix[:n, n : 2 * n] = np.eye(n)
+        matrix[n : 2 * n, : 2 * n] = -np.linalg.solve(self.mass, np.hstack([stiff, self.damping]))
+        if self.slip is not None:
+            vector, fall, lag = self.slip
+            matrix[n : 2 * n, 2 * n] = np.linalg.solve(self.mass, vector)
+            matrix[2 * n, n : 2 * n] = -fall / lag * vector
+            matrix[2 * n, 2 * n] = -1.0 / lag
+        return matrix
+
+    @property
+    def inputs(self) -> Floats:
+        """Directions of the local forces (n, inputs): flanks, friction, bearings, outer forces."""
+        columns = [self.drive, self.back]
+        if self.friction is not None:
+            columns += [*self.friction]
+        for one in self.bearings:
+            columns += [*one.directions.T]
+        columns += [one.vector for one in self.outer]
+        return np.stack(columns, axis=1)
+
+    @property
+    def outputs(self) -> Floats:
+        """What the contacts feel, (outputs, n): both flanks' deflections, (x, y) of bearings."""
+        rows = [self.drive, self.back]
+        for one in self.bearings:
+            rows += [*one.directions.T]
+        return np.stack(rows)
+
+    def determinant(self, periods: int = 1) -> float:
+        """det of the Jacobian of ``periods`` mesh periods: exp(T tr A), with any contacts."""
+        return float(np.exp(periods * self.period * np.trace(self.state_matrix)))
+
+    def at_frequency(self, mesh_frequency: float) -> GearedModel:
+        """The same train at another mesh frequency [Hz]; gyroscopics are not scaled."""
+        return replace(self, mesh_frequency=mesh_frequency)
+
+    def mesh_forces(self, phase: ArrayLike, deflections: ArrayLike) -> tuple[Floats, Floats]:
+        """F_d and F_b [N] at ``phase`` and ``deflections`` (..., 2) of both flanks."""
+        k, e = self.mesh_stiffness(phase), self.error(phase)
+        d = np.asarray(deflections, dtype=float)
+        drive = k * np.maximum(d[..., 0] - e - self.half_backlash, 0.0)
+        back = k * np.maximum(d[..., 1] + e - self.half_backlash, 0.0)
+        return np.asarray(drive), np.asarray(back)
+
+    def bearing_forces(self, place: int, displacement: ArrayLike) -> Floats:
+        """Force (..., 2) [N] of a bearing on its journal at ``displacement`` (..., 2) [m]."""
+        own, u = self.bearings[place], np.asarray(displacement, dtype=float)
+        if own.elements == 0:
+            r = np.linalg.norm(u, axis=-1)[..., None]
+            deep = np.maximum(r - own.clearance, 0.0)
+            towards = np.divide(u, r, out=np.zeros_like(u), where=r > 0.0)
+            return np.asarray(-own.coefficient * deep**own.exponent * towards)
+        psi = own.angle + 2.0 * np.pi * np.arange(own.elements) / own.elements
+        rays = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
+        deep = np.maximum(u @ rays.T - own.clearance, 0.0)
+        return np.asarray(-(own.coefficient * deep**own.exponent) @ rays)

@@ -1,0 +1,214 @@
+"""A drive train as its kernels see it: modes of a linear base, periodic functions, contacts.
+
+Modes u_k' = lam_k u_k + beta_k . f, outputs y = y0 + sum Re(c_k u_k), and a few local forces f that
+stand for all that the base lacks. Inputs f: 0 drive flank, 1 back flank, then two of friction where
+there is any, two of every bearing, those of outer forces. Outputs y [m]: 0 and 1 the flanks'
+deflections, then two of every bearing. Contacts: 0 and 1 the flanks, then the bearings.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.dynamics.kernels.calculus import gather
+from thermogear.dynamics.kernels.compiled import part, small
+from thermogear.dynamics.kernels.vector import EIGHT, load, store
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+MODES, NODES, OUTPUTS, INPUTS, FRICTION, BEARINGS, RUNGS, SPAN, WIDE, FELT, ORDERS = range(11)
+"""Places in ``Train.sizes``; padded to eights: SPAN 2 modes, WIDE nodes outputs, FELT outputs."""
+STIFFNESS, ERROR, RATE, PITCH, METRE = range(5)
+"""Rows of the table of periodic functions; RATE is de/dphase, PITCH chi_0, METRE chi_1."""
+BASE, BACKLASH, DAMPING, FREQUENCY, RAMP, TOLERANCE, TURN, SWEEP = range(8)
+"""Places in ``Train.numbers``: base stiffness of the drive flank [N/m], b' [m], c_m [N s/m], mesh
+frequency [Hz] and its rate [Hz/s], allowed error of a step [m], whole periods since the outer
+forces began, share of the tolerance at which sweeps end."""
+RING, ELEMENTS = 1, 2
+KIND, COUNT = 0, 1
+COEFFICIENT, EXPONENT, CLEARANCE, ANGLE, XX, XY, YX, YY = range(8)
+"""Places in a row of ``Train.laws``; XX to YY are the base's stiffness [N/m]."""
+ORDER, SHIFT, POWER = range(3)
+TWO_PI = 2.0 * math.pi
+
+
+class Train(NamedTuple):
+    """The equations, read only but for ``numbers`` [FREQUENCY] and [TURN].
+
+    Flat: ``out`` (2 modes, felt): Re c and -Im c, ``offset`` y0 (felt), ``table``. ``lam`` (modes)
+    [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 2), ``laws`` (bearings, 8), ``outer``
+    (forces, 3). ``edges`` of the panels of ``table`` (panel, power of the phase from the panel's
+    middle, 8 functions), ``guide`` the panel at k/size of the period; ``borders``: phases in
+    (0, 1], the last 1, where a step must end.
+    """
+
+    sizes: Whole
+    numbers: Real
+    lam: Complex
+    into: Complex
+    out: Real
+    offset: Real
+    kinds: Whole
+    laws: Real
+    outer: Real
+    edges: Real
+    guide: Whole
+    table: Real
+    borders: Real
+
+
+@small
+def excite(train: Train, phase: float, values: Real, place: int) -> None:
+    """Write the periodic functions at ``phase`` (0..1) to eight ``place`` of ``values``."""
+    uniform = train.guide.size
+    panel = train.guide[min(max(int(phase * uniform), 0), uniform - 1)]
+    last = train.edges.size - 2
+    while panel < last and phase >= train.edges[panel + 1]:
+        panel += 1
+    x = phase - 0.5 * (train.edges[panel] + train.edges[panel + 1])
+    order = train.sizes[ORDERS]
+    at = EIGHT * (panel * order + order - 1)
+    total = load(train.table, at)
+    for _ in range(order - 1):
+        at -= EIGHT
+        total = total * x + load(train.table, at)
+    store(values, EIGHT * place, total)
+
+
+@small
+def bearing_force(
+    train: Train, x: float, y: float, closed: int, row: int, out: Real, at: int
+) -> None:
+    """Pseudo-force K_base u + F(u) at ``out[at]``, ``out[at + 1]``."""
+    kinds, laws = train.kinds, train.laws
+    fx = 0.0
+    fy = 0.0
+    k, n, c = laws[row, COEFFICIENT], laws[row, EXPONENT], laws[row, CLEARANCE]
+    if kinds[row, KIND] == RING:
+        r = math.sqrt(x * x + y * y)
+        if n == 1.0:
+            if closed == 1:
+                share = k * (1.0 - c / max(r, 0.3 * c)) if c > 0.0 else k
+                fx, fy = -share * x, -share * y
+        elif r > c:
+            size = k * (r - c) ** n / r
+            fx, fy = -size * x, -size * y
+    else:
+        count = kinds[row, COUNT]
+        for i in range(count):
+            psi = laws[row, ANGLE] + TWO_PI * i / count
+            cx, cy = math.cos(psi), math.sin(psi)
+            deep = x * cx + y * cy - c
+            if deep > 0.0:
+                load = k * deep**n
+                fx -= load * cx
+                fy -= load * cy
+    out[at] = fx + laws[row, XX] * x + laws[row, XY] * y
+    out[at + 1] = fy + laws[row, YX] * x + laws[row, YY] * y
+
+
+@part
+def bearing_slope(
+    train: Train, x: float, y: float, closed: int, row: int, out: Real, at: int
+) -> None:
+    """Derivatives (xx, xy, yx, yy) of :func:`bearing_force` to ``out[at:]``."""
+    kinds, laws = train.kinds, train.laws
+    xx = 0.0
+    xy = 0.0
+    yy = 0.0
+    k, n, c = laws[row, COEFFICIENT], laws[row, EXPONENT], laws[row, CLEARANCE]
+    if kinds[row, KIND] == RING:
+        r = math.sqrt(x * x + y * y)
+        on = closed == 1 if n == 1.0 else r > c
+        if on and (c == 0.0 and n == 1.0):
+            xx = yy = -k
+        elif on:
+            deep = r - c
+            size = math.copysign(abs(deep) ** n, deep) * k / r
+            slope = n * k * abs(deep) ** (n - 1.0) - size
+            ex, ey = x / r, y / r
+            xx = -size - slope * ex * ex
+            xy = -slope * ex * ey
+            yy = -size - slope * ey * ey
+    else:
+        count = kinds[row, COUNT]
+        for i in range(count):
+            psi = laws[row, ANGLE] + TWO_PI * i / count
+            cx, cy = math.cos(psi), math.sin(psi)
+            deep = x * cx + y * cy - c
+            if deep > 0.0:
+                slope = n * k * deep ** (n - 1.0)
+                xx -= slope * cx * cx
+                xy -= slope * cx * cy
+                yy -= slope * cy * cy
+    out[at] = xx + laws[row, XX]
+    out[at + 1] = xy + laws[row, XY]
+    out[at + 2] = xy + laws[row, YX]
+    out[at + 3] = yy + laws[row, YY]
+
+
+@small
+def outer_force(train: Train, t: float, row: int) -> float:
+    """(Omega^2 cos + Omega' sin)(order phase) or cos(order phase), of one outer force."""
+    numbers, outer = train.numbers, train.outer
+    n = numbers[FREQUENCY] + numbers[RAMP] * t
+    phase = numbers[TURN] + (numbers[FREQUENCY] + 0.5 * numbers[RAMP] * t) * t
+    angle = TWO_PI * outer[row, ORDER] * phase + outer[row, SHIFT]
+    if outer[row, POWER] == 0.0:
+        return math.cos(angle)
+    turn = TWO_PI * outer[row, ORDER]
+    return turn * turn * n * n * math.cos(angle) + turn * numbers[RAMP] * math.sin(angle)
+
+
+@small
+def outputs_of(train: Train, state: Real, found: Real, at: int) -> None:
+    """y = y0 + C u of ``state`` (2 modes) to ``found[at:]``."""
+    felt = train.sizes[FELT]
+    for o in range(felt):
+        found[at + o] = train.offset[o]
+    gather(train.out, 0, 2 * train.sizes[MODES], felt, state, 0, found, at)
+
+
+@small
+def gap_of(train: Train, contact: int, drive: float, back: float, error: float) -> float:
+    """Penetration [m] of a contact, > 0 closed; a bearing's by (x, y) in place of both flanks'."""
+    if contact == 0:
+        return drive - error - train.numbers[BACKLASH]
+    if contact == 1:
+        return back + error - train.numbers[BACKLASH]
+    return math.sqrt(drive * drive + back * back) - train.laws[contact - 2, CLEARANCE]
+
+
+@small
+def flank_forces(
+    train: Train,
+    values: Real,
+    node: int,
+    rate: float,
+    deflections: Real,
+    at: int,
+    closed: Whole,
+    force: Real,
+    place: int,
+    stride: int,
+) -> None:
+    """Inputs 0, 1 and those of friction at one node from ``deflections[at:]``.
+
+    They go to ``force[place]``, ``stride`` apart. The law of a contact goes on in a straight line
+    beyond its border; ``rate`` is the mesh frequency [Hz].
+    """
+    numbers, row = train.numbers, EIGHT * node
+    k, e = values[row + STIFFNESS], values[row + ERROR]
+    d, b = deflections[at], deflections[at + 1]
+    pressed = k * (d - e - numbers[BACKLASH]) if closed[0] == 1 else 0.0
+    force[place] = numbers[BASE] * d - pressed + numbers[DAMPING] * values[row + RATE] * rate
+    force[place + stride] = -k * (b + e - numbers[BACKLASH]) if closed[1] == 1 else 0.0
+    if train.sizes[FRICTION] == 1:
+        force[place + 2 * stride] = pressed * values[row + PITCH]
+        force[place + 3 * stride] = pressed * values[row + METRE]

@@ -1,0 +1,464 @@
+"""Run a drive train through its mesh periods: which step next, contacts that change, tangents."""
+
+from __future__ import annotations
+
+import math
+
+from thermogear.dynamics.kernels.calculus import along, first_root, gather, solve_lu
+from thermogear.dynamics.kernels.compiled import kernel, part, small
+from thermogear.dynamics.kernels.drive import (
+    BACKLASH,
+    BASE,
+    BEARINGS,
+    ERROR,
+    EXPONENT,
+    FELT,
+    FREQUENCY,
+    FRICTION,
+    INPUTS,
+    KIND,
+    METRE,
+    MODES,
+    NODES,
+    OUTPUTS,
+    PITCH,
+    RAMP,
+    RING,
+    RUNGS,
+    SPAN,
+    STIFFNESS,
+    TOLERANCE,
+    TURN,
+    WIDE,
+    Real,
+    Train,
+    bearing_slope,
+    excite,
+    gap_of,
+    outputs_of,
+)
+from thermogear.dynamics.kernels.ladder import (
+    EVENTS,
+    FORCED,
+    HUGE,
+    IMPACTS,
+    LIFTS,
+    LOSSES,
+    REJECTED,
+    STEPS,
+    Ladder,
+    Work,
+    attempt,
+    coefficients,
+    fill,
+    periodic_values,
+    within,
+)
+from thermogear.dynamics.kernels.vector import EIGHT
+
+ALIKE = 1e-9
+"""Share of the longest step that two times may differ by and be one."""
+MOST_STEPS = 200_000
+"""Steps in one period; more is taken for a motion that runs away."""
+
+
+@small
+def located(train: Train, contact: int) -> bool:
+    """Whether the changes of a contact are located: its law has a kink there."""
+    if contact < 2:
+        return True
+    b = contact - 2
+    return train.kinds[b, KIND] == RING and train.laws[b, EXPONENT] == 1.0
+
+
+@small
+def gap_at(train: Train, contact: int, outputs: Real, at: int, error: float) -> float:
+    """Penetration of a contact from ``outputs[at:]``."""
+    o = at if contact < 2 else at + 2 * contact - 2
+    return gap_of(train, contact, outputs[o], outputs[o + 1], error)
+
+
+@part
+def contacts_of(train: Train, work: Work, state: Real) -> None:
+    """Which contacts are closed at phase 0."""
+    outputs_of(train, state, work.ends, 0)
+    excite(train, 0.0, work.values, 0)
+    error = work.values[ERROR]
+    for c in range(2 + train.sizes[BEARINGS]):
+        gap = gap_at(train, c, work.ends, 0, error) if located(train, c) else 1.0
+        work.closed[c] = 1 if gap > 0.0 else 0
+        work.held[c] = 0
+
+
+@part
+def first_change(train: Train, ladder: Ladder, work: Work) -> tuple[int, float]:
+    """The contact that changes first in the step just solved, and at which share; -1, 2: none."""
+    nodes, outputs = train.sizes[NODES], train.sizes[OUTPUTS]
+    rounding = ALIKE * train.numbers[BACKLASH]
+    who = -1
+    when = 2.0
+    for c in range(2 + train.sizes[BEARINGS]):
+        if not located(train, c) or work.held[c] > 2:
+            continue
+        sign = -1.0 if work.closed[c] == 1 else 1.0
+        gaps = work.gaps
+        error = work.values[EIGHT * nodes + ERROR]
+        gaps[0] = sign * gap_at(train, c, work.ends, 0, error)
+        for i in range(nodes):
+            error = work.values[EIGHT * i + ERROR]
+            gaps[i + 1] = sign * gap_at(train, c, work.y, i * outputs, error)
+        error = work.values[EIGHT * (nodes + 1) + ERROR]
+        gaps[nodes + 1] = sign * gap_at(train, c, work.ends, train.sizes[FELT], error)
+        share = first_root(nodes + 2, ladder.places, ladder.weights, gaps, rounding)
+        if share < when:
+            who, when = c, share
+    return who, when
+
+
+@small
+def change(train: Train, work: Work, contact: int) -> None:
+    """Close or open a contact, and count it."""
+    work.counts[EVENTS] += 1
+    if contact == 0 and work.closed[0] == 1:
+        work.counts[LOSSES] += 1
+    if contact == 1 and work.closed[1] == 0:
+        work.counts[IMPACTS] += 1
+    if contact >= 2 and work.closed[contact] == 1:
+        work.counts[LIFTS] += 1
+    work.closed[contact] = 1 - work.closed[contact]
+
+
+@part
+def polished(
+    train: Train,
+    ladder: Ladder,
+    work: Work,
+    state: Real,
+    contact: int,
+    share: float,
+    h: float,
+    t: float,
+) -> float:
+    """The share at which a contact changes, by the exact states; leaves that state in ``trial``."""
+    nodes, felt = train.sizes[NODES], train.sizes[FELT]
+    f0, ramp = train.numbers[FREQUENCY], train.numbers[RAMP]
+    rounding = ALIKE * train.numbers[BACKLASH]
+    sign = -1.0 if work.closed[contact] == 1 else 1.0
+    before = 0.0
+    gap_before = 0.0
+    for step in range(6):
+        within(train, ladder, work, share, h, 1, state, work.shape, work.trial)
+        outputs_of(train, work.trial, work.ends, felt)
+        now = t + share * h
+        phase = (f0 + 0.5 * ramp * now) * now
+        excite(train, phase - math.floor(phase), work.values, nodes + 1)
+        error = work.values[EIGHT * (nodes + 1) + ERROR]
+        gap = sign * gap_at(train, contact, work.ends, felt, error)
+        if abs(gap) <= 0.1 * rounding or step == 5:
+            break
+        if step == 0:
+            near = min(share + 1e-4, 1.0)
+            slope = (
+                along(near, nodes + 2, ladder.places, ladder.weights, work.gaps)
+                - along(near - 2e-4, nodes + 2, ladder.places, ladder.weights, work.gaps)
+            ) / 2e-4
+        else:
+            slope = (gap - gap_before) / (share - before) if share != before else 0.0
+        if slope <= 0.0:
+            break
+        before, gap_before = share, gap
+        moved = min(max(share - gap / slope, 0.0), 1.0)
+        if abs(moved - share) > 0.1 or abs(moved - share) < 1e-14:
+            break
+        share = moved
+    return share
+
+
+@part
+def slopes_of(train: Train, work: Work) -> None:
+    """Derivatives of the forces at the nodes: drive, back, friction, four of every bearing."""
+    sizes, y, slope = train.sizes, work.y, work.slope
+    nodes, outputs, count = sizes[NODES], sizes[OUTPUTS], sizes[BEARINGS]
+    for j in range(nodes):
+        k = work.values[EIGHT * j + STIFFNESS]
+        pressed = k if work.closed[0] == 1 else 0.0
+        at = j * (4 + 4 * count)
+        slope[at] = train.numbers[BASE] - pressed
+        slope[at + 1] = -k if work.closed[1] == 1 else 0.0
+        slope[at + 2] = pressed * work.values[EIGHT * j + PITCH]
+        slope[at + 3] = pressed * work.values[EIGHT * j + METRE]
+        for b in range(count):
+            o = j * outputs + 2 + 2 * b
+            bearing_slope(train, y[o], y[o + 1], work.closed[2 + b], b, slope, at + 4 + 4 * b)
+
+
+@part
+def node_equations(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
+    """I - W J of all outputs at the nodes into ``work.full``; its size."""
+    sizes, couple, slope = train.sizes, ladder.couple, work.slope
+    nodes, outputs, inputs, wide = sizes[NODES], sizes[OUTPUTS], sizes[INPUTS], sizes[WIDE]
+    first = 4 if sizes[FRICTION] == 1 else 2
+    size = nodes * outputs
+    table = rung * nodes * inputs * wide
+    for i in range(size):
+        row = i * size
+        for j in range(nodes):
+            at, s = table + j * wide + i, j * (4 + 4 * sizes[BEARINGS])
+            here = couple[at] * slope[s]
+            for extra in range(2, first):
+                here += couple[at + extra * nodes * wide] * slope[s + extra]
+            work.full[row + j * outputs] = -here
+            work.full[row + j * outputs + 1] = -couple[at + nodes * wide] * slope[s + 1]
+            for b in range(sizes[BEARINGS]):
+                x = couple[at + (first + 2 * b) * nodes * wide]
+                z = couple[at + (first + 2 * b + 1) * nodes * wide]
+                o, p = row + j * outputs + 2 + 2 * b, s + 4 + 4 * b
+                work.full[o] = -(x * slope[p] + z * slope[p + 2])
+                work.full[o + 1] = -(x * slope[p + 1] + z * slope[p + 3])
+        work.full[row + i] += 1.0
+    return size
+
+
+@part
+def carry_tangent(
+    train: Train,
+    ladder: Ladder,
+    work: Work,
+    tangent: Real,
+    columns: int,
+    rung: int,
+    share: float,
+) -> None:
+    """Carry the columns of ``tangent`` (columns, span) through the step just solved."""
+    sizes, right, pushed, slope = train.sizes, work.right, work.pushed, work.slope
+    modes, nodes, outputs, inputs = sizes[MODES], sizes[NODES], sizes[OUTPUTS], sizes[INPUTS]
+    wide, span = sizes[WIDE], sizes[SPAN]
+    first = 4 if sizes[FRICTION] == 1 else 2
+    slopes_of(train, work)
+    size = node_equations(train, ladder, work, rung)
+    for column in range(columns):
+        for i in range(wide):
+            right[column * wide + i] = 0.0
+        row = column * span
+        gather(ladder.reach, rung * 2 * modes, 2 * modes, wide, tangent, row, right, column * wide)
+    solve_lu(size, columns, work.full, right, wide)
+    rows = nodes * inputs
+    for column in range(columns):
+        at = column * rows
+        for j in range(rows):
+            pushed[at + j] = 0.0
+        for j in range(nodes):
+            o, s = column * wide + j * outputs, j * (4 + 4 * sizes[BEARINGS])
+            pushed[at + j] = slope[s] * right[o]
+            pushed[at + nodes + j] = slope[s + 1] * right[o + 1]
+            for extra in range(2, first):
+                pushed[at + extra * nodes + j] = slope[s + extra] * right[o]
+            for b in range(sizes[BEARINGS]):
+                c, p = at + (first + 2 * b) * nodes + j, s + 4 + 4 * b
+                x, z = right[o + 2 + 2 * b], right[o + 3 + 2 * b]
+                pushed[c] = slope[p] * x + slope[p + 1] * z
+                pushed[c + nodes] = slope[p + 2] * x + slope[p + 3] * z
+    if share < 1.0:
+        coefficients(ladder, 0, columns * inputs, nodes, pushed, work.pushed_shape)
+        h = ladder.lengths[rung]
+        within(train, ladder, work, share, h, columns, tangent, work.pushed_shape, tangent)
+        return
+    for column in range(columns):
+        row = column * span
+        for k in range(modes):
+            real, imaginary = tangent[row + 2 * k], tangent[row + 2 * k + 1]
+            at = (rung * modes + k) * 2
+            c, s = ladder.decay[at], ladder.decay[at + 1]
+            tangent[row + 2 * k] = c * real - s * imaginary
+            tangent[row + 2 * k + 1] = c * imaginary + s * real
+        gather(ladder.push, rung * rows, rows, span, pushed, column * rows, tangent, row)
+
+
+@part
+def next_step(
+    train: Train, ladder: Ladder, work: Work, rung: int, remaining: float, jumps: bool
+) -> tuple[int, float]:
+    """The table for the step and the share of it that is left to the border."""
+    rungs = train.sizes[RUNGS]
+    close = ALIKE * ladder.lengths[0]
+    if remaining >= ladder.lengths[rung] - close:
+        return rung, 1.0
+    while rung + 1 < rungs and ladder.lengths[rung + 1] >= remaining - close:
+        rung += 1
+    if remaining >= ladder.lengths[rung] - close:
+        return rung, 1.0
+    if not jumps:
+        return rung, remaining / ladder.lengths[rung]
+    if ladder.lengths[rungs] != remaining:
+        fill(train, ladder, work, rungs, remaining)
+    return rungs, 1.0
+
+
+@part
+def draw(
+    train: Train,
+    ladder: Ladder,
+    work: Work,
+    state: Real,
+    sampled: Real,
+    samples: int,
+    period: int,
+    drawn: int,
+    t: float,
+    h: float,
+    after: float,
+) -> int:
+    """States at the uniform phases within the step just solved; the number of the next phase."""
+    f0, ramp = train.numbers[FREQUENCY], train.numbers[RAMP]
+    span = train.sizes[SPAN]
+    while drawn < samples:
+        phase = drawn / samples
+        at = 2.0 * phase / (f0 + math.sqrt(f0 * f0 + 2.0 * ramp * phase))
+        if at >= after:
+            break
+        within(train, ladder, work, (at - t) / h, h, 1, state, work.shape, work.sample)
+        row = (period * samples + drawn) * span
+        for k in range(span):
+            sampled[row + k] = work.sample[k]
+        drawn += 1
+    return drawn
+
+
+@kernel
+def advance(
+    train: Train,
+    ladder: Ladder,
+    work: Work,
+    periods: int,
+    samples: int,
+    columns: int,
+    state: Real,
+    tangent: Real,
+    sections: Real,
+    sampled: Real,
+    times: Real,
+) -> int:
+    """Carry one state through ``periods`` mesh periods; 0, or 1 where it runs away.
+
+    ``state`` (span) and ``tangent`` (columns, span) are changed in place. ``sections`` (periods,
+    span) and ``times`` (periods) [s]: the state at the end of every period, how long it took;
+    ``sampled`` (periods samples, span) from the phase 0 of the first one on. With a ramp
+    ``train.numbers`` goes on.
+    """
+    sizes, numbers = train.sizes, train.numbers
+    modes, nodes, inputs = sizes[MODES], sizes[NODES], sizes[INPUTS]
+    felt, span = sizes[FELT], sizes[SPAN]
+    first = 4 if sizes[FRICTION] == 1 else 2
+    outside = first + 2 * sizes[BEARINGS]
+    rungs = sizes[RUNGS]
+    close = ALIKE * ladder.lengths[0]
+    tolerance = numbers[TOLERANCE]
+    jumps = train.borders.size > 1
+    rung = 0
+    t_known = 0.0
+    h_known = 0.0
+    contacts_of(train, work, state)
+    for period in range(periods):
+        t = 0.0
+        taken = 0
+        begin = 0.0
+        drawn = 0
+        f0, ramp = numbers[FREQUENCY], numbers[RAMP]
+        for number in range(train.borders.size):
+            border = train.borders[number]
+            t_border = 2.0 * border / (f0 + math.sqrt(f0 * f0 + 2.0 * ramp * border))
+            while t_border - t > 0.01 * close:
+                taken += 1
+                if taken > MOST_STEPS:
+                    return 1
+                here, limit = next_step(train, ladder, work, rung, t_border - t, jumps)
+                h = ladder.lengths[here]
+                periodic_values(train, ladder, work, t, h, begin, border)
+                lead = (t - t_known) / h_known if h_known > 0.0 else -1.0
+                stretch = h / h_known if h_known > 0.0 else 0.0
+                error = attempt(train, ladder, work, state, here, t, lead, stretch)
+                work.counts[STEPS] += 1
+                if error > tolerance:
+                    shorter = rung + 1 if here == rungs else here + 1
+                    while shorter < rungs and ladder.lengths[shorter] >= h:
+                        shorter += 1
+                    if error >= HUGE:
+                        h_known = 0.0
+                    if shorter < rungs:
+                        work.counts[REJECTED] += 1
+                        rung = shorter
+                        continue
+                    work.counts[FORCED] += 1
+                who, when = first_change(train, ladder, work)
+                if who >= 0 and when <= 0.0:
+                    # closed or open already at the start
+                    work.held[who] += 1
+                    change(train, work, who)
+                    continue
+                whole = limit == 1.0 and when >= limit
+                low = first if whole and samples == 0 else 0
+                high = outside if whole and samples == 0 else inputs
+                coefficients(ladder, low, high, nodes, work.force, work.shape)
+                share = limit
+                if when < limit:
+                    share = polished(train, ladder, work, state, who, when, h, t)
+                else:
+                    who = -1
+                    if limit < 1.0:
+                        within(train, ladder, work, limit, h, 1, state, work.shape, work.trial)
+                        outputs_of(train, work.trial, work.ends, felt)
+                after = t + share * h
+                if who < 0 and (limit < 1.0 or abs(t_border - after) <= close):
+                    after = t_border
+                if samples > 0:
+                    drawn = draw(
+                        train,
+                        ladder,
+                        work,
+                        state,
+                        sampled,
+                        samples,
+                        period,
+                        drawn,
+                        t,
+                        h,
+                        after,
+                    )
+                if columns > 0:
+                    carry_tangent(train, ladder, work, tangent, columns, here, share)
+                place = 2 if work.closed[0] == 1 else (0 if work.closed[1] == 1 else 1)
+                work.spent[place] += after - t
+                for k in range(2 * modes):
+                    state[k] = work.trial[k]
+                for o in range(felt):
+                    work.ends[o] = work.ends[felt + o]
+                t_known, h_known = t, h
+                t = after
+                for c in range(2 + sizes[BEARINGS]):
+                    work.held[c] = 0
+                if who >= 0:
+                    change(train, work, who)
+                    if who >= 2:
+                        h_known = 0.0
+                elif here == rung and here > 0 and limit == 1.0:
+                    # a longer step, where its error would be small enough
+                    grown = 0.0
+                    for c in range(inputs):
+                        grown += ladder.miss[(here - 1) * inputs + c] * work.end_force[c]
+                    if grown * 2.0**nodes < 0.5 * tolerance:
+                        rung = here - 1
+            t = t_border
+            begin = border
+            if jumps:
+                h_known = 0.0
+        finite = 0.0
+        for k in range(2 * modes):
+            sections[period * span + k] = state[k]
+            finite += state[k]
+        times[period] = t
+        t_known -= t
+        numbers[TURN] += 1.0
+        numbers[FREQUENCY] = math.sqrt(f0 * f0 + 2.0 * ramp)
+        if not abs(finite) < HUGE:
+            return 1
+    return 0
