@@ -38,8 +38,8 @@ class Steps:
     halved up to ``rungs`` - 1 times. ``sweep``: share of the accuracy at which sweeps end.
     """
 
-    accuracy: float = 1e-10
-    nodes: int = 4
+    accuracy: float = 1e-9
+    nodes: int = 6
     longest: int = 8
     rungs: int = 10
     sweep: float = 0.1
@@ -185,7 +185,7 @@ class Engine:
         self.ladder = steps.Ladder(
             nodes=nodes,
             powers=np.ascontiguousarray(powers),
-            factorial=np.array([float(math.factorial(q)) for q in range(s + 3)]),
+            factorial=np.array([float(math.factorial(q)) for q in range(s + 4)]),
             legendre=np.ascontiguousarray(line.coef),
             at_end=np.ascontiguousarray(np.ones(s) @ powers),
             places=places,
@@ -196,6 +196,8 @@ class Engine:
             decay=np.zeros(size * 2 * modes),
             push=np.zeros(size * s * inputs * padded(2 * modes)),
             miss=np.zeros(size * inputs),
+            wider=np.linalg.inv(np.vander(places, s + 2, increasing=True)).ravel(),
+            miss_within=np.zeros(size * inputs),
         )
         train, work = self._train(), self._work(0)
         for rung in range(how.rungs):
@@ -230,7 +232,7 @@ class Engine:
             spent=np.zeros(3),
             closed=np.zeros(2 + count, np.int64),
             held=np.zeros(2 + count, np.int64),
-            phi=np.zeros(s + 3, complex),
+            phi=np.zeros(s + 4, complex),
             weight=np.zeros(s, complex),
             base=np.zeros(wide),
             y=np.zeros(wide),
@@ -238,7 +240,7 @@ class Engine:
             ends=np.zeros(2 * felt),
             force=np.zeros(s * inputs),
             end_force=np.zeros(max(inputs, 8)),
-            shape=np.zeros(s * inputs),
+            shape=np.zeros((s + 2) * inputs),
             values=np.zeros((s + 2) * 8),
             matrix=np.zeros((2 * s, 2 * s)),
             gaps=np.zeros(s + 2),
@@ -246,11 +248,17 @@ class Engine:
             full=np.zeros(big * big),
             right=np.zeros(max(c * wide, 2 * s)),
             pushed=np.zeros(c * s * inputs),
-            pushed_shape=np.zeros(c * s * inputs),
+            pushed_shape=np.zeros(c * (s + 2) * inputs),
             slope=np.zeros(s * (4 + 4 * count)),
             sample=np.zeros(span),
             added=np.zeros(4 * s),
-            pace=np.ones(1),
+            pace=np.ones(2),
+            start_force=np.zeros(max(inputs, 8)),
+            lacking=np.zeros(inputs),
+            start_slope=np.zeros(4 + 4 * count),
+            end_slope=np.zeros(4 + 4 * count),
+            whole_end=np.zeros(felt),
+            edge=np.zeros(felt),
         )
 
     def modal(self, states: ArrayLike) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import cmath
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,8 @@ def gather(
 @part
 def flows(z: complex, count: int, factorial: Real, out: Complex) -> None:
     """phi_0(z) = e^z, phi_1 .. phi_count: phi_q = (phi_{q-1} - 1/(q-1)!)/z."""
-    out[0] = cmath.exp(z)
+    grown = math.exp(z.real)
+    out[0] = complex(grown * math.cos(z.imag), grown * math.sin(z.imag))
     if abs(z.real) + abs(z.imag) >= 1.0:
         inverse = 1.0 / z
         for q in range(1, count + 1):
@@ -75,9 +76,11 @@ def along(x: float, count: int, places: Real, weights: Real, values: Real) -> fl
 
 
 @part
-def first_root(count: int, places: Real, weights: Real, values: Real, rounding: float) -> float:
+def first_root(
+    count: int, places: Real, weights: Real, values: Real, rounding: float, fresh: bool
+) -> float:
     """First place in (0, 1] where ``values`` rise above zero; 2 where they do not; 0 at once."""
-    if values[0] > rounding:
+    if values[0] > rounding and not (fresh and values[1] <= rounding):
         return 0.0
     left = 0
     right = -1
@@ -93,7 +96,7 @@ def first_root(count: int, places: Real, weights: Real, values: Real, rounding: 
         for i in range(1, count):
             if values[i] > values[top]:
                 top = i
-        if top == count - 1:
+        if top == count - 1 or values[top] < -0.5 * abs(values[top - 1] - values[top + 1]):
             return 2.0
         a, b, c = places[top - 1], places[top], places[top + 1]
         va, vb, vc = values[top - 1], values[top], values[top + 1]
@@ -139,7 +142,7 @@ def first_root(count: int, places: Real, weights: Real, values: Real, rounding: 
             if side == -1:
                 v_high *= 0.5
             side = -1
-        if abs(v) < 0.01 * rounding:
+        if abs(v) < 1e-4 * rounding:
             return x
     return 0.5 * (low + high)
 

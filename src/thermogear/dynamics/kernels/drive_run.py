@@ -58,6 +58,8 @@ from thermogear.dynamics.kernels.vector import EIGHT
 
 ALIKE = 1e-9
 """Share of the longest step that two times may differ by and be one."""
+TOUCHING = 1e-7
+"""Share of the half backlash below which a gap is none: it moves an impact by less than rounding."""
 MOST_STEPS = 200_000
 """Steps in one period; more is taken for a motion that runs away."""
 
@@ -94,7 +96,7 @@ def contacts_of(train: Train, work: Work, state: Real) -> None:
 def first_change(train: Train, ladder: Ladder, work: Work) -> tuple[int, float]:
     """The contact that changes first in the step just solved, and at which share; -1, 2: none."""
     nodes, outputs = train.sizes[NODES], train.sizes[OUTPUTS]
-    rounding = ALIKE * train.numbers[BACKLASH]
+    rounding = TOUCHING * train.numbers[BACKLASH]
     who = -1
     when = 2.0
     for c in range(2 + train.sizes[BEARINGS]):
@@ -109,7 +111,8 @@ def first_change(train: Train, ladder: Ladder, work: Work) -> tuple[int, float]:
             gaps[i + 1] = sign * gap_at(train, c, work.y, i * outputs, error)
         error = work.values[EIGHT * (nodes + 1) + ERROR]
         gaps[nodes + 1] = sign * gap_at(train, c, work.ends, train.sizes[FELT], error)
-        share = first_root(nodes + 2, ladder.places, ladder.weights, gaps, rounding)
+        fresh = work.held[c] < 0
+        share = first_root(nodes + 2, ladder.places, ladder.weights, gaps, rounding, fresh)
         if share < when:
             who, when = c, share
     return who, when
@@ -142,7 +145,7 @@ def polished(
     """The share at which a contact changes, by the exact states; leaves that state in ``trial``."""
     nodes, felt = train.sizes[NODES], train.sizes[FELT]
     f0, ramp = train.numbers[FREQUENCY], train.numbers[RAMP]
-    rounding = ALIKE * train.numbers[BACKLASH]
+    rounding = TOUCHING * train.numbers[BACKLASH]
     sign = -1.0 if work.closed[contact] == 1 else 1.0
     before = 0.0
     gap_before = 0.0
@@ -154,7 +157,7 @@ def polished(
         excite(train, phase - math.floor(phase), work.values, nodes + 1)
         error = work.values[EIGHT * (nodes + 1) + ERROR]
         gap = sign * gap_at(train, contact, work.ends, felt, error)
-        if abs(gap) <= 0.1 * rounding or step == 5:
+        if abs(gap) <= 0.2 * rounding or step == 5:
             break
         if step == 0:
             near = min(share + 1e-4, 1.0)
@@ -175,21 +178,44 @@ def polished(
 
 
 @part
-def slopes_of(train: Train, work: Work) -> None:
-    """Derivatives of the forces at the nodes: drive, back, friction, four of every bearing."""
-    sizes, y, slope = train.sizes, work.y, work.slope
-    nodes, outputs, count = sizes[NODES], sizes[OUTPUTS], sizes[BEARINGS]
-    for j in range(nodes):
-        k = work.values[EIGHT * j + STIFFNESS]
-        pressed = k if work.closed[0] == 1 else 0.0
-        at = j * (4 + 4 * count)
-        slope[at] = train.numbers[BASE] - pressed
-        slope[at + 1] = -k if work.closed[1] == 1 else 0.0
-        slope[at + 2] = pressed * work.values[EIGHT * j + PITCH]
-        slope[at + 3] = pressed * work.values[EIGHT * j + METRE]
-        for b in range(count):
-            o = j * outputs + 2 + 2 * b
-            bearing_slope(train, y[o], y[o + 1], work.closed[2 + b], b, slope, at + 4 + 4 * b)
+def slopes_at(train: Train, work: Work, y: Real, o: int, row: int, slope: Real) -> None:
+    """Derivatives of the forces at outputs ``y[o:]``: drive, back, friction, four of every bearing.
+
+    ``row`` of the periodic functions; to the place of that node in ``slope``.
+    """
+    count = train.sizes[BEARINGS]
+    k = work.values[EIGHT * row + STIFFNESS]
+    pressed = k if work.closed[0] == 1 else 0.0
+    at = row * (4 + 4 * count) if row < train.sizes[NODES] else 0
+    slope[at] = train.numbers[BASE] - pressed
+    slope[at + 1] = -k if work.closed[1] == 1 else 0.0
+    slope[at + 2] = pressed * work.values[EIGHT * row + PITCH]
+    slope[at + 3] = pressed * work.values[EIGHT * row + METRE]
+    for b in range(count):
+        x, z = y[o + 2 + 2 * b], y[o + 3 + 2 * b]
+        bearing_slope(train, x, z, work.closed[2 + b], b, slope, at + 4 + 4 * b)
+
+
+@part
+def edge_forces(train: Train, work: Work, state: Real, row: int, slope: Real, found: Real) -> None:
+    """Derivatives of all forces at one end of a step along the column ``state[row:]``."""
+    sizes = train.sizes
+    first = 4 if sizes[FRICTION] == 1 else 2
+    felt = sizes[FELT]
+    for o in range(felt):
+        work.edge[o] = 0.0
+    gather(train.out, 0, 2 * sizes[MODES], felt, state, row, work.edge, 0)
+    found[0] = slope[0] * work.edge[0]
+    found[1] = slope[1] * work.edge[1]
+    for extra in range(2, first):
+        found[extra] = slope[extra] * work.edge[0]
+    for b in range(sizes[BEARINGS]):
+        c, p = first + 2 * b, 4 + 4 * b
+        x, z = work.edge[2 + 2 * b], work.edge[3 + 2 * b]
+        found[c] = slope[p] * x + slope[p + 1] * z
+        found[c + 1] = slope[p + 2] * x + slope[p + 3] * z
+    for c in range(first + 2 * sizes[BEARINGS], sizes[INPUTS]):
+        found[c] = 0.0
 
 
 @part
@@ -234,7 +260,8 @@ def carry_tangent(
     modes, nodes, outputs, inputs = sizes[MODES], sizes[NODES], sizes[OUTPUTS], sizes[INPUTS]
     wide, span = sizes[WIDE], sizes[SPAN]
     first = 4 if sizes[FRICTION] == 1 else 2
-    slopes_of(train, work)
+    for j in range(nodes):
+        slopes_at(train, work, work.y, j * outputs, j, slope)
     size = node_equations(train, ladder, work, rung)
     for column in range(columns):
         for i in range(wide):
@@ -258,40 +285,82 @@ def carry_tangent(
                 x, z = right[o + 2 + 2 * b], right[o + 3 + 2 * b]
                 pushed[c] = slope[p] * x + slope[p + 1] * z
                 pushed[c + nodes] = slope[p + 2] * x + slope[p + 3] * z
-    if share < 1.0:
-        coefficients(ladder, 0, columns * inputs, nodes, pushed, work.pushed_shape)
-        h = ladder.lengths[rung]
-        within(train, ladder, work, share, h, columns, tangent, work.pushed_shape, tangent)
-        return
+    kept = work.pushed_shape
+    order = nodes + 2
+    slopes_at(train, work, work.ends, 0, nodes, work.start_slope)
+    slopes_at(train, work, work.whole_end, 0, nodes + 1, work.end_slope)
     for column in range(columns):
         row = column * span
+        if share < 1.0:
+            edge_forces(train, work, tangent, row, work.start_slope, work.start_force)
+        for k in range(span):
+            work.sample[k] = 0.0
         for k in range(modes):
             real, imaginary = tangent[row + 2 * k], tangent[row + 2 * k + 1]
             at = (rung * modes + k) * 2
             c, s = ladder.decay[at], ladder.decay[at + 1]
-            tangent[row + 2 * k] = c * real - s * imaginary
-            tangent[row + 2 * k + 1] = c * imaginary + s * real
-        gather(ladder.push, rung * rows, rows, span, pushed, column * rows, tangent, row)
+            work.sample[2 * k] = c * real - s * imaginary
+            work.sample[2 * k + 1] = c * imaginary + s * real
+        gather(ladder.push, rung * rows, rows, span, pushed, column * rows, work.sample, 0)
+        if share < 1.0:
+            edge_forces(train, work, work.sample, 0, work.end_slope, work.end_force)
+            for c in range(inputs):
+                for q in range(order):
+                    total = ladder.wider[q * order] * work.start_force[c]
+                    total += ladder.wider[q * order + order - 1] * work.end_force[c]
+                    for j in range(nodes):
+                        total += (
+                            ladder.wider[q * order + 1 + j] * pushed[column * rows + c * nodes + j]
+                        )
+                    kept[(column * inputs + c) * order + q] = total
+        else:
+            for k in range(span):
+                tangent[row + k] = work.sample[k]
+    if share < 1.0:
+        h = ladder.lengths[rung]
+        within(train, ladder, work, share, h, columns, tangent, kept, tangent)
 
 
 @part
 def next_step(
-    train: Train, ladder: Ladder, work: Work, rung: int, remaining: float, jumps: bool
+    train: Train,
+    ladder: Ladder,
+    work: Work,
+    rung: int,
+    finest: int,
+    remaining: float,
+    over: bool,
+    jumps: bool,
 ) -> tuple[int, float]:
-    """The table for the step and the share of it that is left to the border."""
+    """The table for the next step, and the share of it that is left to the border.
+
+    A step that is cut is of the rung ``finest`` or below; before it come longer ones that are not.
+    ``over``: towards a contact's change, which a step must reach over.
+    """
     rungs = train.sizes[RUNGS]
     close = ALIKE * ladder.lengths[0]
-    if remaining >= ladder.lengths[rung] - close:
+    if not over and jumps and remaining < ladder.lengths[rung] - close:
+        while rung + 1 < rungs and ladder.lengths[rung] > remaining + close:
+            rung += 1
+        if abs(ladder.lengths[rung] - remaining) <= close:
+            return rung, 1.0
+        if ladder.lengths[rungs] != remaining:
+            fill(train, ladder, work, rungs, remaining)
+        return rungs, 1.0
+    if not over and remaining >= ladder.lengths[rung] - close:
         return rung, 1.0
-    while rung + 1 < rungs and ladder.lengths[rung + 1] >= remaining - close:
+    wanted = 1.02 * remaining if over else remaining - close
+    while rung + 1 < rungs and ladder.lengths[rung + 1] >= wanted:
         rung += 1
-    if remaining >= ladder.lengths[rung] - close:
+    if not over and ladder.lengths[rung] <= remaining + close:
         return rung, 1.0
-    if not jumps:
-        return rung, remaining / ladder.lengths[rung]
-    if ladder.lengths[rungs] != remaining:
-        fill(train, ladder, work, rungs, remaining)
-    return rungs, 1.0
+    # not to be cut yet: the longest step that ends before
+    before = 0.98 * remaining if over else remaining + close
+    while rung < finest and ladder.lengths[rung] > before:
+        rung += 1
+    if over or ladder.lengths[rung] <= remaining + close:
+        return rung, 1.0
+    return rung, remaining / ladder.lengths[rung]
 
 
 @part
@@ -355,6 +424,7 @@ def advance(
     tolerance = numbers[TOLERANCE]
     jumps = train.borders.size > 1
     rung = 0
+    finest = 0
     t_known = 0.0
     h_known = 0.0
     contacts_of(train, work, state)
@@ -367,12 +437,22 @@ def advance(
         for number in range(train.borders.size):
             border = train.borders[number]
             t_border = 2.0 * border / (f0 + math.sqrt(f0 * f0 + 2.0 * ramp * border))
+            target = HUGE
             while t_border - t > 0.01 * close:
                 taken += 1
                 if taken > MOST_STEPS:
                     return 1
-                here, limit = next_step(train, ladder, work, rung, t_border - t, jumps)
+                if target - t <= close:
+                    target = HUGE
+                over = target < t_border
+                goal = target if over else t_border
+                here, limit = next_step(train, ladder, work, rung, finest, goal - t, over, jumps)
                 h = ladder.lengths[here]
+                if over and jumps and h > t_border - t:
+                    target = HUGE
+                    continue
+                if over and h > t_border - t + close:
+                    limit = (t_border - t) / h
                 periodic_values(train, ladder, work, t, h, begin, border)
                 lead = (t - t_known) / h_known if h_known > 0.0 else -1.0
                 stretch = h / h_known if h_known > 0.0 else 0.0
@@ -392,16 +472,34 @@ def advance(
                 who, when = first_change(train, ladder, work)
                 if who >= 0 and when <= 0.0:
                     # closed or open already at the start
-                    work.held[who] += 1
+                    work.held[who] = max(work.held[who], 0) + 1
                     change(train, work, who)
                     continue
-                whole = limit == 1.0 and when >= limit
-                low = first if whole and samples == 0 else 0
-                high = outside if whole and samples == 0 else inputs
-                coefficients(ladder, low, high, nodes, work.force, work.shape)
+                cut = limit < 1.0 or when < limit
+                beside = work.pace[1]
+                if cut and beside > tolerance and here + 1 < rungs:
+                    # nearer to the cut by whole steps first
+                    finest = here + 1
+                    fall = 0.5 ** (nodes + 2)
+                    while finest + 1 < rungs and beside * fall > tolerance:
+                        finest += 1
+                        beside *= fall
+                    if when < limit:
+                        target = t + when * h
+                    work.counts[REJECTED] += 1
+                    continue
+                if cut and finest > 0 and beside * 2.0 ** (nodes + 3) < tolerance:
+                    finest -= 1
+                low = 0 if cut or samples > 0 else first
+                high = inputs if cut or samples > 0 else outside
+                coefficients(train, ladder, work, low, high)
+                if columns > 0 and cut:
+                    for o in range(felt):
+                        work.whole_end[o] = work.ends[felt + o]
                 share = limit
                 if when < limit:
                     share = polished(train, ladder, work, state, who, when, h, t)
+                    target = HUGE
                 else:
                     who = -1
                     if limit < 1.0:
@@ -425,6 +523,8 @@ def advance(
                         after,
                     )
                 if columns > 0:
+                    if cut:
+                        periodic_values(train, ladder, work, t, h, begin, border)
                     carry_tangent(train, ladder, work, tangent, columns, here, share)
                 place = 2 if work.closed[0] == 1 else (0 if work.closed[1] == 1 else 1)
                 work.spent[place] += after - t
@@ -438,13 +538,14 @@ def advance(
                     work.held[c] = 0
                 if who >= 0:
                     change(train, work, who)
+                    work.held[who] = -1
                     if who >= 2:
                         h_known = 0.0
                 elif here == rung and here > 0 and limit == 1.0:
                     # a longer step, where its error would be small enough
                     grown = 0.0
                     for c in range(inputs):
-                        grown += ladder.miss[(here - 1) * inputs + c] * work.end_force[c]
+                        grown += ladder.miss[(here - 1) * inputs + c] * work.lacking[c]
                     if grown * 2.0**nodes < 0.5 * tolerance:
                         rung = here - 1
             t = t_border

@@ -68,7 +68,9 @@ class Ladder(NamedTuple):
     output) at the nodes from the state; ``couple`` (rung, input node, wide): from the forces;
     ``decay`` (rung, 2 modes) and ``push`` (rung, input node, span): the state at the end; ``miss``
     (rung, inputs): error of the outputs [m] per unit of the coefficient of P_s of a force. A force
-    has its nodes side by side, an output its node's outputs.
+    has its nodes side by side, an output its node's outputs. Within a step the forces are the
+    polynomials through start, nodes and end, of powers ``wider``, which lack P_(s+1) and more:
+    ``miss_within``.
     """
 
     nodes: Real
@@ -84,6 +86,8 @@ class Ladder(NamedTuple):
     decay: Real
     push: Real
     miss: Real
+    wider: Real
+    miss_within: Real
 
 
 class Work(NamedTuple):
@@ -107,6 +111,12 @@ class Work(NamedTuple):
     gaps: Real
     added: Real
     pace: Real
+    start_force: Real
+    lacking: Real
+    start_slope: Real
+    end_slope: Real
+    whole_end: Real
+    edge: Real
     trial: Real
     full: Real
     right: Real
@@ -173,21 +183,26 @@ def fill(train: Train, ladder: Ladder, work: Work, rung: int, h: float) -> None:
         lacking = 0.0j
         for q in range(nodes + 1):
             lacking += h * factorial[q] * ladder.legendre[q] * phi[q + 1]
+        # beside a cut P_(s+1) is not integrated away: |int P_n| <= 1/(2 n) over the share
+        slack = h / (2.0 * nodes + 2.0) / max(1.0, abs(lam[k]) * h)
         for c in range(inputs):
-            ladder.miss[rung * inputs + c] += abs(lacking * into[k, c]) * largest
+            size = abs(into[k, c]) * largest
+            ladder.miss[rung * inputs + c] += abs(lacking) * size
+            ladder.miss_within[rung * inputs + c] += slack * size
 
 
 @small
-def coefficients(
-    ladder: Ladder, first: int, last: int, nodes: int, force: Real, shape: Real
-) -> None:
-    """Powers over the share of a step, (row, power), of the rows ``first`` to ``last`` of forces."""
+def coefficients(train: Train, ladder: Ladder, work: Work, first: int, last: int) -> None:
+    """Powers over the share of a step, (row, power), of the forces ``first`` to ``last``."""
+    nodes, wider, force = train.sizes[NODES], ladder.wider, work.force
+    order = nodes + 2
     for row in range(first, last):
-        for q in range(nodes):
-            total = 0.0
+        start, end = work.start_force[row], work.end_force[row]
+        for q in range(order):
+            total = wider[q * order] * start + wider[q * order + order - 1] * end
             for j in range(nodes):
-                total += ladder.powers[q, j] * force[row * nodes + j]
-            shape[row * nodes + q] = total
+                total += wider[q * order + 1 + j] * force[row * nodes + j]
+            work.shape[row * order + q] = total
 
 
 @part
@@ -204,21 +219,22 @@ def within(
 ) -> None:
     """States (column, span) at ``share`` of the step: exact for the polynomials ``shape``."""
     sizes, into, phi = train.sizes, train.into, work.phi
-    modes, nodes, inputs, span = sizes[MODES], sizes[NODES], sizes[INPUTS], sizes[SPAN]
+    modes, inputs, span = sizes[MODES], sizes[INPUTS], sizes[SPAN]
+    order = sizes[NODES] + 2
     for k in range(modes):
-        flows(train.lam[k] * (share * h), nodes, ladder.factorial, phi)
+        flows(train.lam[k] * (share * h), order, ladder.factorial, phi)
         scale = h
-        for q in range(nodes):
+        for q in range(order):
             scale *= share
             phi[q + 1] *= scale * ladder.factorial[q]
         for column in range(columns):
             at = column * span + 2 * k
             value = phi[0] * complex(state[at], state[at + 1])
-            row = column * inputs * nodes
+            row = column * inputs * order
             for c in range(inputs):
                 total = 0.0j
-                for q in range(nodes):
-                    total += phi[q + 1] * shape[row + c * nodes + q]
+                for q in range(order):
+                    total += phi[q + 1] * shape[row + c * order + q]
                 value += into[k, c] * total
             found[at] = value.real
             found[at + 1] = value.imag
@@ -283,25 +299,40 @@ def guess(train: Train, ladder: Ladder, work: Work, lead: float, stretch: float)
     sizes, force = train.sizes, work.force
     nodes = sizes[NODES]
     first = 4 if sizes[FRICTION] == 1 else 2
+    order = nodes + 2
     for b in range(sizes[BEARINGS]):
-        row = (first + 2 * b) * nodes
+        c = first + 2 * b
+        row, at = c * nodes, c * order
         if lead < 0.0:
-            o = 2 + 2 * b
-            x, y = work.ends[o], work.ends[o + 1]
-            bearing_force(train, x, y, work.closed[2 + b], b, work.end_force, 0)
             for j in range(nodes):
-                force[row + j] = work.end_force[0]
-                force[row + nodes + j] = work.end_force[1]
+                force[row + j] = work.start_force[c]
+                force[row + nodes + j] = work.start_force[c + 1]
             continue
         for j in range(nodes):
             place = min(lead + ladder.nodes[j] * stretch, 2.5)
-            one = work.shape[row + nodes - 1]
-            two = work.shape[row + 2 * nodes - 1]
-            for q in range(nodes - 2, -1, -1):
-                one = one * place + work.shape[row + q]
-                two = two * place + work.shape[row + nodes + q]
+            one = work.shape[at + order - 1]
+            two = work.shape[at + 2 * order - 1]
+            for q in range(order - 2, -1, -1):
+                one = one * place + work.shape[at + q]
+                two = two * place + work.shape[at + order + q]
             force[row + j] = one
             force[row + nodes + j] = two
+
+
+@small
+def forces_at(train: Train, work: Work, row: int, at: int, t: float, found: Real) -> None:
+    """All forces from the outputs ``work.ends[at:]`` and the functions in ``row`` at time ``t``."""
+    sizes = train.sizes
+    first = 4 if sizes[FRICTION] == 1 else 2
+    outside = first + 2 * sizes[BEARINGS]
+    rate = train.numbers[FREQUENCY] + train.numbers[RAMP] * t
+    flank_forces(train, work.values, row, rate, work.ends, at, work.closed, found, 0, 1)
+    for b in range(sizes[BEARINGS]):
+        o = at + 2 + 2 * b
+        x, z = work.ends[o], work.ends[o + 1]
+        bearing_force(train, x, z, work.closed[2 + b], b, found, first + 2 * b)
+    for x in range(outside, sizes[INPUTS]):
+        found[x] = outer_force(train, t, x - outside)
 
 
 @part
@@ -319,7 +350,8 @@ def attempt(
 
     ``lead`` and ``stretch``: where the step begins and how long it is on the polynomial of the last
     one; ``lead`` < 0: there is none. Leaves forces at the nodes, the state at the end in
-    ``work.trial``, outputs at the nodes and the end.
+    ``work.trial``, outputs at the nodes and the end, and in ``work.pace[1]`` the error that a cut
+    within the step would have.
     """
     sizes, couple = train.sizes, ladder.couple
     modes, nodes, outputs, inputs = sizes[MODES], sizes[NODES], sizes[OUTPUTS], sizes[INPUTS]
@@ -351,6 +383,7 @@ def attempt(
     if inputs > outside:
         rows = (inputs - outside) * nodes
         gather(couple, table + outside * nodes, rows, wide, force, outside * nodes, base, 0)
+    forces_at(train, work, nodes, 0, t, work.start_force)
     guess(train, ladder, work, lead, stretch)
     size = flank_factors(train, ladder, work, rung)
     matrix, added = work.matrix, work.added
@@ -432,21 +465,18 @@ def attempt(
     outputs_of(train, trial, work.ends, felt)
     if settled == 0:
         return HUGE
-    # the residual of the collocation at the end
-    ends = work.end_force
-    rate = f0 + ramp * (t + h)
-    flank_forces(train, work.values, nodes + 1, rate, work.ends, felt, work.closed, ends, 0, 1)
-    for b in range(sizes[BEARINGS]):
-        o = felt + 2 + 2 * b
-        x, z = work.ends[o], work.ends[o + 1]
-        bearing_force(train, x, z, work.closed[2 + b], b, ends, first + 2 * b)
-    for x in range(outside, inputs):
-        ends[x] = outer_force(train, t + h, x - outside)
+    # the residuals of the collocation at both ends
+    forces_at(train, work, nodes + 1, felt, t + h, work.end_force)
     error = 0.0
+    beside = 0.0
     for c in range(inputs):
-        total = ends[c]
+        late, early = work.end_force[c], work.start_force[c]
         for j in range(nodes):
-            total -= ladder.at_end[j] * force[c * nodes + j]
-        ends[c] = abs(total)
-        error += ladder.miss[rung * inputs + c] * ends[c]
+            late -= ladder.at_end[j] * force[c * nodes + j]
+            early -= ladder.at_end[nodes - 1 - j] * force[c * nodes + j]
+        even = early if nodes % 2 == 0 else -early
+        work.lacking[c] = 0.5 * abs(late + even)
+        error += ladder.miss[rung * inputs + c] * work.lacking[c]
+        beside += ladder.miss_within[rung * inputs + c] * 0.5 * abs(late - even)
+    work.pace[1] = beside
     return error
