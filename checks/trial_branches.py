@@ -23,9 +23,11 @@ from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFO
 from thermogear.analysis.continuation import GAP, Branch, continuation, family_of
 from thermogear.analysis.labels import label
 from thermogear.analysis.orbits import Orbit
-from thermogear.analysis.section import ReturnMap, Visit, lanes_of, scales
+from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import InputError, ThermogearError
+from thermogear.dynamics.exact_map import scales
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.dynamics.return_map import Visit, return_map
 
 Floats = NDArray[np.float64]
 Random = np.random.Generator
@@ -103,7 +105,7 @@ class Plain:
 
     def gap(self, u: Floats) -> tuple[Floats, Visit]:
         z = u * self.unit
-        visit = ReturnMap(lanes_of(self.family(float(z[2])))).visit(z[:2], self.n)
+        visit = return_map(lanes_of(self.family(float(z[2])))).visit(z[:2], self.n)
         return (visit.points[-1] - visit.points[0]) / self.unit[:2], visit
 
     def closed(self, guess: Floats, normal: Floats) -> tuple[Floats, Visit] | None:

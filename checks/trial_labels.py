@@ -24,9 +24,9 @@ from thermogear import TorsionalModel, simulate
 from thermogear.analysis.labels import labels
 from thermogear.analysis.maps import MAP_RULE
 from thermogear.analysis.proof import Label
-from thermogear.analysis.section import Ensemble
 from thermogear.analysis.settle import CHAOTIC, PERIODIC, settle
 from thermogear.dynamics.adaptive import Gap, follow
+from thermogear.dynamics.exact_map import Ensemble
 
 Floats = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -24,9 +24,9 @@ import pint
 import pytest
 
 import thermogear
-from thermogear.analysis.section import ReturnMap
 from thermogear.base.materials import Lubricant
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.dynamics.return_map import return_map
 from thermogear.heat.losses import mesh_loss
 
 # --- what is exempt, each proven or with its reason ----------------------------------------------
@@ -41,7 +41,7 @@ def swapped_distance(exchanged: bool) -> object:
         force_amplitude=0.05,
     )
     points = [np.array([1.0, 0.2]), np.array([-0.3, 0.7])]
-    return ReturnMap(model.lanes()).distance(*(points[::-1] if exchanged else points))
+    return return_map(model.lanes()).distance(*(points[::-1] if exchanged else points))
 
 
 def swapped_points(exchanged: bool) -> object:
@@ -50,7 +50,8 @@ def swapped_points(exchanged: bool) -> object:
 
 
 SYMMETRIC: dict[str, Callable[[bool], object]] = {
-    "analysis.section.ReturnMap.distance": swapped_distance,
+    "dynamics.exact_map.ExactMap.distance": swapped_distance,
+    "dynamics.return_map.ReturnMap.distance": swapped_distance,
     "base.materials.Lubricant.from_two_points": swapped_points,
     "heat.losses.mesh_loss": lambda exchanged: float(
         mesh_loss(2e4, *((0.2, 0.06) if exchanged else (0.06, 0.2)))

@@ -24,12 +24,13 @@ from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.maps import parameter_map
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
 from thermogear.analysis.outcome import outcome_arrays
-from thermogear.analysis.section import ReturnMap, Visit, lanes_of
+from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, Rule
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics import exact
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.dynamics.return_map import ExactMap, Visit, return_map
 
 CALM = TorsionalModel(
     damping_ratio=0.1535,
@@ -54,7 +55,7 @@ def orbit() -> Orbit:
     return periodic_orbit(CALM, 1, (1.08, -0.25))
 
 
-class Lost(ReturnMap):
+class Lost(ExactMap):
     """A return map whose derivative, or whose end, is no number."""
 
     part = "jacobian"
@@ -72,7 +73,7 @@ class Lost(ReturnMap):
 def test_newton_does_not_settle_where_the_map_has_no_numbers(orbit: Orbit, part: str) -> None:
     section = Lost(lanes_of(CALM))
     section.part = part
-    assert shoot(ReturnMap(lanes_of(CALM)), orbit.state, 1) is not None
+    assert shoot(return_map(lanes_of(CALM)), orbit.state, 1) is not None
     assert shoot(section, orbit.state, 1) is None
 
 
@@ -109,7 +110,7 @@ def test_no_point_of_a_branch_without_numbers(
         class Broken(Lost):
             part = "jacobian" if lost == "derivative of the map" else "points"
 
-        monkeypatch.setattr("thermogear.analysis.curve.ReturnMap", Broken)
+        monkeypatch.setattr("thermogear.analysis.curve.ExactMap", Broken)
         curve = Curve(family, "frequency", 1, start=start, span=0.2)
     # on the curve already, and a step beside it
     for away in (0.0, 1e-3):

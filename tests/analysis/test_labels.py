@@ -17,11 +17,12 @@ from thermogear.analysis.labels import (
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.proof import Label, periodic, proves_chaos
-from thermogear.analysis.section import ReturnMap, scales
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import label_words
+from thermogear.dynamics.exact_map import scales
 from thermogear.dynamics.integrate import simulate
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.dynamics.return_map import return_map
 
 BASE = TorsionalModel(
     damping_ratio=0.1535,
@@ -372,7 +373,7 @@ def test_the_transient_told_is_the_one_that_ran():
     found = label(BASE.replace(damping_ratio=0.18), discard=100, max_period=8)
     lengths = np.cumsum([100 * 2**n + 16 for n in range(12)])
     assert found.discarded in lengths
-    visit = ReturnMap(BASE.replace(damping_ratio=0.18).lanes()).visit(found.orbit.state, 1)
+    visit = return_map(BASE.replace(damping_ratio=0.18).lanes()).visit(found.orbit.state, 1)
     assert visit.points[-1] == pytest.approx(found.orbit.state, abs=1e-12)
     slow = label(BASE.replace(damping_ratio=0.1705), discard=20, max_period=4, cap=60)
     assert (slow.name, slow.period) == ("undecided", 0)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.lyapunov import lyapunov_exponent, lyapunov_exponents
-from thermogear.analysis.section import ReturnMap
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.dynamics.return_map import return_map
 
 TRUTH = json.loads((Path(__file__).parents[1] / "dynamics" / "truth.json").read_text())
 CHAOTIC = [case for case in TRUTH["cases"] if case["kind"] == "chaotic"]
@@ -100,7 +100,7 @@ def test_batches_are_the_growth_of_a_tangent_period_by_period():
     found = lyapunov_exponent(
         model, initial_state=(0.2, -0.1), discard=30, batches=3, batch_periods=20
     )
-    section = ReturnMap(model.lanes())
+    section = return_map(model.lanes())
     state = section.visit(np.array([0.2, -0.1]), 30).points[-1]
     tangent, grown = np.array([1.0, 1.245]), []
     for _ in range(20 + 60):  # as long as a batch, at most 50

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from thermogear.analysis.family import ModelFamily, axis_values, family_for, lanes_and_status
-from thermogear.analysis.section import Ensemble, ReturnMap, starts_of
+from thermogear.analysis.section import starts_of
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
 from thermogear.base.plan import (
@@ -24,7 +24,9 @@ from thermogear.base.plan import (
     keys_of,
     region_of,
 )
+from thermogear.dynamics.exact_map import Ensemble
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
+from thermogear.dynamics.return_map import return_map
 
 ROWS, LENGTH, CUT = 3, 11, 4
 
@@ -208,7 +210,7 @@ def test_an_ensemble_is_its_lanes_one_by_one_and_keeps_the_last_sections():
     kept = group.run(9, keep=4)
     assert (first.shape, kept.shape, group.elapsed) == ((3, 0, 2), (3, 4, 2), 16)
     for lane in range(3):
-        path = ReturnMap(model.lanes().take(lane)).visit(start[lane], 16)
+        path = return_map(model.lanes().take(lane)).visit(start[lane], 16)
         assert np.array_equal(kept[lane], path.points[-4:])
         assert np.array_equal(group.state[lane], path.points[-1])
         assert path.shares.sum() == pytest.approx(1.0, abs=1e-12)
@@ -217,8 +219,8 @@ def test_an_ensemble_is_its_lanes_one_by_one_and_keeps_the_last_sections():
     for wrong in (start[:2], np.zeros(3), [np.inf, 0.0]):
         with pytest.raises(InputError, match="initial_state: got"):
             starts_of(wrong, 3)
-    section = ReturnMap(model.lanes().take(1))
+    section = return_map(model.lanes().take(1))
     assert section.distance(start[0], start[1]) == pytest.approx(1.0)
     assert section.distance(np.zeros(2), np.array([0.1, 1.245])) == pytest.approx(1.0)
     with pytest.raises(InputError, match="3 lanes"):
-        ReturnMap(model.lanes())
+        return_map(model.lanes())

@@ -13,8 +13,8 @@ from thermogear.analysis.diagram import orbit_diagram
 from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponent
 from thermogear.analysis.orbits import periodic_orbit
-from thermogear.analysis.section import scales
 from thermogear.base.excitation import Periodic
+from thermogear.dynamics.exact_map import scales
 from thermogear.dynamics.models import DeadZoneModel, TorsionalModel
 
 SCALES = [2.0**-13, 2.0**9]

@@ -6,7 +6,6 @@ import pytest
 from thermogear.analysis.labels import labels
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.outcome import outcome_arrays, settle_with_status, start_of
-from thermogear.analysis.section import ReturnMap
 from thermogear.analysis.settle import (
     CHAOTIC,
     DIVERGED,
@@ -24,6 +23,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics import exact
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.dynamics.return_map import return_map
 
 # (zeta, w, eps, F_m, F_h), start, period, multiplier of the largest modulus: published to 1e-9
 ORBITS = [
@@ -195,12 +195,12 @@ def test_an_orbit_longer_than_the_longest_sought_is_not_called_periodic():
     for values in (short.point, short.multiplier, short.shares):
         assert np.isnan(values).all()
     # its sections are those of the run
-    path = ReturnMap(lanes).visit(start[0], 1024).points
+    path = return_map(lanes).visit(start[0], 1024).points
     assert short.sections[0] == pytest.approx(path[-20:], abs=1e-9)
     assert short.state[0] == pytest.approx(path[-1], abs=1e-9)
     # those of the settled one are on the orbit, in step with the run
     kept = settle(lanes, start, Rule(max_period=6, cap=1024), keep=20)
-    there = ReturnMap(lanes).visit(start[0], int(kept.used[0])).points[-20:]
+    there = return_map(lanes).visit(start[0], int(kept.used[0])).points[-20:]
     assert kept.sections[0] == pytest.approx(there, abs=1e-3)
     assert np.array_equal(kept.sections[0, :-6], kept.sections[0, 6:])
     assert np.array_equal(kept.sections[0, -1], kept.point[0])
@@ -236,7 +236,7 @@ def test_exponent_of_chaos_is_the_growth_of_a_tangent_period_by_period():
     )
     rule = Rule(first=64, cap=64 + 64, chaos_periods=40, batches=4, early=False)
     found = settle(model.lanes(), np.zeros((1, 2)), rule)
-    section = ReturnMap(model.lanes())
+    section = return_map(model.lanes())
     measured = 42 + 50  # a third of the run, the tangent turning for 50 periods first
     state, tangent = np.zeros(2), np.array([1.0, 1.245])
     grown = []
@@ -282,7 +282,7 @@ def test_newton_lane_by_lane_ends_on_the_orbits_and_tells_who_did_not_get_there(
     point, residual = polish(maps, guess, 2, units_of(lanes), most=20)
     assert np.all(residual[:2] < 1e-12)
     for lane in range(3):
-        alone = ReturnMap(lanes.take(lane))
+        alone = return_map(lanes.take(lane))
         visit = alone.visit(point[lane], 2)
         gap = np.max(np.abs(visit.points[-1] - point[lane]) / units_of(lanes)[lane])
         assert residual[lane] == pytest.approx(gap, abs=1e-13)

@@ -13,8 +13,8 @@ from scipy.optimize import root_scalar
 
 from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch
 from thermogear.analysis.orbits import Orbit, closed
-from thermogear.analysis.section import ReturnMap
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.exact_map import ExactMap
 
 Floats = NDArray[np.float64]
 
@@ -319,7 +319,7 @@ def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Flo
     two = curve.unit[:2]
     jacobian = orbit.jacobian
     if broken:
-        jacobian = -ReturnMap(orbit.lanes).flow(orbit.state, period)[1]
+        jacobian = -ExactMap(orbit.lanes).flow(orbit.state, period)[1]
     matrix = jacobian / two[:, None] * two
     direction = np.linalg.svd(matrix + np.eye(2))[2][1]
     normal = np.append(direction, 0.0)

@@ -14,9 +14,10 @@ from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFO
 from thermogear.analysis.continuation import GAP, Branch, continuation
 from thermogear.analysis.family import Family
 from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.section import ReturnMap, lanes_of
+from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import PERIODIC, units_of
 from thermogear.base.errors import ConvergenceError
+from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import Lanes
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
         if len(lines) >= MOST_BRANCHES:
             lost.append(f"more than {MOST_BRANCHES} branches: the rest is not followed")
             break
-        orbit = shoot(ReturnMap(_lane(family, value)), state, period)
+        orbit = shoot(return_map(_lane(family, value)), state, period)
         if orbit is None or any(_on(line, orbit, value, family) for line in lines):
             continue
         try:
@@ -134,7 +135,7 @@ def _on(line: _Line, orbit: Orbit, value: float, family: Family) -> bool:
     """Whether ``orbit`` at ``value`` lies on the line: Newton from it leads there."""
     if line.period != orbit.period:
         return False
-    section = ReturnMap(lanes_of(family(np.array([[value]]))))
+    section = return_map(lanes_of(family(np.array([[value]]))))
     below, above = line.values[:-1], line.values[1:]
     for i in np.flatnonzero((below - value) * (above - value) <= 0.0):
         span = above[i] - below[i]

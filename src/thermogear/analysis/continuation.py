@@ -25,8 +25,9 @@ from thermogear.analysis.bifurcations import (
 )
 from thermogear.analysis.curve import Curve, Family, Point, mirrored
 from thermogear.analysis.orbits import Orbit, closed, multipliers
-from thermogear.analysis.section import ReturnMap, lanes_of
+from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError, nearest
+from thermogear.dynamics.exact_map import ExactMap
 
 Floats = NDArray[np.float64]
 
@@ -107,7 +108,7 @@ class Branch:
     def orbit(self, index: int) -> Orbit:
         """The orbit at one point."""
         model = self.family(float(self.values[index]))
-        return closed(ReturnMap(lanes_of(model)), self.states[index], self.period, model=model)
+        return closed(ExactMap(lanes_of(model)), self.states[index], self.period, model=model)
 
 
 def family_of(model: object, parameter: str) -> tuple[Family, float]:
@@ -288,7 +289,7 @@ def _symmetry(orbit: Orbit, family: Family, start: float, to: float) -> tuple[bo
         return False, False
     if not all(mirrored(one, orbit.period) for one in lanes):
         return False, False
-    section = ReturnMap(lanes[0])
+    section = ExactMap(lanes[0])
     end, _ = section.flow(orbit.state, orbit.period)
     return True, float(section.distance(-end, orbit.state)) < 1e-8
 

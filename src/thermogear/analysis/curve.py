@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from thermogear.analysis.orbits import Orbit, closed
-from thermogear.analysis.section import ReturnMap, Visit, lanes_of, scales
+from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics import exact
+from thermogear.dynamics.exact_map import ExactMap, scales
+from thermogear.dynamics.return_map import Visit
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -118,16 +120,16 @@ class Curve:
         self.span = span
         self.symmetric = symmetric
         self.unit = np.append(scales(lanes_of(family(start))), span)
-        self._maps: dict[float, ReturnMap] = {}
+        self._maps: dict[float, ExactMap] = {}
         self._moved: dict[float, tuple[Floats, Floats, float]] = {}
 
-    def map_at(self, value: float) -> ReturnMap:
+    def map_at(self, value: float) -> ExactMap:
         """The return map at a value, prepared once for all orbits looked at there in a row."""
         if value not in self._maps:
-            _keep(self._maps, value, ReturnMap(lanes_of(self.family(value))))
+            _keep(self._maps, value, ExactMap(lanes_of(self.family(value))))
         return self._maps[value]
 
-    def residual(self, scaled: Floats) -> tuple[Floats, Floats, ReturnMap]:
+    def residual(self, scaled: Floats) -> tuple[Floats, Floats, ExactMap]:
         """G (2,), the Jacobian (2, 2) of the closing map in units of the model, its maps."""
         value = scaled * self.unit
         section = self.map_at(float(value[2]))
@@ -138,7 +140,7 @@ class Curve:
             end, jacobian = section.flow(value[:2], 2 * self.period)
         return (end - value[:2]) / self.unit[:2], jacobian, section
 
-    def in_parameter(self, scaled: Floats, section: ReturnMap) -> tuple[Floats, float]:
+    def in_parameter(self, scaled: Floats, section: ExactMap) -> tuple[Floats, float]:
         """dG/dp (2,) along the path of this orbit, and its margin in half backlashes.
 
         The maps are differentiated, not the trajectory: crossings stay at their phases, so that
@@ -201,7 +203,7 @@ class Curve:
         matrix = np.empty((3, 3))
         matrix[2] = normal
         two = self.unit[:2]
-        best: tuple[float, Floats, Floats, ReturnMap] | None = None
+        best: tuple[float, Floats, Floats, ExactMap] | None = None
         last = np.inf
         stalled = 0
         upright = not normal[:2].any()
@@ -244,7 +246,7 @@ class Curve:
         return self._point(*best[1:], direction=normal if old is None else old)
 
     def _point(
-        self, scaled: Floats, jacobian: Floats, section: ReturnMap, *, direction: Floats
+        self, scaled: Floats, jacobian: Floats, section: ExactMap, *, direction: Floats
     ) -> Point | None:
         """The point at ``scaled``, its tangent along ``direction``; None without numbers."""
         two = self.unit[:2]
@@ -268,7 +270,7 @@ class Curve:
     def orbit(self, point: Point) -> Orbit:
         value = point.scaled * self.unit
         model = self.family(float(value[2]))
-        return closed(ReturnMap(lanes_of(model)), value[:2], self.period, model=model)
+        return closed(ExactMap(lanes_of(model)), value[:2], self.period, model=model)
 
 
 def _keep(kept: dict[float, Any], value: float, found: object) -> None:

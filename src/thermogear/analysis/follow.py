@@ -25,8 +25,9 @@ from thermogear.analysis.continuation import (
 )
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.orbits import closed, shoot
-from thermogear.analysis.section import ReturnMap, lanes_of
+from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError
+from thermogear.dynamics.return_map import return_map
 
 Floats = NDArray[np.float64]
 
@@ -146,7 +147,7 @@ def _shrunk(branch: Branch, start: float, to: float) -> _Stand:
     if branch.ended != SHRUNK[BIRTH]:
         return _Stand(at, here, 0)
     at = _behind(at, start=start, to=to)
-    mother = shoot(ReturnMap(lanes_of(branch.family(at))), here, branch.period // 2)
+    mother = shoot(return_map(lanes_of(branch.family(at))), here, branch.period // 2)
     if mother is None or not mother.stable:
         return _Stand(at, here, 0)
     return _Stand(at, mother.state, mother.minimal_period)
@@ -196,7 +197,7 @@ def _pushed(event: Bifurcation) -> Floats:
     """The state at a bifurcation, of a flip a little off the orbit that has become unstable."""
     if event.kind != FLIP:
         return event.state
-    section = ReturnMap(event.orbit.lanes)
+    section = return_map(event.orbit.lanes)
     two = section.unit
     matrix = event.orbit.jacobian / two[:, None] * two
     return np.asarray(event.state + 0.05 * two * np.linalg.svd(matrix + np.eye(2))[2][1])
@@ -271,7 +272,7 @@ def _walked(family: Family, parameter: str, start: float, to: float, stand: _Sta
     at, beside = stand.value, stand.beside
     if beside is None:
         model = family(at)
-        orbit = closed(ReturnMap(lanes_of(model)), stand.state, stand.period, model=model)
+        orbit = closed(return_map(lanes_of(model)), stand.state, stand.period, model=model)
     else:
         orbit = beside.orbit
     return continuation(

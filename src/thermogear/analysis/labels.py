@@ -15,10 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.lyapunov import lyapunov_exponents
 from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
-from thermogear.analysis.section import Ensemble, lanes_of, scales, starts_of
+from thermogear.analysis.section import lanes_of, starts_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Progress
+from thermogear.dynamics.exact_map import Ensemble, scales
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]

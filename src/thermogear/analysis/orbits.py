@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.section import ReturnMap, lanes_of, scales
+from thermogear.analysis.section import lanes_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.dynamics.exact_map import ExactMap
+from thermogear.dynamics.return_map import ReturnMap, return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -18,12 +20,12 @@ Complexes = NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True)
 class Orbit:
-    """A closed orbit of ``period`` mesh periods.
+    """A closed orbit of ``period`` mesh periods, of a model with states of any length d.
 
-    ``model`` it belongs to, ``points`` (period, 2) on the section, ``jacobian`` D P^n at the
-    first of them,
-    ``residual`` |P^n z - z| in units of the half backlash, counts and shares over one orbit,
-    ``iterations`` of Newton. :attr:`minimal_period` says whether it closes sooner.
+    ``model`` it belongs to with its return map ``section``, ``points`` (period, d) on the section,
+    ``jacobian`` D P^n at the first of them, ``residual`` |P^n z - z| in units of the map (of one
+    mass the half backlash), counts and shares over one orbit, ``iterations`` of Newton.
+    :attr:`minimal_period` says whether it closes sooner.
 
     >>> model = TorsionalModel(
     ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
@@ -34,7 +36,7 @@ class Orbit:
     (array([0.5335, 0.5335]), 0)
     """
 
-    lanes: Lanes = field(repr=False)
+    section: ReturnMap = field(repr=False)
     model: object = field(repr=False)
     period: int
     points: Floats
@@ -46,8 +48,14 @@ class Orbit:
     iterations: int
 
     @property
+    def lanes(self) -> Lanes:
+        """The flat parameters of a one-mass model; AttributeError for another one."""
+        lanes: Lanes = self.section.lanes  # type: ignore[attr-defined]
+        return lanes
+
+    @property
     def state(self) -> Floats:
-        """(x, x') at phase 0."""
+        """The state at phase 0, (d,): (x, x') of one mass."""
         return np.asarray(self.points[0])
 
     @property
@@ -57,8 +65,8 @@ class Orbit:
 
     @property
     def determinant(self) -> float:
-        """exp(-c n T), the product of the multipliers."""
-        return float(np.exp(-self.lanes.damping[0] * self.lanes.period[0] * self.period))
+        """The product of the multipliers, exp(-c n T) of one mass."""
+        return self.section.determinant(self.period)
 
     @property
     def stable(self) -> bool:
@@ -73,7 +81,7 @@ class Orbit:
     @property
     def minimal_period(self) -> int:
         """The smallest number of mesh periods after which the orbit closes."""
-        unit = scales(self.lanes)
+        unit = self.section.unit
         for lag in range(1, self.period):
             if self.period % lag == 0:
                 gap = np.max(np.abs(self.points[lag] - self.points[0]) / unit)
@@ -83,7 +91,7 @@ class Orbit:
 
     def samples(self, per_period: int = 256) -> tuple[Floats, Floats, Floats]:
         """Phase (in periods), x and x' along the whole orbit at uniform phases."""
-        visit = ReturnMap(self.lanes, per_period).visit(self.state, self.period, sampled=True)
+        visit = return_map(self.lanes, per_period).visit(self.state, self.period, sampled=True)
         phase = np.arange(self.period * per_period) / per_period
         return phase, visit.samples[:, 0], visit.samples[:, 1]
 
@@ -121,11 +129,16 @@ class Orbit:
 
 
 def multipliers(jacobian: Floats, determinant: float) -> Complexes:
-    """Eigenvalues of a 2 x 2 Jacobian whose determinant is known exactly.
+    """Eigenvalues of a Jacobian whose determinant is known, the larger modulus first.
 
-    mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu, free of cancellation. The
-    larger modulus (the upper half plane) first.
+    Of two by two mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu, free of
+    cancellation. Of a pair the one in the upper half plane comes first.
     """
+    if jacobian.shape != (2, 2):
+        found = np.linalg.eigvals(jacobian).astype(complex)
+        # of one modulus the upper half plane first
+        order = np.lexsort((-found.imag, -np.round(np.abs(found), 12)))
+        return np.asarray(found[order])
     half = 0.5 * float(jacobian[0, 0] + jacobian[1, 1])
     square = half * half - determinant
     if square < 0.0:
@@ -140,7 +153,7 @@ def contact_multipliers(model: object) -> Complexes:
     The largest modulus above 1 means that the motion cannot stay in contact, whatever the force.
     ``model`` has one lane; backlash and force do not enter.
     """
-    section = ReturnMap(lanes_of(model))
+    section = ExactMap(lanes_of(model))
     product = np.eye(2)
     for maps in section.maps.maps[:, :4, 0]:
         product = np.array([[maps[0], maps[2]], [maps[1], maps[3]]]) @ product
@@ -180,7 +193,7 @@ def shoot(
             stalled += 1
         if residual < tolerance or (stalled >= 3 and best[0] < 1e-9):
             break
-        matrix = visit.jacobian - np.eye(2)
+        matrix = visit.jacobian - np.eye(z.size)
         try:
             step = np.linalg.solve(matrix, -gap)
         except np.linalg.LinAlgError:
@@ -209,7 +222,7 @@ def closed(
     if residual is None:
         residual = float(section.distance(visit.points[-1], visit.points[0]))
     return Orbit(
-        lanes=section.lanes,
+        section=section,
         model=model,
         period=period,
         points=visit.points[:-1],
@@ -244,9 +257,10 @@ def periodic_orbit(
     """
     period = whole("period", period, least=1)
     start = np.asarray(guess, dtype=float)
-    if start.shape != (2,) or not np.all(np.isfinite(start)):
-        raise InputError("guess", start.tolist(), allowed="two finite numbers (x, x')")
-    section = ReturnMap(lanes_of(model))
+    section = return_map(model)
+    if start.shape != (section.dimension,) or not np.all(np.isfinite(start)):
+        named = "two finite numbers (x, x')" if section.dimension == 2 else "finite numbers"
+        raise InputError("guess", start.tolist(), allowed=f"{named}, shape ({section.dimension},)")
     orbit = shoot(section, start, period, tolerance=tolerance, model=model)
     if orbit is None:
         raise ConvergenceError(

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.section import ReturnMap, scales
 from thermogear.base.vocabulary import label_words
+from thermogear.dynamics.exact_map import scales
+from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -83,7 +84,7 @@ def periodic(
     if close.size == 0:
         return None, min(gaps) > 10.0 * CLOSE
     lag = int(close[0]) + 1
-    section = ReturnMap(lane)
+    section = return_map(lane)
     orbit = shoot(section, window[-1], lag)
     if orbit is None or not orbit.stable:
         return None, False

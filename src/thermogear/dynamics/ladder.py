@@ -115,7 +115,7 @@ class Engine:
         self.rest = -np.linalg.solve(a, steady)
         self.to_modes = np.ascontiguousarray(left[keep])
         self.from_modes = np.ascontiguousarray((right * weight)[:, keep])
-        self.into = np.ascontiguousarray(self.to_modes @ into)
+        self.into = np.ascontiguousarray(self.to_modes @ into, dtype=complex)
         rows = np.hstack(
             [model.outputs, np.zeros((model.outputs.shape[0], model.dimension - model.size))]
         )

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
+
+if TYPE_CHECKING:
+    from thermogear.dynamics.exact_map import ExactMap
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -126,6 +130,12 @@ class Lanes:
             stiffness_pieces=tuple(self.stiffness_pieces[i] for i in chosen),
             force_pieces=tuple(self.force_pieces[i] for i in chosen),
         )
+
+    def return_map(self, samples: int = 0) -> ExactMap:
+        """The event-exact return map of one lane; ``samples`` a period of what it records."""
+        from thermogear.dynamics.exact_map import ExactMap
+
+        return ExactMap(self, samples)
 
     def jumps(self, lane: int) -> tuple[float, ...]:
         """Phases in (0, 1) where a table of this lane may jump."""

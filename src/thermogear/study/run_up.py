@@ -21,7 +21,6 @@ from thermogear.analysis.outcome import (
     outcome_variables,
     settle_with_status,
 )
-from thermogear.analysis.section import ReturnMap
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
@@ -31,6 +30,7 @@ from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
 from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
+from thermogear.dynamics.return_map import return_map
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, finished, range_notices
@@ -306,7 +306,7 @@ class _Run:
         found = self._settled(point, self.state)
         if self.period > 0 and before is not None and _period(found) > 0:
             alone = self._settled(point, before)
-            section = ReturnMap(point.flat)
+            section = return_map(point.flat)
             near = section.distance(alone.sections[0], found.sections[0][-1]).min()
             self.early = int(not near < APART)
         if first:

@@ -68,7 +68,7 @@ def along(x: float, count: int, places: Real, weights: Real, values: Real) -> fl
     for i in range(count):
         d = x - places[i]
         if d == 0.0:
-            return values[i]
+            return float(values[i])
         w = weights[i] / d
         top += w * values[i]
         low += w
@@ -143,8 +143,8 @@ def first_root(
                 v_high *= 0.5
             side = -1
         if abs(v) < 1e-4 * rounding:
-            return x
-    return 0.5 * (low + high)
+            return float(x)
+    return float(0.5 * (low + high))
 
 
 @part

@@ -163,7 +163,7 @@ def outer_force(train: Train, t: float, row: int) -> float:
     if outer[row, POWER] == 0.0:
         return math.cos(angle)
     turn = TWO_PI * outer[row, ORDER]
-    return turn * turn * n * n * math.cos(angle) + turn * numbers[RAMP] * math.sin(angle)
+    return float(turn * turn * n * n * math.cos(angle) + turn * numbers[RAMP] * math.sin(angle))
 
 
 @small
@@ -179,10 +179,10 @@ def outputs_of(train: Train, state: Real, found: Real, at: int) -> None:
 def gap_of(train: Train, contact: int, drive: float, back: float, error: float) -> float:
     """Penetration [m] of a contact, > 0 closed; a bearing's by (x, y) in place of both flanks'."""
     if contact == 0:
-        return drive - error - train.numbers[BACKLASH]
+        return float(drive - error - train.numbers[BACKLASH])
     if contact == 1:
-        return back + error - train.numbers[BACKLASH]
-    return math.sqrt(drive * drive + back * back) - train.laws[contact - 2, CLEARANCE]
+        return float(back + error - train.numbers[BACKLASH])
+    return float(math.sqrt(drive * drive + back * back) - train.laws[contact - 2, CLEARANCE])
 
 
 @small

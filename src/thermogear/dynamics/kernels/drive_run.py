@@ -59,7 +59,7 @@ from thermogear.dynamics.kernels.vector import EIGHT
 ALIKE = 1e-9
 """Share of the longest step that two times may differ by and be one."""
 TOUCHING = 1e-7
-"""Share of the half backlash below which a gap is none: it moves an impact by less than rounding."""
+"""Share of the half backlash below which a gap is none: it moves no impact beyond rounding."""
 MOST_STEPS = 200_000
 """Steps in one period; more is taken for a motion that runs away."""
 
@@ -70,7 +70,7 @@ def located(train: Train, contact: int) -> bool:
     if contact < 2:
         return True
     b = contact - 2
-    return train.kinds[b, KIND] == RING and train.laws[b, EXPONENT] == 1.0
+    return bool(train.kinds[b, KIND] == RING and train.laws[b, EXPONENT] == 1.0)
 
 
 @small
@@ -242,7 +242,7 @@ def node_equations(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
                 work.full[o] = -(x * slope[p] + z * slope[p + 2])
                 work.full[o + 1] = -(x * slope[p + 1] + z * slope[p + 3])
         work.full[row + i] += 1.0
-    return size
+    return int(size)
 
 
 @part

@@ -271,7 +271,7 @@ def flank_factors(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
                 matrix[i, j] -= factor * matrix[p, j]
             matrix[i, p] = factor
         matrix[p, p] = pivot
-    return size
+    return int(size)
 
 
 @small

@@ -1,0 +1,155 @@
+"""The event-exact return map of one mass with clearance, alone and many side by side."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.dynamics import exact
+from thermogear.dynamics.blocks import Pace, run_blocks
+from thermogear.dynamics.return_map import Visit
+from thermogear.dynamics.tables import Lanes
+
+Floats = NDArray[np.float64]
+
+
+def scales(lanes: Lanes) -> Floats:
+    """Scales of (x, x') for distances, of the first lane: b and 2 pi b/period."""
+    backlash = float(lanes.half_backlash[0])
+    return np.array([backlash, 2.0 * np.pi * backlash / float(lanes.period[0])])
+
+
+class ExactMap:
+    """P: (x, x') at phase 0 to (x, x') one period later, of one lane, by event-exact maps."""
+
+    def __init__(self, lanes: Lanes, samples: int = 0) -> None:
+        if len(lanes) != 1:
+            raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
+        self.lanes = lanes
+        ((_, borders, marks),) = exact.layouts(lanes, samples=samples)
+        self.maps = exact.prepare_maps(lanes, borders, marks)
+        self.period = float(lanes.period[0])
+        self.backlash = float(lanes.half_backlash[0])
+
+    @property
+    def dimension(self) -> int:
+        """Length 2 of a state (x, x')."""
+        return 2
+
+    @property
+    def unit(self) -> Floats:
+        """Scales of (x, x') for distances: b and 2 pi b/period."""
+        return scales(self.lanes)
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        """Largest component of the difference in units of :attr:`unit`, over leading axes."""
+        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
+
+    def determinant(self, periods: int) -> float:
+        """det D P^n = exp(-c n T) of every trajectory."""
+        return float(np.exp(-self.lanes.damping[0] * self.period * periods))
+
+    def flow(self, start: Floats, halves: int) -> tuple[Floats, Floats]:
+        """State (2,) and Jacobian (2, 2) ``halves`` half periods later.
+
+        An odd number needs a border of the sub-steps at phase 1/2, as every uniform layout has.
+        """
+        state = exact.State.start(
+            x=np.array([start[0]]), y=np.array([start[1]]), backlash=self.lanes.half_backlash
+        )
+        if halves > 1:
+            exact.advance(self.maps, state, halves // 2, columns=2)
+        if halves % 2:
+            exact.advance(exact.first_half(self.maps), state, 1, columns=2)
+        return np.array([state.x[0], state.y[0]]), state.tangent[:, 0].reshape(2, 2)
+
+    def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
+        """Run ``periods`` periods from ``start`` with the variational equations."""
+        state = exact.State.start(
+            x=np.array([start[0]]), y=np.array([start[1]]), backlash=self.lanes.half_backlash
+        )
+        sections, _, samples = exact.advance(self.maps, state, periods, columns=2, sampled=sampled)
+        points = np.vstack([np.asarray(start, dtype=float)[None], sections[:, :, 0]])
+        return Visit(
+            points=points,
+            jacobian=state.tangent[:, 0].reshape(2, 2),
+            contact_losses=int(state.counts[0, 0]),
+            back_impacts=int(state.counts[1, 0]),
+            shares=state.spent[:, 0] / (periods * self.period),
+            samples=samples[:, :, 0],
+        )
+
+
+class Ensemble:
+    """Many lanes running side by side, with the last stretch of their sections kept.
+
+    ``parting``: one tangent travels along every lane; :attr:`level` is ln|D P^n e| over the last
+    :meth:`run` and :attr:`top` the largest it was on the way.
+    """
+
+    def __init__(
+        self,
+        lanes: Lanes,
+        start: Floats,
+        *,
+        threads: int | None = None,
+        refine: int = 1,
+        parting: bool = False,
+    ) -> None:
+        self.lanes = lanes
+        self.threads = threads
+        self.elapsed = 0
+        self.parting = parting
+        self.level = np.zeros(len(lanes))
+        self.top = np.zeros(len(lanes))
+        self._blocks = list(exact.layouts(lanes, refine=refine))
+        self._states = [
+            exact.State.start(
+                x=start[index, 0], y=start[index, 1], backlash=lanes.half_backlash[index]
+            )
+            for index, _, _ in self._blocks
+        ]
+
+    @property
+    def state(self) -> Floats:
+        """Present (x, x') of every lane: (lane, 2)."""
+        out = np.empty((len(self.lanes), 2))
+        for (index, _, _), state in zip(self._blocks, self._states, strict=True):
+            out[index, 0], out[index, 1] = state.x, state.y
+        return out
+
+    def run(self, periods: int, *, keep: int = 0) -> Floats:
+        """Advance; the last ``keep`` sections as (lane, keep, 2)."""
+        kept = np.full((len(self.lanes), keep, 2), np.nan)
+        self.level[:] = 0.0
+        self.top[:] = 0.0
+
+        def block(number: int, pace: Pace) -> None:
+            # prepared anew: it costs some thirty periods and spares the memory of all blocks
+            index, borders, marks = self._blocks[number]
+            maps = exact.prepare_maps(self.lanes.take(index), borders, marks)
+            state = self._states[number]
+            if self.parting:
+                turn = 2.0 * np.pi / self.lanes.period[index]
+                state.tangent[0] = 1.0 / np.hypot(1.0, turn)
+                state.tangent[2] = turn / np.hypot(1.0, turn)
+            for first, count in pace.chunks(periods, lanes=index.size):
+                sections, stretch, _ = exact.advance(
+                    maps, state, count, columns=int(self.parting), normalise=self.parting
+                )
+                if self.parting:
+                    levels = np.cumsum(np.vstack([self.level[index], stretch]), axis=0)
+                    self.level[index] = levels[-1]
+                    self.top[index] = np.fmax(self.top[index], np.max(levels, axis=0))
+                wanted = first + count - (periods - keep)
+                if wanted > 0:
+                    part = sections[-min(wanted, count) :].transpose(2, 0, 1)
+                    kept[index, wanted - part.shape[1] : wanted] = part
+
+        jobs = [partial(block, number) for number in range(len(self._blocks))]
+        run_blocks(jobs, len(self.lanes) * periods, threads=self.threads)
+        self.elapsed += periods
+        return kept

@@ -1,0 +1,87 @@
+"""The return map of a drive train: its state at mesh phase 0, one cycle of its forces later."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.ladder import Engine, Steps
+from thermogear.dynamics.return_map import Visit
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GearedMap:
+    """P of a :class:`~thermogear.dynamics.geared.GearedModel`, by its engine.
+
+    The state (q, q') is that of the model; a period is its ``cycle`` of mesh periods, one without
+    forces at shaft orders. ``samples`` a mesh period of what a visit records.
+    """
+
+    model: GearedModel
+    how: Steps = field(default_factory=Steps)
+    samples: int = 0
+
+    @cached_property
+    def engine(self) -> Engine:
+        """The tables of the steps."""
+        return Engine(self.model, self.how)
+
+    @property
+    def dimension(self) -> int:
+        """Length of a state."""
+        return self.model.dimension
+
+    @property
+    def period(self) -> float:
+        """Duration of one application [s]."""
+        return self.model.cycle * self.model.period
+
+    @cached_property
+    def unit(self) -> Floats:
+        """Scales of a state: what moves the mesh by a half backlash, 2 pi/T times that for q'.
+
+        A coordinate's scale is b' times its share in the shape that the mesh force pulls the train
+        into, at least a thousandth of the largest by mass.
+        """
+        model = self.model
+        n, b = model.size, model.half_backlash
+        mass = np.sqrt(np.abs(np.diag(model.mass)))
+        inertia = float(model.drive @ np.linalg.solve(model.mass, model.drive))
+        # of all shapes with the energy of the pair moving by b'
+        size = b / np.sqrt(inertia) / mass
+        found = np.concatenate([size, 2.0 * np.pi / model.period * size])
+        if model.slip is not None:
+            vector, fall, _ = model.slip
+            speed = float(np.abs(vector) @ found[n : 2 * n])
+            found = np.append(found, max(fall * speed, 1e-12))
+        return found
+
+    def determinant(self, periods: int) -> float:
+        """det D P^n = exp(T tr A), whatever the contacts do."""
+        return self.model.determinant(periods * self.model.cycle)
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        """Largest component of the difference in units of :attr:`unit`, over leading axes."""
+        return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
+
+    def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
+        """Run ``periods`` cycles from ``start`` with the variational equations."""
+        cycle = self.model.cycle
+        run = self.engine.run(
+            start, periods * cycle, tangent=True, samples=self.samples if sampled else 0
+        )
+        points = np.vstack([np.asarray(start, dtype=float)[None], run.sections[cycle - 1 :: cycle]])
+        return Visit(
+            points=points,
+            jacobian=run.jacobian,
+            contact_losses=run.counts["losses"],
+            back_impacts=run.counts["impacts"],
+            shares=run.shares,
+            samples=run.samples,
+        )

@@ -1,0 +1,83 @@
+"""The return map of any model: the state at phase 0 to the state n periods later.
+
+What analysis knows of a model. One mass with clearance has its event-exact map
+(:mod:`~thermogear.dynamics.exact_map`), a drive train its own
+(:mod:`~thermogear.dynamics.geared_map`), a smooth model one by integration
+(:mod:`~thermogear.dynamics.smooth_map`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Visit:
+    """Where ``n`` periods of one state lead.
+
+    ``points`` (n + 1, d) on the section, ``jacobian`` D P^n (d, d), ``contact_losses`` and
+    ``back_impacts`` counted, ``shares`` of time in back contact, free flight, drive contact,
+    ``samples`` (n * samples a period, d) when asked for.
+    """
+
+    points: Floats
+    jacobian: Floats
+    contact_losses: int
+    back_impacts: int
+    shares: Floats
+    samples: Floats
+
+
+@runtime_checkable
+class ReturnMap(Protocol):
+    """P: a state (d,) at phase 0 to the state one ``period`` [model's unit of time] later.
+
+    ``dimension`` d; ``unit`` (d,) the scales of a state, in which distances and residuals are
+    measured.
+    """
+
+    @property
+    def dimension(self) -> int: ...
+
+    @property
+    def period(self) -> float: ...
+
+    @property
+    def unit(self) -> Floats: ...
+
+    def determinant(self, periods: int) -> float:
+        """det D P^n where every trajectory has the same, else nan."""
+        ...
+
+    def distance(self, one: Floats, other: Floats) -> Floats:
+        """Largest component of the difference in units of ``unit``, over leading axes."""
+        ...
+
+    def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
+        """Run ``periods`` periods from ``start`` with the variational equations."""
+        ...
+
+
+def return_map(model: object, samples: int = 0) -> ReturnMap:
+    """The return map of ``model``, or ``model`` itself where it is one; else InputError."""
+    if isinstance(model, ReturnMap) and samples == 0:
+        return model
+    lanes = getattr(model, "lanes", None)
+    made = getattr(lanes() if callable(lanes) else model, "return_map", None)
+    if made is None:
+        raise InputError(
+            "model",
+            type(model).__name__,
+            why="it has no return map",
+            allowed="a clearance oscillator, a GearedModel or a SmoothModel",
+        )
+    found: ReturnMap = made(samples)
+    return found
