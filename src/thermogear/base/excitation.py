@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.base.pieces import Pieces
 
 Floats = NDArray[np.float64]
 
@@ -95,6 +96,34 @@ class Periodic:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FrictionSplit:
+    """Friction of the teeth per unit of the drive flank's force, over the mesh phase.
+
+    chi_0 = sum of share mu sign over the tooth pairs, ``at_pitch`` [-], and chi_1 = sum of share mu
+    sign s, ``per_metre`` [m], with s [m] from the pitch point, + in recess, and sign +1 there. The
+    generalised friction force of a mesh under F_d is F_d (chi_0 p_0 + chi_1 p_1), p_0 and p_1
+    the columns of :attr:`~thermogear.shafts.mesh_lines.MeshFrame.friction_columns`. Both functions
+    have the same starts of pieces. chi_0 jumps at each of ``jumps``, the phase at which a pair
+    passes the pitch point, and where one enters or leaves under load; each piece holds on both
+    of its sides.
+
+    >>> none = Pieces.constant(starts=[0.0], values=[0.0])
+    >>> FrictionSplit(at_pitch=none, per_metre=none).jumps
+    ()
+    """
+
+    at_pitch: Pieces
+    per_metre: Pieces
+    jumps: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.at_pitch.starts != self.per_metre.starts:
+            raise InputError("friction.starts", "two lists", allowed="the same for both functions")
+        if not set(self.jumps) <= set(self.at_pitch.starts):
+            raise InputError("friction.jumps", self.jumps, allowed="starts of pieces")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Excitation:
     """One operating point of a gear pair as its vibration sees it (SI).
 
@@ -106,7 +135,7 @@ class Excitation:
     one) is the length scale of the dimensionless equation. ``mean_force`` F [N],
     ``mesh_frequency`` [rad/s], ``inertias`` [kg m^2], ``base_radii`` [m] and ``torques`` [N m]
     of pinion and wheel. ``damping_ratio`` zeta refers to omega_n = sqrt(k_m/m_e), k_m the time
-    mean of k.
+    mean of k. ``friction`` of the teeth where it was asked for; x itself does not feel it.
     """
 
     stiffness: Periodic
@@ -119,6 +148,7 @@ class Excitation:
     base_radii: tuple[float, float]
     torques: tuple[float, float]
     damping_ratio: float
+    friction: FrictionSplit | None = None
 
     def __post_init__(self) -> None:
         positive = {
@@ -154,7 +184,8 @@ class Excitations:
     The first axis of every array is the point. ``status`` as a mesh cycle's: 0 where the point
     moves, else its other numbers mean nothing. ``stiffness`` and ``error`` are Fourier
     coefficients (point, 1 + harmonic), the mean first, as :class:`Periodic` has them;
-    ``inertias``, ``base_radii`` and ``torques`` (point, 2); everything in SI.
+    ``inertias``, ``base_radii`` and ``torques`` (point, 2); everything in SI. ``friction``: one
+    for each point, or None where it was not asked for.
     """
 
     status: NDArray[np.int8]
@@ -168,6 +199,7 @@ class Excitations:
     torques: Floats
     damping_ratio: Floats
     base_radii: Floats
+    friction: tuple[FrictionSplit | None, ...] | None = None
 
     def __len__(self) -> int:
         return self.status.size
@@ -187,8 +219,12 @@ class Excitations:
     def take(self, index: ArrayLike) -> Excitations:
         """Some of the points, in that order."""
         chosen = np.atleast_1d(np.asarray(index))
-        arrays = {f.name: getattr(self, f.name) for f in fields(self)}
-        return replace(self, **{name: array[chosen] for name, array in arrays.items()})
+        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "friction"}
+        rubbed = self.friction
+        if rubbed is not None:
+            rubbed = tuple(rubbed[i] for i in np.arange(len(self))[chosen])
+        some = {name: array[chosen] for name, array in arrays.items()}
+        return replace(self, **some, friction=rubbed)
 
     @classmethod
     def of(cls, rows: Sequence[Excitation]) -> Excitations:
@@ -209,6 +245,7 @@ class Excitations:
             torques=column("torques"),
             damping_ratio=column("damping_ratio"),
             base_radii=column("base_radii"),
+            friction=_asked([(one.friction,) for one in rows]),
         )
 
     @classmethod
@@ -218,6 +255,10 @@ class Excitations:
             return parts[0]
         made: dict[str, Any] = {}
         for field in fields(cls):
+            if field.name == "friction":
+                spread = (one.friction or (None,) * len(one) for one in parts)
+                made["friction"] = _asked(list(spread))
+                continue
             given = [getattr(one, field.name) for one in parts]
             if field.name in ("stiffness", "error"):
                 width = max(one.shape[1] for one in given)
@@ -250,7 +291,16 @@ class Excitations:
             base_radii=radii,
             torques=torques,
             damping_ratio=float(self.damping_ratio[place]),
+            friction=None if self.friction is None else self.friction[place],
         )
+
+
+def _asked(
+    parts: Sequence[tuple[FrictionSplit | None, ...]],
+) -> tuple[FrictionSplit | None, ...] | None:
+    """The friction of all points; None where none has any."""
+    found = tuple(one for part in parts for one in part)
+    return found if any(one is not None for one in found) else None
 
 
 def padded(rows: NDArray[Any], width: int) -> NDArray[Any]:

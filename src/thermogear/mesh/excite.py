@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.excitation import (
     Excitation,
     Excitations,
+    FrictionSplit,
     Periodic,
     fourier_rows,
     padded,
@@ -47,6 +48,7 @@ def excitation(
     inertias: tuple[float, float] | None = None,
     transmission_error: Periodic = NO_ERROR,
     harmonics: int = 40,
+    friction: Sequence[FrictionSplit | None] | None = None,
 ) -> list[Excitation | None]:
     """The excitation of every operating point of ``cycle``; None where the pair is jammed.
 
@@ -70,6 +72,7 @@ def excitation(
         inertias=inertias,
         transmission_error=transmission_error,
         harmonics=harmonics,
+        friction=friction,
     )
     return [found.one(place) for place in range(len(found))]
 
@@ -86,6 +89,7 @@ def excitations(
     inertias: ArrayLike | None = None,
     transmission_error: Periodic = NO_ERROR,
     harmonics: int = 40,
+    friction: Sequence[FrictionSplit | None] | None = None,
 ) -> Excitations:
     """The excitation of every operating point of ``cycle``, in columns.
 
@@ -96,7 +100,8 @@ def excitations(
     counted twice.
     The half backlash is its mean over the phase, the length scale the cold one. ``inertias``
     [kg m^2], two or (operating, 2), default to solid discs of pitch radius; ``damping_ratio`` is a
-    number or one for each point. Torques balance: T2 = T1 z2/z1.
+    number or one for each point. Torques balance: T2 = T1 z2/z1. ``friction`` of the teeth by
+    :func:`~thermogear.mesh.tooth_friction.friction_split`, one for each point, is handed on.
     Raises for a speed of 0, where no mesh frequency exists.
     """
     speeds = np.asarray(cycle["pinion_speed"], dtype=float)
@@ -114,6 +119,8 @@ def excitations(
             disc_inertia(pair.wheel, radius=pair.wheel.pitch_radius),
         )
     count = speeds.size
+    if friction is not None and len(friction) != count:
+        raise InputError("friction", f"{len(friction)} of them", allowed=f"{count}, as the points")
     status = np.asarray(cycle["status"], dtype=np.int8)
     moving = status == STATUS.index("ok")
     samples = {}
@@ -136,4 +143,5 @@ def excitations(
         torques=np.stack([torque, torque * pair.ratio], axis=1),
         damping_ratio=np.broadcast_to(np.asarray(damping_ratio, dtype=float), (count,)),
         base_radii=np.broadcast_to([pair.pinion.base_radius, pair.wheel.base_radius], (count, 2)),
+        friction=None if friction is None else tuple(friction),
     )
