@@ -38,7 +38,9 @@ class Taylor:
 
         def along(row: Floats, of: Any) -> Any:
             least = 1e-13 * np.abs(row).max()
-            return hy.sum([float(a) * one for a, one in zip(row, of, strict=True) if abs(a) > least])
+            return hy.sum(
+                [float(a) * one for a, one in zip(row, of, strict=True) if abs(a) > least]
+            )
 
         k, e, slope = wave(modal.k), wave(modal.e), wave(modal.e, rate=True)
         y = [along(row, z) for row in modal.outputs]
@@ -107,7 +109,9 @@ class Taylor:
         pairs = zip(found[:-1], own.outputs, strict=True)
         # what the parts leave stays in the rest where it is more than rounding
         extra = np.where(np.abs(left) > 1e-15 * np.abs(even).max(), left, 0.0)
-        return rest + extra.reshape(rest.shape), [(float(c), w) for c, w in pairs if abs(c) > 1e-9 * np.abs(found[:-1]).max()]
+        return rest + extra.reshape(rest.shape), [
+            (float(c), w) for c, w in pairs if abs(c) > 1e-9 * np.abs(found[:-1]).max()
+        ]
 
     def begin(self, start: Floats) -> None:
         """Set the state (z, z') at phase 0."""

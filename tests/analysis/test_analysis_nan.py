@@ -29,8 +29,9 @@ from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, Rule
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.vocabulary import STATUS
 from thermogear.dynamics import exact
+from thermogear.dynamics.exact_map import ExactMap
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.dynamics.return_map import ExactMap, Visit, return_map
+from thermogear.dynamics.return_map import Visit, return_map
 
 CALM = TorsionalModel(
     damping_ratio=0.1535,

@@ -12,6 +12,7 @@ C holds c_m g_d g_d^T. Phase 0 at t = 0.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -156,9 +157,9 @@ class Reference:
         self.atol = 0.1 * self.rtol * np.r_[np.full(n, size), np.full(n, speed)]
         closed, step = self.gaps(t[0], x) > 0.0, self.period / 200.0
         found = [given]
-        for start, end in zip(t[:-1], t[1:], strict=True):
+        for start, end in pairwise(t):
             marks = np.r_[start, self._borders(start, end), end]
-            for low, high in zip(marks[:-1], marks[1:], strict=True):
+            for low, high in pairwise(marks):
                 beside = BESIDE * self.period
                 self.window = (low + beside, high - beside)
                 x, closed, step = self._advance(low, high, x, closed, step)

@@ -44,6 +44,12 @@ class LocalBearing:
     angle: float = 0.0
     base: Floats = field(default_factory=lambda: np.zeros((2, 2)))
 
+    @property
+    def rays(self) -> Floats:
+        """Unit vectors from the centre to every rolling element, (elements, 2)."""
+        psi = self.angle + 2.0 * np.pi * np.arange(self.elements) / max(self.elements, 1)
+        return np.stack([np.cos(psi), np.sin(psi)], axis=-1)
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OuterForce:
@@ -66,10 +72,10 @@ class GearedModel:
     ``mass``, ``damping`` (gyroscopics and the mesh's c_m included), ``stiffness`` (n, n) without
     the mesh and without ``bearings``; ``force`` f0 (n,). ``drive`` and ``back`` g_d, g_b (n,);
     ``friction`` p_0, p_1 (2, n) with ``friction_at_pitch`` chi_0 and ``friction_per_metre`` chi_1
-    [m]. ``mesh_stiffness`` k [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b'
-    [m], ``mesh_damping`` c_m [N s/m], ``mesh_frequency`` [Hz]. ``slip`` (vector (n,), d [N m s],
-    lag [s]): a motor whose torque falls with its speed. ``cycle``: mesh periods after which all
-    forces come again.
+    [m], which jump at ``friction_jumps``, left out: at every start of a piece. ``mesh_stiffness`` k
+    [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b' [m], ``mesh_damping`` c_m
+    [N s/m], ``mesh_frequency`` [Hz]. ``slip`` (vector (n,), d [N m s], lag [s]): a motor whose
+    torque falls with its speed. ``cycle``: mesh periods after which all forces come again.
     """
 
     mass: Floats
@@ -87,6 +93,7 @@ class GearedModel:
     friction: Floats | None = None
     friction_at_pitch: Function | None = None
     friction_per_metre: Function | None = None
+    friction_jumps: tuple[float, ...] | None = None
     outer: tuple[OuterForce, ...] = ()
     slip: tuple[Floats, float, float] | None = None
     cycle: int = 1
@@ -101,6 +108,18 @@ class GearedModel:
             value = getattr(self, name)
             if value.shape != (n, n) or not np.all(np.isfinite(value)):
                 raise InputError(name, f"shape {value.shape}", allowed=f"({n}, {n}) finite numbers")
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Phases in [0, 1) at which a function jumps: no step reaches over them."""
+        own = {0.0} if self.friction_jumps is None else {0.0, *self.friction_jumps}
+        told: list[Function | None] = [self.mesh_stiffness, self.error]
+        if self.friction_jumps is None:
+            told += [self.friction_at_pitch, self.friction_per_metre]
+        for one in told:
+            if isinstance(one, Pieces):
+                own |= set(one.starts)
+        return tuple(sorted(own))
 
     @property
     def size(self) -> int:
@@ -172,7 +191,7 @@ class GearedModel:
         """The same train at another mesh frequency [Hz]; gyroscopics are not scaled."""
         return replace(self, mesh_frequency=mesh_frequency)
 
-    def mesh_forces(self, phase: ArrayLike, deflections: ArrayLike) -> tuple[Floats, Floats]:
+    def mesh_forces(self, phase: ArrayLike, *, deflections: ArrayLike) -> tuple[Floats, Floats]:
         """F_d and F_b [N] at ``phase`` and ``deflections`` (..., 2) of both flanks."""
         k, e = self.mesh_stiffness(phase), self.error(phase)
         d = np.asarray(deflections, dtype=float)
@@ -188,7 +207,5 @@ class GearedModel:
             deep = np.maximum(r - own.clearance, 0.0)
             towards = np.divide(u, r, out=np.zeros_like(u), where=r > 0.0)
             return np.asarray(-own.coefficient * deep**own.exponent * towards)
-        psi = own.angle + 2.0 * np.pi * np.arange(own.elements) / own.elements
-        rays = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
-        deep = np.maximum(u @ rays.T - own.clearance, 0.0)
-        return np.asarray(-(own.coefficient * deep**own.exponent) @ rays)
+        deep = np.maximum(u @ own.rays.T - own.clearance, 0.0)
+        return np.asarray(-(own.coefficient * deep**own.exponent) @ own.rays)

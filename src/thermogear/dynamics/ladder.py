@@ -149,16 +149,13 @@ class Engine:
                 DEGREE + 1,
             ]
         )
-        kinds, laws = np.zeros((max(count, 1), 2), np.int64), np.zeros((max(count, 1), 8))
+        kinds, laws = np.zeros((max(count, 1), 3), np.int64), np.zeros((max(count, 1), 7))
+        rays = [np.zeros((1, 2))]
         for row, one in enumerate(model.bearings):
-            kinds[row] = (k.RING, 0) if one.elements == 0 else (k.ELEMENTS, one.elements)
-            laws[row] = (
-                one.coefficient,
-                one.exponent,
-                one.clearance,
-                one.angle,
-                *np.ravel(one.base),
-            )
+            first = sum(len(some) for some in rays)
+            kinds[row] = (k.ELEMENTS if one.elements else k.RING, one.elements, first)
+            laws[row] = (one.coefficient, one.exponent, one.clearance, *np.ravel(one.base))
+            rays.append(one.rays)
         outer = np.array(
             [[one.order, one.shift, float(one.rotating)] for one in model.outer] or [[0.0] * 3]
         )
@@ -173,7 +170,16 @@ class Engine:
         )
         self.numbers[k.TOLERANCE] = how.accuracy * model.half_backlash
         self.numbers[k.SWEEP] = how.sweep
-        self._arrays = (kinds, laws, outer, edges, guide, table, borders)
+        self._arrays = (
+            kinds,
+            laws,
+            np.concatenate(rays).ravel(),
+            outer,
+            edges,
+            guide,
+            table,
+            borders,
+        )
         nodes = 0.5 * (np.polynomial.legendre.leggauss(s)[0] + 1.0)
         powers = np.linalg.inv(np.vander(nodes, s, increasing=True))
         places = np.r_[0.0, nodes, 1.0]
@@ -205,7 +211,7 @@ class Engine:
             steps.fill(train, self.ladder, work, rung, length)
 
     def _train(self, turn: float = 0.0) -> k.Train:
-        kinds, laws, outer, edges, guide, table, borders = self._arrays
+        kinds, laws, rays, outer, edges, guide, table, borders = self._arrays
         numbers = self.numbers.copy()
         numbers[k.TURN] = turn
         return k.Train(
@@ -217,6 +223,7 @@ class Engine:
             offset=self.offset,
             kinds=kinds,
             laws=laws,
+            rays=rays,
             outer=outer,
             edges=edges,
             guide=guide,
@@ -279,7 +286,7 @@ class Engine:
         samples: int = 0,
         turn: float = 0.0,
     ) -> Run:
-        """Run ``periods`` mesh periods from the state ``start`` (d,) at phase 0.
+        """Run ``periods`` mesh periods from the state ``start`` [m, m/s] (d,) at phase 0.
 
         ``tangent``: with the Jacobian. ``samples`` a period. ``turn``: whole mesh periods since the
         outer forces began. Raises ConvergenceError where the motion runs away.
@@ -356,8 +363,8 @@ def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats]:
             own.append((place, Periodic(0.0) if one is None else one))
     harmonics = max([len(one.harmonics) for _, one in own if isinstance(one, Periodic)], default=1)
     count = max(int(np.ceil(np.pi * max(harmonics, 1) / PANEL)), 4)
-    jumps = sorted({s for _, one in own if isinstance(one, Pieces) for s in one.starts} - {0.0})
-    edges = np.unique(np.r_[np.linspace(0.0, 1.0, count + 1), jumps])
+    starts = sorted({s for _, one in own if isinstance(one, Pieces) for s in one.starts} - {0.0})
+    edges = np.unique(np.r_[np.linspace(0.0, 1.0, count + 1), starts])
     edges = edges[np.r_[True, np.diff(edges) > 1e-12]]
     edges[-1] = 1.0
     points = -0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
@@ -370,6 +377,8 @@ def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats]:
         table[:, :, place] = (one(at) @ fit.T) * scale
     table[:, :-1, k.RATE] = table[:, 1:, k.ERROR] * np.arange(1.0, DEGREE + 1.0)
     guide = np.searchsorted(edges, np.arange(count) / count, side="right") - 1
-    has_jumps = any(isinstance(one, Pieces) and len(one.starts) > 1 for _, one in own)
-    borders = np.array([*jumps, 1.0]) if has_jumps else np.array([1.0])
+    inner = [phase for phase in model.jumps if phase > 0.0]
+    if not inner and any(isinstance(one, Pieces) for _, one in own):
+        inner = [0.5]
+    borders = np.array([*inner, 1.0])
     return edges, guide.astype(np.int64), table.ravel(), borders

@@ -31,8 +31,8 @@ BASE, BACKLASH, DAMPING, FREQUENCY, RAMP, TOLERANCE, TURN, SWEEP = range(8)
 frequency [Hz] and its rate [Hz/s], allowed error of a step [m], whole periods since the outer
 forces began, share of the tolerance at which sweeps end."""
 RING, ELEMENTS = 1, 2
-KIND, COUNT = 0, 1
-COEFFICIENT, EXPONENT, CLEARANCE, ANGLE, XX, XY, YX, YY = range(8)
+KIND, COUNT, FIRST = range(3)
+COEFFICIENT, EXPONENT, CLEARANCE, XX, XY, YX, YY = range(7)
 """Places in a row of ``Train.laws``; XX to YY are the base's stiffness [N/m]."""
 ORDER, SHIFT, POWER = range(3)
 TWO_PI = 2.0 * math.pi
@@ -42,10 +42,10 @@ class Train(NamedTuple):
     """The equations, read only but for ``numbers`` [FREQUENCY] and [TURN].
 
     Flat: ``out`` (2 modes, felt): Re c and -Im c, ``offset`` y0 (felt), ``table``. ``lam`` (modes)
-    [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 2), ``laws`` (bearings, 8), ``outer``
-    (forces, 3). ``edges`` of the panels of ``table`` (panel, power of the phase from the panel's
-    middle, 8 functions), ``guide`` the panel at k/size of the period; ``borders``: phases in
-    (0, 1], the last 1, where a step must end.
+    [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 3), ``laws`` (bearings, 7), ``rays``
+    cos and sin of every element, ``outer`` (forces, 3). ``edges`` of the panels of ``table``
+    (panel, power of the phase from the panel's middle, 8 functions), ``guide`` the panel at k/size
+    of the period; ``borders``: phases in (0, 1], the last 1, where a step must end.
     """
 
     sizes: Whole
@@ -56,6 +56,7 @@ class Train(NamedTuple):
     offset: Real
     kinds: Whole
     laws: Real
+    rays: Real
     outer: Real
     edges: Real
     guide: Whole
@@ -100,13 +101,11 @@ def bearing_force(
             size = k * (r - c) ** n / r
             fx, fy = -size * x, -size * y
     else:
-        count = kinds[row, COUNT]
-        for i in range(count):
-            psi = laws[row, ANGLE] + TWO_PI * i / count
-            cx, cy = math.cos(psi), math.sin(psi)
+        for i in range(kinds[row, FIRST], kinds[row, FIRST] + kinds[row, COUNT]):
+            cx, cy = train.rays[2 * i], train.rays[2 * i + 1]
             deep = x * cx + y * cy - c
             if deep > 0.0:
-                load = k * deep**n
+                load = k * deep * math.sqrt(deep) if n == 1.5 else k * deep**n
                 fx -= load * cx
                 fy -= load * cy
     out[at] = fx + laws[row, XX] * x + laws[row, XY] * y
@@ -137,10 +136,8 @@ def bearing_slope(
             xy = -slope * ex * ey
             yy = -size - slope * ey * ey
     else:
-        count = kinds[row, COUNT]
-        for i in range(count):
-            psi = laws[row, ANGLE] + TWO_PI * i / count
-            cx, cy = math.cos(psi), math.sin(psi)
+        for i in range(kinds[row, FIRST], kinds[row, FIRST] + kinds[row, COUNT]):
+            cx, cy = train.rays[2 * i], train.rays[2 * i + 1]
             deep = x * cx + y * cy - c
             if deep > 0.0:
                 slope = n * k * deep ** (n - 1.0)
