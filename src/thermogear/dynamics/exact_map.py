@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, run_blocks
-from thermogear.dynamics.return_map import Visit
+from thermogear.dynamics.return_map import Stretch, Visit, stretched
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -65,6 +65,18 @@ class ExactMap:
         if halves % 2:
             exact.advance(exact.first_half(self.maps), state, 1, columns=2)
         return np.array([state.x[0], state.y[0]]), state.tangent[:, 0].reshape(2, 2)
+
+    def carry(self, start: Floats, periods: int) -> Floats:
+        """The states (periods, 2) after 1, 2, ... periods from ``start``."""
+        state = exact.State.start(
+            x=np.array([start[0]]), y=np.array([start[1]]), backlash=self.lanes.half_backlash
+        )
+        sections, _, _ = exact.advance(self.maps, state, periods)
+        return np.asarray(sections[:, :, 0])
+
+    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
+        return stretched(self, start, direction, periods)
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""

@@ -65,6 +65,24 @@ class OuterForce:
     rotating: bool = False
 
 
+@dataclass(frozen=True, kw_only=True)
+class Wobble:
+    """Teeth that turn about another centre than the shaft's: errors Re(a e^{2 pi i order phase}).
+
+    ``order`` in turns per mesh period; complex amplitudes [m] of the error that the ``drive`` and
+    that the ``back`` flank see: each closes less by it.
+    """
+
+    order: float
+    drive: complex
+    back: complex
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Order and both amplitudes as plain numbers."""
+        return (self.order, self.drive.real, self.drive.imag, self.back.real, self.back.imag)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GearedModel:
     """The equation of motion of a drive train without its rigid rotation, n coordinates, SI.
@@ -74,8 +92,9 @@ class GearedModel:
     ``friction`` p_0, p_1 (2, n) with ``friction_at_pitch`` chi_0 and ``friction_per_metre`` chi_1
     [m], which jump at ``friction_jumps``, left out: at every start of a piece. ``mesh_stiffness`` k
     [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b' [m], ``mesh_damping`` c_m
-    [N s/m], ``mesh_frequency`` [Hz]. ``slip`` (vector (n,), d [N m s], lag [s]): a motor whose
-    torque falls with its speed. ``cycle``: mesh periods after which all forces come again.
+    [N s/m], ``mesh_frequency`` [Hz]. ``outer`` forces and ``wobbles`` turn with a shaft. ``slip``
+    (vector (n,), d [N m s], lag [s]): a motor whose torque falls with its speed. ``cycle``: mesh
+    periods after which all forces come again.
     """
 
     mass: Floats
@@ -95,6 +114,7 @@ class GearedModel:
     friction_per_metre: Function | None = None
     friction_jumps: tuple[float, ...] | None = None
     outer: tuple[OuterForce, ...] = ()
+    wobbles: tuple[Wobble, ...] = ()
     slip: tuple[Floats, float, float] | None = None
     cycle: int = 1
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.dynamics.geared import GearedModel
 from thermogear.dynamics.ladder import Engine, Steps
-from thermogear.dynamics.return_map import Visit
+from thermogear.dynamics.return_map import Stretch, Visit
 
 Floats = NDArray[np.float64]
 
@@ -69,6 +69,24 @@ class GearedMap:
     def distance(self, one: Floats, other: Floats) -> Floats:
         """Largest component of the difference in units of :attr:`unit`, over leading axes."""
         return np.asarray(np.max(np.abs(one - other) / self.unit, axis=-1))
+
+    def carry(self, start: Floats, periods: int) -> Floats:
+        """The states (periods, d) after 1, 2, ... cycles from ``start``."""
+        cycle = self.model.cycle
+        return self.engine.run(start, periods * cycle).sections[cycle - 1 :: cycle]
+
+    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+        """Carry ``start`` and a tangent vector ``direction``, made unit after every cycle."""
+        state = np.asarray(start, dtype=float)
+        along = np.asarray(direction, dtype=float) / self.unit
+        along = along / np.linalg.norm(along)
+        growth = np.zeros(periods)
+        for number in range(periods):
+            run = self.engine.run(state, self.model.cycle, directions=along[None] * self.unit)
+            along = run.directions[0] / self.unit
+            size = float(np.linalg.norm(along))
+            growth[number], along, state = np.log(size), along / size, run.state
+        return Stretch(state=state, direction=along * self.unit, growth=growth)
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` cycles from ``start`` with the variational equations."""

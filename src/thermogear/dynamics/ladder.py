@@ -23,6 +23,8 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
+SPARE = 8
+"""Tables for steps of any length, which end where a function jumps."""
 DEGREE = 7
 """Of the polynomials that stand for the periodic functions on a panel."""
 PANEL = 0.2
@@ -49,15 +51,17 @@ class Steps:
 class Run:
     """What one run of a state through mesh periods gave.
 
-    ``sections`` (periods, d): the state at the end of every mesh period; ``state`` the last one,
-    ``jacobian`` (d, d) of the whole where asked for; ``samples`` (periods samples, d) from the
-    start on and their ``sample_phase``; ``times`` (periods) [s] how long each took. ``counts`` of
-    steps, rejected ones, contact changes, sweeps, losses of the drive flank, closings of the back
-    flank, lifts of bearings; ``shares`` of time in back contact, free flight, drive contact.
+    ``sections`` (periods, d): the state at the end of every mesh period; ``state`` the last one.
+    ``jacobian`` (d, d) of the whole and tangent ``directions`` (count, d), where asked for.
+    ``samples`` (periods samples, d) from the start on and their ``sample_phase``; ``times``
+    (periods) [s] how long each took. ``counts`` of steps, rejected ones, contact changes, sweeps,
+    losses of the drive flank, closings of the back flank, lifts of bearings; ``shares`` of time in
+    back contact, free flight, drive contact.
     """
 
     sections: Floats
     jacobian: Floats
+    directions: Floats
     samples: Floats
     sample_phase: Floats
     times: Floats
@@ -170,16 +174,9 @@ class Engine:
         )
         self.numbers[k.TOLERANCE] = how.accuracy * model.half_backlash
         self.numbers[k.SWEEP] = how.sweep
-        self._arrays = (
-            kinds,
-            laws,
-            np.concatenate(rays).ravel(),
-            outer,
-            edges,
-            guide,
-            table,
-            borders,
-        )
+        around = np.concatenate(rays).ravel()
+        wobbles = np.array([one.row for one in model.wobbles]).reshape(-1, 5)
+        self._arrays = (kinds, laws, around, outer, wobbles, edges, guide, table, borders)
         nodes = 0.5 * (np.polynomial.legendre.leggauss(s)[0] + 1.0)
         powers = np.linalg.inv(np.vander(nodes, s, increasing=True))
         places = np.r_[0.0, nodes, 1.0]
@@ -187,7 +184,7 @@ class Engine:
         shifted = np.polynomial.legendre.leg2poly(np.eye(s + 1)[s])
         # P_s(2 x - 1) in powers of x
         line = np.polynomial.Polynomial(shifted)(np.polynomial.Polynomial([-1.0, 2.0]))
-        size = how.rungs + 1
+        size = how.rungs + SPARE
         self.ladder = steps.Ladder(
             nodes=nodes,
             powers=np.ascontiguousarray(powers),
@@ -211,7 +208,7 @@ class Engine:
             steps.fill(train, self.ladder, work, rung, length)
 
     def _train(self, turn: float = 0.0) -> k.Train:
-        kinds, laws, rays, outer, edges, guide, table, borders = self._arrays
+        kinds, laws, rays, outer, wobbles, edges, guide, table, borders = self._arrays
         numbers = self.numbers.copy()
         numbers[k.TURN] = turn
         return k.Train(
@@ -225,6 +222,7 @@ class Engine:
             laws=laws,
             rays=rays,
             outer=outer,
+            wobbles=wobbles,
             edges=edges,
             guide=guide,
             table=table,
@@ -259,7 +257,7 @@ class Engine:
             slope=np.zeros(s * (4 + 4 * count)),
             sample=np.zeros(span),
             added=np.zeros(4 * s),
-            pace=np.ones(2),
+            pace=np.array([1.0, 0.0, 0.0]),
             start_force=np.zeros(max(inputs, 8)),
             lacking=np.zeros(inputs),
             start_slope=np.zeros(4 + 4 * count),
@@ -283,21 +281,26 @@ class Engine:
         periods: int = 1,
         *,
         tangent: bool = False,
+        directions: ArrayLike | None = None,
         samples: int = 0,
         turn: float = 0.0,
     ) -> Run:
         """Run ``periods`` mesh periods from the state ``start`` [m, m/s] (d,) at phase 0.
 
-        ``tangent``: with the Jacobian. ``samples`` a period. ``turn``: whole mesh periods since the
+        ``tangent``: with the Jacobian; ``directions`` (count, d): with these tangent vectors alone.
+        ``samples`` a period. ``turn``: whole mesh periods since the
         outer forces began. Raises ConvergenceError where the motion runs away.
         """
         d, span = self.model.dimension, padded(2 * self.lam.size)
-        columns = d if tangent else 0
+        along = np.eye(d) if tangent else np.zeros((0, d))
+        if directions is not None and not tangent:
+            along = np.asarray(directions, dtype=float)
+        columns = along.shape[0]
         state = np.zeros(span)
         state[: 2 * self.lam.size] = self.modal(np.asarray(start, dtype=float))
         bundle = np.zeros((max(columns, 1), span))
-        if tangent:
-            bundle[:, : 2 * self.lam.size] = _split(np.eye(d) @ self.to_modes.T)
+        if columns:
+            bundle[:, : 2 * self.lam.size] = _split(along @ self.to_modes.T)
         flat = bundle.ravel()
         train, work = self._train(turn), self._work(columns)
         sections = np.zeros(periods * span)
@@ -325,6 +328,7 @@ class Engine:
         return Run(
             sections=self.physical(sections.reshape(-1, span)[:, : 2 * self.lam.size]),
             jacobian=np.ascontiguousarray(turned.real.T) if tangent else np.eye(d),
+            directions=np.ascontiguousarray(turned.real[:columns]),
             samples=self.physical(rows),
             sample_phase=np.arange(periods * samples) / max(samples, 1),
             times=times,
@@ -375,6 +379,7 @@ def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats]:
     scale = width[:, None] ** -np.arange(DEGREE + 1.0)
     for place, one in own:
         table[:, :, place] = (one(at) @ fit.T) * scale
+    table[:, :, k.BACK_ERROR] = -table[:, :, k.ERROR]
     table[:, :-1, k.RATE] = table[:, 1:, k.ERROR] * np.arange(1.0, DEGREE + 1.0)
     guide = np.searchsorted(edges, np.arange(count) / count, side="right") - 1
     inner = [phase for phase in model.jumps if phase > 0.0]

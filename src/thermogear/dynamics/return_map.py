@@ -36,6 +36,19 @@ class Visit:
     samples: Floats
 
 
+@dataclass(frozen=True, kw_only=True)
+class Stretch:
+    """A tangent vector along a trajectory: the last ``state`` and unit ``direction``, (d,).
+
+    ``growth`` (periods,): ln of how much each period stretched it. Lengths are measured in units of
+    the map.
+    """
+
+    state: Floats
+    direction: Floats
+    growth: Floats
+
+
 @runtime_checkable
 class ReturnMap(Protocol):
     """P: a state (d,) at phase 0 to the state one ``period`` [model's unit of time] later.
@@ -61,6 +74,14 @@ class ReturnMap(Protocol):
         """Largest component of the difference in units of ``unit``, over leading axes."""
         ...
 
+    def carry(self, start: Floats, periods: int) -> Floats:
+        """The states (periods, d) after 1, 2, ... periods from ``start``, nothing else."""
+        ...
+
+    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+        """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
+        ...
+
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
         ...
@@ -81,3 +102,17 @@ def return_map(model: object, samples: int = 0) -> ReturnMap:
         )
     found: ReturnMap = made(samples)
     return found
+
+
+def stretched(section: ReturnMap, start: Floats, direction: Floats, periods: int) -> Stretch:
+    """:meth:`ReturnMap.stretch` by the whole Jacobian of every period."""
+    state = np.asarray(start, dtype=float)
+    along = np.asarray(direction, dtype=float) / section.unit
+    along = along / np.linalg.norm(along)
+    growth = np.zeros(periods)
+    for number in range(periods):
+        visit = section.visit(state)
+        along = visit.jacobian @ (along * section.unit) / section.unit
+        size = float(np.linalg.norm(along))
+        growth[number], along, state = np.log(size), along / size, visit.points[-1]
+    return Stretch(state=state, direction=along * section.unit, growth=growth)

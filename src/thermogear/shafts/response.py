@@ -100,10 +100,16 @@ def run_out_error(assembly: Assembly, run_out: RunOut) -> complex:
     The gear's centre, moved by ``eccentricity``, pushes its flank along the drive normal; the
     other gear sees it as an error of that size.
     """
+    return run_out_errors(assembly, run_out)[0]
+
+
+def run_out_errors(assembly: Assembly, run_out: RunOut) -> tuple[complex, complex]:
+    """:func:`run_out_error` as the drive flank and as the back flank see it, each closing less."""
     pinion = run_out.shaft == SHAFTS[0]
     moved = _circle(run_out.angle, 1.0 if pinion else assembly.frame.ratio, assembly.frame.sense)
-    normal = assembly.frame.normals[0]
-    return complex(run_out.eccentricity * (-1.0 if pinion else 1.0) * (normal @ moved))
+    size = run_out.eccentricity * (-1.0 if pinion else 1.0)
+    drive, back = (complex(size * (normal @ moved)) for normal in assembly.frame.normals)
+    return drive, back
 
 
 def _rising(speed: ArrayLike) -> Floats:

@@ -24,8 +24,9 @@ Whole = NDArray[np.int64]
 
 MODES, NODES, OUTPUTS, INPUTS, FRICTION, BEARINGS, RUNGS, SPAN, WIDE, FELT, ORDERS = range(11)
 """Places in ``Train.sizes``; padded to eights: SPAN 2 modes, WIDE nodes outputs, FELT outputs."""
-STIFFNESS, ERROR, RATE, PITCH, METRE = range(5)
-"""Rows of the table of periodic functions; RATE is de/dphase, PITCH chi_0, METRE chi_1."""
+STIFFNESS, ERROR, RATE, PITCH, METRE, BACK_ERROR = range(6)
+"""Rows of the table of periodic functions; RATE is de/dphase, PITCH chi_0, METRE chi_1,
+BACK_ERROR what the back flank sees, -e."""
 BASE, BACKLASH, DAMPING, FREQUENCY, RAMP, TOLERANCE, TURN, SWEEP = range(8)
 """Places in ``Train.numbers``: base stiffness of the drive flank [N/m], b' [m], c_m [N s/m], mesh
 frequency [Hz] and its rate [Hz/s], allowed error of a step [m], whole periods since the outer
@@ -43,9 +44,10 @@ class Train(NamedTuple):
 
     Flat: ``out`` (2 modes, felt): Re c and -Im c, ``offset`` y0 (felt), ``table``. ``lam`` (modes)
     [1/s], ``into`` beta (modes, inputs); ``kinds`` (bearings, 3), ``laws`` (bearings, 7), ``rays``
-    cos and sin of every element, ``outer`` (forces, 3). ``edges`` of the panels of ``table``
-    (panel, power of the phase from the panel's middle, 8 functions), ``guide`` the panel at k/size
-    of the period; ``borders``: phases in (0, 1], the last 1, where a step must end.
+    cos and sin of every element, ``outer`` (forces, 3), ``wobbles`` (run-outs, 5). ``edges`` of the
+    panels of ``table`` (panel, power of the phase from the panel's middle, 8 functions), ``guide``
+    the panel at k/size of the period; ``borders``: phases in (0, 1], the last 1, where a step must
+    end.
     """
 
     sizes: Whole
@@ -58,6 +60,7 @@ class Train(NamedTuple):
     laws: Real
     rays: Real
     outer: Real
+    wobbles: Real
     edges: Real
     guide: Whole
     table: Real
@@ -65,21 +68,32 @@ class Train(NamedTuple):
 
 
 @small
-def excite(train: Train, phase: float, values: Real, place: int) -> None:
-    """Write the periodic functions at ``phase`` (0..1) to eight ``place`` of ``values``."""
+def excite(train: Train, phase: float, turned: float, values: Real, place: int) -> None:
+    """Write the periodic functions at ``phase`` (0..1) to eight ``place`` of ``values``.
+
+    ``turned``: mesh periods since the shafts' own errors began.
+    """
     uniform = train.guide.size
     panel = train.guide[min(max(int(phase * uniform), 0), uniform - 1)]
     last = train.edges.size - 2
     while panel < last and phase >= train.edges[panel + 1]:
         panel += 1
     x = phase - 0.5 * (train.edges[panel] + train.edges[panel + 1])
-    order = train.sizes[ORDERS]
-    at = EIGHT * (panel * order + order - 1)
+    powers = train.sizes[ORDERS]
+    at = EIGHT * (panel * powers + powers - 1)
     total = load(train.table, at)
-    for _ in range(order - 1):
+    for _ in range(powers - 1):
         at -= EIGHT
         total = total * x + load(train.table, at)
     store(values, EIGHT * place, total)
+    at = EIGHT * place
+    for row in range(train.wobbles.shape[0]):
+        angle = TWO_PI * train.wobbles[row, 0]
+        c, s = math.cos(angle * turned), math.sin(angle * turned)
+        a, b = train.wobbles[row, 1], train.wobbles[row, 2]
+        values[at + ERROR] += a * c - b * s
+        values[at + RATE] -= angle * (a * s + b * c)
+        values[at + BACK_ERROR] += train.wobbles[row, 3] * c - train.wobbles[row, 4] * s
 
 
 @small
@@ -205,7 +219,8 @@ def flank_forces(
     d, b = deflections[at], deflections[at + 1]
     pressed = k * (d - e - numbers[BACKLASH]) if closed[0] == 1 else 0.0
     force[place] = numbers[BASE] * d - pressed + numbers[DAMPING] * values[row + RATE] * rate
-    force[place + stride] = -k * (b + e - numbers[BACKLASH]) if closed[1] == 1 else 0.0
+    other = values[row + BACK_ERROR]
+    force[place + stride] = -k * (b - other - numbers[BACKLASH]) if closed[1] == 1 else 0.0
     if train.sizes[FRICTION] == 1:
         force[place + 2 * stride] = pressed * values[row + PITCH]
         force[place + 3 * stride] = pressed * values[row + METRE]

@@ -7,6 +7,7 @@ import math
 from thermogear.dynamics.kernels.calculus import along, first_root, gather, solve_lu
 from thermogear.dynamics.kernels.compiled import kernel, part, small
 from thermogear.dynamics.kernels.drive import (
+    BACK_ERROR,
     BACKLASH,
     BASE,
     BEARINGS,
@@ -74,20 +75,20 @@ def located(train: Train, contact: int) -> bool:
 
 
 @small
-def gap_at(train: Train, contact: int, outputs: Real, at: int, error: float) -> float:
-    """Penetration of a contact from ``outputs[at:]``."""
+def gap_at(train: Train, work: Work, contact: int, outputs: Real, at: int, row: int) -> float:
+    """Penetration of a contact from ``outputs[at:]`` and the functions in ``row``."""
     o = at if contact < 2 else at + 2 * contact - 2
-    return gap_of(train, contact, outputs[o], outputs[o + 1], error)
+    error = work.values[EIGHT * row + (ERROR if contact == 0 else BACK_ERROR)]
+    return float(gap_of(train, contact, outputs[o], outputs[o + 1], error))
 
 
 @part
 def contacts_of(train: Train, work: Work, state: Real) -> None:
     """Which contacts are closed at phase 0."""
     outputs_of(train, state, work.ends, 0)
-    excite(train, 0.0, work.values, 0)
-    error = work.values[ERROR]
+    excite(train, 0.0, train.numbers[TURN], work.values, 0)
     for c in range(2 + train.sizes[BEARINGS]):
-        gap = gap_at(train, c, work.ends, 0, error) if located(train, c) else 1.0
+        gap = gap_at(train, work, c, work.ends, 0, 0) if located(train, c) else 1.0
         work.closed[c] = 1 if gap > 0.0 else 0
         work.held[c] = 0
 
@@ -104,13 +105,10 @@ def first_change(train: Train, ladder: Ladder, work: Work) -> tuple[int, float]:
             continue
         sign = -1.0 if work.closed[c] == 1 else 1.0
         gaps = work.gaps
-        error = work.values[EIGHT * nodes + ERROR]
-        gaps[0] = sign * gap_at(train, c, work.ends, 0, error)
+        gaps[0] = sign * gap_at(train, work, c, work.ends, 0, nodes)
         for i in range(nodes):
-            error = work.values[EIGHT * i + ERROR]
-            gaps[i + 1] = sign * gap_at(train, c, work.y, i * outputs, error)
-        error = work.values[EIGHT * (nodes + 1) + ERROR]
-        gaps[nodes + 1] = sign * gap_at(train, c, work.ends, train.sizes[FELT], error)
+            gaps[i + 1] = sign * gap_at(train, work, c, work.y, i * outputs, i)
+        gaps[nodes + 1] = sign * gap_at(train, work, c, work.ends, train.sizes[FELT], nodes + 1)
         fresh = work.held[c] < 0
         share = first_root(nodes + 2, ladder.places, ladder.weights, gaps, rounding, fresh)
         if share < when:
@@ -154,9 +152,9 @@ def polished(
         outputs_of(train, work.trial, work.ends, felt)
         now = t + share * h
         phase = (f0 + 0.5 * ramp * now) * now
-        excite(train, phase - math.floor(phase), work.values, nodes + 1)
-        error = work.values[EIGHT * (nodes + 1) + ERROR]
-        gap = sign * gap_at(train, contact, work.ends, felt, error)
+        turned = train.numbers[TURN] + phase
+        excite(train, phase - math.floor(phase), turned, work.values, nodes + 1)
+        gap = sign * gap_at(train, work, contact, work.ends, felt, nodes + 1)
         if abs(gap) <= 0.2 * rounding or step == 5:
             break
         if step == 0:
@@ -322,6 +320,20 @@ def carry_tangent(
 
 
 @part
+def made(train: Train, ladder: Ladder, work: Work, length: float) -> int:
+    """The table of a step of any ``length``: one of the last made, or a new one in its place."""
+    rungs = train.sizes[RUNGS]
+    spare = ladder.lengths.size - rungs
+    for slot in range(spare):
+        if ladder.lengths[rungs + slot] == length:
+            return int(rungs + slot)
+    slot = int(work.pace[2]) % spare
+    work.pace[2] = slot + 1.0
+    fill(train, ladder, work, rungs + slot, length)
+    return int(rungs + slot)
+
+
+@part
 def next_step(
     train: Train,
     ladder: Ladder,
@@ -344,9 +356,7 @@ def next_step(
             rung += 1
         if abs(ladder.lengths[rung] - remaining) <= close:
             return rung, 1.0
-        if ladder.lengths[rungs] != remaining:
-            fill(train, ladder, work, rungs, remaining)
-        return rungs, 1.0
+        return made(train, ladder, work, remaining), 1.0
     if not over and remaining >= ladder.lengths[rung] - close:
         return rung, 1.0
     wanted = 1.02 * remaining if over else remaining - close
@@ -459,7 +469,7 @@ def advance(
                 error = attempt(train, ladder, work, state, here, t, lead, stretch)
                 work.counts[STEPS] += 1
                 if error > tolerance:
-                    shorter = rung + 1 if here == rungs else here + 1
+                    shorter = rung + 1 if here >= rungs else here + 1
                     while shorter < rungs and ladder.lengths[shorter] >= h:
                         shorter += 1
                     if error >= HUGE:

@@ -38,6 +38,7 @@ from thermogear.dynamics.kernels.drive import (
     STIFFNESS,
     SWEEP,
     TOLERANCE,
+    TURN,
     WIDE,
     Train,
     bearing_force,
@@ -60,7 +61,7 @@ HUGE = 1e300
 
 
 class Ladder(NamedTuple):
-    """Tables of the steps; the rung behind the last is for steps of any length.
+    """Tables of the steps; those behind the last rung are for steps of any length.
 
     ``nodes`` c_i and the Lagrange polynomials' ``powers`` (power, node), values ``at_end`` and
     barycentric ``weights`` over ``places`` = (0, c_i, 1); ``legendre`` the powers of P_s; all over
@@ -286,11 +287,12 @@ def periodic_values(
         share = ladder.nodes[i] if i < nodes else (0.0 if i == nodes else 1.0)
         now = t + share * h
         phase = (f0 + 0.5 * ramp * now) * now
+        turned = train.numbers[TURN] + phase
         if jumps:
             phase = max(min(phase, border - 1e-13), begin)
         elif phase >= 1.0:
             phase -= 1.0
-        excite(train, phase, work.values, i)
+        excite(train, phase, turned, work.values, i)
 
 
 @small

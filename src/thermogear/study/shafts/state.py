@@ -46,8 +46,7 @@ OK, JAMMED, NOT_CONVERGED = (STATUS.index(one) for one in ("ok", "jammed", "not_
 class Meshing:
     """The mesh at one centre distance: ``stiffness`` (phase,) [N/m] and harmonics of k and e.
 
-    ``half_backlash`` b' [m] of the teeth at the drawn distance; the shafts' shift opens the flanks
-    beside it. ``status`` as of a mesh cycle.
+    ``half_backlash`` b' [m] of the teeth at that distance. ``status`` as of a mesh cycle.
     """
 
     pair: GearPair
@@ -62,9 +61,10 @@ class Meshing:
 class TrainState:
     """A drive train at rest under its load.
 
-    ``mesh`` at the actual centre distance; ``growths`` [m] of that distance by the shafts'
-    deflection, round by round; ``clearances`` radial [m] and ``temperatures`` [K] (inner ring,
-    elements, outer ring) of every bearing, nan where it has none. ``status`` is a place in
+    ``mesh`` at the actual centre distance, ``half_backlash`` b' [m] at the drawn one; ``growths``
+    [m] of that distance by the shafts' deflection, round by round; ``clearances`` radial [m] and
+    ``temperatures`` [K] (inner ring, elements, outer ring) of every bearing, nan where it has none.
+    ``status`` is a place in
     :data:`~thermogear.base.vocabulary.STATUS`; where it is not 0 the ``equilibrium`` may be None.
     """
 
@@ -74,6 +74,7 @@ class TrainState:
     torque: float
     assembly: Assembly
     mesh: Meshing
+    half_backlash: float
     growths: tuple[float, ...]
     clearances: Floats
     temperatures: Floats
@@ -206,6 +207,7 @@ def _settled(
         torque=float(at.torque[0]),
         assembly=assembly,
         mesh=mesh,
+        half_backlash=backlash,
         growths=tuple(growths),
         clearances=clearances,
         temperatures=temperatures,

@@ -1,0 +1,197 @@
+"""What a model of any dimension settles on from one start, by its return map alone.
+
+A motion of one mass is labelled by :mod:`~thermogear.analysis.labels`, which knows more of it. Here
+a motion is periodic, with its orbit and Floquet multipliers as proof, chaotic by its largest
+Lyapunov exponent, or undecided; a torus is undecided.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.orbits import Orbit, shoot
+from thermogear.base.errors import ConvergenceError
+from thermogear.base.plan import Alive, keep_going
+from thermogear.dynamics.return_map import ReturnMap
+
+Floats = NDArray[np.float64]
+
+CLOSE = 0.05
+"""Distance of a return, in units of the map, from which an orbit is looked for."""
+NEAR_BORDER = 0.998
+"""A largest multiplier above it leaves the label undecided."""
+BATCHES = 10
+BATCH = 50
+"""Batches of periods, and their length, for the Lyapunov exponent."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """How long a motion is followed: rounds of ``first`` periods, doubling, to ``cap`` in all.
+
+    ``max_period`` of an orbit. ``polish``: with Newton and multipliers; without, a motion that
+    comes nearer to itself by ``approach`` from one period to the next, to ``closed`` units of the
+    map, is periodic.
+    """
+
+    first: int = 64
+    cap: int = 4096
+    max_period: int = 16
+    polish: bool = True
+    closed: float = 1e-6
+    approach: float = 0.9
+    exponent: bool = True
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Motion:
+    """What a start settles on: ``name`` "period-n", "chaotic", "undecided" or "diverged".
+
+    ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
+    there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
+    with its ``lyapunov_error``; ``used`` periods run; ``away`` how far the motion itself still was
+    from its orbit, in units of the map.
+    """
+
+    name: str
+    period: int
+    reason: str
+    state: Floats
+    used: int
+    orbit: Orbit | None = None
+    multiplier: complex = complex("nan")
+    lyapunov: float = float("nan")
+    lyapunov_error: float = float("nan")
+    away: float = float("nan")
+
+
+def settle(
+    section: ReturnMap, start: Floats, search: Search | None = None, *, alive: Alive = keep_going
+) -> Motion:
+    """Follow ``start`` (d,) until it is proven what it settles on, or the search ends.
+
+    Periodic: the motion returns to itself, Newton's rule finds an orbit there whose multipliers all
+    stay below 0.998, and the motion comes nearer to it from one round to the next. Chaotic: it does
+    not return, and the largest Lyapunov exponent exceeds four standard errors in both halves of its
+    record. ``alive`` raises to end the work.
+    """
+    how = search or Search()
+    state = np.asarray(start, dtype=float)
+    used, length = 0, how.first
+    orbit, near = None, np.inf
+    while used < how.cap:
+        alive()
+        length = min(length, how.cap - used)
+        try:
+            path = section.carry(state, length)
+        except ConvergenceError as told:
+            return Motion(name="diverged", period=0, reason=str(told), state=state, used=used)
+        used += length
+        window = np.vstack([state[None], path])[-(2 * how.max_period + 1) :]
+        state = path[-1]
+        if not how.polish:
+            found = _closing(section, window, used, how)
+            if found is not None:
+                return found
+        else:
+            if orbit is None:
+                orbit = _orbit(section, window, how.max_period)
+                near = np.inf
+            if orbit is not None:
+                away = float(section.distance(orbit.points, state).min())
+                if away < 1e-9 or (away < CLOSE and away < 0.7 * near):
+                    if np.isfinite(near) or away < 1e-9:
+                        return _proven(orbit, away, used)
+                    near = away
+                elif away > CLOSE:
+                    orbit = None
+                length = min(length, how.first)
+                continue
+        length *= 2
+    return _open(section, state, used, how)
+
+
+def _lag(section: ReturnMap, window: Floats, max_period: int) -> int:
+    """The least lag after which the last state returns; 0: none."""
+    for lag in range(1, min(max_period, len(window) - 1) + 1):
+        if float(section.distance(window[-1 - lag], window[-1])) < CLOSE:
+            return lag
+    return 0
+
+
+def _orbit(section: ReturnMap, window: Floats, max_period: int) -> Orbit | None:
+    lag = _lag(section, window, max_period)
+    if lag == 0:
+        return None
+    try:
+        orbit = shoot(section, window[-1], lag, tolerance=1e-11, most=12)
+        if orbit is not None and orbit.minimal_period != orbit.period:
+            orbit = shoot(section, orbit.state, orbit.minimal_period, tolerance=1e-11, most=12)
+    except ConvergenceError:
+        return None
+    return orbit if orbit is not None and orbit.stable else None
+
+
+def _proven(orbit: Orbit, away: float, used: int) -> Motion:
+    mu = complex(orbit.multipliers[0])
+    plural = "s" * (orbit.period > 1)
+    shown = f"largest Floquet multiplier |{abs(mu):.6f}| over {orbit.period} period{plural}"
+    sure = abs(mu) <= NEAR_BORDER
+    return Motion(
+        name=f"period-{orbit.period}" if sure else "undecided",
+        period=orbit.period,
+        reason=shown if sure else f"{shown}: within {1.0 - NEAR_BORDER:.2g} of a bifurcation",
+        state=orbit.state,
+        used=used,
+        orbit=orbit,
+        multiplier=mu,
+        lyapunov=float(np.log(abs(mu)) / (orbit.period * orbit.section.period)),
+        lyapunov_error=0.0,
+        away=away,
+    )
+
+
+def _closing(section: ReturnMap, window: Floats, used: int, how: Search) -> Motion | None:
+    """A motion that nears itself, without an orbit polished."""
+    for lag in range(1, min(how.max_period, len(window) // 3) + 1):
+        now = float(section.distance(window[-1 - lag], window[-1]))
+        before = float(section.distance(window[-1 - 2 * lag], window[-1 - lag]))
+        if now < how.closed and (now < how.approach * before or now < 1e-3 * how.closed):
+            plural = "s" * (lag > 1)
+            return Motion(
+                name=f"period-{lag}",
+                period=lag,
+                reason=f"returns within {now:.1e} after {lag} period{plural} and comes nearer",
+                state=window[-1],
+                used=used,
+                away=now,
+            )
+    return None
+
+
+def _open(section: ReturnMap, state: Floats, used: int, how: Search) -> Motion:
+    """No lag closes: chaotic by the exponent, or undecided."""
+    if not how.exponent:
+        reason = f"does not return within {used} periods"
+        return Motion(name="undecided", period=0, reason=reason, state=state, used=used)
+    direction = np.zeros(section.dimension)
+    direction[0] = section.unit[0]
+    lead = section.stretch(state, direction, BATCH)
+    path = section.stretch(lead.state, lead.direction, BATCHES * BATCH)
+    means = path.growth.reshape(BATCHES, BATCH).mean(axis=1) / section.period
+    value, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(BATCHES))
+    halves = means[: BATCHES // 2].mean(), means[BATCHES // 2 :].mean()
+    sure = value > 4.0 * error and min(halves) > 0.0
+    told = f"largest Lyapunov exponent {value:.4g} +- {error:.2g}"
+    return Motion(
+        name="chaotic" if sure else "undecided",
+        period=0,
+        reason=f"{told} > 0" if sure else f"does not return within {used} periods; {told}",
+        state=path.state,
+        used=used + (BATCHES + 1) * BATCH,
+        lyapunov=value,
+        lyapunov_error=error,
+    )
