@@ -211,13 +211,59 @@ class GearedModel:
         """The same train at another mesh frequency [Hz]; gyroscopics are not scaled."""
         return replace(self, mesh_frequency=mesh_frequency)
 
-    def mesh_forces(self, phase: ArrayLike, *, deflections: ArrayLike) -> tuple[Floats, Floats]:
-        """F_d and F_b [N] at ``phase`` and ``deflections`` (..., 2) of both flanks."""
-        k, e = self.mesh_stiffness(phase), self.error(phase)
-        d = np.asarray(deflections, dtype=float)
-        drive = k * np.maximum(d[..., 0] - e - self.half_backlash, 0.0)
-        back = k * np.maximum(d[..., 1] + e - self.half_backlash, 0.0)
-        return np.asarray(drive), np.asarray(back)
+    def errors_at(self, phase: ArrayLike) -> tuple[Floats, Floats]:
+        """Errors [m] that the drive and the back flank see at ``phase``, mesh periods since 0."""
+        phi = np.asarray(phase, dtype=float)
+        drive = np.asarray(self.error(phi), dtype=float)
+        back = -drive
+        for one in self.wobbles:
+            turn = np.exp(2j * np.pi * one.order * phi)
+            drive, back = drive + (one.drive * turn).real, back + (one.back * turn).real
+        return drive, back
+
+    def forces(self, phase: ArrayLike, *, states: ArrayLike) -> dict[str, Floats]:
+        """Every contact force at ``phase`` (S,) along ``states`` (S, d), at constant speed.
+
+        "drive" and "back" [N] (S,), "bearings" (S, count, 2) [N] on the journals, damping not in
+        it; "acceleration" (S, n) of the coordinates [m/s^2].
+        """
+        phi, x = np.asarray(phase, dtype=float), np.asarray(states, dtype=float)
+        n = self.size
+        q, v = x[:, :n], x[:, n : 2 * n]
+        drive_error, back_error = self.errors_at(phi)
+        k = np.asarray(self.mesh_stiffness(phi))
+        drive = k * np.maximum(q @ self.drive - drive_error - self.half_backlash, 0.0)
+        back = k * np.maximum(q @ self.back - back_error - self.half_backlash, 0.0)
+        step = 1e-4
+        rate = (self.errors_at(phi + step)[0] - self.errors_at(phi - step)[0]) / (2.0 * step)
+        pushed = self.force - v @ self.damping.T - q @ self.stiffness.T
+        pushed = pushed + np.multiply.outer(
+            self.mesh_damping * rate * self.mesh_frequency - drive, self.drive
+        )
+        pushed = pushed - np.multiply.outer(back, self.back)
+        if self.friction is not None:
+            for column, one in zip(
+                self.friction, (self.friction_at_pitch, self.friction_per_metre), strict=True
+            ):
+                if one is not None:
+                    pushed = pushed + np.multiply.outer(drive * np.asarray(one(phi)), column)
+        rings = np.zeros((phi.size, len(self.bearings), 2))
+        for place, bearing in enumerate(self.bearings):
+            rings[:, place] = self.bearing_forces(place, q @ bearing.directions)
+            pushed = pushed + rings[:, place] @ bearing.directions.T
+        for outer in self.outer:
+            turn = 2.0 * np.pi * outer.order
+            size = (turn * self.mesh_frequency) ** 2 if outer.rotating else 1.0
+            wave = size * np.cos(turn * phi + outer.shift)
+            pushed = pushed + np.multiply.outer(wave, outer.vector)
+        if self.slip is not None:
+            pushed = pushed + np.multiply.outer(x[:, 2 * n], self.slip[0])
+        return {
+            "drive": np.asarray(drive),
+            "back": np.asarray(back),
+            "bearings": rings,
+            "acceleration": np.linalg.solve(self.mass, pushed.T).T,
+        }
 
     def bearing_forces(self, place: int, displacement: ArrayLike) -> Floats:
         """Force (..., 2) [N] of a bearing on its journal at ``displacement`` (..., 2) [m]."""

@@ -7,14 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.dynamics.kernels.compiled import part, small
+from thermogear.dynamics.kernels.compiled import part
 from thermogear.dynamics.kernels.vector import EIGHT, load, store
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-@small
+@part
 def gather(
     table: Real, row: int, rows: int, width: int, weights: Real, at: int, found: Real, place: int
 ) -> None:

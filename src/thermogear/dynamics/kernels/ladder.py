@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.dynamics.kernels.calculus import flows, gather
-from thermogear.dynamics.kernels.compiled import kernel, part, small
+from thermogear.dynamics.kernels.compiled import kernel, part
 from thermogear.dynamics.kernels.drive import (
     BASE,
     BEARINGS,
@@ -192,7 +192,7 @@ def fill(train: Train, ladder: Ladder, work: Work, rung: int, h: float) -> None:
             ladder.miss_within[rung * inputs + c] += slack * size
 
 
-@small
+@part
 def coefficients(train: Train, ladder: Ladder, work: Work, first: int, last: int) -> None:
     """Powers over the share of a step, (row, power), of the forces ``first`` to ``last``."""
     nodes, wider, force = train.sizes[NODES], ladder.wider, work.force
@@ -241,7 +241,7 @@ def within(
             found[at + 1] = value.imag
 
 
-@small
+@part
 def flank_factors(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
     """Factors of I - W a of the flanks' own equations into ``work.matrix``; its size."""
     sizes, couple, matrix = train.sizes, ladder.couple, work.matrix
@@ -275,7 +275,7 @@ def flank_factors(train: Train, ladder: Ladder, work: Work, rung: int) -> int:
     return int(size)
 
 
-@small
+@part
 def periodic_values(
     train: Train, ladder: Ladder, work: Work, t: float, h: float, begin: float, border: float
 ) -> None:
@@ -295,7 +295,7 @@ def periodic_values(
         excite(train, phase, turned, work.values, i)
 
 
-@small
+@part
 def guess(train: Train, ladder: Ladder, work: Work, lead: float, stretch: float) -> None:
     """First guess of the bearings' forces: the last step's polynomials, or the present forces."""
     sizes, force = train.sizes, work.force
@@ -321,7 +321,7 @@ def guess(train: Train, ladder: Ladder, work: Work, lead: float, stretch: float)
             force[row + nodes + j] = two
 
 
-@small
+@part
 def forces_at(train: Train, work: Work, row: int, at: int, t: float, found: Real) -> None:
     """All forces from the outputs ``work.ends[at:]`` and the functions in ``row`` at time ``t``."""
     sizes = train.sizes

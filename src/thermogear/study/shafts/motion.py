@@ -1,0 +1,261 @@
+"""Settled motion of a drive train at the operating points of a case, cold and hot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.base.progress import Progress, silent
+from thermogear.base.vocabulary import STATUS, label
+from thermogear.case.case import GearCase
+from thermogear.results.result import Notice
+from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
+from thermogear.study.shafts.record import (
+    PERIODS,
+    SAMPLES,
+    SHOWN,
+    Record,
+    lines,
+    orders_of_lines,
+    recorded,
+)
+from thermogear.study.shafts.state import TrainState, places_of, plan_of, settled
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+POINT = ("state", "operating")
+SECTIONS = 64
+ERRORS = 12
+"""Natural frequencies of the whole train that the reduced one is held against."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Moved:
+    """A train at one point: its equations, what it settles on, its record; None where jammed."""
+
+    state: TrainState
+    train: MovingTrain | None = None
+    motion: Motion | None = None
+    record: Record | None = None
+
+    @property
+    def status(self) -> int:
+        """A place in :data:`~thermogear.base.vocabulary.STATUS`."""
+        if self.motion is not None and self.motion.name == "diverged":
+            return STATUS.index("diverged")
+        return self.state.status
+
+
+def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) -> Moved:
+    """What the train of ``state`` settles on from rest, with friction of the teeth."""
+    if state.status != 0:
+        return Moved(state=state)
+    train = moving(case, state, coordinates=coordinates, friction=rubbing(case, state))
+    cycle = train.model.cycle
+    search = Search()
+    if cycle > 1:
+        # all shafts back in place takes long: no Jacobian over it
+        search = Search(first=3, cap=24, max_period=2, polish=False, exponent=False)
+    found = settle(train.model.return_map(), train.start, search)
+    if found.name == "diverged":
+        return Moved(state=state, train=train, motion=found)
+    periods = cycle if cycle > PERIODS else PERIODS
+    return Moved(
+        state=state, train=train, motion=found, record=recorded(train, found.state, periods)
+    )
+
+
+def train_motion(
+    case: GearCase,
+    *,
+    places: Sequence[int] | None = None,
+    coordinates: int | None = None,
+    progress: Progress = silent,
+) -> tuple[xr.Dataset, list[Notice]]:
+    """Settled motion over (state, operating) of a case with shafts, and what is to be said of it.
+
+    Both flanks on their own lines of action, friction of the teeth, clearance of the bearings,
+    forces at shaft orders. ``coordinates`` of the reduced train, the interface and 16 modes if left
+    out. A jammed point or one whose motion diverges is a status.
+    """
+    chosen = places_of(case) if places is None else list(places)
+    states = settled(case, chosen, progress=progress)
+    found = []
+    for s, row in enumerate(states):
+        out = []
+        for o, one in enumerate(row):
+            progress("motion of the train", s * len(chosen) + o, len(states) * len(chosen))
+            out.append(moved(case, one, coordinates=coordinates))
+        found.append(out)
+    progress("motion of the train", len(states) * len(chosen), len(states) * len(chosen))
+    return _table(case, found), list(_told(found))
+
+
+def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
+    flat = [one for row in found for one in row]
+    shape = (len(found), len(found[0]))
+    teeth = (case.pair.pinion.teeth, case.pair.wheel.teeth)
+    cycle = max((one.train.model.cycle for one in flat if one.train is not None), default=1)
+    orders = orders_of_lines(teeth, shafts=cycle > 1)
+    names = plan_of(case).bearing_names
+    shown = SHOWN * SAMPLES
+
+    def over(of: Any, *inner: int) -> Floats:
+        """A number of every record, nan where there is none."""
+        rows = [np.full(inner, np.nan) if one.record is None else of(one, one.record)
+                for one in flat]  # fmt: skip
+        return np.asarray(rows, dtype=float).reshape(*shape, *inner)
+
+    def periods(record: Record) -> float:
+        return record.phase.size / SAMPLES
+
+    def section(one: Moved, record: Record) -> Floats:
+        del one
+        kept = np.full((SECTIONS, 2), np.nan)
+        points = record.sections[:SECTIONS]
+        kept[: len(points)] = points
+        return kept
+
+    sections = over(section, SECTIONS, 2)
+    count = len(names)
+    force = over(lambda one, r: np.linalg.norm(r.bearing_force, axis=2)[:shown].T, count, shown)
+    variables: dict[str, Any] = {
+        "status": (POINT, np.array([one.status for one in flat], np.int8).reshape(shape)),
+        "mesh_force": ((*POINT, "sample"), over(lambda one, r: r.mesh_force[:shown], shown), "N",
+                       "force of the drive flanks"),
+        "back_force": ((*POINT, "sample"), over(lambda one, r: r.back_force[:shown], shown), "N",
+                       "force of the back flanks"),
+        "deflection": ((*POINT, "sample"), over(lambda one, r: r.deflection[:shown], shown), "m",
+                       "approach of the drive flanks, the error taken off"),
+        "bearing_force": ((*POINT, "bearing", "sample"), force, "N", "force on the bearing"),
+        "mean_bearing_force": ((*POINT, "bearing"), over(
+            lambda one, r: np.linalg.norm(r.bearing_force.mean(axis=0), axis=1), count), "N",
+            "mean force on the bearing, amount of the vector"),
+        "greatest_bearing_force": ((*POINT, "bearing"), over(
+            lambda one, r: np.linalg.norm(r.bearing_force, axis=2).max(axis=0), count), "N",
+            "greatest force on the bearing"),
+        "greatest_mesh_force": (POINT, over(lambda one, r: r.mesh_force.max()), "N",
+                                "greatest force of the drive flanks"),
+        "mean_mesh_force": (POINT, over(lambda one, r: r.mesh_force.mean()), "N",
+                            "mean force of the drive flanks"),
+        "train_dynamic_factor": (POINT, over(
+            lambda one, r: r.mesh_force.max() / one.state.rest.mesh_force), "1",
+            "greatest force of the drive flanks over that at rest"),
+        "losses_per_period": (POINT, over(lambda one, r: r.counts["losses"] / periods(r)), "1",
+                              "losses of drive contact per mesh period"),
+        "back_impacts_per_period": (POINT, over(lambda one, r: r.counts["impacts"] / periods(r)),
+                                    "1", "back-side impacts per mesh period"),
+        "time_share_of_flanks": ((*POINT, "side"), over(lambda one, r: r.shares, 3), "1",
+                                 "share of time in back contact, free flight, drive contact"),
+        "section_deflection": ((*POINT, "section"), sections[..., 0], "m",
+                               "Poincaré section: deflection along the drive flank"),
+        "section_rate": ((*POINT, "section"), sections[..., 1], "m/s",
+                         "Poincaré section: its rate"),
+        "mesh_force_line": ((*POINT, "line_order"), over(
+            lambda one, r: lines(r.mesh_force, orders), orders.size), "N",
+            "line of the force of the drive flanks (peak)"),
+        "bearing_force_line": ((*POINT, "bearing", "line_order"), over(
+            lambda one, r: lines(r.bearing_force, orders).max(axis=2).T, count, orders.size), "N",
+            "line of the bearing force, larger of x and y (peak)"),
+        "housing_line": ((*POINT, "line_order"), over(
+            lambda one, r: _housing(r, orders), orders.size), "m/s^2",
+            "line of the housing's acceleration, larger of x and y (peak)"),
+        "reduction_error": (POINT, _errors(flat).reshape(shape), "1",
+                            "largest error of the 12 lowest natural frequencies by the reduction"),
+        "coordinates": (POINT, np.array(
+            [0 if one.train is None else one.train.model.size for one in flat]).reshape(shape), "1",
+            "coordinates of the reduced train"),
+        "multiplier_modulus": (POINT, _of(flat, lambda m: abs(m.multiplier)).reshape(shape)),
+        "used_periods": (POINT, _of(flat, lambda m: m.used).reshape(shape), "1",
+                         "periods of the return map run until it was known"),
+    }  # fmt: skip
+    first = found[0]
+    data = label(
+        variables,
+        {
+            "state": [row[0].state.state.kind for row in found],
+            "bearing": list(names),
+            "side": ["back", "free", "drive"],
+            "line_order": (("line_order",), orders, "1", "order of the mesh frequency"),
+            "phase": (("sample",), np.arange(shown) / SAMPLES, "1", "time in mesh periods"),
+            "pinion_speed": (("operating",), [one.state.speed for one in first]),
+            "pinion_torque": (("operating",), [one.state.torque for one in first]),
+        },
+        {"cycle": cycle},
+    )
+    words = {
+        "label": [_name(one) for one in flat],
+        "label_reason": [_reason(one) for one in flat],
+    }
+    texts = {
+        name: (POINT, np.array(told, dtype=str).reshape(shape)) for name, told in words.items()
+    }
+    return data.assign(texts)
+
+
+def _of(flat: Sequence[Moved], of: Any) -> Floats:
+    return np.array([np.nan if one.motion is None else float(of(one.motion)) for one in flat])
+
+
+def _housing(record: Record, orders: Floats) -> Floats:
+    if np.isnan(record.housing).any():
+        return np.full(orders.size, np.nan)
+    return np.asarray(lines(record.housing, orders).max(axis=1))
+
+
+def _errors(flat: Sequence[Moved]) -> Floats:
+    """The error of the reduction of every point; trains of one reduction are asked once."""
+    found = []
+    for one in flat:
+        if one.train is None:
+            found.append(np.nan)
+            continue
+        errors = one.train.reduction.frequency_errors(one.state.linear, ERRORS)
+        found.append(float(np.abs(errors).max()))
+    return np.array(found)
+
+
+def _name(one: Moved) -> str:
+    if one.motion is None:
+        return STATUS[one.state.status].replace("_", " ")
+    return one.motion.name
+
+
+def _reason(one: Moved) -> str:
+    if one.motion is None:
+        jammed = one.state.status == STATUS.index("jammed")
+        return "no clearance is left to move in" if jammed else "the mesh did not settle"
+    if one.train is not None and one.train.model.cycle > 1:
+        cycle = one.train.model.cycle
+        return f"{one.motion.reason}, one period being {cycle} mesh periods: all shafts in place"
+    return one.motion.reason
+
+
+def _told(found: Sequence[Sequence[Moved]]) -> list[Notice]:
+    """What a reader has to know of this motion."""
+    notices = [
+        Notice(
+            "info",
+            "Motion of the drive train: stiffness, error, friction and clearances of each state of "
+            "heat at the deflected centre distance; bearings keep the position of their cages.",
+        )
+    ]
+    for row in found:
+        for one in row:
+            if one.motion is not None and one.motion.name in ("undecided", "diverged"):
+                speed = one.state.speed * 30.0 / np.pi
+                notices.append(
+                    Notice(
+                        "warning",
+                        f"Drive train at {speed:.6g} rpm, {one.state.state.words}: "
+                        f"{one.motion.name}, {one.motion.reason}.",
+                    )
+                )
+    return notices

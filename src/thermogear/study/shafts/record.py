@@ -1,0 +1,110 @@
+"""What a settled drive train shows: forces, accelerations and their lines over its record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thermogear.dynamics.ladder import Engine
+from thermogear.study.shafts.moving import MovingTrain
+
+Floats = NDArray[np.float64]
+SAMPLES = 64
+"""Samples a mesh period."""
+PERIODS = 16
+"""Mesh periods of a record without forces at shaft orders."""
+HARMONICS = 12
+SHOWN = 4
+"""Mesh periods of the histories that are kept."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Record:
+    """One settled motion at uniform phases, (sample,) [mesh periods].
+
+    ``mesh_force`` and ``back_force`` [N], ``deflection`` of the drive flank less its error [m],
+    ``bearing_force`` (sample, bearing, 2) [N] on the rings, damping not in it, ``housing`` (sample,
+    2) acceleration [m/s^2], nan where the housing is fixed. ``sections`` (period, 2): delta_d [m]
+    and its rate [m/s] at every mesh phase 0. ``counts`` and ``shares`` of the engine.
+    """
+
+    phase: Floats
+    mesh_force: Floats
+    back_force: Floats
+    deflection: Floats
+    bearing_force: Floats
+    housing: Floats
+    sections: Floats
+    counts: dict[str, int]
+    shares: Floats
+    state: Floats
+
+
+def recorded(train: MovingTrain, state: Floats, periods: int, *, turn: float = 0.0) -> Record:
+    """``periods`` mesh periods from ``state`` (d,) on."""
+    model, own = train.model, train.state.assembly
+    run = Engine(model).run(state, periods, samples=SAMPLES, turn=turn)
+    phase = turn + run.sample_phase
+    n = model.size
+    found = model.forces(phase, states=run.samples)
+    q, v = run.samples[:, :n], run.samples[:, n : 2 * n]
+    rings = np.zeros((phase.size, len(own.bearings), 2))
+    local = 0
+    for number, place in enumerate(own.bearings):
+        if place.bearing.law.linear:
+            u = q @ train.reduction.vector(place.directions)
+            rings[:, number] = -place.bearing.law.force(u)
+        else:
+            rings[:, number] = -found["bearings"][:, local]
+            local += 1
+    housing = np.full((phase.size, 2), np.nan)
+    for axis, name in enumerate(("casing.x", "casing.y")):
+        if name in own.index:
+            row = train.reduction.basis[own.index[name]]
+            housing[:, axis] = found["acceleration"] @ row
+    points = np.vstack([np.asarray(state)[None], run.sections[:-1]])
+    return Record(
+        phase=phase,
+        mesh_force=found["drive"],
+        back_force=found["back"],
+        deflection=q @ model.drive - model.errors_at(phase)[0],
+        bearing_force=rings,
+        housing=housing,
+        sections=np.stack([points[:, :n] @ model.drive, points[:, n : 2 * n] @ model.drive], 1),
+        counts=run.counts,
+        shares=run.shares,
+        state=run.state,
+    )
+
+
+def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
+    """Orders of the mesh frequency whose lines are kept.
+
+    Quarters up to the 12th harmonic; with ``shafts`` the harmonics, their halves and two sidebands
+    of either shaft on both sides, and the shafts' own orders.
+    """
+    if not shafts:
+        return np.arange(1, 4 * HARMONICS + 1) / 4.0
+    beside = [k / z for z in teeth for k in (-2, -1, 1, 2)]
+    found = {h + b for h in range(HARMONICS + 1) for b in [0.0, *beside]}
+    found |= {h - 0.5 for h in range(1, HARMONICS + 1)}
+    return np.array(sorted(one for one in {round(o, 9) for o in found} if one > 0.0))
+
+
+def lines(values: ArrayLike, orders: ArrayLike) -> Floats:
+    """Amplitudes (order, ...) of lines at any ``orders`` of samples (sample, ...), Hann window.
+
+    Peak values; lines nearer than two over the periods of the record are not told apart.
+    """
+    x = np.asarray(values, dtype=float)
+    count = x.shape[0]
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
+    window = window / window.sum()
+    shape = x.shape[1:]
+    flat = (x - x.mean(axis=0)).reshape(count, -1) * window[:, None]
+    turn = np.exp(
+        -2j * np.pi * np.outer(np.asarray(orders, dtype=float), np.arange(count) / SAMPLES)
+    )
+    return np.asarray(2.0 * np.abs(turn @ flat)).reshape(-1, *shape)
