@@ -262,7 +262,7 @@ class GearedModel:
             "drive": np.asarray(drive),
             "back": np.asarray(back),
             "bearings": rings,
-            "acceleration": np.linalg.solve(self.mass, pushed.T).T,
+            "acceleration": np.asarray(np.linalg.solve(self.mass, pushed.T).T, dtype=float),
         }
 
     def bearing_forces(self, place: int, displacement: ArrayLike) -> Floats:

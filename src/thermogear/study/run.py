@@ -2,8 +2,8 @@
 
 The groups of the tree: ``path`` (along the path of contact), ``mesh`` (over the mesh phase, and
 figures per operating point), ``flanks/...`` (where they are measured), ``balance`` (where the
-temperatures are computed), ``profile``, ``motion``, ``dial`` (one point over gear
-temperatures), ``temperature`` (the same over gear
+temperatures are computed), ``profile``, ``motion``, ``train_motion`` (of a case
+with shafts), ``dial`` (one point over gear temperatures), ``temperature`` (the same over gear
 temperatures) and ``base_sets/...``; a dimensionless case has ``points`` alone.
 """
 
@@ -52,6 +52,7 @@ from thermogear.study.dial import dial
 from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
+from thermogear.study.shafts.motion import train_motion
 from thermogear.study.shafts.sketch import sketch
 
 if TYPE_CHECKING:
@@ -79,7 +80,10 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
         found, speeds = answered(case, case.models[0], cold, hot, progress)
         if speeds is not None:
             groups["speeds"] = speeds.data
-        notices = chain(run_notices.notices(case, groups), answer_notices(case))
+        told: list[Notice] = []
+        if case.train is not None and "motion" in case.pictures:
+            groups["train_motion"], told = train_motion(case, progress=progress)
+        notices = chain(run_notices.notices(case, groups), answer_notices(case), told)
         own = {
             "facts": run_notices.facts(case, groups),
             "bundles": {model.name: model.choices() for model in case.models},

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 POINT = ("state", "operating")
 SECTIONS = 64
+TURNS = 4
+"""Turns of the slower shaft in a record with forces at shaft orders."""
 ERRORS = 12
 """Natural frequencies of the whole train that the reduced one is held against."""
 
@@ -66,7 +68,9 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     found = settle(train.model.return_map(), train.start, search)
     if found.name == "diverged":
         return Moved(state=state, train=train, motion=found)
-    periods = cycle if cycle > PERIODS else PERIODS
+    teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
+    # enough to tell the sidebands of both shafts apart
+    periods = PERIODS if cycle == 1 else min(cycle, TURNS * teeth)
     return Moved(
         state=state, train=train, motion=found, record=recorded(train, found.state, periods)
     )

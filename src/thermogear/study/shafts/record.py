@@ -49,7 +49,7 @@ def recorded(train: MovingTrain, state: Floats, periods: int, *, turn: float = 0
     phase = turn + run.sample_phase
     n = model.size
     found = model.forces(phase, states=run.samples)
-    q, v = run.samples[:, :n], run.samples[:, n : 2 * n]
+    q = run.samples[:, :n]
     rings = np.zeros((phase.size, len(own.bearings), 2))
     local = 0
     for number, place in enumerate(own.bearings):

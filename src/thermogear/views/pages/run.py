@@ -18,6 +18,7 @@ from thermogear.views.pages import (
     headline,
     row_sections,
     shafts,
+    train_motion,
 )
 from thermogear.views.pages.background import background
 from thermogear.views.pages.run_numbers import numbers
@@ -34,6 +35,7 @@ ORDER = (
     gear_sections.gap,
     gear_sections.springs,
     gear_sections.vibration,
+    train_motion.section,
     dial.section,
     gear_sections.row,
     row_sections.base_sets,
@@ -48,7 +50,7 @@ FIRST = (
     ("dial", "stiffness-0"),
     ("dynamic-factor",),
     ("flash-own", "flash-mixed", "friction"),
-    ("motion-0-0",),
+    ("train-motion-0", "motion-0-0"),
 )
 """The pictures that carry the answers: shafts, gears or gap, heat, speeds, friction, motion."""
 KINDS = ("gear", "dimensionless")
@@ -65,6 +67,7 @@ def page(result: Result) -> Page:
         numbers=lambda: numbers(result),
         lines=lambda: [
             *answers.lines(result),
+            *train_motion.lines(result),
             *notice_lines(result, OPEN if result.answers else None),
         ],
         tables=lambda: curve_tables(result),
