@@ -24,6 +24,8 @@ from thermogear.study.shafts.state import TrainState, plan_of
 Floats = NDArray[np.float64]
 HELD_MODES = 16
 """Modes kept with the interface held, where the number of coordinates is left out."""
+FRICTION = 1e-3
+"""Accuracy of the friction functions, over their greatest value; the coefficient is known less."""
 LEAST_HELD = 0.02
 """Of the mesh stiffness: what the linear system behind holds an idle bearing with."""
 
@@ -52,7 +54,9 @@ def rubbing(case: GearCase, state: TrainState) -> FrictionSplit | None:
     """Friction of the case's teeth at the operating point and in the heat of ``state``."""
     model = case.models[0]
     at = state.state.operating(case, model).point(state.place)
-    (found,) = friction_split(state.mesh.pair, at, model, deviations=case.deviations)
+    (found,) = friction_split(
+        state.mesh.pair, at, model, deviations=case.deviations, accuracy=FRICTION
+    )
     return found
 
 
