@@ -246,7 +246,8 @@ class Found:
         """As it stands in the table."""
         if self.missing:
             return "–"
-        return f"{statistics.median(self.rates):,.0f} ({self.error:.0e})"
+        rate = statistics.median(self.rates)
+        return f"{rate:,.0f} ({1e3 * PERIODS / rate:,.2f} ms; {self.error:.0e})"
 
 
 def measured(motion: Motion, rounds: int, said: Callable[[str], None]) -> dict[str, Found]:
@@ -322,7 +323,8 @@ def main() -> int:
         print(f"{time.strftime('%H:%M:%S')} {motion.size}", file=sys.stderr, flush=True)
         every.append(measured(motion, rounds, lines.append))
     print(f"Mesh periods/s of processor time, median of {rounds} interleaved rounds of {PERIODS}")
-    print("periods; in brackets the worst error of delta_d over its size.\n")
+    print("periods; in brackets processor time of one run and the worst error of delta_d over its")
+    print("size.\n")
     print("| solver |" + "".join(f" {m.size} ({m.what}) |" for m in motions))
     print("|---|" + "---|" * len(motions))
     for name, _ in RIVALS:
