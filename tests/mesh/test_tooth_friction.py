@@ -124,7 +124,8 @@ def test_friction_of_random_loaded_pairs_takes_power_and_gives_none() -> None:
         pair, at = drawn(random)
         for place, one in enumerate(friction_split(pair, at.point(0), MeshModel.consistent())):
             assert one is not None
-            assert np.all(one.per_metre(phase) > 0.0)
+            turned = one.per_metre(phase)
+            assert np.all(turned >= -1e-4 * turned.max())
             elastic = elastic_pair(HotPair(pair, at.point(place), MeshModel.consistent()))
             slope = float(at.speed[0]) * (1.0 + pair.pinion.teeth / pair.wheel.teeth)
             loss = float(elastic.force[0]) * one.per_metre.mean * slope
