@@ -122,6 +122,15 @@ def acceleration(z, v, k, e, slope, square, damping, force, rows, rings, b, c, p
 
 
 @numba.njit(fastmath=True)
+def along(row, z):
+    """Their scalar product."""
+    total = 0.0
+    for j in range(z.size):
+        total += row[j] * z[j]
+    return total
+
+
+@numba.njit(fastmath=True)
 def rk4(
     start, periods, steps, h, table, kept, square, damping, force, rows, rings, b, c, track, changes
 ):
@@ -139,10 +148,7 @@ def rk4(
     for p in range(periods):
         for s in range(steps):
             if s % every == 0:
-                total = 0.0
-                for j in range(n):
-                    total += rows[0, j] * z[j]
-                track[p * kept + s // every] = total
+                track[p * kept + s // every] = along(rows[0], z)
             for stage in range(4):
                 at = (2 * s + (stage + 1) // 2) % (2 * steps)
                 w = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
@@ -196,10 +202,7 @@ def generalised_alpha(
     for p in range(periods):
         for s in range(steps):
             if s % every == 0:
-                total = 0.0
-                for j in range(n):
-                    total += rows[0, j] * z[j]
-                track[p * kept + s // every] = total
+                track[p * kept + s // every] = along(rows[0], z)
             at = steps + s
             for j in range(n):
                 an[j] = a[j]

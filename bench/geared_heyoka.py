@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+COOLDOWN = 1e-4
+"""Share of a period in which heyoka does not look for the same event again. Its own choice, by
+tolerance and speed, misses a flank that touches for a moment and parts again."""
+
 
 class Taylor:
     """One compiled integrator of a train; contacts are flags that terminal events switch."""
@@ -72,7 +76,7 @@ class Taylor:
             equations.append((v[j], hy.sum([hy.expression(0.0) + one for one in terms])))
         self.count = len(gaps)
         events = [
-            hy.t_event(gap, callback=self._switch(i), direction=hy.event_direction.any)
+            hy.t_event(gap, callback=self._switch(i), cooldown=COOLDOWN / modal.frequency)
             for i, gap in enumerate(gaps)
         ]
         self.changes = 0

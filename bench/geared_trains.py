@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
+import scipy.sparse.csgraph
 from numpy.typing import NDArray
 
 TESTS = Path(__file__).resolve().parent.parent / "tests"

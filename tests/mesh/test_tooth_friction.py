@@ -116,6 +116,22 @@ def test_power_on_the_train_is_what_every_pair_of_flanks_loses(
     compared("power of the teeth's friction, pair by pair", "sum of mu F |v|", away, 2e-6)
 
 
+def test_friction_of_random_loaded_pairs_takes_power_and_gives_none() -> None:
+    """Tip corners that carry beyond the path included: power -F_d chi_1 (omega_1 + omega_2)."""
+    random = np.random.default_rng(62)
+    phase = np.linspace(0.0, 1.0, 400, endpoint=False)
+    for _ in range(3):
+        pair, at = drawn(random)
+        for place, one in enumerate(friction_split(pair, at.point(0), MeshModel.consistent())):
+            assert one is not None
+            turned = one.per_metre(phase)
+            assert np.all(turned >= -1e-4 * turned.max())
+            elastic = elastic_pair(HotPair(pair, at.point(place), MeshModel.consistent()))
+            slope = float(at.speed[0]) * (1.0 + pair.pinion.teeth / pair.wheel.teeth)
+            loss = float(elastic.force[0]) * one.per_metre.mean * slope
+            assert loss == pytest.approx(float(mesh_heat(elastic, 400).power[0]), rel=3e-4)
+
+
 @pytest.mark.parametrize("model", BUNDLES, ids=lambda m: m.name)
 @pytest.mark.parametrize("hot", [False, True], ids=["cold", "hot"])
 def test_its_mean_is_the_frictional_power_of_the_cycle(
