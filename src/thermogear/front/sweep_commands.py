@@ -1,4 +1,4 @@
-"""``bifurcation``, ``map``, ``basins``, ``runup`` and ``sweep`` for the command line to register.
+"""``bifurcation``, ``map``, ``basins``, ``runup``, ``waterfall`` and ``sweep`` to register.
 
 Each works into a store directory: killed or stopped, the same command goes on where it was.
 """
@@ -246,7 +246,52 @@ def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **option
     _carry(plan, Path(output), read.title, as_json, options)
 
 
-COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, sweep)
+@click.command()
+@delivery.case
+@click.option("--rpm", default="1000:6000:64", show_default=True, metavar="FROM:TO:COUNT")
+@click.option("--operating", type=int, metavar="N",
+              help="Point that gives torque, heat and mesh; the hardest if left out.")  # fmt: skip
+@click.option("--seconds", type=float, default=20.0, show_default=True,
+              help="How long one way takes.")  # fmt: skip
+@click.option("--coordinates", type=int, metavar="N",
+              help="Of the reduced train; the interface and 16 modes if left out.")  # fmt: skip
+@_common
+def waterfall(
+    case: str,
+    rpm: str,
+    operating: int | None,
+    seconds: float,
+    coordinates: int | None,
+    output: str,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Run CASE's drive train up and down: forces, sound of the housing, orders, jumps.
+
+    With clearance in teeth and bearings, undeformed and hot. CASE needs [[shafts]] and
+    [[bearings]].
+    """
+    from dataclasses import replace
+
+    from thermogear.case.thermal_state import UNDEFORMED
+    from thermogear.study.shafts.waterfall import waterfall_plan
+
+    read = delivery.load_gears(case, options["overrides"])
+    speeds = _grid("rpm", rpm) * RPM
+    bundle, state = _choice(read, options)
+    named = read
+    if bundle:
+        from thermogear.case.family import GearFamily
+
+        named = replace(read, models=(GearFamily(read, ("pinion_speed",), bundle).model,))
+    plan = waterfall_plan(
+        named, speeds, states=list(dict.fromkeys((UNDEFORMED, state))), operating=operating,
+        duration=seconds, coordinates=coordinates,
+    )  # fmt: skip
+    _carry(plan, Path(output), read.title, as_json, options)
+
+
+COMMANDS: tuple[click.Command, ...] = (bifurcation, map_, basins, runup, waterfall, sweep)
 """What the main group registers."""
 
 

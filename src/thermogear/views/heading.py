@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 STUDIES = {
     "gear": "Run", "dimensionless": "Run", "answers": "Answers", "diagram": "Orbit diagram",
     "map": "Map of regimes", "basins": "Basins of attraction", "sweep": "Sweep",
-    "run-up": "Run-up and run-down", "warmup": "Warm-up", "temperature": "Heat balance",
+    "run-up": "Run-up and run-down", "waterfall": "Run-up of the drive train",
+    "warmup": "Warm-up", "temperature": "Heat balance",
     "relief": "Tip relief", "contact": "Loaded contact", "friction": "Friction laws",
     "orbit": "Orbit", "lyapunov": "Lyapunov exponent", "branch": "Branches of orbits",
     "cascade": "Period doublings", "shared": "Two forms of the mesh force",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.dynamics.ladder import Engine
+from thermogear.dynamics.ladder import Engine, Run
 from thermogear.study.shafts.moving import MovingTrain
 
 Floats = NDArray[np.float64]
@@ -43,9 +43,13 @@ class Record:
 
 
 def recorded(train: MovingTrain, state: Floats, periods: int, *, turn: float = 0.0) -> Record:
-    """``periods`` mesh periods from ``state`` (d,) on."""
+    """``periods`` mesh periods from ``state`` (d,) on, ``turn`` mesh periods after the start."""
+    return shown(train, Engine(train.model).run(state, periods, samples=SAMPLES, turn=turn), turn)
+
+
+def shown(train: MovingTrain, run: Run, turn: float) -> Record:
+    """Forces and accelerations along the samples of a ``run`` of ``train``."""
     model, own = train.model, train.state.assembly
-    run = Engine(model).run(state, periods, samples=SAMPLES, turn=turn)
     phase = turn + run.sample_phase
     n = model.size
     found = model.forces(phase, states=run.samples)
@@ -64,7 +68,7 @@ def recorded(train: MovingTrain, state: Floats, periods: int, *, turn: float = 0
         if name in own.index:
             row = train.reduction.basis[own.index[name]]
             housing[:, axis] = found["acceleration"] @ row
-    points = np.vstack([np.asarray(state)[None], run.sections[:-1]])
+    points = run.samples[::SAMPLES]
     return Record(
         phase=phase,
         mesh_force=found["drive"],

@@ -1,0 +1,131 @@
+"""The page of a drive train's run-up."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermogear.base.display import number
+from thermogear.base.units import RPM
+from thermogear.results.result import Result
+from thermogear.views.page import Page, Shown, Table
+from thermogear.views.pages.survey import survey
+from thermogear.views.plots import waterfall as plots
+from thermogear.views.style import names_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+KINDS = ("waterfall",)
+OVER = (
+    "Vibration at the end of every step of speed. Full lines run up, dashed ones down. Dotted: "
+    "critical speeds of the linear train, hot, that a bearing feels."
+)
+LINES = (
+    "Orders of the mesh frequency over speed, running up: a resonance is bright where its order "
+    "passes it; half orders stand for a motion of two mesh periods."
+)
+
+
+def page(result: Result) -> Page:
+    """Vibration over speed both ways, order waterfalls, jumps and critical speeds."""
+    data = result.data
+    made = [("speed", "Vibration over speed", OVER, partial(plots.over_speed, data))]
+    if data.sizes["pinion_speed"] > 1:
+        made.append(("orders", "Bearing forces by order", LINES, partial(plots.lines, data, 0)))
+        if np.isfinite(data["housing_line"].values).any():
+            made.append(("sound", "Housing by order", LINES, partial(plots.sound, data, 0)))
+    pictures = [Shown(*one, wide=True) for one in made]
+    tables = [_jumps(data), _critical(data)]
+    return survey(result, summary(data), pictures, tables, numbers=numbers, lines=lines)
+
+
+def summary(data: xr.Dataset) -> str:
+    """What was found, in a sentence or two."""
+    speeds = data["pinion_speed"].values / RPM
+    rms = data["mesh_force_rms"].values
+    if not np.isfinite(rms).any():
+        return "No state of heat moves: the train is jammed."
+    place = np.unravel_index(int(np.nanargmax(rms)), rms.shape)
+    state = names_of(data, "state")[place[0]]
+    way = ("up", "down")[place[1]]
+    count = int(data.sizes.get("jump", 0))
+    jumps = f"{count} jump{'s' * (count != 1)}" if count else "no jump"
+    return (
+        f"The teeth vibrate most at {speeds[place[2]]:.6g} rpm, {state}, running {way}: "
+        f"{number(float(rms[place]))} N rms; {jumps} between {speeds[0]:.6g} and "
+        f"{speeds[-1]:.6g} rpm."
+    )
+
+
+def _jumps(data: xr.Dataset) -> Table:
+    states = names_of(data, "state")
+    rows = []
+    for i in range(int(data.sizes.get("jump", 0))):
+        rows.append(
+            [
+                states[int(data["jump_state"].values[i])],
+                "up" if int(data["jump_direction"].values[i]) > 0 else "down",
+                f"{float(data['jump_from'].values[i]) / RPM:.6g}",
+                f"{float(data['jump_to'].values[i]) / RPM:.6g}",
+                number(float(data["jump_before"].values[i])),
+                number(float(data["jump_after"].values[i])),
+            ]
+        )
+    head = ["state", "run", "from [rpm]", "to [rpm]", "rms before [N]", "rms after [N]"]
+    title = "Jumps of the mesh force." if rows else "No jump: up and down are one motion."
+    return Table(title, head, rows, names=2)
+
+
+def _critical(data: xr.Dataset) -> Table:
+    states = names_of(data, "state")
+    low, high = data["pinion_speed"].values[[0, -1]]
+    rows = []
+    for state, found in zip(states, json.loads(data.attrs["critical"]), strict=True):
+        for one in sorted(found, key=lambda c: c["speed"]):
+            if low <= one["speed"] <= high:
+                force = one["force"]
+                told = number(force) if force is not None and np.isfinite(force) else "–"
+                speed = f"{one['speed'] / RPM:.5g}"
+                hertz = f"{one['frequency'] / (2.0 * np.pi):.5g}"
+                rows.append([state, one["order"], speed, hertz, one["mostly"], told])
+    head = ["state", "order", "speed [rpm]", "mode [Hz]", "mostly", "force on a bearing [N]"]
+    return Table("Critical speeds of the linear train within the run.", head, rows, names=2)
+
+
+def numbers(result: Result) -> dict[str, Any]:
+    """The figures of a run-up, JSON-ready."""
+    data = result.data
+    found: dict[str, Any] = {"speeds_rpm": (data["pinion_speed"].values / RPM).tolist()}
+    for s, state in enumerate(names_of(data, "state")):
+        found[state] = {}
+        for d, way in enumerate(("up", "down")):
+            one = data.isel(state=s, direction=d)
+            found[state][way] = {
+                "mesh_force_rms_N": _plain(one["mesh_force_rms"].values),
+                "mesh_force_max_N": _plain(one["mesh_force_max"].values),
+                "contact_loss_share": _plain(one["contact_loss_share"].values),
+                "bearing_force_max_N": _plain(np.nanmax(one["bearing_force_max"].values, axis=1)),
+                "housing_rms_m_per_s2": _plain(one["housing_rms"].values),
+            }
+    found["jumps"] = [
+        dict(zip(("state", "run", "from_rpm", "to_rpm"), row[:4], strict=True))
+        for row in _jumps(data).rows
+    ]
+    return found
+
+
+def _plain(values: Any) -> list[float | None]:
+    return [float(v) if np.isfinite(v) else None for v in np.ravel(values)]
+
+
+def lines(result: Result) -> list[str]:
+    """What the terminal tells."""
+    data = result.data
+    found = [summary(data)]
+    for row in _jumps(data).rows:
+        found.append(f"  {row[0]}, {row[1]}: {row[2]} -> {row[3]} rpm, {row[4]} -> {row[5]} N rms")
+    return found
