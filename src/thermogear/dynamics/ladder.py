@@ -23,8 +23,6 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-SPARE = 8
-"""Tables for steps of any length, which end where a function jumps."""
 DEGREE = 7
 """Of the polynomials that stand for the periodic functions on a panel."""
 PANEL = 0.2
@@ -163,7 +161,7 @@ class Engine:
         outer = np.array(
             [[one.order, one.shift, float(one.rotating)] for one in model.outer] or [[0.0] * 3]
         )
-        edges, guide, table, borders = periodic_table(model)
+        edges, guide, table, borders, broken = periodic_table(model)
         self.numbers = np.zeros(8)
         self.numbers[[k.BASE, k.BACKLASH, k.DAMPING, k.FREQUENCY, k.RAMP]] = (
             model.base_stiffness,
@@ -176,7 +174,7 @@ class Engine:
         self.numbers[k.SWEEP] = how.sweep
         around = np.concatenate(rays).ravel()
         wobbles = np.array([one.row for one in model.wobbles]).reshape(-1, 5)
-        self._arrays = (kinds, laws, around, outer, wobbles, edges, guide, table, borders)
+        self._arrays = (kinds, laws, around, outer, wobbles, edges, guide, table, borders, broken)
         nodes = 0.5 * (np.polynomial.legendre.leggauss(s)[0] + 1.0)
         powers = np.linalg.inv(np.vander(nodes, s, increasing=True))
         places = np.r_[0.0, nodes, 1.0]
@@ -184,7 +182,7 @@ class Engine:
         shifted = np.polynomial.legendre.leg2poly(np.eye(s + 1)[s])
         # P_s(2 x - 1) in powers of x
         line = np.polynomial.Polynomial(shifted)(np.polynomial.Polynomial([-1.0, 2.0]))
-        size = how.rungs + SPARE
+        size = how.rungs
         self.ladder = steps.Ladder(
             nodes=nodes,
             powers=np.ascontiguousarray(powers),
@@ -208,7 +206,7 @@ class Engine:
             steps.fill(train, self.ladder, work, rung, length)
 
     def _train(self, turn: float = 0.0) -> k.Train:
-        kinds, laws, rays, outer, wobbles, edges, guide, table, borders = self._arrays
+        kinds, laws, rays, outer, wobbles, edges, guide, table, borders, broken = self._arrays
         numbers = self.numbers.copy()
         numbers[k.TURN] = turn
         return k.Train(
@@ -227,6 +225,7 @@ class Engine:
             guide=guide,
             table=table,
             borders=borders,
+            broken=broken,
         )
 
     def _work(self, columns: int) -> steps.Work:
@@ -257,6 +256,7 @@ class Engine:
             slope=np.zeros(s * (4 + 4 * count)),
             sample=np.zeros(span),
             added=np.zeros(4 * s),
+            kept=np.zeros(8),
             pace=np.array([1.0, 0.0, 0.0]),
             start_force=np.zeros(max(inputs, 8)),
             lacking=np.zeros(inputs),
@@ -353,8 +353,9 @@ def _joined(numbers: ArrayLike) -> Complexes:
     return np.asarray(both[..., 0::2] + 1j * both[..., 1::2])
 
 
-def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats]:
-    """Edges of panels, the guide to them, polynomials (panel, function, power), borders of steps.
+def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats, Whole]:
+    """Edges of panels, the guide to them, polynomials (panel, function, power), borders of steps,
+    which functions jump.
 
     The polynomials of a panel are in the phase from its middle; a border is where a function jumps.
     """
@@ -386,4 +387,8 @@ def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats]:
     if not inner and any(isinstance(one, Pieces) for _, one in own):
         inner = [0.5]
     borders = np.array([*inner, 1.0])
-    return edges, guide.astype(np.int64), table.ravel(), borders
+    broken = np.zeros(8, np.int64)
+    for place, one in own:
+        broken[place] = isinstance(one, Pieces)
+    broken[[k.RATE, k.BACK_ERROR]] = broken[k.ERROR]
+    return edges, guide.astype(np.int64), table.ravel(), borders, broken

@@ -47,7 +47,7 @@ class Train(NamedTuple):
     cos and sin of every element, ``outer`` (forces, 3), ``wobbles`` (run-outs, 5). ``edges`` of the
     panels of ``table`` (panel, power of the phase from the panel's middle, 8 functions), ``guide``
     the panel at k/size of the period; ``borders``: phases in (0, 1], the last 1, where a step must
-    end.
+    end; ``broken`` (8): 1 for a function that jumps there.
     """
 
     sizes: Whole
@@ -65,6 +65,7 @@ class Train(NamedTuple):
     guide: Whole
     table: Real
     borders: Real
+    broken: Whole
 
 
 @small

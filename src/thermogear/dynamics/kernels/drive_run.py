@@ -51,7 +51,6 @@ from thermogear.dynamics.kernels.ladder import (
     Work,
     attempt,
     coefficients,
-    fill,
     periodic_values,
     within,
 )
@@ -320,20 +319,6 @@ def carry_tangent(
 
 
 @part
-def made(train: Train, ladder: Ladder, work: Work, length: float) -> int:
-    """The table of a step of any ``length``: one of the last made, or a new one in its place."""
-    rungs = train.sizes[RUNGS]
-    spare = ladder.lengths.size - rungs
-    for slot in range(spare):
-        if ladder.lengths[rungs + slot] == length:
-            return int(rungs + slot)
-    slot = int(work.pace[2]) % spare
-    work.pace[2] = slot + 1.0
-    fill(train, ladder, work, rungs + slot, length)
-    return int(rungs + slot)
-
-
-@part
 def next_step(
     train: Train,
     ladder: Ladder,
@@ -342,7 +327,6 @@ def next_step(
     finest: int,
     remaining: float,
     over: bool,
-    jumps: bool,
 ) -> tuple[int, float]:
     """The table for the next step, and the share of it that is left to the border.
 
@@ -351,12 +335,6 @@ def next_step(
     """
     rungs = train.sizes[RUNGS]
     close = ALIKE * ladder.lengths[0]
-    if not over and jumps and remaining < ladder.lengths[rung] - close:
-        while rung + 1 < rungs and ladder.lengths[rung] > remaining + close:
-            rung += 1
-        if abs(ladder.lengths[rung] - remaining) <= close:
-            return rung, 1.0
-        return made(train, ladder, work, remaining), 1.0
     if not over and remaining >= ladder.lengths[rung] - close:
         return rung, 1.0
     wanted = 1.02 * remaining if over else remaining - close
@@ -432,7 +410,6 @@ def advance(
     rungs = sizes[RUNGS]
     close = ALIKE * ladder.lengths[0]
     tolerance = numbers[TOLERANCE]
-    jumps = train.borders.size > 1
     rung = 0
     finest = 0
     t_known = 0.0
@@ -456,11 +433,8 @@ def advance(
                     target = HUGE
                 over = target < t_border
                 goal = target if over else t_border
-                here, limit = next_step(train, ladder, work, rung, finest, goal - t, over, jumps)
+                here, limit = next_step(train, ladder, work, rung, finest, goal - t, over)
                 h = ladder.lengths[here]
-                if over and jumps and h > t_border - t:
-                    target = HUGE
-                    continue
                 if over and h > t_border - t + close:
                     limit = (t_border - t) / h
                 periodic_values(train, ladder, work, t, h, begin, border)
@@ -469,7 +443,7 @@ def advance(
                 error = attempt(train, ladder, work, state, here, t, lead, stretch)
                 work.counts[STEPS] += 1
                 if error > tolerance:
-                    shorter = rung + 1 if here >= rungs else here + 1
+                    shorter = here + 1
                     while shorter < rungs and ladder.lengths[shorter] >= h:
                         shorter += 1
                     if error >= HUGE:
@@ -560,8 +534,6 @@ def advance(
                         rung = here - 1
             t = t_border
             begin = border
-            if jumps:
-                h_known = 0.0
         finite = 0.0
         for k in range(2 * modes):
             sections[period * span + k] = state[k]

@@ -61,7 +61,7 @@ HUGE = 1e300
 
 
 class Ladder(NamedTuple):
-    """Tables of the steps; those behind the last rung are for steps of any length.
+    """Tables of the steps.
 
     ``nodes`` c_i and the Lagrange polynomials' ``powers`` (power, node), values ``at_end`` and
     barycentric ``weights`` over ``places`` = (0, c_i, 1); ``legendre`` the powers of P_s; all over
@@ -111,6 +111,7 @@ class Work(NamedTuple):
     matrix: Real
     gaps: Real
     added: Real
+    kept: Real
     pace: Real
     start_force: Real
     lacking: Real
@@ -288,11 +289,16 @@ def periodic_values(
         now = t + share * h
         phase = (f0 + 0.5 * ramp * now) * now
         turned = train.numbers[TURN] + phase
-        if jumps:
-            phase = max(min(phase, border - 1e-13), begin)
-        elif phase >= 1.0:
-            phase -= 1.0
-        excite(train, phase, turned, work.values, i)
+        inside = max(min(phase, border - 1e-13), begin)
+        excite(train, phase - math.floor(phase), turned, work.values, i)
+        if jumps and inside != phase:
+            # what jumps goes on as it is at the border
+            for row in range(EIGHT):
+                work.kept[row] = work.values[EIGHT * i + row]
+            excite(train, inside, turned, work.values, i)
+            for row in range(EIGHT):
+                if train.broken[row] == 0:
+                    work.values[EIGHT * i + row] = work.kept[row]
 
 
 @part

@@ -284,9 +284,7 @@ class WaterfallPlan:
         return run.state, turn + passed
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        data = data.drop_vars(["end_state", "end_turn"]).assign_coords(
-            state=[one.kind for one in self.states], bearing=list(plan_of(self.case).bearing_names)
-        )
+        data = data.drop_vars(["end_state", "end_turn"])
         rows = _jumps(data)
         words = {
             "state": "state of the jump",
@@ -324,6 +322,8 @@ class WaterfallPlan:
         if not rows:
             told_all.append(f"no jump between {low:.6g} and {high:.6g} rpm, up or down")
         return data.assign_attrs(
+            state_names=json.dumps([one.kind for one in self.states]),
+            bearing_names=json.dumps(list(plan_of(self.case).bearing_names)),
             critical=json.dumps(critical),
             torque=float("nan") if first is None else first.state.torque,
             duration=self.duration,

@@ -14,7 +14,6 @@ from thermogear.results.result import Result
 from thermogear.views.page import Page, Shown, Table
 from thermogear.views.pages.survey import survey
 from thermogear.views.plots import waterfall as plots
-from thermogear.views.style import names_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +49,7 @@ def summary(data: xr.Dataset) -> str:
     if not np.isfinite(rms).any():
         return "No state of heat moves: the train is jammed."
     place = np.unravel_index(int(np.nanargmax(rms)), rms.shape)
-    state = names_of(data, "state")[place[0]]
+    state = plots.states_of(data)[place[0]]
     way = ("up", "down")[place[1]]
     count = int(data.sizes.get("jump", 0))
     jumps = f"{count} jump{'s' * (count != 1)}" if count else "no jump"
@@ -62,7 +61,7 @@ def summary(data: xr.Dataset) -> str:
 
 
 def _jumps(data: xr.Dataset) -> Table:
-    states = names_of(data, "state")
+    states = plots.states_of(data)
     rows = []
     for i in range(int(data.sizes.get("jump", 0))):
         rows.append(
@@ -81,7 +80,7 @@ def _jumps(data: xr.Dataset) -> Table:
 
 
 def _critical(data: xr.Dataset) -> Table:
-    states = names_of(data, "state")
+    states = plots.states_of(data)
     low, high = data["pinion_speed"].values[[0, -1]]
     rows = []
     for state, found in zip(states, json.loads(data.attrs["critical"]), strict=True):
@@ -100,7 +99,7 @@ def numbers(result: Result) -> dict[str, Any]:
     """The figures of a run-up, JSON-ready."""
     data = result.data
     found: dict[str, Any] = {"speeds_rpm": (data["pinion_speed"].values / RPM).tolist()}
-    for s, state in enumerate(names_of(data, "state")):
+    for s, state in enumerate(plots.states_of(data)):
         found[state] = {}
         for d, way in enumerate(("up", "down")):
             one = data.isel(state=s, direction=d)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.units import RPM
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import INK, QUIET, STATES, WIDE, names_of, scale
+from thermogear.views.style import INK, QUIET, STATES, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +41,7 @@ def over_speed(data: xr.Dataset) -> Picture:
             continue
         panel = Panel(Axis(""), Axis(words))
         factor = 100.0 if name == "contact_loss_share" else 1.0
-        for s, state in enumerate(names_of(data, "state")):
+        for s, state in enumerate(states_of(data)):
             for d, way, dash in WAYS:
                 panel.curve(
                     rpm, factor * values[s, d], colour=STATES.get(state, INK), dash=dash,
@@ -53,6 +53,11 @@ def over_speed(data: xr.Dataset) -> Picture:
     panels[-1][0].x = Axis("pinion speed [rpm]")
     size = (WIDE, 1.9 * len(panels) + 0.9)
     return Picture(panels, size=size, above=0.2, share_x="column", legend=4)
+
+
+def states_of(data: xr.Dataset) -> list[str]:
+    """Names of the states of heat."""
+    return [str(one) for one in json.loads(data.attrs["state_names"])]
 
 
 def critical(data: xr.Dataset) -> list[float]:
@@ -95,7 +100,7 @@ def _field(
     half = np.isclose(2.0 * order, np.round(2.0 * order))
     top = float(np.nanmax(values[..., half], initial=1e-12))
     panels = []
-    for s, state in enumerate(names_of(data, "state")):
+    for s, state in enumerate(states_of(data)):
         panel = Panel(Axis("pinion speed [rpm]"), Axis("order of the mesh frequency"), state)
         shown = np.clip(np.nan_to_num(values[s][:, half], nan=LEAST * top), LEAST * top, None)
         panel.field(
@@ -108,7 +113,7 @@ def _field(
 
 def _edges(values: Floats) -> Floats:
     if values.size == 1:
-        return np.array([0.999, 1.001]) * values[0]
+        return np.asarray(np.array([0.999, 1.001]) * values[0], dtype=float)
     middle = 0.5 * (values[1:] + values[:-1])
     ends = [2.0 * values[0] - middle[0]], [2.0 * values[-1] - middle[-1]]
-    return np.concatenate([ends[0], middle, ends[1]])
+    return np.asarray(np.concatenate([ends[0], middle, ends[1]]), dtype=float)
