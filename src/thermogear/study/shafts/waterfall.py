@@ -23,7 +23,8 @@ from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, range
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
-from thermogear.dynamics.ladder import Engine
+from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import finished
@@ -45,10 +46,20 @@ SETTLING = 768
 """Mesh periods at the first speed before the run begins."""
 FURTHEST = 0.05
 """Share of the speed over which one set of tables, and the gyroscopic matrix, is kept."""
-JUMP = 1.5
-"""Factor of the mesh force's rms from one speed to the next that may be a jump."""
 APART = 1.2
-"""Factor between up and down that shows two motions."""
+"""Factor between the vibration up and down that is told."""
+HELD = 4000
+"""Mesh periods at a steady speed after which two motions are two."""
+APART_TOLD = {
+    "state": ("state of heat", ""),
+    "from": ("first speed of the stretch", "rad/s"),
+    "to": ("last speed of the stretch", "rad/s"),
+    "at": ("speed at which up and down differ most", "rad/s"),
+    "part": ("what differs most: 0 the mesh force, 1, 2, ... a bearing", ""),
+    "up": ("its vibration running up, rms", "N"),
+    "down": ("and running down", "N"),
+    "held": ("1: two motions at a steady speed too, 0: the difference is the rate's", ""),
+}
 DURATION = 20.0
 
 
@@ -283,23 +294,50 @@ class WaterfallPlan:
             found[name][0, 0, place] = value
         return run.state, turn + passed
 
+    def _apart(self, data: xr.Dataset, state: int) -> list[dict[str, float]]:
+        """Stretches of speed on which up and down differ, and whether they do so at rest of speed.
+
+        Where they differ most both states are held at that speed for a while: a difference that
+        stays is one of two motions.
+        """
+        train = self.train(state)
+        rms = np.concatenate(
+            [data["mesh_force_rms"].values[state][..., None], data["bearing_force_rms"][state]], -1
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.nan_to_num(np.abs(np.log(rms[0] / rms[1])))
+        wide = ratio.max(axis=1) > np.log(APART)
+        edges = np.flatnonzero(np.diff(np.r_[False, wide, False].astype(int)))
+        rows: list[dict[str, float]] = []
+        for first, after in edges.reshape(-1, 2).tolist():
+            place = first + int(ratio[first:after].max(axis=1).argmax())
+            which = int(ratio[place].argmax())
+            held = 0
+            if train is not None:
+                model = train.at_speed(self.case, self.speeds[place]).model
+                held = int(_held_apart(model, data["end_state"].values[state, :, place], which))
+            rows.append(
+                {
+                    "state": state,
+                    "from": self.speeds[first],
+                    "to": self.speeds[after - 1],
+                    "at": self.speeds[place],
+                    "part": which,
+                    "up": float(rms[0, place, which]),
+                    "down": float(rms[1, place, which]),
+                    "held": held,
+                }
+            )
+        return rows
+
     def finish(self, data: xr.Dataset) -> xr.Dataset:
+        rows = [row for state in range(len(self.states)) for row in self._apart(data, state)]
         data = data.drop_vars(["end_state", "end_turn"])
-        rows = _jumps(data)
-        words = {
-            "state": "state of the jump",
-            "direction": "1 up, -1 down",
-            "from": "last speed before the jump",
-            "to": "first speed after it",
-            "before": "vibration of the drive flanks' force before, rms",
-            "after": "and after",
-        }
-        units = {"from": "rad/s", "to": "rad/s", "before": "N", "after": "N"}
-        for name, told in words.items():
-            attributes = {"long_name": told} | ({"units": units[name]} if name in units else {})
-            column = [row[name] for row in rows]
-            values = np.array(column, float if name in units else np.int32)
-            data[f"jump_{name}"] = (("jump",), values, attributes)
+        for name, (words, unit) in APART_TOLD.items():
+            attributes = {"long_name": words} | ({"units": unit} if unit else {})
+            values = np.array([row[name] for row in rows], float if unit else np.int32)
+            data[f"apart_{name}"] = (("stretch",), values, attributes)
+        held = sum(int(row["held"]) for row in rows)
         trains = [self.train(state) for state in range(len(self.states))]
         critical = [
             []
@@ -319,8 +357,14 @@ class WaterfallPlan:
             f"{size} coordinates; the 12 lowest natural frequencies are off by at most "
             f"{100.0 * error:.2g} %",
         ]
-        if not rows:
-            told_all.append(f"no jump between {low:.6g} and {high:.6g} rpm, up or down")
+        if rows:
+            told_all.append(
+                f"up and down differ on {len(rows)} stretch{'es' * (len(rows) > 1)} of speed; on "
+                f"{held} of them two motions exist at a steady speed too, so that a run jumps at "
+                "its ends, on the others the difference is the rate's"
+            )
+        else:
+            told_all.append(f"up and down agree between {low:.6g} and {high:.6g} rpm: no jump")
         return data.assign_attrs(
             state_names=json.dumps([one.kind for one in self.states]),
             bearing_names=json.dumps(list(plan_of(self.case).bearing_names)),
@@ -335,36 +379,23 @@ class WaterfallPlan:
 _MAKING = threading.RLock()
 
 
-def _how() -> Any:
-    from thermogear.dynamics.ladder import Steps
+def _held_apart(model: GearedModel, both: Floats, part: int) -> bool:
+    """Whether two states (2, d) still vibrate apart after a while at a steady speed."""
+    engine = Engine(model, _how())
+    seen = []
+    for state in both:
+        run = engine.run(engine.run(state, HELD).state, WINDOW, samples=SAMPLES)
+        if part == 0:
+            values = model.forces(run.sample_phase, states=run.samples)["drive"][:, None]
+        else:
+            values = run.samples[:, : model.size]
+        seen.append(float(np.sqrt(((values - values.mean(axis=0)) ** 2).sum(axis=1).mean())))
+    return bool(abs(np.log(seen[0] / seen[1])) > np.log(1.02))
 
+
+def _how() -> Steps:
+    """Finely enough for lines 80 dB below the greatest."""
     return Steps(accuracy=1e-7)
-
-
-def _jumps(data: xr.Dataset) -> list[dict[str, float]]:
-    """Steps of speed over which the vibration jumps, where up and down are two motions.
-
-    Only there: a resonance that both ways pass alike is no jump, however steep.
-    """
-    rms, speeds = data["mesh_force_rms"].values, data["pinion_speed"].values
-    rows: list[dict[str, float]] = []
-    with np.errstate(divide="ignore", invalid="ignore"):
-        apart = np.abs(np.log(rms[:, 0] / rms[:, 1])) > np.log(APART)
-        leaps = np.abs(np.diff(np.log(rms), axis=2)) > np.log(JUMP)
-    for s, d, i in np.argwhere(leaps):
-        if apart[s, i] or apart[s, i + 1]:
-            a, b = (i, i + 1) if d == 0 else (i + 1, i)
-            rows.append(
-                {
-                    "state": int(s),
-                    "direction": DIRECTIONS[d],
-                    "from": float(speeds[a]),
-                    "to": float(speeds[b]),
-                    "before": float(rms[s, d, a]),
-                    "after": float(rms[s, d, b]),
-                }
-            )
-    return rows
 
 
 def waterfall_plan(
@@ -421,8 +452,9 @@ def waterfall(
     Each way takes ``duration`` [s] at a rate of speed that is even between neighbours; heat, mesh
     and clearances are those of one ``operating`` point (from 1, the hardest if left out). Over
     (state, direction, pinion_speed): vibration of mesh and bearing forces, acceleration of the
-    housing, and their lines over order; ``jump_...``: where the vibration jumps and up and down are
-    two motions. Raises InputError for a case without shafts.
+    housing, and their lines over order; ``apart_...``: stretches on which up and down differ, and
+    whether two motions exist there at a steady speed, between which a run jumps. Raises InputError
+    for a case without shafts.
     """
     plan = waterfall_plan(
         case,

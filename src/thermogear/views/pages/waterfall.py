@@ -51,8 +51,8 @@ def summary(data: xr.Dataset) -> str:
     place = np.unravel_index(int(np.nanargmax(rms)), rms.shape)
     state = plots.states_of(data)[place[0]]
     way = ("up", "down")[place[1]]
-    count = int(data.sizes.get("jump", 0))
-    jumps = f"{count} jump{'s' * (count != 1)}" if count else "no jump"
+    count = int(data["apart_held"].values.sum())
+    jumps = f"two motions on {count} stretch{'es' * (count != 1)}" if count else "no jump"
     return (
         f"The teeth vibrate most at {speeds[place[2]]:.6g} rpm, {state}, running {way}: "
         f"{number(float(rms[place]))} N rms; {jumps} between {speeds[0]:.6g} and "
@@ -62,21 +62,27 @@ def summary(data: xr.Dataset) -> str:
 
 def _jumps(data: xr.Dataset) -> Table:
     states = plots.states_of(data)
+    parts = ["mesh force", *json.loads(data.attrs["bearing_names"])]
     rows = []
-    for i in range(int(data.sizes.get("jump", 0))):
+    for i in range(data.sizes["stretch"]):
+        one = data.isel(stretch=i)
+        rpm = [f"{float(one[f'apart_{name}']) / RPM:.6g}" for name in ("from", "to", "at")]
         rows.append(
             [
-                states[int(data["jump_state"].values[i])],
-                "up" if int(data["jump_direction"].values[i]) > 0 else "down",
-                f"{float(data['jump_from'].values[i]) / RPM:.6g}",
-                f"{float(data['jump_to'].values[i]) / RPM:.6g}",
-                number(float(data["jump_before"].values[i])),
-                number(float(data["jump_after"].values[i])),
+                states[int(one["apart_state"])],
+                *rpm,
+                parts[int(one["apart_part"])],
+                number(float(one["apart_up"])),
+                number(float(one["apart_down"])),
+                "two motions" if int(one["apart_held"]) else "the rate of the run",
             ]
         )
-    head = ["state", "run", "from [rpm]", "to [rpm]", "rms before [N]", "rms after [N]"]
-    title = "Jumps of the mesh force." if rows else "No jump: up and down are one motion."
-    return Table(title, head, rows, names=2)
+    head = [
+        "state", "from [rpm]", "to [rpm]", "most at [rpm]", "of", "up, rms [N]", "down, rms [N]",
+        "because of",
+    ]  # fmt: skip
+    title = "Where up and down differ." if rows else "Up and down agree: no jump."
+    return Table(title, head, rows)
 
 
 def _critical(data: xr.Dataset) -> Table:
@@ -110,10 +116,8 @@ def numbers(result: Result) -> dict[str, Any]:
                 "bearing_force_max_N": _plain(np.nanmax(one["bearing_force_max"].values, axis=1)),
                 "housing_rms_m_per_s2": _plain(one["housing_rms"].values),
             }
-    found["jumps"] = [
-        dict(zip(("state", "run", "from_rpm", "to_rpm"), row[:4], strict=True))
-        for row in _jumps(data).rows
-    ]
+    names = ("state", "from_rpm", "to_rpm", "at_rpm", "of", "up_rms_N", "down_rms_N", "because_of")
+    found["apart"] = [dict(zip(names, row, strict=True)) for row in _jumps(data).rows]
     return found
 
 
@@ -126,5 +130,8 @@ def lines(result: Result) -> list[str]:
     data = result.data
     found = [summary(data)]
     for row in _jumps(data).rows:
-        found.append(f"  {row[0]}, {row[1]}: {row[2]} -> {row[3]} rpm, {row[4]} -> {row[5]} N rms")
+        found.append(
+            f"  {row[0]}, {row[1]} to {row[2]} rpm: {row[4]} {row[5]} N rms up, {row[6]} N down, "
+            f"by {row[7]}"
+        )
     return found
