@@ -281,7 +281,8 @@ CHOICES = (
 )
 COMMANDS = [
     *("new", "import", "export", "draw", "answers", "run", "report", "check", "example", "schema"),
-    *("friction", "temperature", "warmup", "relief", "contact", "statics", "modes", "campbell"),
+    *("friction", "temperature", "warmup", "relief", "contact"),
+    *("statics", "modes", "campbell", "waterfall"),
     *("orbit", "lyapunov", "continue", "shared-force"),
     *("bifurcation", "map", "basins", "runup", "sweep"),
     *("measure", "compare", "thesis", "sensitivity", "verify", "versus"),
@@ -532,6 +533,7 @@ CASES = (
             "statics motor-train -o out --json",
             "modes motor-train -o modes --count 6 --json",
             "campbell motor-train -o campbell --rpm 0:4000 --count 6 --json",
+            "waterfall motor-train -o waterfall --rpm 2000:2400:3 --seconds 0.5 --json",
         ),
     ),
     # --- records

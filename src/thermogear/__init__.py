@@ -75,6 +75,8 @@ _HOME = {
     "statics": "thermogear.study.shafts.statics",
     "modes": "thermogear.study.shafts.modes",
     "campbell": "thermogear.study.shafts.campbell",
+    "waterfall": "thermogear.study.shafts.waterfall",
+    "GearedModel": "thermogear.dynamics.geared",
     "relief_survey": "thermogear.study.relief",
     "warm_up_survey": "thermogear.study.warm_up",
     "read_duty": "thermogear.case.duty",

@@ -22,7 +22,9 @@ from thermogear.views.plots import (
     speeds,
     sweeps,
     thermal_map,
+    train_motion,
     warm_up,
+    waterfall,
 )
 from thermogear.views.plots.shared import shared_picture
 
@@ -268,6 +270,52 @@ def of_claims() -> dict[str, Picture]:
     }
 
 
+def of_moving_trains() -> dict[str, Picture]:
+    heat, two = ["undeformed", "hot"], ["left", "right"]
+    rng = np.random.default_rng(5)
+    point, over = ("state", "operating"), ("state", "direction", "pinion_speed")
+    phase, order = np.arange(32) / 16.0, np.arange(1, 9) / 2.0
+    moved = xr.Dataset(
+        {
+            "mesh_force": ((*point, "sample"), rng.uniform(0.0, 3e3, (2, 1, 32))),
+            "back_force": ((*point, "sample"), rng.uniform(0.0, 1e2, (2, 1, 32))),
+            "bearing_force": ((*point, "bearing", "sample"), rng.uniform(1, 2, (2, 1, 2, 32))),
+            "section_deflection": ((*point, "section"), rng.uniform(0.0, 1e-4, (2, 1, 5))),
+            "section_rate": ((*point, "section"), rng.uniform(-1.0, 1.0, (2, 1, 5))),
+            "bearing_force_line": (
+                (*point, "bearing", "line_order"), rng.uniform(0.1, 50.0, (2, 1, 2, 8)),
+            ),
+            "housing_line": ((*point, "line_order"), rng.uniform(0.01, 5.0, (2, 1, 8))),
+        },
+        {"state": heat, "bearing": two, "phase": ("sample", phase), "line_order": order},
+    )  # fmt: skip
+    swept = xr.Dataset(
+        {
+            name: (over, rng.uniform(1.0, 9.0, (2, 2, 6)))
+            for name in ("mesh_force_rms", "housing_rms", "contact_loss_share")
+        }
+        | {
+            "bearing_force_rms": ((*over, "bearing"), rng.uniform(1.0, 9.0, (2, 2, 6, 2))),
+            "bearing_force_line": (
+                (*over, "bearing", "order"), rng.uniform(0.1, 9.0, (2, 2, 6, 2, 8)),
+            ),
+            "housing_line": ((*over, "order"), rng.uniform(0.1, 9.0, (2, 2, 6, 8))),
+        },
+        {"pinion_speed": np.linspace(100.0, 300.0, 6), "order": order},
+        {
+            "state_names": json.dumps(heat),
+            "critical": json.dumps([[], [{"speed": 150.0, "force": 10.0}]]),
+        },
+    )  # fmt: skip
+    return {
+        "train-moving": train_motion.four_panels(moved, 0),
+        "train-heard": train_motion.sound(moved, 0),
+        "train-over-speed": waterfall.over_speed(swept),
+        "train-orders": waterfall.lines(swept, 0),
+        "train-sound": waterfall.sound(swept, 1),
+    }
+
+
 def of_shafts() -> dict[str, Picture]:
     heat, two = {"state": ["undeformed", "hot"]}, ["left", "right"]
     rings = made(
@@ -320,6 +368,7 @@ def of_shafts() -> dict[str, Picture]:
         "train-modes": shafts.modes(table, shapes, 1),
         "train-energies": shafts.energies(table, 1),
         "train-campbell": shafts.campbell(curves, met, [100.0, 200.0]),
+        **of_moving_trains(),
         "train-response": shafts.response(answer, "bearing_force", "force [N]"),
     }
 

@@ -58,7 +58,7 @@ def four_panels(data: xr.Dataset, operating: int) -> Picture:
     felt = here["bearing_force_line"].values.max(axis=1)
     floor, top = floor_of(felt, order=order, highest=HIGHEST)
     spectrum = over_orders(
-        "order of the mesh frequency", "line of bearing force [N]", floor=floor, top=top,
+        "order of the mesh frequency [–]", "line of bearing force [N]", floor=floor, top=top,
         highest=HIGHEST,
     )  # fmt: skip
     spectrum.title = "Largest line of any bearing"
@@ -76,7 +76,7 @@ def sound(data: xr.Dataset, operating: int) -> Picture:
     order, lines = here["line_order"].values, here["housing_line"].values
     floor, top = floor_of(lines, order=order, highest=HIGHEST)
     panel = over_orders(
-        "order of the mesh frequency", "acceleration of the housing [m/s²]", floor=floor, top=top,
+        "order of the mesh frequency [–]", "acceleration of the housing [m/s²]", floor=floor, top=top,
         highest=HIGHEST,
     )  # fmt: skip
     for s, state in enumerate(names_of(here, "state")):

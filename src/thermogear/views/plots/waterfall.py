@@ -101,7 +101,7 @@ def _field(
     top = float(np.nanmax(values[..., half], initial=1e-12))
     panels = []
     for s, state in enumerate(states_of(data)):
-        panel = Panel(Axis("pinion speed [rpm]"), Axis("order of the mesh frequency"), state)
+        panel = Panel(Axis("pinion speed [rpm]"), Axis("order of the mesh frequency [–]"), state)
         shown = np.clip(np.nan_to_num(values[s][:, half], nan=LEAST * top), LEAST * top, None)
         panel.field(
             _edges(rpm), _edges(order[half]), shown.T, low=LEAST * top, high=top, log=True,
