@@ -129,12 +129,14 @@ class Orbit:
 
 
 def multipliers(jacobian: Floats, determinant: float) -> Complexes:
-    """Eigenvalues of a Jacobian whose determinant is known, the larger modulus first.
+    """Eigenvalues of a Jacobian, the larger modulus first; ``determinant`` nan: not known.
 
-    Of two by two mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu, free of
-    cancellation. Of a pair the one in the upper half plane comes first.
+    Of two by two with a known one mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu,
+    free of cancellation. Of a pair the one in the upper half plane comes first.
     """
-    if jacobian.shape != (2, 2):
+    if jacobian.shape != (2, 2) or (np.isnan(determinant) and np.all(np.isfinite(jacobian))):
+        if not np.all(np.isfinite(jacobian)):
+            return np.full(len(jacobian), complex("nan"))
         found = np.linalg.eigvals(jacobian).astype(complex)
         # of one modulus the upper half plane first
         order = np.lexsort((-found.imag, -np.round(np.abs(found), 12)))
