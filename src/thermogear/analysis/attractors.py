@@ -159,8 +159,11 @@ def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> flo
     """The largest tried radius from which every start on squares about the orbit comes home.
 
     Starts are on the edges of squares of that half width and of a half and a quarter of it;
-    home means within a tenth of the radius of its own point of the orbit.
+    home means within a tenth of the radius of its own point of the orbit. Only of states (x, x'):
+    the corners about a longer one are too many to try, and it has none.
     """
+    if points.shape[1] != 2:
+        return 0.0
     size = abs(multiplier)
     turns = int(np.clip(np.ceil(np.log(1e-3) / np.log(max(size, 1e-3))), 4, 2000))
     edge = np.linspace(-1.0, 1.0, 5)

@@ -151,7 +151,8 @@ def lyapunov_exponent(
     through every contact change (the saltation matrix is the identity) and is normalised every
     period. The mean of ``batches`` batches of ``batch_periods`` periods after ``discard``; the
     error is the standard error of the batch means. ``initial_state`` has the length of the model's
-    states. Unit: one over the model's unit of time, 1 for :class:`TorsionalModel`, 1/s for a model in SI.
+    states. Unit: one over the model's unit of time, 1 for :class:`TorsionalModel`, 1/s for a model
+    in SI.
 
     >>> model = TorsionalModel(
     ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,

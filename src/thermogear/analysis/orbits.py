@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.section import lanes_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.exact_map import ExactMap
 from thermogear.dynamics.return_map import ReturnMap, return_map
 from thermogear.dynamics.tables import Lanes
 
@@ -155,11 +154,8 @@ def contact_multipliers(model: object) -> Complexes:
     The largest modulus above 1 means that the motion cannot stay in contact, whatever the force.
     ``model`` has one lane; backlash and force do not enter.
     """
-    section = ExactMap(lanes_of(model))
-    product = np.eye(2)
-    for maps in section.maps.maps[:, :4, 0]:
-        product = np.array([[maps[0], maps[2]], [maps[1], maps[3]]]) @ product
-    return multipliers(product, section.determinant(1))
+    section = lanes_of(model).return_map()
+    return multipliers(section.contact, section.determinant(1))
 
 
 def shoot(

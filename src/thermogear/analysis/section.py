@@ -27,6 +27,11 @@ def lanes_of(model: object) -> Lanes:
     return model.lanes()
 
 
+def plain(model: object) -> object:
+    """The flat parameters of a one-mass model; any other model as it is."""
+    return lanes_of(model) if isinstance(model, ClearanceModel) else model
+
+
 def starts_of(initial_state: ArrayLike, lanes: int, dimension: int = 2) -> Floats:
     """Start states (lane, d) from one state or one per lane."""
     start = np.asarray(initial_state, dtype=float)
