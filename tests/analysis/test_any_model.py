@@ -8,6 +8,7 @@ import pytest
 from thermogear.analysis.attractors import attractors_from
 from thermogear.analysis.bifurcations import FLIP, FOLD, SUPERCRITICAL, TORUS
 from thermogear.analysis.continuation import continuation, switch_branch
+from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponent
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import PERIODIC, Rule, settle
@@ -171,6 +172,37 @@ def test_attractors_of_a_model_that_is_no_single_mass():
     assert [one.points[0, 0] for one in found] == pytest.approx([1.0, -1.0], abs=1e-8)
     assert found[0].multiplier == pytest.approx(np.exp(-1.0), rel=1e-8)
     assert found[0].lyapunov == pytest.approx(-1.0, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("mu", "name"), [(-0.5, "period-1"), (-0.001, "undecided"), (0.3, "undecided")]
+)
+def test_a_label_of_any_model_never_calls_a_torus_settled_or_chaotic(mu, name):
+    """|mu| = exp(mu T): near 1, and where the pair has left the circle, nothing is decided."""
+    model = turning(mu)
+    found = label(model, initial_state=(0.35, 0.0), discard=16, cap=128, max_period=4)
+    assert found.name == name
+    if name == "period-1":
+        assert found.orbit.model is model
+        assert found.multipliers[0] == pytest.approx(np.exp(mu + 0.7j), rel=1e-6)
+
+
+def test_a_label_of_a_chaotic_model_carries_its_exponent():
+    """Duffing's equation with c = 0.3, F = 0.5, a known case."""
+    model = SmoothModel(
+        derivative=lambda t, y: np.array(
+            [y[1], -0.3 * y[1] + y[0] - y[0] ** 3 + 0.5 * np.cos(1.2 * t)]
+        ),
+        jacobian=lambda t, y: np.array([[0.0, 1.0], [1.0 - 3.0 * y[0] ** 2, -0.3]]),
+        period=2.0 * np.pi / 1.2,
+        unit=np.ones(2),
+        divergence=-0.3,
+        tolerance=1e-8,
+    )
+    found = label(model, initial_state=(1.0, 0.0), discard=32, cap=96)
+    assert found.name == "chaotic"
+    assert found.lyapunov.sum == pytest.approx(-0.3)
+    assert found.lyapunov.value == pytest.approx(found.lyapunov.batches.mean())
 
 
 def test_the_exponent_of_a_linear_model_is_its_slowest_rate():

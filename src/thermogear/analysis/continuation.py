@@ -27,7 +27,7 @@ from thermogear.analysis.curve import Curve, Family, Point, mirrored
 from thermogear.analysis.orbits import Orbit, closed, multipliers
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError, nearest
-from thermogear.dynamics.return_map import MovedMap, return_map
+from thermogear.dynamics.return_map import return_map
 
 Floats = NDArray[np.float64]
 
@@ -100,7 +100,7 @@ class Branch:
             attrs={"parameter": self.parameter, "period": self.period, "ended": self.ended},
         )
 
-    def _sections(self) -> dict[str, tuple[str | tuple[str, ...], Floats, dict[str, str]]]:
+    def _sections(self) -> dict[str, Any]:
         if self.states.shape[1] != 2:
             text = {"long_name": "state at phase 0"}
             return {"section": (("point", "coordinate"), self.states, text)}
@@ -155,9 +155,8 @@ def continuation(
 ) -> Branch:
     """Walk the branch of ``orbit`` in ``parameter`` until it reaches ``to``.
 
-    States, parameter and ``to`` are in the units of the model: pure numbers for
-    :class:`TorsionalModel`, SI for a model in SI. Pseudo-arclength continuation of stable and
-    unstable orbits alike, around folds; it ends at ``to``, or where the branch leaves the range
+    States, parameter and ``to`` are in the model's units: numbers of :class:`TorsionalModel`, else
+    SI. Pseudo-arclength continuation of stable and unstable orbits alike, around folds; it ends at ``to``, or where the branch leaves the range
     on the side it came from, shrinks into an orbit of half its period, becomes symmetric, or
     after ``most_points``. On the way folds (multiplier +1), period doublings (-1), grazing (an
     extremum touches an edge of the backlash) and pitchforks (+1 where a symmetric orbit of a
@@ -298,9 +297,7 @@ def _symmetry(orbit: Orbit, family: Family, start: float, to: float) -> tuple[bo
         return False, False
     if not all(mirrored(one, orbit.period) for one in lanes):
         return False, False
-    section = return_map(lanes[0])
-    if not isinstance(section, MovedMap):
-        return False, False
+    section = lanes[0].return_map()
     end, _ = section.flow(orbit.state, orbit.period)
     return True, float(section.distance(-end, orbit.state)) < 1e-8
 

@@ -208,8 +208,7 @@ class Curve:
         if value in self._moved:
             return self._moved[value]
         section = self.map_at(value)
-        exact = isinstance(section, MovedMap)
-        small = (SMALL if exact else ROUGH) * self.span
+        small = (SMALL if isinstance(section, MovedMap) else ROUGH) * self.span
         for weights in (
             {-1: -0.5, 1: 0.5},
             {0: -1.5, 1: 2.0, 2: -0.5},
@@ -223,7 +222,11 @@ class Curve:
         else:
             raise InputError(self.parameter, value, allowed="values with neighbours")
         rates = [(weight / small, around[k]) for k, weight in weights.items()]
-        found = section.rates(rates) if exact else [(w, return_map(one)) for w, one in rates]
+        found: Any
+        if isinstance(section, MovedMap):
+            found = section.rates(rates)
+        else:
+            found = [(w, return_map(one)) for w, one in rates]
         _keep(self._moved, value, found)
         return found
 
@@ -252,7 +255,8 @@ class Curve:
         last = np.inf
         stalled = 0
         upright = not normal[:-1].any()
-        step = before = np.zeros(d + 1)
+        step: Floats = np.zeros(d + 1)
+        before = step
         for count in range(20):
             gap, jacobian, section = self.residual(scaled)
             size = float(np.max(np.abs(gap)))

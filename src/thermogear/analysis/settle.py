@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import multipliers
+from thermogear.analysis.section import units_of as units_of
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.bundle import Bundle, Visits, bundles
@@ -127,11 +128,6 @@ class Settled:
         """Write the lanes of ``other`` to the places ``index``."""
         for field in fields(self):
             getattr(self, field.name)[index] = getattr(other, field.name)
-
-
-def units_of(lanes: Lanes) -> Floats:
-    """Scales of (x, x') for distances, lane by lane: b and 2 pi b/T, (lane, 2)."""
-    return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
 
 
 def close_orbits(maps: Bundle, start: Floats, n: int) -> Visits:

@@ -18,7 +18,7 @@ from thermogear.base.pieces import Pieces as Pieces
 
 if TYPE_CHECKING:
     from thermogear.dynamics.bundle import Prepared
-    from thermogear.dynamics.exact_map import ExactMap
+    from thermogear.dynamics.exact_map import Ensemble, ExactMap
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -70,6 +70,19 @@ class Lanes:
         from thermogear.dynamics.exact_bundle import exact_bundles
 
         return exact_bundles(self, refine)
+
+    def ensemble(
+        self,
+        start: Floats,
+        *,
+        threads: int | None = None,
+        refine: int = 1,
+        parting: bool = False,
+    ) -> Ensemble:
+        """All lanes from ``start`` (lane, 2) on their way, on ``threads``; see its class."""
+        from thermogear.dynamics.exact_map import Ensemble
+
+        return Ensemble(self, start, threads=threads, refine=refine, parting=parting)
 
     def jumps(self, lane: int) -> tuple[float, ...]:
         """Phases in (0, 1) where a table of this lane may jump."""
