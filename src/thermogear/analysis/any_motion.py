@@ -54,7 +54,8 @@ class Motion:
 
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
     there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
-    with its ``lyapunov_error`` and the means of its ``batches``; ``used`` periods run; ``away`` how far the motion itself still was
+    with its ``lyapunov_error`` and the means of its ``batches``; ``used`` periods run; ``away``
+    how far the motion itself still was
     from its orbit, in units of the map.
     """
 

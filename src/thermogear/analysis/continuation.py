@@ -156,8 +156,8 @@ def continuation(
     """Walk the branch of ``orbit`` in ``parameter`` until it reaches ``to``.
 
     States, parameter and ``to`` are in the model's units: numbers of :class:`TorsionalModel`, else
-    SI. Pseudo-arclength continuation of stable and unstable orbits alike, around folds; it ends at ``to``, or where the branch leaves the range
-    on the side it came from, shrinks into an orbit of half its period, becomes symmetric, or
+    SI. Pseudo-arclength continuation of stable and unstable orbits alike, around folds. It ends
+    at ``to``, or where the branch leaves the range behind it, shrinks into an orbit of half its period, becomes symmetric, or
     after ``most_points``. On the way folds (multiplier +1), period doublings (-1), grazing (an
     extremum touches an edge of the backlash) and pitchforks (+1 where a symmetric orbit of a
     symmetric equation loses its symmetry) are located, of states longer than (x, x') or of unknown

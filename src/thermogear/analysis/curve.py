@@ -256,7 +256,7 @@ class Curve:
         stalled = 0
         upright = not normal[:-1].any()
         step: Floats = np.zeros(d + 1)
-        before = step
+        before: Floats = step
         for count in range(20):
             gap, jacobian, section = self.residual(scaled)
             size = float(np.max(np.abs(gap)))
