@@ -157,9 +157,9 @@ def continuation(
 
     States, parameter and ``to`` are in the model's units: numbers of :class:`TorsionalModel`, else
     SI. Pseudo-arclength continuation of stable and unstable orbits alike, around folds. It ends
-    at ``to``, or where the branch leaves the range behind it, shrinks into an orbit of half its period, becomes symmetric, or
-    after ``most_points``. On the way folds (multiplier +1), period doublings (-1), grazing (an
-    extremum touches an edge of the backlash) and pitchforks (+1 where a symmetric orbit of a
+    at ``to``, or where the branch leaves the range behind it, shrinks into an orbit of half its
+    period, becomes symmetric, or after ``most_points``. On the way folds (multiplier +1), period
+    doublings (-1), grazing (an extremum touches an edge of the backlash) and pitchforks (+1 where a symmetric orbit of a
     symmetric equation loses its symmetry) are located, of states longer than (x, x') or of unknown
     determinant the torus too (a complex pair crosses the unit circle). Where no further orbit is
     found the branch as far as it goes comes back, and ``ended`` names the gap.
