@@ -21,7 +21,7 @@ from thermogear.analysis.settle import (
 )
 from thermogear.base.errors import InputError
 from thermogear.base.vocabulary import STATUS
-from thermogear.dynamics import exact
+from thermogear.dynamics.bundle import bundles
 from thermogear.dynamics.models import TorsionalModel
 from thermogear.dynamics.return_map import return_map
 
@@ -276,8 +276,8 @@ def test_newton_lane_by_lane_ends_on_the_orbits_and_tells_who_did_not_get_there(
         force_amplitude=[0.05, -1.16, 0.05],
     )
     lanes = model.lanes()
-    ((_, borders, marks),) = exact.layouts(lanes)
-    maps = exact.prepare_maps(lanes, borders, marks)
+    ((_, prepared),) = bundles(lanes)
+    maps = prepared()
     guess = np.array([[1.15, 0.0], [1.1, -0.3], [0.9, 0.4]])
     point, residual = polish(maps, guess, 2, units_of(lanes), most=20)
     assert np.all(residual[:2] < 1e-12)

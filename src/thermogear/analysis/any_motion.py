@@ -7,7 +7,7 @@ Lyapunov exponent, or undecided; a torus is undecided.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,7 @@ class Search:
     ``max_period`` of an orbit. ``polish``: with Newton and multipliers; without, a motion that
     comes nearer to itself by ``approach`` from one period to the next, to ``closed`` units of the
     map, is periodic.
+    A largest multiplier above ``near_border`` leaves it undecided.
     """
 
     first: int = 64
@@ -44,6 +45,7 @@ class Search:
     closed: float = 1e-6
     approach: float = 0.9
     exponent: bool = True
+    near_border: float = NEAR_BORDER
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -52,7 +54,8 @@ class Motion:
 
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
     there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
-    with its ``lyapunov_error``; ``used`` periods run; ``away`` how far the motion itself still was
+    with its ``lyapunov_error`` and the means of its ``batches``; ``used`` periods run; ``away``
+    how far the motion itself still was
     from its orbit, in units of the map.
     """
 
@@ -65,6 +68,7 @@ class Motion:
     multiplier: complex = complex("nan")
     lyapunov: float = float("nan")
     lyapunov_error: float = float("nan")
+    batches: Floats = field(default_factory=lambda: np.empty(0))
     away: float = float("nan")
 
 
@@ -104,7 +108,7 @@ def settle(
                 away = float(section.distance(orbit.points, state).min())
                 if away < 1e-9 or (away < CLOSE and away < 0.7 * near):
                     if np.isfinite(near) or away < 1e-9:
-                        return _proven(orbit, away, used)
+                        return _proven(orbit, away, used, how.near_border)
                     near = away
                 elif away > CLOSE:
                     orbit = None
@@ -135,15 +139,15 @@ def _orbit(section: ReturnMap, window: Floats, max_period: int) -> Orbit | None:
     return orbit if orbit is not None and orbit.stable else None
 
 
-def _proven(orbit: Orbit, away: float, used: int) -> Motion:
+def _proven(orbit: Orbit, away: float, used: int, near_border: float) -> Motion:
     mu = complex(orbit.multipliers[0])
     plural = "s" * (orbit.period > 1)
     shown = f"largest Floquet multiplier |{abs(mu):.6f}| over {orbit.period} period{plural}"
-    sure = abs(mu) <= NEAR_BORDER
+    sure = abs(mu) <= near_border
     return Motion(
         name=f"period-{orbit.period}" if sure else "undecided",
         period=orbit.period,
-        reason=shown if sure else f"{shown}: within {1.0 - NEAR_BORDER:.2g} of a bifurcation",
+        reason=shown if sure else f"{shown}: within {1.0 - near_border:.2g} of a bifurcation",
         state=orbit.state,
         used=used,
         orbit=orbit,
@@ -194,4 +198,5 @@ def _open(section: ReturnMap, state: Floats, used: int, how: Search) -> Motion:
         used=used + (BATCHES + 1) * BATCH,
         lyapunov=value,
         lyapunov_error=error,
+        batches=means,
     )

@@ -14,12 +14,10 @@ from thermogear.analysis.settle import (
     DIVERGED,
     Rule,
     close_orbits,
-    part_of,
     settle,
-    units_of,
 )
 from thermogear.base.plan import Alive, keep_going
-from thermogear.dynamics import exact
+from thermogear.dynamics.bundle import WIDTH, Bundle, bundles
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -33,7 +31,7 @@ NARROWEST_TRAP = 1e-5
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Attractor:
-    """A periodic orbit (``points`` its section, (period, 2)) or a chaotic set (a cloud of it).
+    """A periodic orbit (``points`` its section, (period, d)) or a chaotic set (a cloud of it).
 
     ``multiplier`` the largest one (NaN for chaos), ``lyapunov`` the largest exponent, ``trap``
     the radius, in half backlashes, inside which a trajectory is taken to stay for good (0: no
@@ -59,33 +57,36 @@ class Attractor:
 
 
 class Field:
-    """One parameter point with its maps ready for many lanes at once."""
+    """One parameter point with its maps ready for many states at once.
 
-    def __init__(self, lanes: Lanes, width: int = exact.BLOCK) -> None:
-        ((_, borders, marks),) = exact.layouts(lanes)
-        self.lanes = lanes.take(np.zeros(width, int))
-        one = exact.prepare_maps(lanes, borders, marks)
-        self.maps = part_of(one, np.zeros(width, int))
-        self.one = one
-        self.unit = units_of(lanes)[0]
+    ``lanes`` one lane, or a sequence of one model that has a return map.
+    """
+
+    def __init__(self, lanes: Lanes | Sequence[object], width: int = WIDTH) -> None:
+        ((_, prepared),) = bundles(lanes)
+        self.one = prepared()
+        self.maps = self.one.take(np.zeros(width, int))
+        self.unit = self.one.unit[0]
+        self.period = float(self.one.period[0])
         self.width = width
 
-    def of(self, count: int) -> exact.ExactMaps:
+    def of(self, count: int) -> Bundle:
         """The maps for ``count`` lanes side by side."""
         if count == self.width:
             return self.maps
-        return part_of(self.one, np.zeros(count, int))
+        return self.one.take(np.zeros(count, int))
 
 
 def attractors_from(
-    lanes: Lanes, starts: Floats, rule: Rule, alive: Alive = keep_going
+    lanes: Lanes | Sequence[object], starts: Floats, rule: Rule, alive: Alive = keep_going
 ) -> tuple[list[Attractor], Whole]:
     """The attractors reached from ``starts`` (start, 2) of one lane, and which start goes where.
 
     The starts are settled side by side; -1 where a start stays undecided, -2 where it
     diverges. Attractors come in the order of the starts that reach them first.
     """
-    many = lanes.take(np.zeros(len(starts), int))
+    none = np.zeros(len(starts), int)
+    many = lanes.take(none) if isinstance(lanes, Lanes) else [lanes[0]] * len(starts)
     settled = settle(many, starts, rule, alive=alive)
     field = Field(lanes)
     found: list[Attractor] = []
@@ -147,7 +148,7 @@ def chaotic_index(known: Sequence[Attractor], field: Field, state: Floats) -> in
 def _orbit(field: Field, point: Floats, period: int, multiplier: complex) -> Attractor:
     run = close_orbits(field.one, point[None], period)
     points = run.points[0, :-1]
-    exponent = float(np.log(abs(multiplier)) / (period * field.lanes.period[0]))
+    exponent = float(np.log(abs(multiplier)) / (period * field.period))
     trap = _trap(field, points, multiplier, period)
     return Attractor(
         period=period, points=points, multiplier=complex(multiplier), lyapunov=exponent, trap=trap
@@ -158,8 +159,11 @@ def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> flo
     """The largest tried radius from which every start on squares about the orbit comes home.
 
     Starts are on the edges of squares of that half width and of a half and a quarter of it;
-    home means within a tenth of the radius of its own point of the orbit.
+    home means within a tenth of the radius of its own point of the orbit. Only of states (x, x'):
+    the corners about a longer one are too many to try, and it has none.
     """
+    if points.shape[1] != 2:
+        return 0.0
     size = abs(multiplier)
     turns = int(np.clip(np.ceil(np.log(1e-3) / np.log(max(size, 1e-3))), 4, 2000))
     edge = np.linspace(-1.0, 1.0, 5)
@@ -168,11 +172,9 @@ def _trap(field: Field, points: Floats, multiplier: complex, period: int) -> flo
     radius = WIDEST_TRAP
     while radius > NARROWEST_TRAP:
         starts = (points[:, None, :] + radius * shape[None] * field.unit).reshape(-1, 2)
-        state = exact.State.start(
-            x=starts[:, 0], y=starts[:, 1], backlash=np.full(len(starts), field.one.backlash[0])
-        )
-        exact.advance(field.of(len(starts)), state, turns * period)
-        ends = np.stack([state.x, state.y], axis=1).reshape(len(points), -1, 2)
+        crowd = field.of(len(starts)).crowd(starts)
+        crowd.run(turns * period)
+        ends = crowd.state.reshape(len(points), -1, points.shape[1])
         away = np.max(np.abs(ends - points[:, None]) / field.unit, axis=2)
         if bool(np.all(away < 0.1 * radius)):
             return radius
@@ -205,22 +207,21 @@ def trapped(
     owner = np.concatenate([np.full(len(attractors[n].points), n) for n in safe])
     reach = np.array([attractors[n].trap for n in owner])
     lane = np.arange(min(field.width, count))
-    maps = field.of(lane.size)
-    state = exact.State.start(x=starts[lane, 0], y=starts[lane, 1], backlash=maps.backlash)
+    crowd = field.of(lane.size).crowd(starts[lane])
     fresh = lane.size
     while lane.size:
         alive()
-        exact.advance(maps, state, stride)
+        crowd.run(stride)
         used[lane] += stride
-        here = np.stack([state.x, state.y], axis=1)
+        here = crowd.state
         last[lane] = here
         scaled = here / field.unit
-        away = np.maximum(
-            np.abs(scaled[:, :1] - targets[:, 0]), np.abs(scaled[:, 1:] - targets[:, 1])
-        )
+        away = np.abs(scaled[:, :1] - targets[:, 0])
+        for k in range(1, targets.shape[1]):
+            away = np.maximum(away, np.abs(scaled[:, k : k + 1] - targets[:, k]))
         inside = away < reach
         hit = inside.any(axis=1)
-        gone = ~np.isfinite(state.x)
+        gone = ~np.all(np.isfinite(here), axis=1)
         where[lane[hit]] = owner[inside[hit].argmax(axis=1)]
         where[lane[gone]] = -2
         done = np.flatnonzero(hit | gone | (used[lane] >= cap))
@@ -229,25 +230,13 @@ def trapped(
         enter = np.arange(fresh, min(fresh + done.size, count))
         fresh += enter.size
         seats = done[: enter.size]
-        begin = exact.State.start(
-            x=starts[enter, 0], y=starts[enter, 1], backlash=maps.backlash[seats]
-        )
-        state.x[seats], state.y[seats] = begin.x, begin.y
-        state.region[seats] = begin.region
+        crowd.seat(seats, starts[enter])
         lane[seats] = enter
         empty = done[enter.size :]
         if empty.size:
             left = np.setdiff1d(np.arange(lane.size), empty)
             lane = lane[left]
-            maps = part_of(maps, left)
-            state = exact.State(
-                x=state.x[left],
-                y=state.y[left],
-                region=state.region[left],
-                tangent=np.ascontiguousarray(state.tangent[:, left]),
-                counts=np.ascontiguousarray(state.counts[:, left]),
-                spent=np.ascontiguousarray(state.spent[:, left]),
-            )
+            crowd = crowd.take(left)
     return where, used, last
 
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch
+from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch, Tests
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.exact_map import ExactMap
+from thermogear.dynamics.return_map import MovedMap
 
 Floats = NDArray[np.float64]
 
@@ -24,6 +24,9 @@ GRAZING = "grazing"
 BIRTH = "period halving"
 PITCHFORK = "pitchfork"
 """Only where the equation has a symmetry: an orbit that is its own mirror image loses it."""
+TORUS = "torus"
+"""A complex pair of multipliers leaves or enters the unit circle (Neimark-Sacker)."""
+TESTS = {FOLD: "fold", TORUS: "torus"}
 SUPERCRITICAL = "supercritical"
 SUBCRITICAL = "subcritical"
 VERTICAL = "vertical: linear until the contact changes"
@@ -49,8 +52,8 @@ DOUBLED = (1e-4, 3e-5, 1e-3, 1e-5, 3e-4, 3e-3, 1e-2)
 class Bifurcation:
     """Where a branch changes.
 
-    ``kind`` fold, period doubling, grazing, period halving or pitchfork; ``parameter`` and its
-    ``value``, the ``orbit`` there; ``note`` says what a grazing begins or ends, and of a period
+    ``kind`` fold, period doubling, grazing, period halving, pitchfork or torus; ``parameter`` and
+    its ``value``, the ``orbit`` there; ``note`` says what a grazing begins or ends, and of a period
     doubling or pitchfork whether it is supercritical (the new orbits are stable and live where
     the old one no longer is), subcritical (they are unstable and live where it still is) or, in
     lasting contact, vertical (they all live at the value itself until they lose contact).
@@ -92,13 +95,29 @@ def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
             nodes |= {s for s in (graze - near, graze + near) if 0.0 < s < length}
     broken = PITCHFORK if curve.symmetric else FLIP
     for low, high in pairwise(sorted(nodes)):
-        for name, kind in (("fold", FOLD), ("flip", broken)):
+        for name, kind in (("fold", FOLD), ("flip", broken), *_tori(stretch)):
             test = attrgetter(name)
             one, other = test(stretch.at(low)), test(stretch.at(high))
             if one * other < 0.0 and min(abs(one), abs(other)) > SILENT:
                 step = stretch.zero(test, low=low, high=high)
+                if kind == TORUS and not _complex_pair(stretch.at(step)):
+                    continue  # mu and 1/mu, both real
                 events.append((step, _bifurcation(curve, stretch.at(step), kind)))
     return [event for _, event in sorted(events, key=lambda pair: pair[0])]
+
+
+def _tori(stretch: Stretch) -> tuple[tuple[str, str], ...]:
+    """The test for a complex pair, where one can cross: not of two multipliers of known product."""
+    known = stretch.curve.dimension == 2 and not np.isnan(stretch.first.determinant)
+    return () if known else (("torus", TORUS),)
+
+
+def _complex_pair(point: Point) -> bool:
+    """Whether the two multipliers whose product is nearest to 1 are a complex pair."""
+    mu = np.linalg.eigvals(point.visit.jacobian).astype(complex)
+    one, other = np.triu_indices(mu.size, 1)
+    pair = int(np.argmin(np.abs(1.0 - mu[one] * mu[other])))
+    return bool(abs(mu[one[pair]].imag) > 1e-6)
 
 
 def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
@@ -134,7 +153,7 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
 
 def _bifurcation(curve: Curve, point: Point, kind: str, note: str = "") -> Bifurcation:
     """The bifurcation at a point, of a flip or a pitchfork with its side."""
-    value = float(point.scaled[2] * curve.span)
+    value = float(point.scaled[-1] * curve.span)
     found = Bifurcation(kind, curve.parameter, value, curve.orbit(point), note)
     if kind in (FLIP, PITCHFORK):
         found = replace(found, note=criticality(found, curve.family))
@@ -142,9 +161,9 @@ def _bifurcation(curve: Curve, point: Point, kind: str, note: str = "") -> Bifur
 
 
 def carried(bifurcation: Bifurcation, family: Family) -> Bifurcation:
-    """The same fold, period doubling or pitchfork of another ``family``, from where it was.
+    """The same fold, period doubling, pitchfork or torus of another ``family``, from where it was.
 
-    Newton on state (2,) and parameter at once, in the family's units: the orbit closes and
+    Newton on state (d,) and parameter at once, in the family's units: the orbit closes and
     (1 - mu_1)(1 - mu_2) is 0 (of a period doubling (1 + mu_1)(1 + mu_2); a pitchfork is one of
     the half orbit mirrored). Near a grazing, where that fails, the branch is searched nearby.
     ``family``, value -> model as :func:`~thermogear.analysis.continuation.continuation` takes
@@ -154,8 +173,9 @@ def carried(bifurcation: Bifurcation, family: Family) -> Bifurcation:
     ConvergenceError where there is none nearby.
     """
     kind = bifurcation.kind
-    if kind not in (FOLD, FLIP, PITCHFORK):
-        raise InputError("bifurcation", kind, allowed=f"{FOLD} | {FLIP} | {PITCHFORK}")
+    if kind not in (FOLD, FLIP, PITCHFORK, TORUS):
+        allowed = f"{FOLD} | {FLIP} | {PITCHFORK} | {TORUS}"
+        raise InputError("bifurcation", kind, allowed=allowed)
     curve = Curve(
         family,
         bifurcation.parameter,
@@ -172,10 +192,10 @@ def carried(bifurcation: Bifurcation, family: Family) -> Bifurcation:
             f"the {kind} at {curve.parameter} = {bifurcation.value!r} was not found again near "
             "it; follow the branch instead"
         )
-    state, value = scaled[:2] * curve.unit[:2], float(scaled[2] * curve.span)
+    state, value = scaled[:-1] * curve.unit[:-1], float(scaled[-1] * curve.span)
     orbit = closed(curve.map_at(value), state, curve.period, model=family(value))
     found = Bifurcation(kind, curve.parameter, value, orbit)
-    return found if kind == FOLD else replace(found, note=criticality(found, family))
+    return found if kind in (FOLD, TORUS) else replace(found, note=criticality(found, family))
 
 
 def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
@@ -185,15 +205,20 @@ def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
         gap, jacobian, section = curve.residual(scaled)
         whole = section.determinant(curve.period)
         closing = float(np.sqrt(whole)) if curve.symmetric else whole
-        trace = float(jacobian[0, 0] + jacobian[1, 1])
-        return np.append(gap, 1.0 + closing + (-trace if kind == FOLD else trace))
+        if gap.size == 2 and not np.isnan(closing):
+            trace = float(jacobian[0, 0] + jacobian[1, 1])
+            return np.append(gap, 1.0 + closing + (-trace if kind == FOLD else trace))
+        return np.append(gap, getattr(Tests.of(jacobian, closing), test))
 
+    test = TESTS.get(kind, "flip")
     scaled = guess
     for _ in range(MOST_STEPS):
         here = apart(scaled)
-        columns = [(apart(scaled + one) - here) / PROBE for one in PROBE * np.eye(3)]
+        columns = [
+            (apart(scaled + one) - here) / PROBE for one in PROBE * np.eye(curve.dimension + 1)
+        ]
         matrix = np.array(columns).T
-        if not np.all(np.isfinite(matrix)) or np.linalg.matrix_rank(matrix) < 3:
+        if not np.all(np.isfinite(matrix)) or np.linalg.matrix_rank(matrix) < len(here):
             break
         step = np.linalg.solve(matrix, -here)
         length = float(np.max(np.abs(step)))
@@ -202,7 +227,7 @@ def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
             return scaled
         if not length < FARTHEST:
             break
-    return _along(curve, attrgetter("fold" if kind == FOLD else "flip"), guess)
+    return _along(curve, attrgetter(test), guess)
 
 
 def _along(curve: Curve, test: Callable[[Point], float], guess: Floats) -> Floats | None:
@@ -211,13 +236,16 @@ def _along(curve: Curve, test: Callable[[Point], float], guess: Floats) -> Float
     Near a grazing multipliers run as the root of the distance from it, which no Newton follows.
     """
     gap, jacobian, section = curve.residual(guess)
-    two = curve.unit[:2]
+    units = curve.unit[:-1]
     flat = np.column_stack(
-        [jacobian / two[:, None] * two - np.eye(2), curve.in_parameter(guess, section)[0]]
+        [
+            jacobian / units[:, None] * units - np.eye(units.size),
+            curve.in_parameter(guess, section)[0],
+        ]
     )
     if not (np.all(np.isfinite(gap)) and np.all(np.isfinite(flat))):
         return None
-    here = curve.correct(guess, normal=np.linalg.svd(flat)[2][2], reach=FARTHEST)
+    here = curve.correct(guess, normal=np.linalg.svd(flat)[2][-1], reach=FARTHEST)
     if here is None:
         return None
     ends, steps = {1.0: here, -1.0: here}, {1.0: 1e-4, -1.0: 1e-4}
@@ -295,19 +323,31 @@ def criticality(bifurcation: Bifurcation, family: Family) -> str:
     equation is linear (Hill's), and orbits of every size exist at the same value.
     """
     orbit = bifurcation.orbit
-    if orbit.contact_losses == 0 and orbit.back_impacts == 0:
+    linear = isinstance(orbit.section, MovedMap)
+    if linear and orbit.contact_losses == 0 and orbit.back_impacts == 0:
         return VERTICAL
     try:
-        _, _, point = doubled_beside(bifurcation, family)
+        curve, _, point = doubled_beside(bifurcation, family)
     except ConvergenceError:
         return ""
-    return SUPERCRITICAL if point.fold > 0.0 else SUBCRITICAL
+    if curve.dimension == 2:
+        return SUPERCRITICAL if point.fold > 0.0 else SUBCRITICAL
+    mu = np.linalg.eigvals(point.visit.jacobian)
+    nearest = mu[np.argmin(np.abs(mu - 1.0))].real
+    return SUPERCRITICAL if nearest < 1.0 else SUBCRITICAL
+
+
+def _halved(orbit: Orbit) -> MovedMap:
+    """The map of an orbit of one mass, which goes by half periods too."""
+    if not isinstance(orbit.section, MovedMap):
+        raise InputError("orbit", type(orbit.section).__name__, allowed="one of one mass")
+    return orbit.section
 
 
 def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Floats, Point]:
     """An orbit near a flip (of twice the period) or a pitchfork (no longer symmetric).
 
-    With its curve and the scaled direction (3,) that leads to it, along the eigenvector of the
+    With its curve and the scaled direction (d + 1,) that leads to it, along the eigenvector of the
     multiplier -1 of the flipping map. Raises ConvergenceError where none is found.
     """
     orbit = bifurcation.orbit
@@ -316,12 +356,12 @@ def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Flo
     broken = bifurcation.kind == PITCHFORK
     period = orbit.period if broken else 2 * orbit.period
     curve = Curve(family, bifurcation.parameter, period, start=value, span=span, mirrors=broken)
-    two = curve.unit[:2]
+    units = curve.unit[:-1]
     jacobian = orbit.jacobian
     if broken:
-        jacobian = -ExactMap(orbit.lanes).flow(orbit.state, period)[1]
-    matrix = jacobian / two[:, None] * two
-    direction = np.linalg.svd(matrix + np.eye(2))[2][1]
+        jacobian = -_halved(orbit).flow(orbit.state, period)[1]
+    matrix = jacobian / units[:, None] * units
+    direction = np.linalg.svd(matrix + np.eye(units.size))[2][-1]
     normal = np.append(direction, 0.0)
     centre = np.append(orbit.state, value) / curve.unit
     for amplitude in DOUBLED:
@@ -342,7 +382,7 @@ def doubled_beside(bifurcation: Bifurcation, family: Family) -> tuple[Curve, Flo
 
 
 def mothers_of(curve: Curve, point: Point) -> dict[str, Floats]:
-    """How far the orbit is from the mothers it may have, scaled (2,), by how it left them.
+    """How far the orbit is from the mothers it may have, scaled (d,), by how it left them.
 
     Of an even period: from itself half its period later, 0 where it has shrunk into an orbit
     of half its period. In a symmetric equation: from its own mirror image, 0 where it has
@@ -353,11 +393,11 @@ def mothers_of(curve: Curve, point: Point) -> dict[str, Floats]:
     if curve.symmetric:
         return found
     if curve.period % 2 == 0:
-        found[BIRTH] = np.asarray((points[curve.period // 2] - points[0]) / curve.unit[:2])
-    if curve.mirrors:
-        section = curve.map_at(float(point.scaled[2] * curve.span))
+        found[BIRTH] = np.asarray((points[curve.period // 2] - points[0]) / curve.unit[:-1])
+    section = curve.map_at(float(point.scaled[-1] * curve.span)) if curve.mirrors else None
+    if isinstance(section, MovedMap):
         end, _ = section.flow(points[0], curve.period)
-        found[PITCHFORK] = np.asarray((end + points[0]) / curve.unit[:2])
+        found[PITCHFORK] = np.asarray((end + points[0]) / curve.unit[:-1])
     return found
 
 
@@ -374,10 +414,10 @@ def passed_mother(curve: Curve, a: Point, b: Point) -> str:
 def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
     """The flip or pitchfork of the mother orbit near ``a``; None when not found."""
     broken = kind == PITCHFORK
-    start = float(a.scaled[2] * curve.span)
+    start = float(a.scaled[-1] * curve.span)
     away = mothers_of(curve, a)[kind]
     # half way between the orbit and its image: z_0 and z_n/2, or z_0 and -z(n T/2)
-    centre = a.scaled[:2] + (-0.5 if broken else 0.5) * away
+    centre = a.scaled[:-1] + (-0.5 if broken else 0.5) * away
     mother = Curve(
         curve.family,
         curve.parameter,
@@ -387,14 +427,13 @@ def birth_of(curve: Curve, a: Point, kind: str) -> Bifurcation | None:
         mirrors=broken,
         symmetric=broken,
     )
-    upright = np.array([0.0, 0.0, 1.0])
-    units = curve.unit[:2] / mother.unit[:2]
+    units = curve.unit[:-1] / mother.unit[:-1]
 
     def there(value: float) -> Point | None:
         if not np.isfinite(value):
             return None
         guess = np.append(centre * units, value / curve.span)
-        return mother.correct(guess, normal=upright)
+        return mother.correct(guess, normal=mother.upright)
 
     def flip(value: float) -> float:
         point = there(value)

@@ -27,7 +27,7 @@ from thermogear.analysis.curve import Curve, Family, Point, mirrored
 from thermogear.analysis.orbits import Orbit, closed, multipliers
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError, InputError, nearest
-from thermogear.dynamics.exact_map import ExactMap
+from thermogear.dynamics.return_map import return_map
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ ASTRAY = 0.1
 class Branch:
     """A branch of periodic orbits, stable and unstable, in the order it was walked.
 
-    ``values`` of the parameter, ``states`` (point, 2), ``multipliers`` (point, 2),
+    ``values`` of the parameter, ``states`` (point, d), ``multipliers`` (point, d),
     ``contact_losses`` and ``back_impacts`` per orbit, ``bifurcations`` in order, ``ended``: why.
     """
 
@@ -79,8 +79,7 @@ class Branch:
         return xr.Dataset(
             {
                 "value": ("point", self.values, {"long_name": self.parameter}),
-                "section_x": ("point", self.states[:, 0], {"long_name": "displacement at phase 0"}),
-                "section_v": ("point", self.states[:, 1], {"long_name": "velocity at phase 0"}),
+                **self._sections(),
                 "multiplier_real": (
                     ("point", "multiplier"),
                     self.multipliers.real,
@@ -101,6 +100,15 @@ class Branch:
             attrs={"parameter": self.parameter, "period": self.period, "ended": self.ended},
         )
 
+    def _sections(self) -> dict[str, Any]:
+        if self.states.shape[1] != 2:
+            text = {"long_name": "state at phase 0"}
+            return {"section": (("point", "coordinate"), self.states, text)}
+        return {
+            "section_x": ("point", self.states[:, 0], {"long_name": "displacement at phase 0"}),
+            "section_v": ("point", self.states[:, 1], {"long_name": "velocity at phase 0"}),
+        }
+
     def of_kind(self, kind: str) -> tuple[Bifurcation, ...]:
         """The bifurcations of one kind."""
         return tuple(b for b in self.bifurcations if b.kind == kind)
@@ -108,7 +116,7 @@ class Branch:
     def orbit(self, index: int) -> Orbit:
         """The orbit at one point."""
         model = self.family(float(self.values[index]))
-        return closed(ExactMap(lanes_of(model)), self.states[index], self.period, model=model)
+        return closed(return_map(model), self.states[index], self.period, model=model)
 
 
 def family_of(model: object, parameter: str) -> tuple[Family, float]:
@@ -147,14 +155,14 @@ def continuation(
 ) -> Branch:
     """Walk the branch of ``orbit`` in ``parameter`` until it reaches ``to``.
 
-    States, parameter and ``to`` are in the units of the model: pure numbers for
-    :class:`TorsionalModel`, SI for a model in SI. Pseudo-arclength continuation of stable and
-    unstable orbits alike, around folds; it ends at ``to``, or where the branch leaves the range
-    on the side it came from, shrinks into an orbit of half its period, becomes symmetric, or
-    after ``most_points``. On the way folds (multiplier +1), period doublings (-1), grazing (an
-    extremum touches an edge of the backlash) and pitchforks (+1 where a symmetric orbit of a
-    symmetric equation loses its symmetry) are located. Where no further orbit is found the
-    branch as far as it goes comes back, and ``ended`` names the gap.
+    States, parameter and ``to`` are in the model's units: numbers of :class:`TorsionalModel`, else
+    SI. Pseudo-arclength continuation of stable and unstable orbits alike, around folds. It ends
+    at ``to``, or where the branch leaves the range behind it, shrinks into an orbit of half its
+    period, becomes symmetric, or after ``most_points``. On the way folds (multiplier +1), period
+    doublings (-1), grazing (an extremum touches an edge of the backlash) and pitchforks (+1
+    where a symmetric orbit of a symmetric equation loses it) are located, of states longer than
+    (x, x') or of unknown determinant the torus too (a complex pair crosses the unit circle). Where no further orbit is
+    found the branch as far as it goes comes back, and ``ended`` names the gap.
 
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
     give ``family``, a function value -> model, and its present value ``start``. The range lies
@@ -188,7 +196,7 @@ def continuation(
         mirrors=mirrors,
         symmetric=symmetric,
     )
-    ahead = np.array([0.0, 0.0, float(np.sign(to - start))])
+    ahead = curve.upright * float(np.sign(to - start))
     heading, step = (ahead, 0.01) if direction is None else (np.asarray(direction, float), 5e-4)
     first = curve.correct(np.append(orbit.state, start) / curve.unit, normal=heading)
     if first is None:
@@ -259,7 +267,7 @@ class _Course:
         self.found += fresh
         self.points += fine
         if self.progress is not None:
-            self.progress(len(self.points), float(point.scaled[2] * curve.span))
+            self.progress(len(self.points), float(point.scaled[-1] * curve.span))
         last = next((b.kind for b in fresh if b.kind in stops), "")
         return f"stopped at a {last}" if last else ""
 
@@ -271,8 +279,8 @@ class _Course:
             parameter=curve.parameter,
             period=curve.period,
             family=curve.family,
-            values=scaled[:, 2] * curve.span,
-            states=scaled[:, :2] * curve.unit[:2],
+            values=scaled[:, -1] * curve.span,
+            states=scaled[:, :-1] * curve.unit[:-1],
             multipliers=np.array([multipliers(p.visit.jacobian, p.determinant) for p in points]),
             contact_losses=np.array([p.contacts[0] for p in points]),
             back_impacts=np.array([p.contacts[1] for p in points]),
@@ -289,7 +297,7 @@ def _symmetry(orbit: Orbit, family: Family, start: float, to: float) -> tuple[bo
         return False, False
     if not all(mirrored(one, orbit.period) for one in lanes):
         return False, False
-    section = ExactMap(lanes[0])
+    section = lanes[0].return_map()
     end, _ = section.flow(orbit.state, orbit.period)
     return True, float(section.distance(-end, orbit.state)) < 1e-8
 
@@ -319,8 +327,8 @@ def _walk(
             except InputError:
                 # the step left what the parameter may be; the walk's end may lie right there
                 point = None
-                border = low if guess[2] < low else high
-                if not low <= guess[2] <= high:
+                border = low if guess[-1] < low else high
+                if not low <= guess[-1] <= high:
                     inside = _reach(curve, here, border)
                     if inside is not None:
                         yield inside
@@ -337,8 +345,8 @@ def _walk(
                 # a branch that turns and leaves the range in one step shows no fold in it
                 and (
                     step < STRAIGHT
-                    or low <= point.scaled[2] <= high
-                    or point.tangent[2] * here.tangent[2] > 0.0
+                    or low <= point.scaled[-1] <= high
+                    or point.tangent[-1] * here.tangent[-1] > 0.0
                 )
             ):
                 break
@@ -346,11 +354,11 @@ def _walk(
             if step < SHORTEST_STEP:
                 yield (
                     f"{GAP}: no further orbit within the shortest step beyond "
-                    f"{curve.parameter} = {float(here.scaled[2] * curve.span)!r}"
+                    f"{curve.parameter} = {float(here.scaled[-1] * curve.span)!r}"
                 )
                 return
         turn = float(point.tangent @ here.tangent)
-        value = float(point.scaled[2])
+        value = float(point.scaled[-1])
         if not low <= value <= high:
             inside = _land(curve, here, point, low if value < low else high)
             if inside is not None:
@@ -360,9 +368,9 @@ def _walk(
             return
         yield point
         last, here = here, point
-        longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:2]))) / LARGE)
+        longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
         if turn > 0.98:
-            step = min(longest, LONGEST_STEP / max(abs(here.tangent[2]), 1e-9), 1.5 * step)
+            step = min(longest, LONGEST_STEP / max(abs(here.tangent[-1]), 1e-9), 1.5 * step)
         elif turn < 0.95:
             step *= 0.7
 
@@ -392,23 +400,21 @@ def _follows(a: Point, b: Point) -> bool:
 
 def _reach(curve: Curve, a: Point, value: float) -> Point | None:
     """The orbit at a border value ahead of ``a``, where no step beyond it can be tried."""
-    far = (value - a.scaled[2]) / a.tangent[2]
+    far = (value - a.scaled[-1]) / a.tangent[-1]
     guess = a.scaled + far * a.tangent
-    guess[2] = value
+    guess[-1] = value
     if far > LONGEST_STEP:
         return None
-    found = curve.correct(
-        guess, normal=np.array([0.0, 0.0, 1.0]), old=a.tangent, reach=0.5 * max(far, 1e-9)
-    )
+    found = curve.correct(guess, normal=curve.upright, old=a.tangent, reach=0.5 * max(far, 1e-9))
     return found if found is not None and found.tangent @ a.tangent > 0.9 else None
 
 
 def _land(curve: Curve, a: Point, b: Point, value: float) -> Point | None:
     """The orbit exactly at the border value of the parameter."""
-    weight = (value - a.scaled[2]) / (b.scaled[2] - a.scaled[2])
+    weight = (value - a.scaled[-1]) / (b.scaled[-1] - a.scaled[-1])
     guess = a.scaled + weight * (b.scaled - a.scaled)
-    guess[2] = value
-    return curve.correct(guess, normal=np.array([0.0, 0.0, 1.0]), old=a.tangent)
+    guess[-1] = value
+    return curve.correct(guess, normal=curve.upright, old=a.tangent)
 
 
 @dataclass(frozen=True)
@@ -432,7 +438,7 @@ def switch_branch(bifurcation: Bifurcation, family: Family | None = None) -> Dou
     if family is None:
         family, _ = family_of(bifurcation.orbit.model, bifurcation.parameter)
     curve, normal, point = doubled_beside(bifurcation, family)
-    return Doubled(curve.orbit(point), float(point.scaled[2] * curve.unit[2]), normal)
+    return Doubled(curve.orbit(point), float(point.scaled[-1] * curve.span), normal)
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from thermogear.analysis.orbits import Orbit, closed
-from thermogear.analysis.section import lanes_of
+from thermogear.analysis.section import plain
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics import exact
-from thermogear.dynamics.exact_map import ExactMap, scales
-from thermogear.dynamics.return_map import Visit
+from thermogear.dynamics.return_map import MovedMap, ReturnMap, Visit, return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -32,6 +30,8 @@ MOVED = 1e-6
 """A step of the parameter (scaled) that is long enough to tell dG/dp."""
 ZERO = 1e-13
 """Scaled distance along the branch to which events are located."""
+ROUGH = 1e-4
+"""That step where the return map itself is differentiated, which carries more rounding."""
 SMALL = 1e-5
 """Step of the parameter (of its range) in which the numbers of the equation are differentiated.
 
@@ -41,13 +41,36 @@ tangent a little: points slip along the branch, by 1e-13, and not off it.
 
 
 @dataclass(frozen=True, kw_only=True)
-class Point:
-    """A converged point of a branch in scaled coordinates, with its tangent.
+class Tests:
+    """What vanishes where a multiplier is +1, -1, or the product of two multipliers is 1."""
 
-    ``visit`` runs over the whole orbit, ``determinant`` is that of its Jacobian. ``trace`` and
-    ``closing`` are trace and determinant of the map whose fixed point it is: the orbit's own, or
-    of a symmetric orbit half of it with the sign reversed. ``margin``: how near an extreme of x
-    comes to an edge of the backlash, in half backlashes (inf: x does not turn). ``slope`` (2,):
+    fold: float
+    flip: float
+    torus: float
+
+    @classmethod
+    def of(cls, jacobian: Floats, closing: float) -> Tests:
+        """Of a Jacobian (d, d) with the determinant ``closing`` (nan: not known)."""
+        if jacobian.shape == (2, 2) and not np.isnan(closing):
+            trace = float(jacobian[0, 0] + jacobian[1, 1])
+            return cls(fold=1.0 - trace + closing, flip=1.0 + trace + closing, torus=1.0 - closing)
+        mu = np.linalg.eigvals(jacobian).astype(complex)
+        pairs = np.triu_indices(mu.size, 1)
+        return cls(
+            fold=float(np.prod(1.0 - mu).real),
+            flip=float(np.prod(1.0 + mu).real),
+            torus=float(np.prod(1.0 - mu[pairs[0]] * mu[pairs[1]]).real),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Point:
+    """A converged point of a branch in scaled coordinates (d + 1,), with its tangent.
+
+    ``visit`` runs over the whole orbit, ``determinant`` is that of its Jacobian (nan: not known).
+    ``tests`` of the map whose fixed point it is: the orbit's own, or of a symmetric orbit half of
+    it with the sign reversed. ``margin``: how near an extreme of x comes to an edge of the
+    backlash, in half backlashes (inf: x does not turn, or nothing is known of it). ``slope`` (d,):
     dG/dp.
     """
 
@@ -55,20 +78,24 @@ class Point:
     tangent: Floats
     visit: Visit
     determinant: float
-    trace: float
-    closing: float
+    tests: Tests
     margin: float
     slope: Floats
 
     @property
     def fold(self) -> float:
-        """(1 - mu_1)(1 - mu_2)."""
-        return 1.0 - self.trace + self.closing
+        """(1 - mu_1)(1 - mu_2)..."""
+        return self.tests.fold
 
     @property
     def flip(self) -> float:
-        """(1 + mu_1)(1 + mu_2)."""
-        return 1.0 + self.trace + self.closing
+        """(1 + mu_1)(1 + mu_2)..."""
+        return self.tests.flip
+
+    @property
+    def torus(self) -> float:
+        """The product of 1 - mu_i mu_j over all pairs."""
+        return self.tests.torus
 
     @property
     def contacts(self) -> tuple[int, int]:
@@ -94,7 +121,9 @@ def mirrored(lanes: Lanes, period: int) -> bool:
 
 
 class Curve:
-    """G(z, p) = P^n(z; p) - z in coordinates scaled by b, 2 pi b/T and the parameter's range.
+    """G(z, p) = P^n(z; p) - z in coordinates scaled by the map's units and the parameter's range.
+
+    Of one mass these are b and 2 pi b/T.
 
     ``mirrors``: :func:`mirrored` holds all along. On a ``symmetric`` branch, of orbits with
     x(t + n T/2) = -x(t), P^n is the square of the map H = -(half an orbit), and G = H(z; p) - z:
@@ -119,67 +148,85 @@ class Curve:
         self.period = period
         self.span = span
         self.symmetric = symmetric
-        self.unit = np.append(scales(lanes_of(family(start))), span)
-        self._maps: dict[float, ExactMap] = {}
-        self._moved: dict[float, tuple[Floats, Floats, float]] = {}
+        self._maps: dict[float, ReturnMap] = {}
+        self._moved: dict[float, Any] = {}
+        self.unit = np.append(self.map_at(start).unit, span)
 
-    def map_at(self, value: float) -> ExactMap:
+    @property
+    def dimension(self) -> int:
+        """Length d of a state."""
+        return self.unit.size - 1
+
+    @property
+    def upright(self) -> Floats:
+        """The direction (d + 1,) of the parameter alone."""
+        return np.append(np.zeros(self.dimension), 1.0)
+
+    def map_at(self, value: float) -> ReturnMap:
         """The return map at a value, prepared once for all orbits looked at there in a row."""
         if value not in self._maps:
-            _keep(self._maps, value, ExactMap(lanes_of(self.family(value))))
+            _keep(self._maps, value, return_map(self.family(value)))
         return self._maps[value]
 
-    def residual(self, scaled: Floats) -> tuple[Floats, Floats, ExactMap]:
-        """G (2,), the Jacobian (2, 2) of the closing map in units of the model, its maps."""
+    def residual(self, scaled: Floats) -> tuple[Floats, Floats, ReturnMap]:
+        """G (d,), the Jacobian (d, d) of the closing map in units of the model, its maps."""
         value = scaled * self.unit
-        section = self.map_at(float(value[2]))
-        if self.symmetric:
-            end, jacobian = section.flow(value[:2], self.period)
+        section = self.map_at(float(value[-1]))
+        if not isinstance(section, MovedMap):
+            visit = section.visit(value[:-1], self.period)
+            end, jacobian = visit.points[-1], visit.jacobian
+        elif self.symmetric:
+            end, jacobian = section.flow(value[:-1], self.period)
             end, jacobian = -end, -jacobian
         else:
-            end, jacobian = section.flow(value[:2], 2 * self.period)
-        return (end - value[:2]) / self.unit[:2], jacobian, section
+            end, jacobian = section.flow(value[:-1], 2 * self.period)
+        return (end - value[:-1]) / self.unit[:-1], jacobian, section
 
-    def in_parameter(self, scaled: Floats, section: ExactMap) -> tuple[Floats, float]:
-        """dG/dp (2,) along the path of this orbit, and its margin in half backlashes.
+    def in_parameter(self, scaled: Floats, section: ReturnMap) -> tuple[Floats, float]:
+        """dG/dp (d,) along the path of this orbit, and its margin in half backlashes.
 
-        The maps are differentiated, not the trajectory: crossings stay at their phases, so that
-        no grazing lies between the ends of a difference.
+        Of one mass the maps are differentiated, not the trajectory: crossings stay at their phases,
+        so that no grazing lies between the ends of a difference. Of other models by differences.
         """
         value = scaled * self.unit
-        maps = section.maps
-        count = maps.half.shape[0]
-        if self.symmetric:
-            middle = int(np.searchsorted(maps.borders, 0.5))
-            steps = (self.period // 2) * count + (middle if self.period % 2 else 0)
-        else:
-            steps = self.period * count
-        rates = self._rates(float(value[2]))
-        moved, margin = exact.moved_by(maps, rates=rates, start=value[:2], steps=steps)
+        rates = self._rates(float(value[-1]))
+        if not isinstance(section, MovedMap):
+            ends = [weight * one.carry(value[:-1], self.period)[-1] for weight, one in rates]
+            return np.sum(ends, axis=0) * self.span / self.unit[:-1], np.inf
+        halves = self.period if self.symmetric else 2 * self.period
+        moved, margin = section.moved(value[:-1], halves, rates)
         sign = -1.0 if self.symmetric else 1.0
-        return sign * moved * self.span / self.unit[:2], margin / section.backlash
+        return sign * moved * self.span / self.unit[:-1], margin
 
-    def _rates(self, value: float) -> tuple[Floats, Floats, float]:
-        """Derivatives of the affine maps by the parameter, exact but for those of the equation's
-        numbers: central differences, one-sided at the parameter's border."""
+    def _rates(self, value: float) -> Any:
+        """What :meth:`in_parameter` needs at a value of the parameter.
+
+        Of one mass the derivatives of the affine maps by the parameter, exact but for those of the
+        equation's numbers: central differences, one-sided at the parameter's border. Of other
+        models the weights and maps of such differences.
+        """
         if value in self._moved:
             return self._moved[value]
         section = self.map_at(value)
-        small = SMALL * self.span
+        small = (SMALL if isinstance(section, MovedMap) else ROUGH) * self.span
         for weights in (
             {-1: -0.5, 1: 0.5},
             {0: -1.5, 1: 2.0, 2: -0.5},
             {0: 1.5, -1: -2.0, -2: 0.5},
         ):
             try:
-                around = {k: lanes_of(self.family(value + k * small)) for k in weights}
+                around = {k: plain(self.family(value + k * small)) for k in weights}
             except InputError:
                 continue
             break
         else:
             raise InputError(self.parameter, value, allowed="values with neighbours")
         rates = [(weight / small, around[k]) for k, weight in weights.items()]
-        found = exact.maps_moved(section.maps, section.lanes, rates)
+        found: Any
+        if isinstance(section, MovedMap):
+            found = section.rates(rates)
+        else:
+            found = [(w, return_map(one)) for w, one in rates]
         _keep(self._moved, value, found)
         return found
 
@@ -200,14 +247,16 @@ class Curve:
         falls and is what rounding leaves.
         """
         scaled = guess.copy() if near is None else near.copy()
-        matrix = np.empty((3, 3))
-        matrix[2] = normal
-        two = self.unit[:2]
-        best: tuple[float, Floats, Floats, ExactMap] | None = None
+        d = self.dimension
+        matrix = np.empty((d + 1, d + 1))
+        matrix[d] = normal
+        units = self.unit[:-1]
+        best: tuple[float, Floats, Floats, ReturnMap] | None = None
         last = np.inf
         stalled = 0
-        upright = not normal[:2].any()
-        step = before = np.zeros(3)
+        upright = not normal[:-1].any()
+        step: Floats = np.zeros(d + 1)
+        before: Floats = step
         for count in range(20):
             gap, jacobian, section = self.residual(scaled)
             size = float(np.max(np.abs(gap)))
@@ -219,23 +268,23 @@ class Curve:
                 stalled += 1
             if size <= NEWTON_TOLERANCE or best[0] < ENOUGH[min(stalled, 2)]:
                 break
-            flat = jacobian / two[:, None] * two - np.eye(2)
+            flat = jacobian / units[:, None] * units - np.eye(d)
             if upright:
-                matrix[:2, 2] = 0.0  # the parameter does not move
+                matrix[:d, d] = 0.0  # the parameter does not move
             elif count == 0 and slope is not None:
-                matrix[:2, 2] = slope
-            elif count > 0 and abs(step[2]) > MOVED:
+                matrix[:d, d] = slope
+            elif count > 0 and abs(step[-1]) > MOVED:
                 # the mean of dG/dp over the last step, from what it did to the residual
-                mean = 0.5 * (matrix[:2, :2] + flat)
-                matrix[:2, 2] = (gap - before - mean @ step[:2]) / step[2]
+                mean = 0.5 * (matrix[:d, :d] + flat)
+                matrix[:d, d] = (gap - before - mean @ step[:-1]) / step[-1]
             elif count == 0 or (size > 0.01 * last and size > 1e-11):
                 # dear, and near enough from the last time while Newton falls fast
-                matrix[:2, 2] = self.in_parameter(scaled, section)[0]
-            matrix[:2, :2] = flat
+                matrix[:d, d] = self.in_parameter(scaled, section)[0]
+            matrix[:d, :d] = flat
             before = gap
             last = size
             try:
-                step = np.linalg.solve(matrix, [-gap[0], -gap[1], -normal @ (scaled - guess)])
+                step = np.linalg.solve(matrix, np.append(-gap, -normal @ (scaled - guess)))
             except np.linalg.LinAlgError:
                 return None
             scaled = scaled + step
@@ -246,12 +295,13 @@ class Curve:
         return self._point(*best[1:], direction=normal if old is None else old)
 
     def _point(
-        self, scaled: Floats, jacobian: Floats, section: ExactMap, *, direction: Floats
+        self, scaled: Floats, jacobian: Floats, section: ReturnMap, *, direction: Floats
     ) -> Point | None:
         """The point at ``scaled``, its tangent along ``direction``; None without numbers."""
-        two = self.unit[:2]
+        units = self.unit[:-1]
         slope, margin = self.in_parameter(scaled, section)
-        matrix = np.column_stack([jacobian / two[:, None] * two - np.eye(2), slope])
+        flat = jacobian / units[:, None] * units
+        matrix = np.column_stack([flat - np.eye(self.dimension), slope])
         if not np.all(np.isfinite(matrix)):
             return None
         null = _null(matrix)
@@ -259,18 +309,17 @@ class Curve:
         return Point(
             scaled=scaled,
             tangent=-null if null @ direction < 0.0 else null,
-            visit=section.visit(scaled[:2] * two, self.period),
+            visit=section.visit(scaled[:-1] * units, self.period),
             determinant=whole,
-            trace=float(jacobian[0, 0] + jacobian[1, 1]),
-            closing=float(np.sqrt(whole)) if self.symmetric else whole,
+            tests=Tests.of(jacobian, float(np.sqrt(whole)) if self.symmetric else whole),
             margin=margin,
             slope=slope,
         )
 
     def orbit(self, point: Point) -> Orbit:
         value = point.scaled * self.unit
-        model = self.family(float(value[2]))
-        return closed(ExactMap(lanes_of(model)), value[:2], self.period, model=model)
+        model = self.family(float(value[-1]))
+        return closed(return_map(model), value[:-1], self.period, model=model)
 
 
 def _keep(kept: dict[float, Any], value: float, found: object) -> None:
@@ -280,7 +329,9 @@ def _keep(kept: dict[float, Any], value: float, found: object) -> None:
 
 
 def _null(matrix: Floats) -> Floats:
-    """The unit vector (3,) that both rows (2, 3) are normal to."""
+    """The unit vector (d + 1,) that all rows (d, d + 1) are normal to."""
+    if matrix.shape != (2, 3):
+        return np.asarray(np.linalg.svd(matrix)[2][-1])
     (a, b, c), (d, e, f) = matrix.tolist()
     null = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
     size = float(np.linalg.norm(null))
@@ -317,7 +368,7 @@ class Stretch:
             if found is None:
                 raise ConvergenceError(
                     f"no orbit found near {curve.parameter} = "
-                    f"{float((a.scaled[2] + step * a.tangent[2]) * curve.span)!r}, "
+                    f"{float((a.scaled[-1] + step * a.tangent[-1]) * curve.span)!r}, "
                     "between two orbits of the branch"
                 )
             self.points[step] = found

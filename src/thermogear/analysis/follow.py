@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, SUBCRITICAL, Bifurcation
+from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, SUBCRITICAL, TORUS, Bifurcation
 from thermogear.analysis.continuation import (
     REACHED,
     SHRUNK,
@@ -25,7 +25,6 @@ from thermogear.analysis.continuation import (
 )
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.orbits import closed, shoot
-from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import ConvergenceError
 from thermogear.dynamics.return_map import return_map
 
@@ -57,8 +56,8 @@ Settle = Callable[[float, Floats], tuple[Floats, int]]
 class Leap:
     """A motion leaves its branch at ``value``: at a fold, or a subcritical period doubling.
 
-    ``kind`` of bifurcation, ``period`` and ``state`` (2,) there; ``landed`` the parameter just
-    behind, where the new motion of ``found_period`` periods (0: no orbit) is at ``found`` (2,).
+    ``kind`` of bifurcation, ``period`` and ``state`` (d,) there; ``landed`` the parameter just
+    behind, where the new motion of ``found_period`` periods (0: no orbit) is at ``found`` (d,).
     """
 
     kind: str
@@ -74,7 +73,7 @@ class Leap:
 class Followed:
     """Where a slow change from one value of the parameter to another leads.
 
-    ``state`` (2,) and ``period`` at ``value``, which is the end; or ``period`` 0 where no orbit
+    ``state`` (d,) and ``period`` at ``value``, which is the end; or ``period`` 0 where no orbit
     could be followed further (chaos, or none found). ``leaps`` on the way.
     """
 
@@ -132,7 +131,7 @@ def follow(
 
 @dataclass(frozen=True)
 class _Stand:
-    """A motion on the way: ``state`` (2,) and ``period`` (0: it is followed no further) at
+    """A motion on the way: ``state`` (d,) and ``period`` (0: it is followed no further) at
     ``value``; ``beside``: the flip that it has just gone through by."""
 
     value: float
@@ -147,7 +146,7 @@ def _shrunk(branch: Branch, start: float, to: float) -> _Stand:
     if branch.ended != SHRUNK[BIRTH]:
         return _Stand(at, here, 0)
     at = _behind(at, start=start, to=to)
-    mother = shoot(return_map(lanes_of(branch.family(at))), here, branch.period // 2)
+    mother = shoot(return_map(branch.family(at)), here, branch.period // 2)
     if mother is None or not mother.stable:
         return _Stand(at, here, 0)
     return _Stand(at, mother.state, mother.minimal_period)
@@ -184,7 +183,7 @@ def _leap(event: Bifurcation, settle: Settle, start: float, to: float) -> Leap:
 
 def _end_of_life(branch: Branch) -> Bifurcation | None:
     """Where the motion leaves the branch, if it does."""
-    return next((b for b in branch.bifurcations if b.kind in (FOLD, FLIP)), None)
+    return next((b for b in branch.bifurcations if b.kind in (FOLD, FLIP, TORUS)), None)
 
 
 def _behind(value: float, *, start: float, to: float) -> float:
@@ -197,10 +196,10 @@ def _pushed(event: Bifurcation) -> Floats:
     """The state at a bifurcation, of a flip a little off the orbit that has become unstable."""
     if event.kind != FLIP:
         return event.state
-    section = return_map(event.orbit.lanes)
+    section = event.orbit.section
     two = section.unit
     matrix = event.orbit.jacobian / two[:, None] * two
-    return np.asarray(event.state + 0.05 * two * np.linalg.svd(matrix + np.eye(2))[2][1])
+    return np.asarray(event.state + 0.05 * two * np.linalg.svd(matrix + np.eye(two.size))[2][-1])
 
 
 def _straight(family: Family, parameter: str, to: float, stand: _Stand) -> _Stand | None:
@@ -211,28 +210,28 @@ def _straight(family: Family, parameter: str, to: float, stand: _Stand) -> _Stan
     """
     start, period = stand.value, stand.period
     curve = Curve(family, parameter, period, start=start, span=abs(to - start))
-    upright = np.array([0.0, 0.0, 1.0])
+    upright = curve.upright
     end = to / curve.span
     point = curve.correct(np.append(stand.state, start) / curve.unit, normal=upright)
     if point is None:
         return None
     while True:
         least = _least_period(point, curve)
-        if point.scaled[2] == end or least < period:
-            value = to if point.scaled[2] == end else float(point.scaled[2] * curve.span)
-            return _Stand(value, np.asarray(point.scaled[:2] * curve.unit[:2]), least)
-        ahead = end - point.scaled[2]
-        if abs(point.tangent[2]) < 1e-6:
+        if point.scaled[-1] == end or least < period:
+            value = to if point.scaled[-1] == end else float(point.scaled[-1] * curve.span)
+            return _Stand(value, np.asarray(point.scaled[:-1] * curve.unit[:-1]), least)
+        ahead = end - point.scaled[-1]
+        if abs(point.tangent[-1]) < 1e-6:
             return None
-        rate = point.tangent / point.tangent[2]
-        most = float(np.max(np.abs(rate[:2])))
+        rate = point.tangent / point.tangent[-1]
+        most = float(np.max(np.abs(rate[:-1])))
         step = float(np.sign(ahead)) * min(abs(ahead), REACH / max(most, 1e-12))
         while True:
             if abs(step) < SHORTEST and abs(step) < abs(ahead):
                 return None
             guess = point.scaled + step * rate
             if abs(step) == abs(ahead):
-                guess[2] = end
+                guess[-1] = end
             there = curve.correct(guess, normal=upright, reach=4.0 * BEND)
             if there is not None and there.contacts != point.contacts:
                 return None  # folds come close to where contact changes
@@ -251,7 +250,7 @@ def _straight(family: Family, parameter: str, to: float, stand: _Stand) -> _Stan
 
 def _least_period(point: Point, curve: Curve) -> int:
     """The smallest number of periods after which the orbit closes."""
-    points = point.visit.points / curve.unit[:2]
+    points = point.visit.points / curve.unit[:-1]
     apart = np.max(np.abs(points[1:] - points[0]), axis=1)
     n = curve.period
     return next(k for k in range(1, n + 1) if n % k == 0 and (k == n or apart[k - 1] < SAME))
@@ -259,11 +258,11 @@ def _least_period(point: Point, curve: Curve) -> int:
 
 def _even(a: Point, b: Point) -> bool:
     """Whether the way between two orbits is that of the mean rate at both, but for little."""
-    if abs(b.tangent[2]) < 1e-6:
+    if abs(b.tangent[-1]) < 1e-6:
         return False
-    step = b.scaled[2] - a.scaled[2]
-    moved = b.scaled[:2] - a.scaled[:2]
-    mean = 0.5 * step * (a.tangent[:2] / a.tangent[2] + b.tangent[:2] / b.tangent[2])
+    step = b.scaled[-1] - a.scaled[-1]
+    moved = b.scaled[:-1] - a.scaled[:-1]
+    mean = 0.5 * step * (a.tangent[:-1] / a.tangent[-1] + b.tangent[:-1] / b.tangent[-1])
     return float(np.max(np.abs(moved - mean))) <= CLOSE * float(np.max(np.abs(mean))) + 1e-5
 
 
@@ -272,7 +271,7 @@ def _walked(family: Family, parameter: str, start: float, to: float, stand: _Sta
     at, beside = stand.value, stand.beside
     if beside is None:
         model = family(at)
-        orbit = closed(return_map(lanes_of(model)), stand.state, stand.period, model=model)
+        orbit = closed(return_map(model), stand.state, stand.period, model=model)
     else:
         orbit = beside.orbit
     return continuation(
@@ -283,7 +282,7 @@ def _walked(family: Family, parameter: str, start: float, to: float, stand: _Sta
         start=at,
         back_to=at if beside is None else start,
         span=max(abs(to - at), SPAN * abs(at)),
-        stop_at=(FOLD, FLIP),
+        stop_at=(FOLD, FLIP, TORUS),
         direction=None if beside is None else beside.direction,
         most_points=600,
     )

@@ -13,13 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.lyapunov import lyapunov_exponents
+from thermogear.analysis.any_motion import Search, settle
+from thermogear.analysis.lyapunov import Lyapunov, lyapunov_exponents
 from thermogear.analysis.proof import NEAR_BORDER, Label, closing, periodic, proves_chaos, returned
-from thermogear.analysis.section import lanes_of, starts_of
+from thermogear.analysis.section import lanes_of, starts_of, units_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
 from thermogear.dynamics.blocks import Progress
-from thermogear.dynamics.exact_map import Ensemble, scales
+from thermogear.dynamics.models import ClearanceModel
+from thermogear.dynamics.return_map import ReturnMap, return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -50,8 +52,10 @@ def label(
     """Label of the motion a model of one lane settles on from ``initial_state``.
 
     ``model``: a clearance oscillator (:class:`TorsionalModel`, :class:`DeadZoneModel`,
-    :class:`PairModel`): the proof rests on its event-exact return map. A model of a derivative and
-    a period alone can be simulated and is refused here.
+    :class:`PairModel`), whose proof rests on its event-exact return map and is told below. Of any
+    other model with a return map one start is followed, see
+    :func:`~thermogear.analysis.any_motion.settle`; a torus is undecided there. A model of a
+    derivative and a period alone can be simulated and is refused here.
     ``initial_state`` (x, x') is in the units of the model: pure numbers for
     :class:`TorsionalModel`, SI for a model in SI.
     The transient runs in rounds, ``discard`` periods first, then doubling to at most ``cap``.
@@ -76,6 +80,11 @@ def label(
     >>> str(label(model, initial_state=(1.166, 0.002)))
     'period-1'
     """
+    if _of_any_dimension(model):
+        search = Search(
+            first=min(discard, cap), cap=cap, max_period=max_period, near_border=near_border
+        )
+        return _any(model, initial_state, search)
     lanes = lanes_of(model)
     if len(lanes) != 1:
         raise InputError("model", f"{len(lanes)} lanes", allowed="one lane; labels() takes many")
@@ -96,6 +105,30 @@ def label(
         return found
     # with its model the orbit can be continued
     return replace(found, orbit=replace(found.orbit, model=model))
+
+
+def _of_any_dimension(model: object) -> bool:
+    """Whether a model is no mass with clearance and has a return map."""
+    one_mass = isinstance(model, Lanes | ClearanceModel)
+    return not one_mass and (isinstance(model, ReturnMap) or hasattr(model, "return_map"))
+
+
+def _any(model: object, initial_state: ArrayLike, search: Search) -> Label:
+    """The label of a model of any dimension by its return map alone."""
+    section = return_map(model)
+    start = starts_of(initial_state, 1, section.dimension)[0]
+    motion = settle(section, start, search)
+    exponent = None
+    if np.isfinite(motion.lyapunov) and motion.batches.size:
+        exponent = Lyapunov(
+            value=motion.lyapunov,
+            error=motion.lyapunov_error,
+            sum=float(np.log(section.determinant(1)) / section.period),
+            batches=motion.batches,
+            state=motion.state,
+        )
+    orbit = None if motion.orbit is None else replace(motion.orbit, model=model)
+    return Label(motion.name, motion.period, motion.reason, motion.used, orbit, exponent)
 
 
 def labels(
@@ -169,7 +202,7 @@ def _settle(
     level, top = np.zeros(len(lanes)), np.zeros(len(lanes))
     elapsed = 0
     for length in search.rounds(search.cap):
-        group = Ensemble(lanes.take(waiting), state[waiting], threads=search.threads, parting=True)
+        group = lanes.take(waiting).ensemble(state[waiting], threads=search.threads, parting=True)
         window = group.run(length, keep=2 * search.max_period)
         elapsed += length
         state[waiting] = group.state
@@ -294,8 +327,8 @@ def _follow(
         mine = owner[waiting]
         elapsed += length
         parting = elapsed >= last
-        group = Ensemble(
-            lanes.take(mine), state[waiting], threads=search.threads, refine=refine, parting=parting
+        group = lanes.take(mine).ensemble(
+            state[waiting], threads=search.threads, refine=refine, parting=parting
         )
         window = group.run(length, keep=2 * search.max_period)
         state[waiting] = group.state
@@ -308,7 +341,7 @@ def _follow(
             if verdict is None:
                 open_.append(waiting[row])
                 lively[waiting[row]] = group.level[row] > 0.0 and not closing(
-                    window[row] / scales(one), search.max_period
+                    window[row] / units_of(one)[0], search.max_period
                 )
             else:
                 ends[lane].append(_End(verdict, elapsed))
@@ -331,7 +364,7 @@ def _same(one: Label, other: Label) -> bool:
         return False
     if one.orbit is None or other.orbit is None:
         return one.orbit is other.orbit
-    away = np.abs(one.orbit.points - other.orbit.state) / scales(one.orbit.lanes)
+    away = np.abs(one.orbit.points - other.orbit.state) / units_of(one.orbit.lanes)[0]
     return bool(np.min(np.max(away, axis=1)) < 1e-6)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.section import lanes_of, starts_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import InputError
-from thermogear.dynamics import exact
 from thermogear.dynamics.blocks import Pace, Progress, run_blocks
+from thermogear.dynamics.bundle import Bundle, bundles
+from thermogear.dynamics.models import ClearanceModel
+from thermogear.dynamics.return_map import ReturnMap, return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -22,7 +25,8 @@ Floats = NDArray[np.float64]
 class Lyapunov:
     """Largest exponent ``value`` per unit time with the standard ``error`` of its batch means.
 
-    ``sum`` is the sum of both exponents, exactly -2 zeta; ``batches`` the batch means,
+    ``sum`` is that of all exponents: -c exactly of one mass, ln det D P/T of another model, nan
+    where that is not known; ``batches`` the batch means,
     ``state`` the last state on the section.
 
     >>> model = TorsionalModel(
@@ -42,20 +46,21 @@ class Lyapunov:
 
     @property
     def second(self) -> float:
-        """The other exponent: sum - value."""
+        """Of two exponents the other one: sum - value."""
         return self.sum - self.value
 
     @property
     def kaplan_yorke(self) -> float:
-        """Kaplan-Yorke dimension on the section: 1 + value/|second|, 0 when not chaotic."""
+        """Kaplan-Yorke dimension on the section: 1 + value/|second|, 0 when not chaotic.
+
+        Of states (x, x') alone; a longer state has more exponents than are known here.
+        """
         return 0.0 if self.value <= 0.0 else 1.0 + self.value / abs(self.second)
 
 
 def _block(
-    lanes: Lanes,
+    prepared: Callable[[], Bundle],
     index: NDArray[np.int64],
-    borders: Floats,
-    marks: NDArray[np.uint8],
     start: Floats,
     discard: int,
     means: Floats,
@@ -63,23 +68,21 @@ def _block(
     length: int,
     pace: Pace,
 ) -> None:
-    mine = lanes.take(index)
-    maps = exact.prepare_maps(mine, borders, marks)
-    state = exact.State.start(x=start[index, 0], y=start[index, 1], backlash=mine.half_backlash)
+    mine = prepared()
+    crowd = mine.crowd(start[index])
     for _, count in pace.chunks(discard, lanes=index.size):
-        exact.advance(maps, state, count)
+        crowd.run(count)
     # the tangent turns into its own direction before it is counted
-    state.fresh_tangent()
-    state.tangent[2] = 2.0 * np.pi / mine.period
-    exact.advance(maps, state, min(50, length), columns=1, normalise=True)
+    crowd.aim()
+    crowd.stretch(min(50, length))
     for batch in range(means.shape[1]):
         total = np.zeros(index.size)
         for _, count in pace.chunks(length, lanes=index.size):
-            _, stretch, _ = exact.advance(maps, state, count, columns=1, normalise=True)
+            _, stretch = crowd.stretch(count)
             # one after the other, so that neither chunks nor company change the last bit
             total = np.cumsum(np.vstack([total, stretch]), axis=0)[-1]
         means[index, batch] = total / (length * mine.period)
-    ends[index, 0], ends[index, 1] = state.x, state.y
+    ends[index] = crowd.state
 
 
 def lyapunov_exponents(
@@ -93,20 +96,29 @@ def lyapunov_exponents(
     progress: Progress | None = None,
     refine: int = 1,
 ) -> list[Lyapunov]:
-    """:func:`lyapunov_exponent` of every lane of ``model``; ``refine`` times the sub-steps."""
+    """:func:`lyapunov_exponent` of every lane of ``model``; ``refine`` times the sub-steps.
+
+    ``model`` may be a sequence of models with return maps, states of one length.
+    """
     for name, value, least in (
         ("discard", discard, 0),
         ("batches", batches, 2),
         ("batch_periods", batch_periods, 1),
     ):
         whole(name, value, least=least)
-    lanes = lanes_of(model)
-    start = starts_of(initial_state, len(lanes))
+    lanes = _many(model)
+    if isinstance(lanes, Lanes):
+        start = starts_of(initial_state, len(lanes))
+        sums = -lanes.damping
+    else:
+        sections = [return_map(one) for one in lanes]
+        start = starts_of(initial_state, len(lanes), sections[0].dimension)
+        sums = np.array([np.log(one.determinant(1)) / one.period for one in sections])
     means = np.full((len(lanes), batches), np.nan)
-    ends = np.full((len(lanes), 2), np.nan)
+    ends = np.full(start.shape, np.nan)
     work = [
-        partial(_block, lanes, index, borders, marks, start, discard, means, ends, batch_periods)
-        for index, borders, marks in exact.layouts(lanes, refine=refine)
+        partial(_block, prepared, index, start, discard, means, ends, batch_periods)
+        for index, prepared in bundles(lanes, refine=refine)
     ]
     total = len(lanes) * (discard + batches * batch_periods)
     run_blocks(work, total, threads=threads, progress=progress)
@@ -115,7 +127,7 @@ def lyapunov_exponents(
         Lyapunov(
             value=float(means[i].mean()),
             error=float(errors[i]),
-            sum=-float(lanes.damping[i]),
+            sum=float(sums[i]),
             batches=means[i],
             state=ends[i],
         )
@@ -133,13 +145,14 @@ def lyapunov_exponent(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Lyapunov:
-    """Largest Lyapunov exponent of the trajectory of a model of one lane.
+    """Largest Lyapunov exponent of the trajectory of one lane, or of a model with a return map.
 
     lambda_1 = lim ln|D P^n e|/(n T); the tangent vector follows the variational equations
     through every contact change (the saltation matrix is the identity) and is normalised every
     period. The mean of ``batches`` batches of ``batch_periods`` periods after ``discard``; the
-    error is the standard error of the batch means. Unit: one over the model's unit of time,
-    1 for :class:`TorsionalModel`, 1/s for a model in SI.
+    error is the standard error of the batch means. ``initial_state`` has the length of the model's
+    states. Unit: one over the model's unit of time, 1 for :class:`TorsionalModel`, 1/s for a model
+    in SI.
 
     >>> model = TorsionalModel(
     ...     damping_ratio=0.05, frequency=0.5, stiffness_amplitude=0.0,
@@ -163,8 +176,19 @@ def lyapunov_exponent(
     )[0]
 
 
-def _one(model: object) -> Lanes:
-    lanes = lanes_of(model)
+def _many(model: object) -> Lanes | Sequence[object]:
+    """Its lanes; or the models themselves, one or a sequence, that have return maps."""
+    if isinstance(model, list | tuple):
+        return model
+    if isinstance(model, ReturnMap) or (
+        hasattr(model, "return_map") and not isinstance(model, Lanes | ClearanceModel)
+    ):
+        return [model]
+    return lanes_of(model)
+
+
+def _one(model: object) -> Lanes | Sequence[object]:
+    lanes = _many(model)
     if len(lanes) != 1:
         raise InputError("model", f"{len(lanes)} lanes", allowed="one lane; use the plural form")
     return lanes

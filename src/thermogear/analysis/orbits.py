@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.section import lanes_of
 from thermogear.base.bounds import whole
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.exact_map import ExactMap
 from thermogear.dynamics.return_map import ReturnMap, return_map
 from thermogear.dynamics.tables import Lanes
 
@@ -129,12 +128,14 @@ class Orbit:
 
 
 def multipliers(jacobian: Floats, determinant: float) -> Complexes:
-    """Eigenvalues of a Jacobian whose determinant is known, the larger modulus first.
+    """Eigenvalues of a Jacobian, the larger modulus first; ``determinant`` nan: not known.
 
-    Of two by two mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu, free of
-    cancellation. Of a pair the one in the upper half plane comes first.
+    Of two by two with a known one mu = tr/2 +- sqrt(tr^2/4 - det); the smaller real one as det/mu,
+    free of cancellation. Of a pair the one in the upper half plane comes first.
     """
-    if jacobian.shape != (2, 2):
+    if jacobian.shape != (2, 2) or (np.isnan(determinant) and np.all(np.isfinite(jacobian))):
+        if not np.all(np.isfinite(jacobian)):
+            return np.full(len(jacobian), complex("nan"))
         found = np.linalg.eigvals(jacobian).astype(complex)
         # of one modulus the upper half plane first
         order = np.lexsort((-found.imag, -np.round(np.abs(found), 12)))
@@ -153,11 +154,8 @@ def contact_multipliers(model: object) -> Complexes:
     The largest modulus above 1 means that the motion cannot stay in contact, whatever the force.
     ``model`` has one lane; backlash and force do not enter.
     """
-    section = ExactMap(lanes_of(model))
-    product = np.eye(2)
-    for maps in section.maps.maps[:, :4, 0]:
-        product = np.array([[maps[0], maps[2]], [maps[1], maps[3]]]) @ product
-    return multipliers(product, section.determinant(1))
+    section = lanes_of(model).return_map()
+    return multipliers(section.contact, section.determinant(1))
 
 
 def shoot(

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.lyapunov import Lyapunov
 from thermogear.analysis.orbits import Orbit, shoot
+from thermogear.analysis.section import units_of
 from thermogear.base.vocabulary import label_words
-from thermogear.dynamics.exact_map import scales
 from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import Lanes
 
@@ -74,7 +74,7 @@ def periodic(
     """The label the last sections support, and whether no lag comes near closing."""
     if not np.all(np.isfinite(window)):
         return Label("diverged", 0, "|x| > 1e6 half backlashes or not finite", elapsed), False
-    unit = scales(lane)
+    unit = units_of(lane)[0]
     scaled = window / unit
     gaps = [
         float(np.max(np.abs(scaled[-lag:] - scaled[-2 * lag : len(scaled) - lag])))
@@ -129,7 +129,7 @@ def returned(lane: Lanes, window: Floats, first: Label, elapsed: int) -> Label |
     """The label ``first`` where the last sections lie on its orbit, in any of its phases."""
     if first.orbit is None:
         return None
-    unit = scales(lane)
+    unit = units_of(lane)[0]
     scaled, points = window / unit, first.orbit.points / unit
     place = int(np.argmin(np.max(np.abs(points - scaled[-1]), axis=1)))
     turned = np.roll(points, -place, axis=0)

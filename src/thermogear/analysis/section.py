@@ -27,11 +27,23 @@ def lanes_of(model: object) -> Lanes:
     return model.lanes()
 
 
-def starts_of(initial_state: ArrayLike, lanes: int) -> Floats:
-    """Start states (lane, 2) from one state or one per lane."""
+def plain(model: object) -> object:
+    """The flat parameters of a one-mass model; any other model as it is."""
+    return lanes_of(model) if isinstance(model, ClearanceModel) else model
+
+
+def units_of(lanes: Lanes) -> Floats:
+    """Scales of (x, x') for distances, lane by lane: b and 2 pi b/T, (lane, 2)."""
+    return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
+
+
+def starts_of(initial_state: ArrayLike, lanes: int, dimension: int = 2) -> Floats:
+    """Start states (lane, d) from one state or one per lane."""
     start = np.asarray(initial_state, dtype=float)
     if not np.all(np.isfinite(start)):
         raise InputError("initial_state", start.tolist(), allowed="finite numbers")
-    if start.shape not in ((2,), (1, 2), (lanes, 2)):
-        raise InputError("initial_state", f"shape {start.shape}", allowed=f"(2,) or ({lanes}, 2)")
-    return np.array(np.broadcast_to(start, (lanes, 2)))
+    d = dimension
+    if start.shape not in ((d,), (1, d), (lanes, d)):
+        allowed = f"({d},) or ({lanes}, {d})"
+        raise InputError("initial_state", f"shape {start.shape}", allowed=allowed)
+    return np.array(np.broadcast_to(start, (lanes, d)))

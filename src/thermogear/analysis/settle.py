@@ -10,15 +10,18 @@ hundredth of the longest transient in it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.analysis.orbits import multipliers
+from thermogear.analysis.section import units_of as units_of
 from thermogear.base.bounds import require_share, whole
 from thermogear.base.errors import InputError
-from thermogear.dynamics import exact
+from thermogear.dynamics.bundle import Bundle, Visits, bundles
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -81,11 +84,11 @@ class Rule:
 class Settled:
     """One entry per lane.
 
-    ``label`` codes into :data:`LABELS`, ``period`` n (0: none), ``point`` (lane, 2) of the
-    orbit where the trajectory is, ``multiplier`` (lane, 2) complex, ``lyapunov`` per unit
+    ``label`` codes into :data:`LABELS`, ``period`` n (0: none), ``point`` (lane, d) of the
+    orbit where the trajectory is, ``multiplier`` (lane, d) complex, ``lyapunov`` per unit
     time with its ``lyapunov_error`` (exact, error 0, for periodic lanes), ``losses`` and
     ``impacts`` per orbit, ``shares`` of time in back, free and drive, ``used`` periods run,
-    ``state`` (lane, 2) at the end, ``sections`` (lane, keep, 2) the last ones, on the orbit
+    ``state`` (lane, d) at the end, ``sections`` (lane, keep, d) the last ones, on the orbit
     itself for periodic lanes.
     """
 
@@ -103,22 +106,22 @@ class Settled:
     sections: Floats
 
     @classmethod
-    def empty(cls, lanes: int, *, keep: int = 0) -> Settled:
-        """Nothing known yet."""
+    def empty(cls, lanes: int, *, keep: int = 0, dimension: int = 2) -> Settled:
+        """Nothing known yet of ``lanes`` motions with states of length ``dimension``."""
         nan = np.nan
         return cls(
             label=np.zeros(lanes, np.int8),
             period=np.zeros(lanes, np.int32),
-            point=np.full((lanes, 2), nan),
-            multiplier=np.full((lanes, 2), complex(nan, nan)),
+            point=np.full((lanes, dimension), nan),
+            multiplier=np.full((lanes, dimension), complex(nan, nan)),
             lyapunov=np.full(lanes, nan),
             lyapunov_error=np.full(lanes, nan),
             losses=np.full(lanes, -1, np.int32),
             impacts=np.full(lanes, -1, np.int32),
             shares=np.full((lanes, 3), nan),
             used=np.zeros(lanes, np.int32),
-            state=np.full((lanes, 2), nan),
-            sections=np.full((lanes, keep, 2), nan),
+            state=np.full((lanes, dimension), nan),
+            sections=np.full((lanes, keep, dimension), nan),
         )
 
     def put(self, index: Whole | Flags, other: Settled) -> None:
@@ -127,48 +130,15 @@ class Settled:
             getattr(self, field.name)[index] = getattr(other, field.name)
 
 
-def part_of(maps: exact.ExactMaps, keep: Whole) -> exact.ExactMaps:
-    """The maps of some lanes of a block."""
-    return maps.take(keep)
-
-
-def units_of(lanes: Lanes) -> Floats:
-    """Scales of (x, x') for distances, lane by lane: b and 2 pi b/T, (lane, 2)."""
-    return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Closed:
-    """Orbits of one common period ``n``: points (lane, n + 1, 2), Jacobians (lane, 2, 2)."""
-
-    points: Floats
-    jacobian: Floats
-    residual: Floats
-    losses: Whole
-    impacts: Whole
-    spent: Floats
-
-
-def close_orbits(maps: exact.ExactMaps, start: Floats, n: int) -> Closed:
-    """Run ``n`` periods from ``start`` (lane, 2) with the variational equations."""
-    state = exact.State.start(x=start[:, 0], y=start[:, 1], backlash=maps.backlash)
-    sections, _, _ = exact.advance(maps, state, n, columns=2)
-    points = np.concatenate([start[:, None, :], sections.transpose(2, 0, 1)], axis=1)
-    jacobian = state.tangent.T.reshape(-1, 2, 2)
-    return Closed(
-        points=points,
-        jacobian=jacobian.copy(),
-        residual=points[:, -1] - points[:, 0],
-        losses=state.counts[0].copy(),
-        impacts=state.counts[1].copy(),
-        spent=state.spent.T.copy(),
-    )
+def close_orbits(maps: Bundle, start: Floats, n: int) -> Visits:
+    """Run ``n`` periods from ``start`` (lane, d) with the variational equations."""
+    return maps.visit(start, n)
 
 
 def polish(
-    maps: exact.ExactMaps, guess: Floats, n: int, unit: Floats, most: int = 10
+    maps: Bundle, guess: Floats, n: int, unit: Floats, most: int = 10
 ) -> tuple[Floats, Floats]:
-    """Newton to fixed points of P^n, lane by lane: states (lane, 2) and residuals (lane).
+    """Newton to fixed points of P^n, lane by lane: states (lane, d) and residuals (lane).
 
     Residuals in half backlashes; a lane that does not settle has one above 1e-9.
     """
@@ -186,14 +156,8 @@ def polish(
         chosen = working[better]
         best[chosen], least[chosen] = z[chosen], size[better]
         stalled[working] = np.where(better, 0, stalled[working] + 1)
-        a, b = run.jacobian[:, 0, 0] - 1.0, run.jacobian[:, 0, 1]
-        c, d = run.jacobian[:, 1, 0], run.jacobian[:, 1, 1] - 1.0
-        det = a * d - b * c
         with np.errstate(all="ignore"):
-            step = np.stack(
-                [(b * gap[:, 1] - d * gap[:, 0]) / det, (c * gap[:, 0] - a * gap[:, 1]) / det],
-                axis=1,
-            )
+            step = _newton(run.jacobian, gap)
             length = np.max(np.abs(step) / unit[working], axis=1)
         go = np.isfinite(length) & np.isfinite(size) & (size >= 1e-13)
         go &= ~((stalled[working] >= 2) & (least[working] < 1e-9))
@@ -204,12 +168,30 @@ def polish(
             break
         if not np.all(go):
             working = working[go]
-            here = part_of(maps, working)
+            here = maps.take(working)
     return best, least
 
 
+def _newton(jacobian: Floats, gap: Floats) -> Floats:
+    """-(D P^n - 1)^-1 of the residuals, lane by lane: (lane, d); not finite where singular."""
+    if gap.shape[1] == 2:
+        a, b = jacobian[:, 0, 0] - 1.0, jacobian[:, 0, 1]
+        c, d = jacobian[:, 1, 0], jacobian[:, 1, 1] - 1.0
+        det = a * d - b * c
+        return np.stack(
+            [(b * gap[:, 1] - d * gap[:, 0]) / det, (c * gap[:, 0] - a * gap[:, 1]) / det], axis=1
+        )
+    step = np.full_like(gap, np.nan)
+    for lane in np.flatnonzero(np.all(np.isfinite(jacobian), axis=(1, 2))):
+        with suppress(np.linalg.LinAlgError):
+            step[lane] = np.linalg.solve(jacobian[lane] - np.eye(gap.shape[1]), -gap[lane])
+    return step
+
+
 def multipliers_of(jacobian: Floats, *, determinant: Floats) -> NDArray[np.complex128]:
-    """Floquet multipliers (lane, 2) of Jacobians with known determinants, the larger first."""
+    """Floquet multipliers (lane, d) of Jacobians with known determinants, the larger first."""
+    if jacobian.shape[1:] != (2, 2) or not np.all(np.isfinite(determinant)):
+        return np.array([multipliers(*one) for one in zip(jacobian, determinant, strict=True)])
     half = 0.5 * (jacobian[:, 0, 0] + jacobian[:, 1, 1])
     square = half * half - determinant
     root = np.sqrt(np.abs(square))
@@ -227,87 +209,71 @@ def _alive() -> None:
 
 
 def settle(
-    lanes: Lanes,
+    lanes: Lanes | Sequence[object],
     start: Floats,
     rule: Rule,
     keep: int = 0,
     alive: Callable[[], None] = _alive,
 ) -> Settled:
-    """What every lane settles on from ``start`` (lane, 2); ``keep`` last sections are returned.
+    """What every lane settles on from ``start`` (lane, d); ``keep`` last sections are returned.
 
+    ``lanes`` are those of one mass, or models of any dimension d that have a return map.
     Each lane's result depends on that lane alone, to the last bit. ``alive`` is called between
     rounds; it raises to end the work.
     """
-    result = Settled.empty(len(lanes), keep=keep)
-    for index, borders, marks in exact.layouts(lanes):
-        mine = lanes.take(index)
-        maps = exact.prepare_maps(mine, borders, marks)
-        result.put(index, settle_block(mine, maps, start[index], rule, keep, alive))
+    result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
+    for index, prepared in bundles(lanes):
+        result.put(index, settle_block(prepared(), start[index], rule, keep, alive))
     return result
 
 
 class _Block:
     """Lanes of one layout on their way to a label."""
 
-    def __init__(
-        self, lanes: Lanes, maps: exact.ExactMaps, start: Floats, rule: Rule, keep: int
-    ) -> None:
-        self.lanes = lanes
+    def __init__(self, maps: Bundle, start: Floats, rule: Rule, keep: int) -> None:
         self.maps = maps
         self.rule = rule
         self.keep = keep
-        self.unit = units_of(lanes)
-        self.state = exact.State.start(x=start[:, 0], y=start[:, 1], backlash=maps.backlash)
-        self.active = np.arange(len(lanes))
-        self.result = Settled.empty(len(lanes), keep=keep)
+        self.unit = maps.unit
+        self.period = maps.period
+        self.crowd = maps.crowd(start)
+        self.active = np.arange(len(maps))
+        self.result = Settled.empty(len(maps), keep=keep, dimension=start.shape[1])
 
     def drop(self, out: Flags) -> None:
         """Go on without the lanes that are done."""
         left = np.flatnonzero(~out)
-        self.maps = part_of(self.maps, left)
         self.active = self.active[left]
-        old = self.state
-        self.state = exact.State(
-            x=old.x[left],
-            y=old.y[left],
-            region=old.region[left],
-            tangent=np.ascontiguousarray(old.tangent[:, left]),
-            counts=np.ascontiguousarray(old.counts[:, left]),
-            spent=np.ascontiguousarray(old.spent[:, left]),
-        )
+        self.crowd = self.crowd.take(left)
+        self.maps = self.crowd.bundle
 
     def window(self, length: int, measured: int) -> tuple[Floats, Floats]:
-        """Run ``length`` periods: the last sections (lane, window, 2), stretches (period, lane).
+        """Run ``length`` periods: the last sections (lane, window, d), stretches (period, lane).
 
         The stretches cover the last ``measured`` periods.
         """
         want = min(length, max(2 * self.rule.max_period, self.keep))
         silent = length - max(measured, want)
         if silent > 0:
-            exact.advance(self.maps, self.state, silent)
+            self.crowd.run(silent)
         if measured:
-            self.state.fresh_tangent()
-            self.state.tangent[2] = self.unit[self.active, 1] / self.unit[self.active, 0]
-        sections, stretch, _ = exact.advance(
-            self.maps,
-            self.state,
-            length - max(silent, 0),
-            columns=1 if measured else 0,
-            normalise=measured > 0,
-        )
+            self.crowd.aim(self.unit[self.active] / self.unit[self.active, :1])
+            sections, stretch = self.crowd.stretch(length - max(silent, 0))
+        else:
+            sections = self.crowd.run(length - max(silent, 0))
+            stretch = np.empty((0, self.active.size))
         return sections[-want:].transpose(2, 0, 1), stretch
 
 
 def settle_block(
-    lanes: Lanes,
-    maps: exact.ExactMaps,
+    maps: Bundle,
     start: Floats,
     rule: Rule,
     keep: int = 0,
     alive: Callable[[], None] = _alive,
 ) -> Settled:
-    """:func:`settle` for lanes that share a layout, with their maps."""
-    block = _Block(lanes, maps, start, rule, keep)
+    """:func:`settle` for lanes that run together."""
+    block = _Block(maps, start, rule, keep)
     elapsed = 0
     rounds = rule.rounds()
     for number, length in enumerate(rounds):
@@ -320,7 +286,7 @@ def settle_block(
         elapsed += length
         active = block.active
         block.result.used[active] = elapsed
-        block.result.state[active] = np.stack([block.state.x, block.state.y], axis=1)
+        block.result.state[active] = block.crowd.state
         last = number == len(rounds) - 1
         done = _verdicts(block, window, stretch[align:] if measured else stretch, last)
         if last or np.all(done):
@@ -383,7 +349,7 @@ def _lyapunov(block: _Block, stretch: Floats, rows: Flags) -> None:
     used = stretch[stretch.shape[0] - count * length :]
     # running sums, one period after the other: company changes no bit
     sums = np.cumsum(used, axis=0)[length - 1 :: length]
-    means = np.diff(sums, axis=0, prepend=0.0) / (length * block.lanes.period[block.active])
+    means = np.diff(sums, axis=0, prepend=0.0) / (length * block.period[block.active])
     mean = np.cumsum(means, axis=0)[-1] / count
     spread = np.sqrt(np.cumsum((means - mean) ** 2, axis=0)[-1] / (count - 1))
     lanes = block.active[rows]
@@ -395,13 +361,13 @@ def _periodic(block: _Block, rows: Whole, n: int, window: Floats, scaled: Floats
     """Polish the ``rows`` of the active lanes that return after ``n`` periods; which are done."""
     active, rule, result = block.active, block.rule, block.result
     done = np.zeros(rows.size, bool)
-    maps = part_of(block.maps, rows)
+    maps = block.maps.take(rows)
     unit = block.unit[active[rows]]
     point, residual = polish(maps, window[rows, -1], n, unit)
     good = np.flatnonzero(residual < 1e-9)
     if good.size == 0:
         return done
-    run = close_orbits(part_of(maps, good), point[good], n)
+    run = close_orbits(maps.take(good), point[good], n)
     minimal = np.full(good.size, n)
     for shorter in range(n - 1, 0, -1):
         if n % shorter == 0:
@@ -423,10 +389,10 @@ def _accept(
     result: Settled,
 ) -> Flags:
     """Whether the lanes ``rows`` converge to their stable orbits of ``n`` periods; stores them."""
-    run = close_orbits(part_of(block.maps, rows), point, n)
+    maps = block.maps.take(rows)
+    run = close_orbits(maps, point, n)
     lanes = block.active[rows]
-    rate = block.lanes.damping[lanes] * block.lanes.period[lanes]
-    mu = multipliers_of(run.jacobian, determinant=np.exp(-rate * n))
+    mu = multipliers_of(run.jacobian, determinant=maps.determinant(n))
     size = np.abs(mu[:, 0])
     orbit = run.points[:, :-1] / block.unit[lanes, None, :]
     width = scaled.shape[1]
@@ -443,11 +409,11 @@ def _accept(
     result.point[chosen] = run.points[ok, 0]
     result.multiplier[chosen] = mu[ok]
     with np.errstate(divide="ignore"):
-        result.lyapunov[chosen] = (np.log(size) / (n * block.lanes.period[lanes]))[ok]
+        result.lyapunov[chosen] = (np.log(size) / (n * block.period[lanes]))[ok]
     result.lyapunov_error[chosen] = 0.0
     result.losses[chosen] = run.losses[ok]
     result.impacts[chosen] = run.impacts[ok]
-    total = n * block.lanes.period[chosen]
+    total = n * block.period[chosen]
     result.shares[chosen] = run.spent[ok] / total[:, None]
     if block.keep:
         places = (np.arange(block.keep) - (block.keep - 1)) % n

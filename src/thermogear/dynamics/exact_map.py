@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -20,6 +21,14 @@ def scales(lanes: Lanes) -> Floats:
     """Scales of (x, x') for distances, of the first lane: b and 2 pi b/period."""
     backlash = float(lanes.half_backlash[0])
     return np.array([backlash, 2.0 * np.pi * backlash / float(lanes.period[0])])
+
+
+Rates = tuple[Floats, Floats, float]
+
+
+def _lanes(model: object) -> Lanes:
+    found: Lanes = model if isinstance(model, Lanes) else model.lanes()  # type: ignore[attr-defined]
+    return found
 
 
 class ExactMap:
@@ -65,6 +74,30 @@ class ExactMap:
         if halves % 2:
             exact.advance(exact.first_half(self.maps), state, 1, columns=2)
         return np.array([state.x[0], state.y[0]]), state.tangent[:, 0].reshape(2, 2)
+
+    @property
+    def contact(self) -> Floats:
+        """D P of a motion in lasting drive contact."""
+        product = np.eye(2)
+        for maps in self.maps.maps[:, :4, 0]:
+            product = np.array([[maps[0], maps[2]], [maps[1], maps[3]]]) @ product
+        return product
+
+    def rates(self, around: Sequence[tuple[float, object]]) -> Rates:
+        """Derivatives of the affine maps where the numbers change at sum(weight * model)."""
+        lanes = [(weight, _lanes(model)) for weight, model in around]
+        return exact.maps_moved(self.maps, self.lanes, lanes)
+
+    def moved(self, start: Floats, halves: int, rates: Rates) -> tuple[Floats, float]:
+        """d(x, x')/dp (2,) after ``halves`` half periods, crossings staying at their phases.
+
+        And how near an extreme of x comes to an edge of the backlash, in half backlashes.
+        """
+        count = self.maps.half.shape[0]
+        middle = int(np.searchsorted(self.maps.borders, 0.5)) if halves % 2 else 0
+        steps = (halves // 2) * count + middle
+        found, margin = exact.moved_by(self.maps, rates=rates, start=start, steps=steps)
+        return found, margin / self.backlash
 
     def carry(self, start: Floats, periods: int) -> Floats:
         """The states (periods, 2) after 1, 2, ... periods from ``start``."""

@@ -8,8 +8,9 @@ What analysis knows of a model. One mass with clearance has its event-exact map
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +85,26 @@ class ReturnMap(Protocol):
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""
+        ...
+
+
+@runtime_checkable
+class MovedMap(ReturnMap, Protocol):
+    """A return map that can be followed by half periods and differentiated in a parameter.
+
+    Of one mass with clearance; a branch of any other map is followed by differences.
+    """
+
+    def flow(self, start: Floats, halves: int) -> tuple[Floats, Floats]:
+        """State (d,) and Jacobian (d, d) ``halves`` half periods later."""
+        ...
+
+    def rates(self, around: Sequence[tuple[float, object]]) -> object:
+        """How the maps change at the rate sum(weight * model) over ``around``."""
+        ...
+
+    def moved(self, start: Floats, halves: int, rates: Any) -> tuple[Floats, float]:
+        """How the end (d,) moves with the parameter, and the margin [units] of the contacts."""
         ...
 
 

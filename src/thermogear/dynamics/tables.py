@@ -6,7 +6,7 @@ counted in periods, 0 at the Poincare section.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,8 @@ from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
 
 if TYPE_CHECKING:
-    from thermogear.dynamics.exact_map import ExactMap
+    from thermogear.dynamics.bundle import Prepared
+    from thermogear.dynamics.exact_map import Ensemble, ExactMap
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -63,6 +64,25 @@ class Lanes:
         from thermogear.dynamics.exact_map import ExactMap
 
         return ExactMap(self, samples)
+
+    def bundles(self, refine: int = 1) -> Iterator[Prepared]:
+        """The return maps of all lanes in blocks that run together: indices, how each is made."""
+        from thermogear.dynamics.exact_bundle import exact_bundles
+
+        return exact_bundles(self, refine)
+
+    def ensemble(
+        self,
+        start: Floats,
+        *,
+        threads: int | None = None,
+        refine: int = 1,
+        parting: bool = False,
+    ) -> Ensemble:
+        """All lanes from ``start`` (lane, 2) on their way, on ``threads``; see its class."""
+        from thermogear.dynamics.exact_map import Ensemble
+
+        return Ensemble(self, start, threads=threads, refine=refine, parting=parting)
 
     def jumps(self, lane: int) -> tuple[float, ...]:
         """Phases in (0, 1) where a table of this lane may jump."""
