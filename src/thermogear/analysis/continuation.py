@@ -161,8 +161,8 @@ def continuation(
     period, becomes symmetric, or after ``most_points``. On the way folds (multiplier +1), period
     doublings (-1), grazing (an extremum touches an edge of the backlash) and pitchforks (+1
     where a symmetric orbit of a symmetric equation loses it) are located, of states longer than
-    (x, x') or of unknown determinant the torus too (a complex pair crosses the unit circle). Where no further orbit is
-    found the branch as far as it goes comes back, and ``ended`` names the gap.
+    (x, x') or of unknown determinant the torus too (a complex pair crosses the unit circle). Where
+    no further orbit is found the branch comes back as far as it goes; ``ended`` names the gap.
 
     ``parameter`` is a number field of the orbit's model; for anything else (rpm, temperature)
     give ``family``, a function value -> model, and its present value ``start``. The range lies

@@ -284,7 +284,8 @@ class Curve:
             before = gap
             last = size
             try:
-                step = np.linalg.solve(matrix, np.append(-gap, -normal @ (scaled - guess)))
+                right = np.append(-gap, -normal @ (scaled - guess))
+                step = np.asarray(np.linalg.solve(matrix, right), dtype=float)
             except np.linalg.LinAlgError:
                 return None
             scaled = scaled + step

@@ -76,8 +76,8 @@ def sound(data: xr.Dataset, operating: int) -> Picture:
     order, lines = here["line_order"].values, here["housing_line"].values
     floor, top = floor_of(lines, order=order, highest=HIGHEST)
     panel = over_orders(
-        "order of the mesh frequency [–]", "acceleration of the housing [m/s²]", floor=floor, top=top,
-        highest=HIGHEST,
+        "order of the mesh frequency [–]", "acceleration of the housing [m/s²]", floor=floor,
+        top=top, highest=HIGHEST,
     )  # fmt: skip
     for s, state in enumerate(names_of(here, "state")):
         draw_lines(
