@@ -193,7 +193,7 @@ def gap_of(train: Train, contact: int, drive: float, back: float, error: float) 
     if contact == 0:
         return float(drive - error - train.numbers[BACKLASH])
     if contact == 1:
-        return float(back + error - train.numbers[BACKLASH])
+        return float(back - error - train.numbers[BACKLASH])
     return float(math.sqrt(drive * drive + back * back) - train.laws[contact - 2, CLEARANCE])
 
 
