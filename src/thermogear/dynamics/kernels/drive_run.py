@@ -395,7 +395,7 @@ def advance(
     sampled: Real,
     times: Real,
 ) -> int:
-    """Carry one state through ``periods`` mesh periods; 0, or 1 where it runs away.
+    """Carry one state through ``periods`` mesh periods; 0, or 1 where no step is short enough.
 
     ``state`` (span) and ``tangent`` (columns, span) are changed in place. ``sections`` (periods,
     span) and ``times`` (periods) [s]: the state at the end of every period, how long it took;
@@ -452,6 +452,8 @@ def advance(
                         work.counts[REJECTED] += 1
                         rung = shorter
                         continue
+                    if error >= HUGE:
+                        return 1
                     work.counts[FORCED] += 1
                 who, when = first_change(train, ladder, work)
                 if who >= 0 and when <= 0.0:

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, label
 from thermogear.case.case import GearCase
+from thermogear.dynamics.ladder import Engine
 from thermogear.results.result import Notice
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import (
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 POINT = ("state", "operating")
 SECTIONS = 64
+LONGEST = 4000
+"""Mesh periods that a motion is followed for at most where shafts turn forces with them."""
 TURNS = 4
 """Turns of the slower shaft in a record with forces at shaft orders."""
 ERRORS = 12
@@ -65,7 +69,10 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     if cycle > 1:
         # all shafts back in place takes long: no Jacobian over it
         search = Search(first=3, cap=24, max_period=2, polish=False, exponent=False)
-    found = settle(train.model.return_map(), train.start, search)
+    if cycle > LONGEST:
+        found = _followed(train)
+    else:
+        found = settle(train.model.return_map(), train.start, search)
     if found.name == "diverged":
         return Moved(state=state, train=train, motion=found)
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
@@ -74,6 +81,16 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     return Moved(
         state=state, train=train, motion=found, record=recorded(train, found.state, periods)
     )
+
+
+def _followed(train: MovingTrain) -> Motion:
+    """The motion of a train whose shafts come back in place too late to wait for it."""
+    try:
+        state = Engine(train.model).run(train.start, LONGEST).state
+    except ConvergenceError as told:
+        return Motion(name="diverged", period=0, reason=str(told), state=train.start, used=0)
+    reason = f"all shafts come back only after {train.model.cycle} mesh periods"
+    return Motion(name="undecided", period=0, reason=reason, state=state, used=LONGEST)
 
 
 def train_motion(
@@ -236,7 +253,7 @@ def _reason(one: Moved) -> str:
     if one.motion is None:
         jammed = one.state.status == STATUS.index("jammed")
         return "no clearance is left to move in" if jammed else "the mesh did not settle"
-    if one.train is not None and one.train.model.cycle > 1:
+    if one.train is not None and 1 < one.train.model.cycle <= LONGEST:
         cycle = one.train.model.cycle
         return f"{one.motion.reason}, one period being {cycle} mesh periods: all shafts in place"
     return one.motion.reason
