@@ -30,7 +30,7 @@ def call(name, *words):
 
 
 def test_names_of_the_commands():
-    assert list(BY_NAME) == ["bifurcation", "map", "basins", "runup", "sweep"]
+    assert list(BY_NAME) == ["bifurcation", "map", "basins", "runup", "waterfall", "sweep"]
 
 
 @pytest.mark.slow

@@ -149,6 +149,7 @@ class Engine:
                 padded(s * outputs),
                 padded(outputs),
                 DEGREE + 1,
+                int(any(one.elements or one.exponent != 1.0 for one in model.bearings)),
             ]
         )
         kinds, laws = np.zeros((max(count, 1), 3), np.int64), np.zeros((max(count, 1), 7))
@@ -229,7 +230,7 @@ class Engine:
         )
 
     def _work(self, columns: int) -> steps.Work:
-        _, s, outputs, inputs, _, count, _, span, wide, felt, _ = (int(n) for n in self.sizes)
+        _, s, outputs, inputs, _, count, _, span, wide, felt, *_ = (int(n) for n in self.sizes)
         c, big = max(columns, 1), s * outputs if columns else 1
         return steps.Work(
             counts=np.zeros(8, np.int64),

@@ -22,8 +22,11 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
-MODES, NODES, OUTPUTS, INPUTS, FRICTION, BEARINGS, RUNGS, SPAN, WIDE, FELT, ORDERS = range(11)
-"""Places in ``Train.sizes``; padded to eights: SPAN 2 modes, WIDE nodes outputs, FELT outputs."""
+MODES, NODES, OUTPUTS, INPUTS, FRICTION, BEARINGS, RUNGS, SPAN, WIDE, FELT, ORDERS, ROUGH = range(
+    12
+)
+"""Places in ``Train.sizes``; padded to eights: SPAN 2 modes, WIDE nodes outputs, FELT outputs.
+ROUGH: 1 where a bearing's law has a border that is not located."""
 STIFFNESS, ERROR, RATE, PITCH, METRE, BACK_ERROR = range(6)
 """Rows of the table of periodic functions; RATE is de/dphase, PITCH chi_0, METRE chi_1,
 BACK_ERROR what the back flank sees, -e."""

@@ -25,6 +25,7 @@ from thermogear.dynamics.kernels.drive import (
     PITCH,
     RAMP,
     RING,
+    ROUGH,
     RUNGS,
     SPAN,
     STIFFNESS,
@@ -47,6 +48,7 @@ from thermogear.dynamics.kernels.ladder import (
     LOSSES,
     REJECTED,
     STEPS,
+    UNSEEN,
     Ladder,
     Work,
     attempt,
@@ -532,7 +534,10 @@ def advance(
                     grown = 0.0
                     for c in range(inputs):
                         grown += ladder.miss[(here - 1) * inputs + c] * work.lacking[c]
-                    if grown * 2.0**nodes < 0.5 * tolerance:
+                    grown *= 2.0**nodes
+                    if sizes[ROUGH] == 1:
+                        grown = max(grown, UNSEEN * beside * 2.0**nodes)
+                    if grown < 0.5 * tolerance:
                         rung = here - 1
             t = t_border
             begin = border

@@ -34,6 +34,7 @@ from thermogear.dynamics.kernels.drive import (
     OUTPUTS,
     PITCH,
     RAMP,
+    ROUGH,
     SPAN,
     STIFFNESS,
     SWEEP,
@@ -58,6 +59,8 @@ STEPS, REJECTED, EVENTS, SWEEPS, LOSSES, IMPACTS, LIFTS, FORCED = range(8)
 of bearings, FORCED steps taken on the last rung with an error above the allowed one."""
 MOST_SWEEPS = 40
 HUGE = 1e300
+UNSEEN = 0.03
+"""Share of the error beside a cut that a step with a border within it is held against."""
 
 
 class Ladder(NamedTuple):
@@ -487,4 +490,7 @@ def attempt(
         error += ladder.miss[rung * inputs + c] * work.lacking[c]
         beside += ladder.miss_within[rung * inputs + c] * 0.5 * abs(late - even)
     work.pace[1] = beside
+    if sizes[ROUGH] == 1:
+        # a border within the step is seen in this one as well
+        error = max(error, UNSEEN * beside)
     return error
