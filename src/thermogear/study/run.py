@@ -52,7 +52,6 @@ from thermogear.study.dial import dial
 from thermogear.study.drawing import drawn_points
 from thermogear.study.measured_flanks import measured_flanks
 from thermogear.study.motion import Motion, follow, follow_gears
-from thermogear.study.shafts.motion import train_motion
 from thermogear.study.shafts.sketch import sketch
 
 if TYPE_CHECKING:
@@ -82,6 +81,8 @@ def run(case: Case, *, progress: Progress = silent, alive: Alive = keep_going) -
             groups["speeds"] = speeds.data
         told: list[Notice] = []
         if case.train is not None and "motion" in case.pictures:
+            from thermogear.study.shafts.motion import train_motion
+
             groups["train_motion"], told = train_motion(case, progress=progress)
         notices = chain(run_notices.notices(case, groups), answer_notices(case), told)
         own = {
