@@ -76,7 +76,6 @@ _HOME = {
     "modes": "thermogear.study.shafts.modes",
     "campbell": "thermogear.study.shafts.campbell",
     "waterfall": "thermogear.study.shafts.waterfall",
-    "GearedModel": "thermogear.dynamics.geared",
     "relief_survey": "thermogear.study.relief",
     "warm_up_survey": "thermogear.study.warm_up",
     "read_duty": "thermogear.case.duty",

@@ -54,7 +54,7 @@ def test_a_pair_that_leaves_the_unit_circle_is_located_as_a_torus(d):
     orbit = periodic_orbit(turning(-0.5, d), 1, np.append([0.2, 0.1], np.zeros(d - 2)))
     assert orbit.state[:2] == pytest.approx([0.3, 0.0], abs=1e-9)
     branch = continuation(orbit, "mu", 0.4, family=lambda mu: turning(mu, d), start=-0.5)
-    assert branch.ended == "reached the end"
+    assert branch.values[-1] == pytest.approx(0.4)
     assert [b.kind for b in branch.bifurcations] == [TORUS]
     found = branch.bifurcations[0]
     assert found.value == pytest.approx(0.0, abs=1e-8)

@@ -183,8 +183,8 @@ def _open(section: ReturnMap, state: Floats, used: int, how: Search) -> Motion:
         return Motion(name="undecided", period=0, reason=reason, state=state, used=used)
     direction = np.zeros(section.dimension)
     direction[0] = section.unit[0]
-    lead = section.stretch(state, direction, BATCH)
-    path = section.stretch(lead.state, lead.direction, BATCHES * BATCH)
+    lead = section.stretch(state, direction=direction, periods=BATCH)
+    path = section.stretch(lead.state, direction=lead.direction, periods=BATCHES * BATCH)
     means = path.growth.reshape(BATCHES, BATCH).mean(axis=1) / section.period
     value, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(BATCHES))
     halves = means[: BATCHES // 2].mean(), means[BATCHES // 2 :].mean()

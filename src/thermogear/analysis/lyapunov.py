@@ -112,7 +112,7 @@ def lyapunov_exponents(
         sums = -lanes.damping
     else:
         sections = [return_map(one) for one in lanes]
-        start = starts_of(initial_state, len(lanes), sections[0].dimension)
+        start = starts_of(initial_state, len(lanes), dimension=sections[0].dimension)
         sums = np.array([np.log(one.determinant(1)) / one.period for one in sections])
     means = np.full((len(lanes), batches), np.nan)
     ends = np.full(start.shape, np.nan)

@@ -37,7 +37,7 @@ def units_of(lanes: Lanes) -> Floats:
     return np.stack([lanes.half_backlash, 2.0 * np.pi * lanes.half_backlash / lanes.period], axis=1)
 
 
-def starts_of(initial_state: ArrayLike, lanes: int, dimension: int = 2) -> Floats:
+def starts_of(initial_state: ArrayLike, lanes: int, *, dimension: int = 2) -> Floats:
     """Start states (lane, d) from one state or one per lane."""
     start = np.asarray(initial_state, dtype=float)
     if not np.all(np.isfinite(start)):

@@ -214,7 +214,7 @@ class InTurnCrowd:
                 if not np.all(np.isfinite(state)):
                     break
                 try:
-                    path = one.stretch(state, along, 1)
+                    path = one.stretch(state, direction=along, periods=1)
                 except ConvergenceError:
                     state = np.full_like(state, np.nan)
                     break

@@ -107,9 +107,9 @@ class ExactMap:
         sections, _, _ = exact.advance(self.maps, state, periods)
         return np.asarray(sections[:, :, 0])
 
-    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
-        return stretched(self, start, direction, periods)
+        return stretched(self, start, direction=direction, periods=periods)
 
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` periods from ``start`` with the variational equations."""

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.excitation import Periodic
+from thermogear.dynamics.return_map import ReturnMap
 from thermogear.dynamics.tables import Pieces
-
-if TYPE_CHECKING:
-    from thermogear.dynamics.geared_map import GearedMap
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -201,11 +200,12 @@ class GearedModel:
         """det of the Jacobian of ``periods`` mesh periods: exp(T tr A), with any contacts."""
         return float(np.exp(periods * self.period * np.trace(self.state_matrix)))
 
-    def return_map(self, samples: int = 0) -> GearedMap:
+    def return_map(self, samples: int = 0) -> ReturnMap:
         """The return map, with ``samples`` a mesh period of what its visits record."""
-        from thermogear.dynamics.geared_map import GearedMap
-
-        return GearedMap(model=self, samples=samples)
+        # by name: the map knows the model
+        home: Any = import_module("thermogear.dynamics.geared_map")
+        found: ReturnMap = home.GearedMap(model=self, samples=samples)
+        return found
 
     def at_frequency(self, mesh_frequency: float) -> GearedModel:
         """The same train at another mesh frequency [Hz]; gyroscopics are not scaled."""

@@ -75,7 +75,7 @@ class GearedMap:
         cycle = self.model.cycle
         return self.engine.run(start, periods * cycle).sections[cycle - 1 :: cycle]
 
-    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every cycle."""
         state = np.asarray(start, dtype=float)
         along = np.asarray(direction, dtype=float) / self.unit

@@ -79,7 +79,7 @@ class ReturnMap(Protocol):
         """The states (periods, d) after 1, 2, ... periods from ``start``, nothing else."""
         ...
 
-    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
         ...
 
@@ -125,7 +125,7 @@ def return_map(model: object, samples: int = 0) -> ReturnMap:
     return found
 
 
-def stretched(section: ReturnMap, start: Floats, direction: Floats, periods: int) -> Stretch:
+def stretched(section: ReturnMap, start: Floats, *, direction: Floats, periods: int) -> Stretch:
     """:meth:`ReturnMap.stretch` by the whole Jacobian of every period."""
     state = np.asarray(start, dtype=float)
     along = np.asarray(direction, dtype=float) / section.unit

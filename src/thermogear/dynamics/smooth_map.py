@@ -93,7 +93,7 @@ class SmoothMap:
             state = out[number] = self._over(state, 0)[0]
         return out
 
-    def stretch(self, start: Floats, direction: Floats, periods: int) -> Stretch:
+    def stretch(self, start: Floats, *, direction: Floats, periods: int) -> Stretch:
         """Carry ``start`` and a tangent vector ``direction``, made unit after every period."""
         state = np.asarray(start, dtype=float)
         along = np.asarray(direction, dtype=float) / self.unit

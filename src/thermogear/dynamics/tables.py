@@ -8,17 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.excitation import Periodic
 from thermogear.base.pieces import Pieces as Pieces
-
-if TYPE_CHECKING:
-    from thermogear.dynamics.bundle import Prepared
-    from thermogear.dynamics.exact_map import Ensemble, ExactMap
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -59,17 +56,14 @@ class Lanes:
             force_pieces=tuple(self.force_pieces[i] for i in chosen),
         )
 
-    def return_map(self, samples: int = 0) -> ExactMap:
+    def return_map(self, samples: int = 0) -> Any:
         """The event-exact return map of one lane; ``samples`` a period of what it records."""
-        from thermogear.dynamics.exact_map import ExactMap
+        return _maps("exact_map").ExactMap(self, samples)
 
-        return ExactMap(self, samples)
-
-    def bundles(self, refine: int = 1) -> Iterator[Prepared]:
+    def bundles(self, refine: int = 1) -> Iterator[Any]:
         """The return maps of all lanes in blocks that run together: indices, how each is made."""
-        from thermogear.dynamics.exact_bundle import exact_bundles
-
-        return exact_bundles(self, refine)
+        found: Iterator[Any] = _maps("exact_bundle").exact_bundles(self, refine)
+        return found
 
     def ensemble(
         self,
@@ -78,11 +72,10 @@ class Lanes:
         threads: int | None = None,
         refine: int = 1,
         parting: bool = False,
-    ) -> Ensemble:
+    ) -> Any:
         """All lanes from ``start`` (lane, 2) on their way, on ``threads``; see its class."""
-        from thermogear.dynamics.exact_map import Ensemble
-
-        return Ensemble(self, start, threads=threads, refine=refine, parting=parting)
+        how: dict[str, Any] = {"threads": threads, "refine": refine, "parting": parting}
+        return _maps("exact_map").Ensemble(self, start, **how)
 
     def jumps(self, lane: int) -> tuple[float, ...]:
         """Phases in (0, 1) where a table of this lane may jump."""
@@ -108,6 +101,11 @@ class Lanes:
             if piece is not None:
                 total[..., lane] += piece(phi)
         return total
+
+
+def _maps(name: str) -> Any:
+    """The module that makes maps of lanes, by name: it knows the lanes."""
+    return import_module(f"thermogear.dynamics.{name}")
 
 
 def stack(tables: Iterable[Table]) -> tuple[Complexes, tuple[Pieces | None, ...]]:

@@ -180,11 +180,11 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         "section_rate": ((*POINT, "section"), sections[..., 1], "m/s",
                          "Poincaré section: its rate"),
         "mesh_force_line": ((*POINT, "line_order"), over(
-            lambda one, r: lines(r.mesh_force, orders), orders.size), "N",
+            lambda one, r: lines(r.mesh_force, orders=orders), orders.size), "N",
             "line of the force of the drive flanks (peak)"),
         "bearing_force_line": ((*POINT, "bearing", "line_order"), over(
-            lambda one, r: lines(r.bearing_force, orders).max(axis=2).T, count, orders.size), "N",
-            "line of the bearing force, larger of x and y (peak)"),
+            lambda one, r: lines(r.bearing_force, orders=orders).max(axis=2).T, count,
+            orders.size), "N", "line of the bearing force, larger of x and y (peak)"),
         "housing_line": ((*POINT, "line_order"), over(
             lambda one, r: _housing(r, orders), orders.size), "m/s^2",
             "line of the housing's acceleration, larger of x and y (peak)"),
@@ -228,7 +228,7 @@ def _of(flat: Sequence[Moved], of: Any) -> Floats:
 def _housing(record: Record, orders: Floats) -> Floats:
     if np.isnan(record.housing).any():
         return np.full(orders.size, np.nan)
-    return np.asarray(lines(record.housing, orders).max(axis=1))
+    return np.asarray(lines(record.housing, orders=orders).max(axis=1))
 
 
 def _errors(flat: Sequence[Moved]) -> Floats:

@@ -97,7 +97,7 @@ def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
     return np.array(sorted(one for one in {round(o, 9) for o in found} if one > 0.0))
 
 
-def lines(values: ArrayLike, orders: ArrayLike) -> Floats:
+def lines(values: ArrayLike, *, orders: ArrayLike) -> Floats:
     """Amplitudes (order, ...) of lines at any ``orders`` of samples (sample, ...), Hann window.
 
     Peak values; lines nearer than two over the periods of the record are not told apart.

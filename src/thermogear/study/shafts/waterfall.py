@@ -284,9 +284,9 @@ class WaterfallPlan:
             "bearing_force_max": felt.max(axis=0),
             "bearing_force_rms": np.sqrt((spread**2).sum(axis=2).mean(axis=0)),
             "housing_rms": np.sqrt((seen.housing**2).sum(axis=1).mean()),
-            "mesh_force_line": lines(seen.mesh_force, orders),
-            "bearing_force_line": lines(seen.bearing_force, orders).max(axis=2).T,
-            "housing_line": lines(seen.housing, orders).max(axis=1),
+            "mesh_force_line": lines(seen.mesh_force, orders=orders),
+            "bearing_force_line": lines(seen.bearing_force, orders=orders).max(axis=2).T,
+            "housing_line": lines(seen.housing, orders=orders).max(axis=1),
             "end_state": run.state,
             "end_turn": turn + passed,
         }
