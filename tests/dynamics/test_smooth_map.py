@@ -112,7 +112,7 @@ def test_carry_stretch_and_visit_are_one_motion():
     start = np.array([0.3, -0.2])
     visit = section.visit(start, 3, sampled=True)
     np.testing.assert_allclose(section.carry(start, 3), visit.points[1:], atol=1e-6)
-    path = section.stretch(start, np.array([1.0, 0.0]), 3)
+    path = section.stretch(start, direction=np.array([1.0, 0.0]), periods=3)
     assert path.growth.sum() == pytest.approx(
         np.log(np.linalg.norm(visit.jacobian[:, 0])), abs=1e-5
     )
