@@ -92,6 +92,7 @@ def six(params: dict[str, Any]) -> Assembly:
         teeth=(params["z1"], round(params["z1"] * params["rb2"] / params["rb1"])),
         pressure_angle=np.radians(params["alpha_deg"]),
         centre_line=np.radians(params["phi_deg"]),
+        sense=params.get("sense", 1),
     )
     law = RingLaw(
         coefficient=params["kb"], exponent=params["exponent"], clearance=params["clearance"]

@@ -34,8 +34,8 @@ class Search:
 
     ``max_period`` of an orbit. ``polish``: with Newton and multipliers; without, a motion that
     comes nearer to itself by ``approach`` from one period to the next, to ``closed`` units of the
-    map, is periodic.
-    A largest multiplier above ``near_border`` leaves it undecided.
+    map, is periodic. A largest multiplier above ``near_border`` leaves it undecided. ``exponent``:
+    whether chaos is asked for.
     """
 
     first: int = 64
@@ -55,8 +55,7 @@ class Motion:
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
     there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
     with its ``lyapunov_error`` and the means of its ``batches``; ``used`` periods run; ``away``
-    how far the motion itself still was
-    from its orbit, in units of the map.
+    how far the motion itself still was from its orbit, in units of the map.
     """
 
     name: str

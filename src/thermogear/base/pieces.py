@@ -78,6 +78,15 @@ class Pieces:
         out[: shifted.size] = shifted[: order + 1]
         return out
 
+    def derivative(self) -> Pieces:
+        """dp/dphi between the jumps.
+
+        >>> Pieces(starts=(0.0,), coefficients=((1.0, 2.0, 3.0),)).derivative().coefficients
+        ((2.0, 6.0),)
+        """
+        rows = (tuple(m * c for m, c in enumerate(row))[1:] or (0.0,) for row in self.coefficients)
+        return Pieces(starts=self.starts, coefficients=tuple(rows))
+
     def scaled(self, factor: float) -> Pieces:
         """The same function times ``factor``."""
         return Pieces(

@@ -7,7 +7,7 @@ phase. C holds the mesh damping c_m g_d g_d^T. Plain arrays in SI: nothing here 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
 from typing import Any
@@ -207,10 +207,6 @@ class GearedModel:
         found: ReturnMap = home.GearedMap(model=self, samples=samples)
         return found
 
-    def at_frequency(self, mesh_frequency: float) -> GearedModel:
-        """The same train at another mesh frequency [Hz]; gyroscopics are not scaled."""
-        return replace(self, mesh_frequency=mesh_frequency)
-
     def errors_at(self, phase: ArrayLike) -> tuple[Floats, Floats]:
         """Errors [m] that the drive and the back flank see at ``phase``, mesh periods since 0."""
         phi = np.asarray(phase, dtype=float)
@@ -220,6 +216,14 @@ class GearedModel:
             turn = np.exp(2j * np.pi * one.order * phi)
             drive, back = drive + (one.drive * turn).real, back + (one.back * turn).real
         return drive, back
+
+    def _error_rate(self, phase: Floats) -> Floats:
+        """de/dphase [m] of the drive flank's error."""
+        rate = np.asarray(self.error.derivative()(phase), dtype=float)
+        for one in self.wobbles:
+            turn = 2j * np.pi * one.order
+            rate = rate + (turn * one.drive * np.exp(turn * phase)).real
+        return rate
 
     def forces(self, phase: ArrayLike, *, states: ArrayLike) -> dict[str, Floats]:
         """Every contact force at ``phase`` (S,) along ``states`` (S, d), at constant speed.
@@ -234,8 +238,7 @@ class GearedModel:
         k = np.asarray(self.mesh_stiffness(phi))
         drive = k * np.maximum(q @ self.drive - drive_error - self.half_backlash, 0.0)
         back = k * np.maximum(q @ self.back - back_error - self.half_backlash, 0.0)
-        step = 1e-4
-        rate = (self.errors_at(phi + step)[0] - self.errors_at(phi - step)[0]) / (2.0 * step)
+        rate = self._error_rate(phi)
         pushed = self.force - v @ self.damping.T - q @ self.stiffness.T
         pushed = pushed + np.multiply.outer(
             self.mesh_damping * rate * self.mesh_frequency - drive, self.drive

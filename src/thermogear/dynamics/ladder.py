@@ -25,6 +25,8 @@ Whole = NDArray[np.int64]
 
 DEGREE = 7
 """Of the polynomials that stand for the periodic functions on a panel."""
+FREE = 1e-12
+"""A rate below this share of the greatest is that of a free motion."""
 PANEL = 0.2
 """Half width of a panel [rad] in the highest harmonic."""
 
@@ -101,7 +103,7 @@ class Engine:
         real = np.abs(values.imag) <= 1e-12 * np.abs(values).max()
         keep = real | (values.imag > 0.0)
         weight = np.where(real, 1.0, 2.0)
-        if np.any(np.abs(values) <= 1e-9 * np.abs(values).max() * 1e-3):
+        if np.any(np.abs(values) <= FREE * np.abs(values).max()):
             raise InputError(
                 "train",
                 "a free motion",
@@ -258,7 +260,7 @@ class Engine:
             sample=np.zeros(span),
             added=np.zeros(4 * s),
             kept=np.zeros(8),
-            pace=np.array([1.0, 0.0, 0.0]),
+            pace=np.array([1.0, 0.0]),
             start_force=np.zeros(max(inputs, 8)),
             lacking=np.zeros(inputs),
             start_slope=np.zeros(4 + 4 * count),
@@ -289,8 +291,8 @@ class Engine:
         """Run ``periods`` mesh periods from the state ``start`` [m, m/s] (d,) at phase 0.
 
         ``tangent``: with the Jacobian; ``directions`` (count, d): with these tangent vectors alone.
-        ``samples`` a period. ``turn``: whole mesh periods since the
-        outer forces began. Raises ConvergenceError where the motion runs away.
+        ``samples`` a period. ``turn``: whole mesh periods since the outer forces began. Raises
+        ConvergenceError where the motion runs away.
         """
         d, span = self.model.dimension, padded(2 * self.lam.size)
         along = np.eye(d) if tangent else np.zeros((0, d))
@@ -355,10 +357,10 @@ def _joined(numbers: ArrayLike) -> Complexes:
 
 
 def periodic_table(model: GearedModel) -> tuple[Floats, Whole, Floats, Floats, Whole]:
-    """Edges of panels, the guide to them, polynomials (panel, function, power), borders of steps,
-    which functions jump.
+    """Edges of panels, the guide to them, polynomials, borders of steps, which functions jump.
 
-    The polynomials of a panel are in the phase from its middle; a border is where a function jumps.
+    The polynomials (panel, power, function) are in the phase from the panel's middle; a border is
+    where a function jumps.
     """
     own: list[tuple[int, Function]] = [
         (k.STIFFNESS, model.mesh_stiffness),

@@ -27,18 +27,10 @@ DROPPED = 1e-12
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Reduction:
-    """Coordinates p of a train, q = ``basis`` p, its rigid rotation left out.
-
-    ``basis`` (n, size); ``interface`` coordinates kept by name, ``held_frequencies`` [rad/s] of the
-    modes kept besides, rising, and ``next_frequency`` of the first one left out, infinite where
-    none is.
-    """
+    """Coordinates p of a train, q = ``basis`` p with ``basis`` (n, size), its rotation left out."""
 
     assembly: Assembly
     basis: Floats
-    interface: tuple[str, ...]
-    held_frequencies: Floats
-    next_frequency: float
 
     @property
     def size(self) -> int:
@@ -119,8 +111,6 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     inner, mass = stiff[np.ix_(rest, rest)], assembly.mass[np.ix_(rest, rest)]
     whole = np.zeros((assembly.size, wanted + 1))
     whole[kept, np.arange(kept.size)] = 1.0
-    frequency = np.zeros(0)
-    following = float("inf")
     if rest.size:
         symmetric = 0.5 * (inner + inner.T)
         square, shapes = scipy.linalg.eigh(symmetric, mass)
@@ -136,25 +126,14 @@ def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
             inner, stiff[np.ix_(rest, kept)]
         )
         whole[np.ix_(rest, np.arange(kept.size, wanted + 1))] = shapes[:, :count]
-        every = np.sqrt(square)
-        frequency = every[:count]
-        following = float(every[count]) if count < every.size else float("inf")
     small = whole.T @ assembly.mass @ whole
     turn = np.linalg.lstsq(whole, assembly.rotation, rcond=None)[0]
-    pull = small @ turn
-    pull = pull / np.linalg.norm(pull)
     # of like scale, so that the reflection below mixes nothing large into what is small
     scale = 1.0 / np.sqrt(np.diag(small))
-    pull = pull * scale
+    pull = (small @ turn) * scale
     pull = pull / np.linalg.norm(pull)
     first = int(np.argmax(np.abs(pull)))
     pull[first] += np.copysign(1.0, pull[first])
     mirror = np.eye(pull.size) - 2.0 * np.outer(pull, pull) / (pull @ pull)
     basis = whole @ (scale[:, None] * np.delete(mirror, first, axis=1))
-    return Reduction(
-        assembly=assembly,
-        basis=np.asarray(basis),
-        interface=names,
-        held_frequencies=frequency,
-        next_frequency=following,
-    )
+    return Reduction(assembly=assembly, basis=np.asarray(basis))

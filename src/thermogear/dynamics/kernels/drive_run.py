@@ -378,6 +378,8 @@ def advance(
                 if who >= 0:
                     change(train, work, who)
                     work.held[who] = -1
+                    # how fast sweeps settle now is not known
+                    work.pace[0] = 1.0
                     if who >= 2:
                         h_known = 0.0
                 elif here == rung and here > 0 and limit == 1.0:

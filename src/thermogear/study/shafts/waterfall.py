@@ -23,7 +23,6 @@ from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, range
 from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED, ThermalState
-from thermogear.dynamics.geared import GearedModel
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
@@ -50,6 +49,8 @@ APART = 1.2
 """Factor between the vibration up and down that is told."""
 HELD = 4000
 """Mesh periods at a steady speed after which two motions are two."""
+TWO = 1.02
+"""Factor between their vibrations then, from which they are."""
 APART_TOLD = {
     "state": ("state of heat", ""),
     "from": ("first speed of the stretch", "rad/s"),
@@ -314,8 +315,8 @@ class WaterfallPlan:
             which = int(ratio[place].argmax())
             held = 0
             if train is not None:
-                model = train.at_speed(self.case, self.speeds[place]).model
-                held = int(_held_apart(model, data["end_state"].values[state, :, place], which))
+                there = train.at_speed(self.case, self.speeds[place])
+                held = int(_held_apart(there, data["end_state"].values[state, :, place], which))
             rows.append(
                 {
                     "state": state,
@@ -379,18 +380,19 @@ class WaterfallPlan:
 _MAKING = threading.RLock()
 
 
-def _held_apart(model: GearedModel, both: Floats, part: int) -> bool:
-    """Whether two states (2, d) still vibrate apart after a while at a steady speed."""
-    engine = Engine(model, _how())
+def _held_apart(train: MovingTrain, both: Floats, part: int) -> bool:
+    """Whether two states (2, d) still vibrate apart after a while at a steady speed.
+
+    ``part`` 0: by the mesh force, 1, 2, ...: by that bearing's.
+    """
+    engine = Engine(train.model, _how())
     seen = []
     for state in both:
         run = engine.run(engine.run(state, HELD).state, WINDOW, samples=SAMPLES)
-        if part == 0:
-            values = model.forces(run.sample_phase, states=run.samples)["drive"][:, None]
-        else:
-            values = run.samples[:, : model.size]
+        felt = shown(train, run, 0.0)
+        values = felt.mesh_force[:, None] if part == 0 else felt.bearing_force[:, part - 1]
         seen.append(float(np.sqrt(((values - values.mean(axis=0)) ** 2).sum(axis=1).mean())))
-    return bool(abs(np.log(seen[0] / seen[1])) > np.log(1.02))
+    return bool(abs(np.log(seen[0] / seen[1])) > np.log(TWO))
 
 
 def _how() -> Steps:

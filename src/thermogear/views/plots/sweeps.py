@@ -49,7 +49,7 @@ def classes_of(data: xr.Dataset) -> NDArray[np.int64]:
     return found
 
 
-def _edges(values: Floats) -> Floats:
+def edges(values: Floats) -> Floats:
     """Cell borders about sample places."""
     if values.size == 1:
         half = 0.5 * max(abs(float(values[0])), 1.0) * 1e-3
@@ -130,7 +130,7 @@ def map_picture(data: xr.Dataset) -> Picture:
 def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:
     """An empty panel over the first two axes of a grid, and the borders of its cells."""
     one, two = (str(name) for name in data["label"].dims[:2])
-    borders = _edges(shown(one, data[one].values)), _edges(shown(two, data[two].values))
+    borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
     return Panel(_along(data, one), _along(data, two)), borders
 
 
@@ -143,7 +143,7 @@ def _regimes(data: xr.Dataset) -> Panel:
 
 def basins_picture(data: xr.Dataset) -> Picture:
     """Which attractor each start ends on, with the attractors' sections."""
-    x, y = _edges(data["x"].values), _edges(data["v"].values)
+    x, y = edges(data["x"].values), edges(data["v"].values)
     panel = Panel(
         Axis("displacement X at phase 0 [–]", low=x[0], high=x[-1]),
         Axis("velocity X′ at phase 0 [–]", low=y[0], high=y[-1]),
@@ -201,7 +201,7 @@ def run_up_picture(data: xr.Dataset) -> Picture:
 def waterfall_picture(data: xr.Dataset) -> Picture:
     """Lines of the transmission error over speed and order, running up, one panel a state."""
     borders = (
-        _edges(shown("pinion_speed", data["pinion_speed"].values)), _edges(data["order"].values)
+        edges(shown("pinion_speed", data["pinion_speed"].values)), edges(data["order"].values)
     )  # fmt: skip
     lines = 1e6 * data["dte_line"].values[:, 0]
     known = lines[np.isfinite(lines) & (lines > 0.0)]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.units import RPM
 from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.sweeps import edges
 from thermogear.views.style import INK, QUIET, STATES, WIDE, scale
 
 if TYPE_CHECKING:
@@ -104,16 +105,8 @@ def _field(
         panel = Panel(Axis("pinion speed [rpm]"), Axis("order of the mesh frequency [–]"), state)
         shown = np.clip(np.nan_to_num(values[s][:, half], nan=LEAST * top), LEAST * top, None)
         panel.field(
-            _edges(rpm), _edges(order[half]), shown.T, low=LEAST * top, high=top, log=True,
+            edges(rpm), edges(order[half]), shown.T, low=LEAST * top, high=top, log=True,
             colours=scale("magma"), words=words,
         )  # fmt: skip
         panels.append(panel)
     return Picture([panels], size=(WIDE, 4.4), share_y="row")
-
-
-def _edges(values: Floats) -> Floats:
-    if values.size == 1:
-        return np.asarray(np.array([0.999, 1.001]) * values[0], dtype=float)
-    middle = 0.5 * (values[1:] + values[:-1])
-    ends = [2.0 * values[0] - middle[0]], [2.0 * values[-1] - middle[-1]]
-    return np.asarray(np.concatenate([ends[0], middle, ends[1]]), dtype=float)
