@@ -16,8 +16,11 @@ demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
 	$(BIN)/thermogear run .venv/rig.toml -o .demo
 
-test: $(STAMP) lint  ## every check, slow layer included
-	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
+PYTEST := $(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
+AGAIN := $(PYTEST) --last-failed
+
+test: $(STAMP) lint  ## every check, slow layer included; failed tests again only where the processor divides wrongly
+	$(PYTEST) || { ! $(BIN)/python checks/processor.py && { $(AGAIN) || $(AGAIN) || $(AGAIN); }; }
 
 chromium:  ## the browser that tests pages, Debian's package; without it those tests are left out
 	@command -v chromium || command -v chromium-browser || command -v google-chrome || { \
@@ -35,7 +38,7 @@ lint: $(STAMP)
 	$(BIN)/lint-imports
 
 unit: $(STAMP)
-	$(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder -m "not slow"
+	$(PYTEST) -m "not slow"
 
 $(STAMP): pyproject.toml requirements/boot.txt requirements/dev.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
