@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-coordinates bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -68,6 +68,9 @@ bench-shafts: $(BENCH_STAMP)  ## matrices of geared shafts beside ROSS's
 
 bench-geared: $(BENCH_STAMP)  ## drive trains that lose contact, our engine beside others; GEARED="--closure" for the public sections
 	PYTHONPATH=src $(BENCH_BIN)/python -W ignore bench/geared.py $(GEARED) 2> .bench-venv/geared.log
+
+bench-coordinates: $(STAMP)  ## what more coordinates change in a drive train's impacts, and cost
+	$(BIN)/python bench/coordinates.py
 
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
