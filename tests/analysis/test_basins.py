@@ -22,9 +22,9 @@ from thermogear.analysis.basins import (
     BasinPlan,
     basin_entropy,
     basins,
-    basins_along,
     border_distances,
 )
+from thermogear.analysis.basins_along import basins_along
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import close_orbits
 from thermogear.base.excitation import Periodic

@@ -191,7 +191,7 @@ def test_a_bifurcation_met_on_two_branches_is_told_once():
             at(2e-10),
         )
     )
-    data = _with_bifurcations(xr.Dataset(), [one, two])
+    data = _with_bifurcations(xr.Dataset(), [one, two], ModelFamily(TABLE, ("frequency",)))
     told = list(
         zip(
             data.bifurcation_value.values.tolist(),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,10 @@ from thermogear.analysis.attractors import (
     Field,
     attractors_from,
     chaotic_index,
-    matched,
     periodic_index,
     trapped,
 )
-from thermogear.analysis.family import ModelFamily, axis_values
+from thermogear.analysis.family import ModelFamily, axis_values, taken
 from thermogear.analysis.outcome import LABEL_ATTRIBUTES
 from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import CHAOTIC, DIVERGED, PERIODIC, UNDECIDED, Rule, settle
@@ -36,7 +36,11 @@ from thermogear.base.plan import (
     keep_going,
     ranges_of,
 )
-from thermogear.base.vocabulary import STATUS, label, status_attributes
+from thermogear.base.vocabulary import STATUS, status_attributes
+from thermogear.dynamics.models import ClearanceModel
+from thermogear.dynamics.plane import plane_of
+from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
 
@@ -54,13 +58,19 @@ class BasinPlan:
     x: tuple[float, ...]
     v: tuple[float, ...]
     attractors: tuple[Attractor, ...]
-    seeds: tuple[tuple[float, float], ...] = ()
+    seeds: tuple[tuple[float, ...], ...] = ()
     rule: Rule = BASIN_RULE
     kind: str = "basins"
 
     @property
     def sizes(self) -> dict[str, int]:
-        return {"x": len(self.x), "v": len(self.v)}
+        longer = {} if self.dimension == 2 else {"coordinate": self.dimension}
+        return {"x": len(self.x), "v": len(self.v), **longer}
+
+    @cached_property
+    def dimension(self) -> int:
+        """Length of a state."""
+        return return_map(self.model).dimension
 
     @property
     def cuts(self) -> dict[str, int]:
@@ -78,7 +88,10 @@ class BasinPlan:
     def variables(self) -> dict[str, Variable]:
         dims = ("x", "v")
         nan = float("nan")
+        words = {"long_name": "orbit that the survey missed, in the model's units"}
+        longer = {"point": Variable((*dims, "coordinate"), "float64", nan, words)}
         return {
+            **(longer if self.dimension != 2 else {}),
             "reached": Variable(
                 dims, "int16", -1, {"long_name": "attractor of the survey, -1: none of them"}
             ),
@@ -112,17 +125,18 @@ class BasinPlan:
         return len(starts)
 
     def _ends(self, starts: Floats, alive: Alive) -> dict[str, NDArray[Any]]:
-        """Where ``starts`` lead, as flat arrays."""
-        lanes = lanes_of(self.model)
+        """Where ``starts`` (start, 2) in the plane lead, as flat arrays."""
+        lanes = single(self.model)
         field = Field(lanes)
+        starts = _states(self.model, starts)
         where, used, _ = trapped(field, starts, self.attractors, alive=alive)
         periods = np.array([a.period for a in self.attractors] or [0])
         period = np.where(where >= 0, periods[np.maximum(where, 0)], 0)
         label = np.where(where == -2, DIVERGED, PERIODIC)
-        point = np.full((len(starts), 2), np.nan)
+        point = np.full(starts.shape, np.nan)
         rest = np.flatnonzero(where == -1)
         if rest.size:
-            many = lanes.take(np.zeros(rest.size, int))
+            many = taken(lanes, np.zeros(rest.size, int))
             slow = settle(many, starts[rest], self.rule, alive=alive)
             label[rest], period[rest] = slow.label, slow.period
             used[rest] += slow.used
@@ -140,12 +154,14 @@ class BasinPlan:
         status = np.zeros(len(starts), np.int8)
         status[label == DIVERGED] = STATUS.index("diverged")
         status[(label == UNDECIDED) & (where == -1)] = STATUS.index("not_converged")
+        shown = _shown(self.model, point)
         return {
+            **({"point": point} if self.dimension != 2 else {}),
             "reached": where,
             "label": label,
             "period": period,
-            "point_x": point[:, 0],
-            "point_v": point[:, 1],
+            "point_x": shown[:, 0],
+            "point_v": shown[:, 1],
             "used_periods": used,
             "status": status,
         }
@@ -160,7 +176,8 @@ class BasinPlan:
         x = np.array(self.x)[ranges_of(self, key)["x"]]
         v = np.array(self.v)
         starts = np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2)
-        return {n: a.reshape(x.size, v.size) for n, a in self._ends(starts, alive).items()}
+        found = self._ends(starts, alive)
+        return {n: a.reshape(x.size, v.size, *a.shape[1:]) for n, a in found.items()}
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
         """Add attractors that the survey missed, fractions and robustness."""
@@ -178,7 +195,7 @@ class BasinPlan:
             where.astype(np.int16),
             {"long_name": "attractor reached, -1: undecided, -2: diverged"},
         )
-        return _described(data, known, where, Field(lanes_of(self.model)).unit)
+        return _described(data, known, where, self.model)
 
 
 def _spread(x: Sequence[float], v: Sequence[float], side: int) -> Floats:
@@ -192,9 +209,11 @@ def _late(
     plan: BasinPlan, data: xr.Dataset, known: list[Attractor], where: NDArray[np.int64]
 ) -> tuple[list[Attractor], NDArray[np.int64]]:
     """Attractors that only single starts of the grid found, in the grid's order."""
-    lanes = lanes_of(plan.model)
+    lanes = single(plan.model)
     field = Field(lanes)
     points = np.stack([data["point_x"].values, data["point_v"].values], axis=-1)
+    if "point" in data:
+        points = data["point"].values
     period, label = data["period"].values, data["label"].values
     for i, j in np.argwhere((where == -1) & np.isfinite(points[..., 0])):
         point, n = points[i, j], int(period[i, j])
@@ -212,20 +231,43 @@ def _late(
     return known, where
 
 
+def single(model: object) -> Lanes | tuple[object, ...]:
+    """The one lane of a one-mass model, else the model as one of one."""
+    return lanes_of(model) if isinstance(model, Lanes | ClearanceModel) else (model,)
+
+
+def _states(model: object, pairs: Floats) -> Floats:
+    """The states (start, d) that ``pairs`` (start, 2) of the plane stand for."""
+    one_mass = isinstance(single(model), Lanes)
+    return pairs if one_mass else plane_of(model).starts(pairs)
+
+
+def _shown(model: object, states: Floats) -> Floats:
+    """(x, v) (..., 2) of ``states`` (..., d)."""
+    return states if isinstance(single(model), Lanes) else plane_of(model).of(states)
+
+
 def _described(
-    data: xr.Dataset, known: Sequence[Attractor], where: NDArray[np.int64], unit: Floats
+    data: xr.Dataset, known: Sequence[Attractor], where: NDArray[np.int64], model: object
 ) -> xr.Dataset:
     """The attractors, their fractions and how robust they are, with the grid."""
     count = len(known)
+    d = return_map(model).dimension
+    unit = Field(single(model)).unit if d == 2 else plane_of(model).unit
     counts = np.array([np.count_nonzero(where == n) for n in range(count)], np.int64)
     longest = max([1, *(a.period if not a.chaotic else 256 for a in known)])
-    points = np.full((count, longest, 2), np.nan)
+    points = np.full((count, longest, d), np.nan)
     for n, one in enumerate(known):
         kept = one.points[:longest]
         points[n, : len(kept)] = kept
+    shown = _shown(model, points)
     mixed, all_boxes, rough = basin_entropy(where)
     safe = border_distances(
-        x=data["x"].values, v=data["v"].values, where=where, known=known, unit=unit
+        x=data["x"].values,
+        v=data["v"].values,
+        where=where,
+        known=[replace(one, points=_shown(model, one.points)) for one in known],
+        unit=unit,
     )
     words = {
         "fraction": ("share of the starts", counts / max(where.size, 1)),
@@ -253,8 +295,14 @@ def _described(
     for place, name in enumerate(("attractor_x", "attractor_v")):
         data[name] = (
             ("attractor_number", "attractor_point"),
-            points[:, :, place],
+            shown[:, :, place],
             {"long_name": "section of the attractor", "units": "1"},
+        )
+    if d != 2:
+        data["attractor_state"] = (
+            ("attractor_number", "attractor_point", "coordinate"),
+            points,
+            {"long_name": "section of the attractor, in the model's units"},
         )
     data.attrs |= {
         "basin_entropy": all_boxes,
@@ -329,19 +377,20 @@ def basin_plan(
     survey: int = SURVEY,
 ) -> BasinPlan:
     """The plan of :func:`basins`; looks for the attractors from ``survey`` x ``survey`` starts."""
-    lanes = lanes_of(model)
+    lanes = single(model)
     if len(lanes) != 1:
         raise InputError("model", f"{len(lanes)} lanes", allowed="one lane")
     xs, vs = axis_values("x", x), axis_values("v", v)
-    extra = np.asarray(seeds, dtype=float).reshape(-1, 2)
-    starts = np.concatenate([extra, _spread(xs.tolist(), vs.tolist(), survey)])
+    extra = np.asarray(seeds, dtype=float).reshape(-1, return_map(model).dimension)
+    grid = _states(model, _spread(xs.tolist(), vs.tolist(), survey))
+    starts = np.concatenate([extra, grid])
     found, _ = attractors_from(lanes, starts, rule)
     return BasinPlan(
         model=model,
         x=tuple(xs.tolist()),
         v=tuple(vs.tolist()),
         attractors=tuple(found),
-        seeds=tuple((float(a), float(b)) for a, b in extra),
+        seeds=tuple(map(tuple, extra.tolist())),
         rule=rule,
     )
 
@@ -359,7 +408,9 @@ def basins(
 ) -> xr.Dataset:
     """Which attractor every start (x, x') of a grid at phase 0 ends on.
 
-    ``model`` of one lane; ``x`` and ``v`` the axes, in the units of the model. The attractors are
+    ``model`` of one lane, or with a return map of any dimension; ``x`` and ``v`` the axes, in the
+    units of the model, of longer states in their plane
+    (:func:`~thermogear.dynamics.plane.plane_of`); ``seeds`` are whole states. The attractors are
     found first, from a coarse grid of starts and from ``seeds``. Then every start runs until it
     comes close to one; how close was tried out. Starts that reach none are labelled one by one,
     and so late attractors are found. Returns the number of the attractor over (x, v), the largest
@@ -376,125 +427,3 @@ def basins(
     """
     plan = basin_plan(model, x=x, v=v, rule=rule, seeds=seeds, survey=survey)
     return gather(plan, threads=threads, progress=progress)
-
-
-def basins_along(
-    model: object,
-    parameter: str,
-    *,
-    values: ArrayLike,
-    x: ArrayLike,
-    v: ArrayLike,
-    rule: Rule = BASIN_RULE,
-    survey: int = SURVEY,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """Basin fractions over a parameter, the attractors matched from value to value.
-
-    A trajectory from each attractor is carried on to the next value; where it lands is the same
-    attractor. Returns fraction (parameter, attractor_number), 0 where one does not exist, its
-    period, first section point and distance to the border, and the basin entropies.
-    """
-    points = axis_values(parameter, values)
-    family = ModelFamily(model, (parameter,))
-    rows: list[dict[int, tuple[float, int, Floats, float]]] = []
-    entropies: list[tuple[float, float]] = []
-    last: list[tuple[int, Attractor]] = []
-    fresh = 0
-    for done, value in enumerate(points):
-        here = replace(family.model, **{parameter: float(value)})
-        seeds = [one.points[0] for _, one in last]
-        plan = basin_plan(here, x=x, v=v, rule=rule, seeds=seeds or (), survey=survey)
-        data = gather(plan, threads=threads)
-        lanes = lanes_of(here)
-        field = Field(lanes)
-        now = _read(data)
-        landed = [-1] * len(last)
-        if last:
-            found, ends = attractors_from(lanes, np.array(seeds), rule)
-            for number, end in enumerate(ends):
-                if end >= 0:
-                    landed[number] = _same(now, found[int(end)], field)
-        numbers = matched([a for _, a in last], now, landed=landed, unit=field.unit)
-        row: dict[int, tuple[float, int, Floats, float]] = {}
-        named: list[tuple[int, Attractor]] = []
-        for n, one in enumerate(now):
-            number = last[numbers[n]][0] if numbers[n] >= 0 else fresh
-            fresh += numbers[n] < 0
-            named.append((number, one))
-            row[number] = (
-                float(data["fraction"].values[n]),
-                one.period,
-                one.points[0],
-                float(data["border_distance"].values[n]),
-            )
-        rows.append(row)
-        entropies.append((data.attrs["basin_entropy"], data.attrs["boundary_basin_entropy"]))
-        last = named
-        if progress is not None:
-            progress(done + 1, points.size)
-    return _along(parameter, points, rows, entropies, fresh)
-
-
-def _read(data: xr.Dataset) -> list[Attractor]:
-    found = []
-    for n in range(data.sizes["attractor_number"]):
-        points = np.stack([data["attractor_x"].values[n], data["attractor_v"].values[n]], axis=1)
-        points = points[np.isfinite(points[:, 0])]
-        found.append(
-            Attractor(
-                period=int(data["attractor_period"].values[n]),
-                points=points,
-                multiplier=complex(data["attractor_multiplier"].values[n]),
-                lyapunov=float(data["attractor_lyapunov"].values[n]),
-                trap=0.0,
-            )
-        )
-    return found
-
-
-def _same(known: Sequence[Attractor], one: Attractor, field: Field) -> int:
-    if one.chaotic:
-        return chaotic_index(known, field, one.points[-1])
-    return periodic_index(known, one.points[0], one.period, field.unit)
-
-
-def _along(
-    parameter: str,
-    points: Floats,
-    rows: Sequence[dict[int, tuple[float, int, Floats, float]]],
-    entropies: Sequence[tuple[float, float]],
-    count: int,
-) -> xr.Dataset:
-    fraction = np.zeros((points.size, count))
-    period = np.full((points.size, count), -1)
-    section = np.full((points.size, count, 2), np.nan)
-    safe = np.full((points.size, count), np.nan)
-    for i, row in enumerate(rows):
-        for n, (share, n_period, point, away) in row.items():
-            fraction[i, n], period[i, n], section[i, n], safe[i, n] = share, n_period, point, away
-    dims = (parameter, "attractor_number")
-    return label(
-        {
-            "fraction": (dims, fraction, "1", "share of the starts"),
-            "attractor_period": (
-                dims, period, "1", "mesh periods, 0: chaotic, -1: absent"
-            ),
-            "attractor_x": (dims, section[..., 0], "1", "section point"),
-            "attractor_v": (dims, section[..., 1], "1", "section point"),
-            "border_distance": (
-                dims, safe, "1", "least distance to another basin"
-            ),
-            "basin_entropy": (
-                (parameter,), np.array([e[0] for e in entropies]),
-                "1", "basin entropy",
-            ),
-            "boundary_basin_entropy": (
-                (parameter,), np.array([e[1] for e in entropies]),
-                "1", "boundary basin entropy",
-            ),
-        },
-        {parameter: xr.Variable((parameter,), points)},
-        {"kind": "basins-along"},
-    )  # fmt: skip

@@ -10,22 +10,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import BIRTH, FLIP, FOLD, GRAZING, PITCHFORK, Bifurcation
+from thermogear.analysis.bifurcations import (
+    BIRTH,
+    FLIP,
+    FOLD,
+    GRAZING,
+    PITCHFORK,
+    TORUS,
+    Bifurcation,
+)
 from thermogear.analysis.continuation import GAP, Branch, continuation
-from thermogear.analysis.family import Family
+from thermogear.analysis.family import Family, dimension_of, model_at
 from thermogear.analysis.orbits import Orbit, shoot
 from thermogear.analysis.section import lanes_of
 from thermogear.analysis.settle import PERIODIC, units_of
 from thermogear.base.errors import ConvergenceError
+from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.return_map import return_map
-from thermogear.dynamics.tables import Lanes
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
 
-KINDS = (FOLD, FLIP, GRAZING, BIRTH, PITCHFORK)
+KINDS = (FOLD, FLIP, GRAZING, BIRTH, PITCHFORK, TORUS)
 """Meaning of the codes 0, 1, ... of ``bifurcation_kind``."""
 MOST_BRANCHES = 24
 MOST_POINTS = 600
@@ -54,7 +62,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
         if len(lines) >= MOST_BRANCHES:
             lost.append(f"more than {MOST_BRANCHES} branches: the rest is not followed")
             break
-        orbit = shoot(return_map(_lane(family, value)), state, period)
+        orbit = shoot(return_map(model_at(family, value)), state, period)
         if orbit is None or any(_on(line, orbit, value, family) for line in lines):
             continue
         try:
@@ -63,7 +71,7 @@ def with_branches(data: xr.Dataset, family: Family, parameter: str, most_period:
         except ConvergenceError as error:
             lost.append(str(error))
     data.attrs["branch_notes"] = "; ".join(lost)
-    return _stored(data, lines)
+    return _stored(data, lines, family)
 
 
 def with_branches_of_states(
@@ -100,22 +108,22 @@ def with_branches_of_states(
     return data
 
 
-def _lane(family: Family, value: float) -> Lanes:
-    return lanes_of(family(np.array([[value]])))
-
-
 def _seeds(
     data: xr.Dataset, family: Family, parameter: str, most_period: int
 ) -> Iterator[tuple[int, float, Floats]]:
     """One orbit out of every stretch of a sweep on which period and place run on."""
     values = data[parameter].values
-    unit = units_of(lanes_of(family(values[:, None])))
+    longer = dimension_of(family) != 2
+    unit = np.ones((values.size, 2))
+    if not longer:
+        unit = units_of(lanes_of(family(values[:, None])))
     for n in range(1, most_period + 1):
         for direction in range(data.sizes["direction"]):
             for start in range(data.sizes["start"]):
                 here = data.isel(direction=direction, start=start)
                 mine = (here["label"].values == PERIODIC) & (here["period"].values == n)
                 state = np.stack([here["section_x"].values, here["section_v"].values], axis=-1)
+                last = here["end"].values if longer else state[:, -1]
                 run: list[int] = []
                 for i in range(values.size + 1):
                     joined = i < values.size and bool(mine[i])
@@ -125,7 +133,7 @@ def _seeds(
                         joined = bool(gaps.min() < JUMP)
                     if run and not joined:
                         middle = run[len(run) // 2]
-                        yield n, float(values[middle]), state[middle, -1]
+                        yield n, float(values[middle]), last[middle]
                         run = []
                     if i < values.size and bool(mine[i]):
                         run.append(i)
@@ -135,7 +143,7 @@ def _on(line: _Line, orbit: Orbit, value: float, family: Family) -> bool:
     """Whether ``orbit`` at ``value`` lies on the line: Newton from it leads there."""
     if line.period != orbit.period:
         return False
-    section = return_map(lanes_of(family(np.array([[value]]))))
+    section = return_map(model_at(family, value))
     below, above = line.values[:-1], line.values[1:]
     for i in np.flatnonzero((below - value) * (above - value) <= 0.0):
         span = above[i] - below[i]
@@ -153,7 +161,7 @@ def _line(orbit: Orbit, value: float, family: Family, parameter: str, values: Fl
     """Both arms from ``value`` to the ends of the range."""
 
     def single(at: float) -> object:
-        return family(np.array([[at]]))
+        return model_at(family, at)
 
     arms: list[Branch] = []
     for end in (float(values[0]), float(values[-1])):
@@ -188,7 +196,7 @@ def _cut(arm: Branch) -> tuple[str, ...]:
     return (arm.ended,) if arm.ended.startswith((GAP, str(MOST_POINTS))) else ()
 
 
-def _stored(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
+def _stored(data: xr.Dataset, lines: list[_Line], family: Family) -> xr.Dataset:
     longest = max([1, *(line.values.size for line in lines)])
     shape = (len(lines), longest)
     value, x, v = (np.full(shape, np.nan) for _ in range(3))
@@ -196,7 +204,7 @@ def _stored(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
     for n, line in enumerate(lines):
         count = line.values.size
         value[n, :count] = line.values
-        x[n, :count], v[n, :count] = line.states.T
+        x[n, :count], v[n, :count] = _shown(line.states, line.values, family).T
         size[n, :count] = np.max(np.abs(line.multipliers), axis=1)
     dims = ("branch", "branch_point")
     words = {"units": "1"}
@@ -213,10 +221,18 @@ def _stored(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
         np.array([line.period for line in lines], np.int32),
         words | {"long_name": "mesh periods of the orbit"},
     )
-    return _with_bifurcations(data, lines)
+    return _with_bifurcations(data, lines, family)
 
 
-def _with_bifurcations(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
+def _shown(states: Floats, values: Floats, family: Family) -> Floats:
+    """(x, v) (point, 2) of ``states`` (point, d), each at its value of the parameter."""
+    if dimension_of(family) == 2 or not len(states):
+        return states.reshape(-1, 2)
+    pairs = zip(states, values, strict=True)
+    return np.array([plane_of(model_at(family, float(at))).of(one) for one, at in pairs])
+
+
+def _with_bifurcations(data: xr.Dataset, lines: list[_Line], family: Family) -> xr.Dataset:
     """The bifurcations of all branches, each once, in order of the parameter."""
     rows: list[tuple[float, Bifurcation, int]] = []
     for n, line in enumerate(lines):
@@ -249,7 +265,8 @@ def _with_bifurcations(data: xr.Dataset, lines: list[_Line]) -> xr.Dataset:
     data.attrs["bifurcation_notes"] = json.dumps([b.note for b in found])
     data["bifurcation_period"] = (dims, np.array([b.period for b in found], np.int32))
     data["bifurcation_branch"] = (dims, np.array([row[2] for row in rows], np.int32))
-    state = np.array([b.state for b in found], float).reshape(-1, 2)
+    state = np.array([b.state for b in found], float).reshape(-1, dimension_of(family))
+    state = _shown(state, np.array([b.value for b in found]), family)
     data["bifurcation_x"] = (dims, state[:, 0], {"units": "1"})
     data["bifurcation_v"] = (dims, state[:, 1], {"units": "1"})
     return data

@@ -14,8 +14,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.branches import with_branches
-from thermogear.analysis.family import Family, axis_values, family_for, lanes_and_status
+from thermogear.analysis.family import (
+    Family,
+    axis_values,
+    dimension_of,
+    family_for,
+    lanes_and_status,
+    taken,
+)
 from thermogear.analysis.outcome import (
+    begun,
+    drawn,
     outcome_arrays,
     outcome_variables,
     settle_with_status,
@@ -54,7 +63,7 @@ class DiagramPlan:
 
     family: Family
     values: tuple[float, ...]
-    starts: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
+    starts: tuple[tuple[float, ...], ...] = ((0.0, 0.0),)
     rule: Rule = DIAGRAM_RULE
     keep: int = KEEP
     block: int = BLOCK
@@ -73,12 +82,18 @@ class DiagramPlan:
         return self.family.names[0]
 
     @property
+    def dimension(self) -> int:
+        return dimension_of(self.family)
+
+    @property
     def sizes(self) -> dict[str, int]:
+        longer = {} if self.dimension == 2 else {"coordinate": self.dimension}
         return {
             "direction": len(DIRECTIONS),
             "start": len(self.starts),
             self.parameter: len(self.values),
             "section": self.keep,
+            **longer,
         }
 
     @property
@@ -111,6 +126,9 @@ class DiagramPlan:
             found[f"end_{name}"] = Variable(
                 dims, "float64", nan, {"long_name": f"{words} carried on", "units": "1"}
             )
+        if self.dimension != 2:
+            words = "state carried on, in the model's units"
+            found["end"] = Variable((*dims, "coordinate"), "float64", nan, {"long_name": words})
         return found
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
@@ -165,25 +183,31 @@ class DiagramPlan:
         if before is not None:
             last = -1 if up else 0
             state = np.stack([before[f"end_{n}"][0, :, last] for n in "xv"], axis=1)
+            if self.dimension != 2:
+                state = before["end"][0, :, last]
         count = len(self.starts)
         found: Arrays = {}
+        sizes = self.sizes | {"direction": 1, self.parameter: values.size}
         for name, variable in self.variables().items():
-            shape = (1, count, values.size, *([self.keep] if "section" in variable.dims else []))
+            shape = tuple(sizes[dim] for dim in variable.dims)
             found[name] = np.full(shape, variable.fill, np.dtype(variable.dtype))
         lanes, status = lanes_and_status(self.family, values[:, None])
         for place in order:
             same = np.full(count, place)
-            settled = settle_with_status(
-                lanes.take(same), status[same], state, self.rule, self.keep, alive
-            )
-            for name, row in outcome_arrays(settled, status[same]).items():
+            here = taken(lanes, same)
+            state = begun(state, here, self.dimension)
+            settled = settle_with_status(here, status[same], state, self.rule, self.keep, alive)
+            for name, row in outcome_arrays(settled, status[same], here).items():
                 found[name][0, :, place] = row
+            sections = drawn(settled.sections, here)
             for axis, name in enumerate("xv"):
-                found[f"section_{name}"][0, :, place] = settled.sections[:, :, axis]
+                found[f"section_{name}"][0, :, place] = sections[:, :, axis]
             # a motion that left for infinity hands on the state it began with
             whole = np.asarray(np.isfinite(settled.state).all(axis=1))
             state = np.where(whole[:, None], settled.state, state)
-            found["end_x"][0, :, place], found["end_v"][0, :, place] = state.T
+            found["end_x"][0, :, place], found["end_v"][0, :, place] = drawn(state, here).T
+            if self.dimension != 2:
+                found["end"][0, :, place] = state
         return found
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
@@ -217,8 +241,10 @@ def orbit_diagram(
 ) -> xr.Dataset:
     """The settled motion over ``values`` of a ``parameter``, up and down, from every start.
 
-    ``model`` has one lane and a number field ``parameter``, or is a family of it. At the first
-    value of a direction the ``starts`` (x, x'), in the units of the model, are taken, from then
+    ``model`` has one lane, or a return map of any dimension, and a number field ``parameter``, or
+    is a family of it. At the first value of a direction the ``starts`` are taken: (x, x') in the
+    units of the model, of longer states in their plane
+    (:func:`~thermogear.dynamics.plane.plane_of`), or whole states; from then
     on the state in which the last value ended; chunks of ``block`` values hand it on, so they
     change nothing. ``keep`` sections are stored of each point (on the orbit itself where it is
     periodic), with label, period, largest multiplier and Lyapunov exponent. Orbits of up to
@@ -261,12 +287,13 @@ def diagram_plan(
     """The plan of :func:`orbit_diagram`."""
     axis = np.sort(axis_values(parameter, values))
     begin = np.atleast_2d(np.asarray(starts, dtype=float))
-    if begin.shape[1] != 2 or not np.all(np.isfinite(begin)):
+    family = family_for(model, (parameter,))
+    if begin.shape[1] not in (2, dimension_of(family)) or not np.all(np.isfinite(begin)):
         raise InputError("starts", f"shape {begin.shape}", allowed="finite pairs (x, x')")
     return DiagramPlan(
-        family=family_for(model, (parameter,)),
+        family=family,
         values=tuple(axis.tolist()),
-        starts=tuple((float(a), float(b)) for a, b in begin),
+        starts=tuple(map(tuple, begin.tolist())),
         rule=rule,
         keep=keep,
         block=block,

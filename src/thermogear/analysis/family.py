@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
+from thermogear.dynamics.models import ClearanceModel
+from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import Lanes, Pieces
 
 Floats = NDArray[np.float64]
@@ -22,8 +24,9 @@ class Family(Protocol):
     """``family(points)`` makes one lane of every row of ``points`` (point, parameter).
 
     ``names`` of the parameters, their ``units`` ("1": a pure number), ``inputs`` what
-    defines the family, as plain numbers and texts. What it returns has ``lanes()``; a
-    ``status`` array with it marks points that have no motion (jammed).
+    defines the family, as plain numbers and texts. What it returns has ``lanes()``, or it is
+    :class:`Models`; a ``status`` array with it marks points that have no motion (jammed). A family
+    of models whose states are longer than (x, x') has their ``dimension``.
     """
 
     @property
@@ -37,9 +40,17 @@ class Family(Protocol):
     def __call__(self, points: Floats) -> Any: ...
 
 
+@dataclass(frozen=True, eq=False)
+class Models:
+    """A model with a return map for every point; None where its ``status`` is not 0."""
+
+    models: tuple[object, ...]
+    status: NDArray[np.int8]
+
+
 @dataclass(frozen=True)
 class ModelFamily:
-    """A model of one lane with some of its number fields put to other values."""
+    """A model of one lane, or with a return map, with some number fields put to other values."""
 
     model: Any
     names: tuple[str, ...]
@@ -49,8 +60,11 @@ class ModelFamily:
             raise InputError(
                 "model", type(self.model).__name__, allowed="a model with named fields"
             )
-        if len(lanes_of(self.model)) != 1:
-            raise InputError("model", f"{len(lanes_of(self.model))} lanes", allowed="one lane")
+        if isinstance(self.model, ClearanceModel):
+            if len(lanes_of(self.model)) != 1:
+                raise InputError("model", f"{len(lanes_of(self.model))} lanes", allowed="one lane")
+        else:
+            return_map(self.model)
         known = [
             f.name for f in fields(self.model) if isinstance(getattr(self.model, f.name), float)
         ]
@@ -59,6 +73,11 @@ class ModelFamily:
                 raise InputError("parameter", repr(name), fix=nearest(str(name), known))
         if len(set(self.names)) < len(self.names):
             raise InputError("parameter", list(self.names), allowed="different parameters")
+
+    @property
+    def dimension(self) -> int:
+        """Length of a state."""
+        return return_map(self.model).dimension
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -75,6 +94,13 @@ class ModelFamily:
 
     def __call__(self, points: Floats) -> Any:
         columns = np.asarray(points, dtype=float)
+        model: Any = self.model
+        if not isinstance(model, ClearanceModel):
+            made = [
+                replace(model, **dict(zip(self.names, map(float, row), strict=True)))
+                for row in columns
+            ]
+            return Models(tuple(made), np.zeros(len(made), np.int8))
         changes = {name: columns[:, i].copy() for i, name in enumerate(self.names)}
         return replace(self.model, **changes)
 
@@ -86,6 +112,14 @@ def _plain(value: object) -> object:
         return {"mean": value.mean, "harmonics": pairs}
     if isinstance(value, Pieces):
         return {"starts": list(value.starts), "pieces": [list(c) for c in value.coefficients]}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, tuple):
+        return [_plain(part) for part in value]
+    if isinstance(value, complex):
+        return [value.real, value.imag]
+    if value is None or callable(value):
+        return getattr(value, "__qualname__", None)
     return float(np.asarray(value)) if np.ndim(value) == 0 else np.asarray(value).tolist()  # type: ignore[arg-type]
 
 
@@ -100,18 +134,38 @@ def family_for(model: object, names: Sequence[str]) -> Family:
 
 
 def is_model(thing: object) -> bool:
-    """Whether it makes lanes by itself."""
-    return hasattr(thing, "lanes")
+    """Whether it makes lanes, or a return map, by itself."""
+    return hasattr(thing, "lanes") or hasattr(thing, "return_map")
 
 
-def lanes_and_status(family: Family, points: Floats) -> tuple[Lanes, NDArray[np.int8]]:
-    """The lanes of ``points``, and which of them have no motion (status other than 0)."""
+def dimension_of(family: Family) -> int:
+    """Length of the states of a family's models."""
+    return int(getattr(family, "dimension", 2))
+
+
+def lanes_and_status(
+    family: Family, points: Floats
+) -> tuple[Lanes | tuple[object, ...], NDArray[np.int8]]:
+    """The lanes (or models) of ``points``, and which have no motion (status other than 0)."""
     made = family(points)
+    if isinstance(made, Models):
+        return made.models, made.status
     lanes = lanes_of(made)
     if len(lanes) == 1 and len(points) > 1:
         lanes = lanes.take(np.zeros(len(points), int))
     status = np.asarray(getattr(made, "status", np.zeros(len(points))), dtype=np.int8)
     return lanes, status
+
+
+def taken(lanes: Lanes | Sequence[object], index: NDArray[np.int64]) -> Lanes | tuple[object, ...]:
+    """Some of the lanes, or models."""
+    return lanes.take(index) if isinstance(lanes, Lanes) else tuple(lanes[i] for i in index)
+
+
+def model_at(family: Family, value: float) -> object:
+    """The one lane, or model, of one value of the one parameter."""
+    lanes, _ = lanes_and_status(family, np.array([[value]]))
+    return lanes if isinstance(lanes, Lanes) else lanes[0]
 
 
 def axis_values(name: str, values: ArrayLike) -> Floats:

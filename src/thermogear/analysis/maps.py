@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.analysis.family import Family, axis_values, family_for, lanes_and_status
+from thermogear.analysis.family import (
+    Family,
+    axis_values,
+    dimension_of,
+    family_for,
+    lanes_and_status,
+)
 from thermogear.analysis.outcome import (
+    begun,
     outcome_arrays,
     outcome_variables,
     settle_with_status,
@@ -47,7 +54,7 @@ class MapPlan:
 
     family: Family
     axes: tuple[tuple[float, ...], tuple[float, ...]]
-    start: tuple[float, float] = (0.0, 0.0)
+    start: tuple[float, ...] = (0.0, 0.0)
     rule: Rule = MAP_RULE
     refine: bool = True
     tile: int = TILE
@@ -146,9 +153,10 @@ class MapPlan:
     ) -> None:
         i, j = np.unravel_index(places, (one.size, two.size))
         lanes, status = lanes_and_status(self.family, np.stack([one[i], two[j]], axis=1))
-        start = np.broadcast_to(np.array(self.start), (len(lanes), 2)).copy()
+        start = np.broadcast_to(np.array(self.start), (len(lanes), len(self.start))).copy()
+        start = begun(start, lanes, dimension_of(self.family))
         settled = settle_with_status(lanes, status, start, self.rule, alive=alive)
-        for name, values in outcome_arrays(settled, status).items():
+        for name, values in outcome_arrays(settled, status, lanes).items():
             found[name][i, j] = values
         found["computed"][i, j] = 1
 
@@ -218,10 +226,12 @@ def parameter_map(
 ) -> xr.Dataset:
     """What the motion from one start settles on over two parameters.
 
-    ``model`` has one lane and number fields named as the two ``axes``, or is a family of these
-    parameters; axes and start are in the units of the model. A point leaves as soon as its label
-    is proven (:class:`Rule`); with ``refine`` the map starts on every ``stride``-th point and
-    goes on only where neighbours differ, inside tiles of ``tile`` x ``tile`` points.
+    ``model`` has one lane, or a return map of any dimension, and number fields named as the two
+    ``axes``, or is a family of these parameters; axes and start are in the units of the model.
+    ``initial_state`` is (x, x'), of a longer state in its plane
+    (:func:`~thermogear.dynamics.plane.plane_of`), or the whole state. A point leaves as soon as
+    its label is proven (:class:`Rule`); with ``refine`` the map starts on every ``stride``-th
+    point and goes on only where neighbours differ, inside tiles of ``tile`` x ``tile`` points.
     ``rule.full()`` with ``refine=False`` is the full run.
 
     Labels are an estimate by this faster rule; :func:`~thermogear.analysis.labels.label` follows
@@ -270,7 +280,7 @@ def map_plan(
     return MapPlan(
         family=family,
         axes=(values[0], values[1]),
-        start=start_of(initial_state),
+        start=start_of(initial_state, dimension_of(family)),
         rule=rule,
         refine=refine,
         tile=tile,

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.analysis.family import taken
 from thermogear.analysis.settle import JAMMED, LABELS, Rule, Settled, settle
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Variable, keep_going
 from thermogear.base.vocabulary import FASTER_RULE, STATUS, status_attributes
+from thermogear.dynamics.plane import plane_of
 from thermogear.dynamics.tables import Lanes
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+Models = Lanes | Sequence[object] | None
 
 LABEL_ATTRIBUTES = {
     "long_name": "settled motion",
@@ -64,8 +68,9 @@ def outcome_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
     return {n: Variable(dims, t, f, a) for n, (t, f, a) in VALUES.items()}
 
 
-def outcome_arrays(settled: Settled, status: NDArray[np.int8]) -> Arrays:
-    """The stored arrays, flat over lanes."""
+def outcome_arrays(settled: Settled, status: NDArray[np.int8], lanes: Models = None) -> Arrays:
+    """The stored arrays, flat over lanes; ``lanes`` draw the states of their models."""
+    point = drawn(settled.point, lanes)
     done = status.copy()
     done[settled.label == LABELS.index("diverged")] = STATUS.index("diverged")
     lost = (settled.label == LABELS.index("undecided")) & (status == 0)
@@ -80,15 +85,37 @@ def outcome_arrays(settled: Settled, status: NDArray[np.int8]) -> Arrays:
         "contact_losses": settled.losses,
         "back_impacts": settled.impacts,
         "drive_share": settled.shares[:, 2].copy(),
-        "point_x": settled.point[:, 0].copy(),
-        "point_v": settled.point[:, 1].copy(),
+        "point_x": point[:, 0].copy(),
+        "point_v": point[:, 1].copy(),
         "used_periods": settled.used,
         "status": done,
     }
 
 
+def drawn(states: Floats, lanes: Models) -> Floats:
+    """(x, v) (lane, ..., 2) of states (lane, ..., d) by the plane of each lane's model."""
+    if lanes is None or isinstance(lanes, Lanes):
+        return states
+    found = np.full((*states.shape[:-1], 2), np.nan)
+    for place, model in enumerate(lanes):
+        if model is not None:
+            found[place] = plane_of(model).of(states[place])
+    return found
+
+
+def begun(starts: Floats, lanes: Models, dimension: int) -> Floats:
+    """States (lane, d) of ``starts`` (lane, 2) in the planes of the lanes' models, or as given."""
+    if starts.shape[1] == dimension or lanes is None or isinstance(lanes, Lanes):
+        return starts
+    found = np.zeros((len(starts), dimension))
+    for place, model in enumerate(lanes):
+        if model is not None:
+            found[place] = plane_of(model).starts(starts[place])
+    return found
+
+
 def settle_with_status(
-    lanes: Lanes,
+    lanes: Lanes | Sequence[object],
     status: NDArray[np.int8],
     start: Floats,
     rule: Rule,
@@ -96,12 +123,12 @@ def settle_with_status(
     alive: Alive = keep_going,
 ) -> Settled:
     """:func:`settle` for the lanes that move; the others carry their status as a label."""
-    result = Settled.empty(len(lanes), keep=keep)
+    result = Settled.empty(len(lanes), keep=keep, dimension=start.shape[1])
     result.state[:] = start
     result.label[status != 0] = JAMMED
     moving = np.flatnonzero(status == 0)
     if moving.size:
-        result.put(moving, settle(lanes.take(moving), start[moving], rule, keep, alive))
+        result.put(moving, settle(taken(lanes, moving), start[moving], rule, keep, alive))
     return result
 
 
@@ -114,9 +141,12 @@ def label_names(data: xr.Dataset) -> NDArray[np.str_]:
     return np.asarray(names)
 
 
-def start_of(initial_state: ArrayLike) -> tuple[float, float]:
-    """One start (x, x')."""
+def start_of(initial_state: ArrayLike, dimension: int = 2) -> tuple[float, ...]:
+    """One start: (x, x'), or a whole state."""
     state = np.asarray(initial_state, dtype=float)
-    if state.shape != (2,) or not np.all(np.isfinite(state)):
-        raise InputError("initial_state", state.tolist(), allowed="two finite numbers (x, x')")
-    return float(state[0]), float(state[1])
+    if state.shape not in ((2,), (dimension,)) or not np.all(np.isfinite(state)):
+        whole = f", or {dimension}" * (dimension != 2)
+        raise InputError(
+            "initial_state", state.tolist(), allowed=f"two finite numbers (x, x'){whole}"
+        )
+    return tuple(state.tolist())

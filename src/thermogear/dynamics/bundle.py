@@ -131,7 +131,10 @@ def bundles(models: object, *, refine: int = 1) -> Iterator[Prepared]:
 
 
 def _in_turn(models: Sequence[object]) -> InTurn:
-    return InTurn([return_map(one) for one in models])
+    # a model taken many times has one map
+    maps = {id(one): one for one in models}
+    made = {key: return_map(one) for key, one in maps.items()}
+    return InTurn([made[id(one)] for one in models])
 
 
 class InTurn:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.dynamics.geared import GearedModel
 from thermogear.dynamics.ladder import Engine, Steps
+from thermogear.dynamics.plane import Plane
 from thermogear.dynamics.return_map import Stretch, Visit
 
 Floats = NDArray[np.float64]
@@ -61,6 +62,27 @@ class GearedMap:
             speed = float(np.abs(vector) @ found[n : 2 * n])
             found = np.append(found, max(fall * speed, 1e-12))
         return found
+
+    @cached_property
+    def plane(self) -> Plane:
+        """What is drawn: the teeth's deflection over b' and its rate over 2 pi b'/T.
+
+        A start moves the train as a blow of the teeth would, from where it rests under its
+        constant loads with the drive flank and the bearings closed.
+        """
+        model = self.model
+        n, b = model.size, model.half_backlash
+        rate = 2.0 * np.pi * b / model.period
+        onto = np.zeros((2, model.dimension))
+        onto[0, :n], onto[1, n : 2 * n] = model.drive / b, model.drive / rate
+        shape = np.linalg.solve(model.mass, model.drive)
+        shape = shape / float(model.drive @ shape)
+        lift = np.zeros((model.dimension, 2))
+        lift[:n, 0], lift[n : 2 * n, 1] = b * shape, rate * shape
+        pull = np.zeros(model.dimension)
+        pull[n : 2 * n] = np.linalg.solve(model.mass, model.force)
+        rest = np.asarray(-np.linalg.solve(model.state_matrix, pull), dtype=float)
+        return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2))
 
     def determinant(self, periods: int) -> float:
         """det D P^n = exp(T tr A), whatever the contacts do."""

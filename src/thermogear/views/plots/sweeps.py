@@ -31,8 +31,8 @@ CLASSES = (
     ("diverged", "#22303c"),
     ("jammed", "#ffffff"),
 )
-KINDS = ("fold", "period doubling", "grazing", "period halving", "pitchfork")
-MARKS = ("square", "diamond", "upright", "thin diamond", "plus")
+KINDS = ("fold", "period doubling", "grazing", "period halving", "pitchfork", "torus")
+MARKS = ("square", "diamond", "upright", "thin diamond", "plus", "circle")
 
 
 def classes_of(data: xr.Dataset) -> NDArray[np.int64]:
@@ -112,7 +112,7 @@ def _branches(panel: Panel, data: xr.Dataset, name: str) -> None:
         if (kept & np.isfinite(value)).any():
             panel.curve([], [], colour=colour, width=0.9, dash=dash, label=words)
     at = shown(name, data["bifurcation_value"].values)
-    for kind in (0, 1, 4):
+    for kind in (0, 1, 4, 5):
         chosen = data["bifurcation_kind"].values == kind
         if chosen.any():
             up = data["bifurcation_x"].values[chosen]
