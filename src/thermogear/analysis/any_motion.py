@@ -2,17 +2,18 @@
 
 A motion of one mass is labelled by :mod:`~thermogear.analysis.labels`, which knows more of it. Here
 a motion is periodic, with its orbit and Floquet multipliers as proof, chaotic by its largest
-Lyapunov exponent, or undecided; a torus is undecided.
+Lyapunov exponent, quasi-periodic on a proven torus, or undecided.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import Orbit, shoot
+from thermogear.analysis.torus import Torus, torus
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.return_map import ReturnMap
@@ -26,6 +27,11 @@ NEAR_BORDER = 0.998
 BATCHES = 10
 BATCH = 50
 """Batches of periods, and their length, for the Lyapunov exponent."""
+ROUND = 2048
+ROUNDS = 3
+"""Sections that a torus is looked for in, and how often: it may be reached slowly."""
+LONG_BATCHES = 16
+"""Batches in so many periods, for the exponent on a torus."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,12 +56,12 @@ class Search:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Motion:
-    """What a start settles on: ``name`` "period-n", "chaotic", "undecided" or "diverged".
+    """What a start settles on: "period-n", "quasi-periodic", "chaotic", "undecided", "diverged".
 
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
     there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
-    with its ``lyapunov_error`` and the means of its ``batches``; ``used`` periods run; ``away``
-    how far the motion itself still was from its orbit, in units of the map.
+    with its ``lyapunov_error`` and the means of its ``batches``; the ``torus`` it is on; ``used``
+    periods run; ``away`` how far the motion itself still was from its orbit, in units of the map.
     """
 
     name: str
@@ -68,6 +74,7 @@ class Motion:
     lyapunov: float = float("nan")
     lyapunov_error: float = float("nan")
     batches: Floats = field(default_factory=lambda: np.empty(0))
+    torus: Torus | None = None
     away: float = float("nan")
 
 
@@ -79,7 +86,9 @@ def settle(
     Periodic: the motion returns to itself, Newton's rule finds an orbit there whose multipliers all
     stay below 0.998, and the motion comes nearer to it from one round to the next. Chaotic: it does
     not return, and the largest Lyapunov exponent exceeds four standard errors in both halves of its
-    record. ``alive`` raises to end the work.
+    record. Quasi-periodic: that exponent is zero within four standard errors, and the sections lie
+    on a closed curve with a second base frequency (:class:`~thermogear.analysis.torus.Torus`).
+    ``alive`` raises to end the work.
     """
     how = search or Search()
     state = np.asarray(start, dtype=float)
@@ -114,7 +123,7 @@ def settle(
                 length = min(length, how.first)
                 continue
         length *= 2
-    return _open(section, state, used, how)
+    return _open(section, state, used, how, alive)
 
 
 def _lag(section: ReturnMap, window: Floats, max_period: int) -> int:
@@ -175,8 +184,8 @@ def _closing(section: ReturnMap, window: Floats, used: int, how: Search) -> Moti
     return None
 
 
-def _open(section: ReturnMap, state: Floats, used: int, how: Search) -> Motion:
-    """No lag closes: chaotic by the exponent, or undecided."""
+def _open(section: ReturnMap, state: Floats, used: int, how: Search, alive: Alive) -> Motion:
+    """No lag closes: chaotic by the exponent, on a torus, or undecided."""
     if not how.exponent:
         reason = f"does not return within {used} periods"
         return Motion(name="undecided", period=0, reason=reason, state=state, used=used)
@@ -189,7 +198,7 @@ def _open(section: ReturnMap, state: Floats, used: int, how: Search) -> Motion:
     halves = means[: BATCHES // 2].mean(), means[BATCHES // 2 :].mean()
     sure = value > 4.0 * error and min(halves) > 0.0
     told = f"largest Lyapunov exponent {value:.4g} +- {error:.2g}"
-    return Motion(
+    found = Motion(
         name="chaotic" if sure else "undecided",
         period=0,
         reason=f"{told} > 0" if sure else f"does not return within {used} periods; {told}",
@@ -198,4 +207,49 @@ def _open(section: ReturnMap, state: Floats, used: int, how: Search) -> Motion:
         lyapunov=value,
         lyapunov_error=error,
         batches=means,
+    )
+    return found if sure or abs(value) > 4.0 * error else _turning(section, found, alive)
+
+
+def _turning(section: ReturnMap, motion: Motion, alive: Alive) -> Motion:
+    """The torus of a motion whose exponent is zero within its error, where one is proven."""
+    if section.dimension == 2 and section.determinant(1) < 1.0:
+        return motion  # areas shrink at one rate: no closed curve maps onto itself
+    state, used = motion.state, motion.used
+    for _ in range(ROUNDS):
+        alive()
+        try:
+            path = section.carry(state, ROUND)
+        except ConvergenceError:
+            return motion
+        state, used = path[-1], used + ROUND
+        found = torus(path, section.unit)
+        if found is not None and found.proven:
+            return _proven_torus(section, replace(motion, state=state, used=used), found)
+    return replace(motion, state=state, used=used)
+
+
+def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
+    """A motion on a closed curve, if its exponent is zero over a longer run, too."""
+    along = np.zeros(section.dimension)
+    along[0] = section.unit[0]
+    lead = section.stretch(motion.state, direction=along, periods=BATCH)
+    path = section.stretch(lead.state, direction=lead.direction, periods=ROUND)
+    means = path.growth.reshape(LONG_BATCHES, -1).mean(axis=1) / section.period
+    value, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(LONG_BATCHES))
+    shown = (
+        f"largest Lyapunov exponent {value:.4g} +- {error:.2g}; sections on a closed curve, second "
+        f"base frequency {found.frequency:.9g} +- {found.error:.1g} cycles a period, foretold to "
+        f"{found.foretold:.1g}"
+    )
+    return replace(
+        motion,
+        name="quasi-periodic" if abs(value) <= 4.0 * error else "undecided",
+        reason=shown,
+        state=path.state,
+        used=motion.used + BATCH + ROUND,
+        lyapunov=value,
+        lyapunov_error=error,
+        batches=means,
+        torus=found,
     )

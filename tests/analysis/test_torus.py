@@ -1,0 +1,119 @@
+"""Two base frequencies: closed forms, and a drive train beyond its Neimark-Sacker point."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.conftest import Compared
+from tests.dynamics.geared_trains import moving_six
+from tests.dynamics.test_geared_truth import TRUTH
+
+from thermogear.analysis.any_motion import settle
+from thermogear.analysis.bifurcations import TORUS
+from thermogear.analysis.continuation import continuation
+from thermogear.analysis.orbits import periodic_orbit
+from thermogear.analysis.torus import torus
+from thermogear.dynamics.return_map import return_map
+
+ONE = np.ones(3)
+K = np.arange(2048)
+
+
+def curve(rng: np.random.Generator, nu: float) -> Any:
+    """Sections on a random closed curve: harmonics that fall by a half and more."""
+    found = np.zeros((K.size, 3))
+    for m in range(1, 8):
+        size = rng.normal(size=(2, 3)) * rng.uniform(0.1, 0.5) ** (m - 1)
+        turn = 2.0 * np.pi * m * nu * K
+        found += np.outer(np.cos(turn), size[0]) + np.outer(np.sin(turn), size[1])
+    return found
+
+
+def folded(nu: float) -> float:
+    """A frequency as sections see it."""
+    away = nu % 1.0
+    return min(away, 1.0 - away)
+
+
+def test_the_frequency_of_random_curves(compared: Compared) -> None:
+    rng = np.random.default_rng(20261124)
+    worst, undecided = 0.0, 0
+    for _ in range(40):
+        nu = rng.uniform(0.02, 0.48)
+        found = torus(curve(rng, nu), ONE)
+        assert found is not None
+        if not found.proven:
+            # harmonics that fold to nearly one frequency are not told apart in so few sections
+            near = min(abs(nu - round(nu * q) / q) * q for q in range(1, 8))
+            assert near < 12.0 / K.size
+            undecided += 1
+            continue
+        worst = max(worst, min(abs(found.frequency - folded(m * nu)) for m in range(1, 8)))
+    assert undecided <= 2
+    compared("second base frequency", "random closed curves", worst, 1e-7)
+
+
+@pytest.mark.parametrize("kind", ["ratio", "noise", "fading", "growing", "still"])
+def test_what_is_no_torus(kind: str) -> None:
+    rng = np.random.default_rng(7)
+    sections = {
+        "ratio": curve(rng, 7.0 / 50.0),
+        "noise": rng.normal(size=(K.size, 3)),
+        "fading": curve(rng, 0.1234567) * np.exp(-K / 4000.0)[:, None],
+        "growing": curve(rng, 0.1234567) * np.exp(K / 4000.0)[:, None],
+        "still": np.full((K.size, 3), 0.3),
+    }[kind]
+    found = torus(sections, ONE)
+    assert found is None or not found.proven
+
+
+def train(eps: float, name: str = "Q1") -> Any:
+    params = copy.deepcopy(TRUTH[name]["params"])
+    params["k_re"], params["k_im"] = [eps * params["k_mean"]], [0.0]
+    return moving_six(params)
+
+
+def test_where_a_pair_of_multipliers_leaves_the_unit_circle(compared: Compared) -> None:
+    """Truth Q1: mesh frequency = lowest + highest natural frequency."""
+    case = TRUTH["Q1"]["values"]
+    model, start, _ = train(0.04)
+    orbit = periodic_orbit(model, 1, start)
+    branch = continuation(orbit, "eps", 0.07, family=lambda eps: train(eps)[0], start=0.04)
+    assert [one.kind for one in branch.bifurcations] == [TORUS]
+    found = branch.bifurcations[0]
+    compared("Neimark-Sacker point of a train", "truth Q1", found.value - case["eps"], 1e-6)
+    mu = complex(found.multipliers[0])
+    away = complex(mu.real, abs(mu.imag)) - complex(*case["multiplier"])
+    compared("its multiplier", "truth Q1", abs(away), 1e-5)
+
+
+def test_a_train_on_a_torus(compared: Compared) -> None:
+    """Truth Q2, 1.1 times beyond: bounded by loss of contact."""
+    case = TRUTH["Q2"]
+    known, within = case["values"], case["tolerance"]
+    model, start, _ = moving_six(case["params"])
+    section = return_map(model)
+    found = settle(section, 1.05 * start)
+    assert found.name == "quasi-periodic"
+    assert found.torus is not None
+    assert abs(found.lyapunov) < 4.0 * found.lyapunov_error < 0.01 / section.period
+    away = found.torus.frequency - known["frequency"]
+    compared("second frequency of a torus", "truth Q2", away, within["frequency"])
+    path = section.carry(found.state, 3000)[:, : model.size] @ model.drive
+    compared("range on a torus", "truth Q2", np.ptp(path) / known["range"] - 1, within["range"])
+    compared("deviation on a torus", "truth Q2", path.std() / known["std"] - 1, within["std"])
+
+
+def test_a_torus_begins_at_the_angle_of_its_multipliers(compared: Compared) -> None:
+    """A limit: close behind the bifurcation the second frequency is arg(mu)/2 pi."""
+    mu = complex(*TRUTH["Q1"]["values"]["multiplier"])
+    model, start, _ = train(1.05 * TRUTH["Q1"]["values"]["eps"])
+    section = return_map(model)
+    found = torus(section.carry(1.05 * start, 20_000)[-2048:], section.unit)
+    assert found is not None
+    assert found.proven
+    away = found.frequency - float(np.angle(mu)) / (2.0 * np.pi)
+    compared("second frequency near its birth", "arg(mu)/2 pi", away, 3e-5)
