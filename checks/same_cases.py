@@ -227,7 +227,10 @@ from thermogear import (
     Gear, GearPair, PairModel, Periodic, TorsionalModel, excitation, heat_balance, lubricant,
     mesh_cycle, simulate,
 )
-from thermogear.analysis.basins import basins_along
+try:
+    from thermogear.analysis.basins_along import basins_along
+except ImportError:  # where it was before
+    from thermogear.analysis.basins import basins_along
 numbers = dict(damping_ratio=0.12, stiffness_amplitude=0.335, mean_force=0.017,
                force_amplitude=-1.16)
 one = TorsionalModel(frequency=1.245, **numbers)
