@@ -286,7 +286,7 @@ def waterfall(
         named = replace(read, models=(GearFamily(read, ("pinion_speed",), bundle).model,))
     plan = waterfall_plan(
         named, speeds, states=list(dict.fromkeys((UNDEFORMED, state))), operating=operating,
-        duration=seconds, coordinates=coordinates,
+        duration=seconds, coordinates=coordinates, threads=options["threads"],
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
 

@@ -7,8 +7,10 @@ with clearance: d(phase)/dt = n(t). Samples are uniform in the phase, so that or
 from __future__ import annotations
 
 import json
+import os
 import threading
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -73,8 +75,8 @@ DURATION = 20.0
 class WaterfallPlan:
     """A run over ``speeds`` [rad/s] at one operating point; see :func:`waterfall`.
 
-    ``place`` of the operating point, ``duration`` [s] of one way, ``size`` of the
-    reduced train, 0: the interface and 16 modes.
+    ``place`` of the operating point, ``duration`` [s] of one way, ``size`` of the reduced train, 0:
+    the interface and 16 modes; ``threads`` of what comes last (all cores if left out).
     """
 
     case: GearCase
@@ -84,6 +86,7 @@ class WaterfallPlan:
     duration: float
     size: int = 0
     block: int = BLOCK
+    threads: int | None = field(default=None, compare=False)
     kind: str = KIND
     _trains: dict[int, MovingTrain | None] = field(
         init=False, repr=False, compare=False, default_factory=dict
@@ -300,13 +303,8 @@ class WaterfallPlan:
             found[name][0, 0, place] = value
         return run.state, turn + passed
 
-    def _apart(self, data: xr.Dataset, state: int) -> list[dict[str, float]]:
-        """Stretches of speed on which up and down differ, and whether they do so at rest of speed.
-
-        Where they differ most both states are held at that speed for a while: a difference that
-        stays is one of two motions.
-        """
-        train = self.train(state)
+    def _stretches(self, data: xr.Dataset, state: int) -> list[dict[str, float]]:
+        """Stretches of speed on which up and down differ, and where they do most."""
         rms = np.concatenate(
             [data["mesh_force_rms"].values[state][..., None], data["bearing_force_rms"][state]], -1
         )
@@ -318,10 +316,6 @@ class WaterfallPlan:
         for first, after in edges.reshape(-1, 2).tolist():
             place = first + int(ratio[first:after].max(axis=1).argmax())
             which = int(ratio[place].argmax())
-            held = 0
-            if train is not None:
-                there = train.at_speed(self.case, self.speeds[place])
-                held = int(_held_apart(there, data["end_state"].values[state, :, place], which))
             rows.append(
                 {
                     "state": state,
@@ -331,26 +325,47 @@ class WaterfallPlan:
                     "part": which,
                     "up": float(rms[0, place, which]),
                     "down": float(rms[1, place, which]),
-                    "held": held,
                 }
             )
         return rows
 
+    def _held(self, row: dict[str, float], states: Floats) -> int:
+        """1 where the two ``states`` (2, d) of a stretch stay apart at a steady speed."""
+        train = self.train(int(row["state"]))
+        there = None if train is None else train.at_speed(self.case, row["at"])
+        return int(there is not None and _held_apart(there, states, int(row["part"])))
+
+    def _critical(self, state: int) -> list[dict[str, Any]]:
+        """Critical speeds in one state of heat; none where the train is jammed."""
+        one = self.train(state)
+        found = () if one is None else critical_speeds(self.case, one.state, max(self.speeds))
+        return [asdict(speed) for speed in found]
+
     def finish(self, data: xr.Dataset) -> xr.Dataset:
-        rows = [row for state in range(len(self.states)) for row in self._apart(data, state)]
+        """The stretches, held at a steady speed side by side, and the critical speeds."""
+        kinds = range(len(self.states))
+        rows = [row for state in kinds for row in self._stretches(data, state)]
+        ends = data["end_state"].values
+        pool = ThreadPoolExecutor(max(1, self.threads or os.cpu_count() or 1))
+        try:
+            asked = [pool.submit(self._critical, state) for state in kinds]
+            places = [(int(r["state"]), self.speeds.index(r["at"])) for r in rows]
+            tried = [
+                pool.submit(self._held, row, ends[state, :, place])
+                for row, (state, place) in zip(rows, places, strict=True)
+            ]
+            critical = [one.result() for one in asked]
+            for row, one in zip(rows, tried, strict=True):
+                row["held"] = one.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
         data = data.drop_vars(["end_state", "end_turn"])
         for name, (words, unit) in APART_TOLD.items():
             attributes = {"long_name": words} | ({"units": unit} if unit else {})
             values = np.array([row[name] for row in rows], float if unit else np.int32)
             data[f"apart_{name}"] = (("stretch",), values, attributes)
         held = sum(int(row["held"]) for row in rows)
-        trains = [self.train(state) for state in range(len(self.states))]
-        critical = [
-            []
-            if one is None
-            else [asdict(c) for c in critical_speeds(self.case, one.state, max(self.speeds))]
-            for one in trains
-        ]
+        trains = [self.train(state) for state in kinds]
         first = next((one for one in trains if one is not None), None)
         size = 0 if first is None else first.model.size
         error = float("nan")
@@ -420,6 +435,7 @@ def waterfall_plan(
     duration: float = DURATION,
     coordinates: int | None = None,
     block: int = BLOCK,
+    threads: int | None = None,
 ) -> WaterfallPlan:
     """The plan of :func:`waterfall`; ``block`` speeds are computed, and given out, together."""
     plan_of(case)
@@ -443,6 +459,7 @@ def waterfall_plan(
         duration=float(duration),
         size=coordinates or 0,
         block=block,
+        threads=threads,
     )
 
 
@@ -476,6 +493,7 @@ def waterfall(
         operating=operating,
         duration=duration,
         coordinates=coordinates,
+        threads=threads,
     )
     how: dict[str, Any] = {"threads": threads, "scheduler": scheduler, "report": report}
     data = carry_out(plan, store, **how, alive=alive, title=case.title)
