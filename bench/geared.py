@@ -181,6 +181,7 @@ def ours(accuracy: float, **how: int) -> Any:
 
 RIVALS: tuple[tuple[str, Any], ...] = (
     ("thermogear, accuracy 1e-6", ours(1e-6)),
+    ("thermogear, accuracy 1e-7", ours(1e-7)),
     ("thermogear, accuracy 1e-9", ours(1e-9)),
     ("thermogear, accuracy 1e-12", ours(1e-12)),
     ("heyoka, terminal events, 1e-9", heyoka(1e-9)),
