@@ -154,3 +154,19 @@ def test_starts_of_a_length_that_no_state_has_are_refused() -> None:
             Longer(0.7), {"frequency": [0.7], "force_amplitude": [0.1]}, initial_state=np.zeros(4)
         )
     assert told.value.field == "initial_state"
+
+
+def test_a_parameter_that_the_result_has_already_is_refused() -> None:
+    from thermogear.dynamics.smooth_map import SmoothModel
+
+    model = SmoothModel(
+        derivative=lambda t, y: -y, jacobian=lambda t, y: -np.eye(2), period=1.0, unit=np.ones(2)
+    )
+    with pytest.raises(InputError) as told:
+        orbit_diagram(model, "period", [1.0, 2.0])
+    assert told.value.field == "parameter"
+    with pytest.raises(InputError) as told:
+        parameter_map(model, {"period": [1.0], "tolerance": [1e-9]})
+    assert told.value.field == "parameter"
+    found = parameter_map(model, {"divergence": [-2.0, -2.5], "tolerance": [1e-9]})
+    assert found["period"].values.ravel().tolist() == [1, 1]

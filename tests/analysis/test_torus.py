@@ -43,7 +43,7 @@ def test_the_frequency_of_random_curves(compared: Compared) -> None:
     worst, undecided = 0.0, 0
     for _ in range(40):
         nu = rng.uniform(0.02, 0.48)
-        found = torus(curve(rng, nu), ONE)
+        found = torus(curve(rng, nu), unit=ONE)
         assert found is not None
         if not found.proven:
             # harmonics that fold to nearly one frequency are not told apart in so few sections
@@ -68,7 +68,7 @@ def test_what_is_no_torus(kind: str) -> None:
         "growing": curve(rng, 0.1234567) * np.exp(K / 4000.0)[:, None],
         "still": np.full((K.size, 3), 0.3),
     }[kind]
-    found = torus(sections, ONE)
+    found = torus(sections, unit=ONE)
     assert found is None or not found.proven
 
 
@@ -114,7 +114,7 @@ def test_a_torus_begins_at_the_angle_of_its_multipliers(compared: Compared) -> N
     mu = complex(*TRUTH["Q1"]["values"]["multiplier"])
     model, start, _ = train(1.05 * TRUTH["Q1"]["values"]["eps"])
     section = return_map(model)
-    found = torus(section.carry(1.05 * start, 20_000)[-2048:], section.unit)
+    found = torus(section.carry(1.05 * start, 20_000)[-2048:], unit=section.unit)
     assert found is not None
     assert found.proven
     away = found.frequency - float(np.angle(mu)) / (2.0 * np.pi)

@@ -223,7 +223,7 @@ def _turning(section: ReturnMap, motion: Motion, alive: Alive) -> Motion:
         except ConvergenceError:
             return motion
         state, used = path[-1], used + ROUND
-        found = torus(path, section.unit)
+        found = torus(path, unit=section.unit)
         if found is not None and found.proven:
             return _proven_torus(section, replace(motion, state=state, used=used), found)
     return replace(motion, state=state, used=used)

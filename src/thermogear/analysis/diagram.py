@@ -27,6 +27,7 @@ from thermogear.analysis.outcome import (
     drawn,
     outcome_arrays,
     outcome_variables,
+    require_free,
     settle_with_status,
 )
 from thermogear.analysis.settle import Rule
@@ -73,6 +74,7 @@ class DiagramPlan:
     def __post_init__(self) -> None:
         if len(self.family.names) != 1:
             raise InputError("parameter", list(self.family.names), allowed="one parameter")
+        require_free(self.family.names, self.variables())
         for name, least in (("keep", 1), ("block", 1), ("branch_period", 0)):
             if getattr(self, name) < least:
                 raise InputError(name, getattr(self, name), allowed=f">= {least}")

@@ -20,6 +20,7 @@ from thermogear.analysis.outcome import (
     begun,
     outcome_arrays,
     outcome_variables,
+    require_free,
     settle_with_status,
     start_of,
 )
@@ -64,6 +65,7 @@ class MapPlan:
     def __post_init__(self) -> None:
         if len(self.family.names) != 2:
             raise InputError("axes", list(self.family.names), allowed="two parameters")
+        require_free(self.family.names, self.variables())
         if self.stride < 1 or self.stride & (self.stride - 1):
             raise InputError("stride", self.stride, allowed="1, 2, 4, 8, ...")
         if self.tile < 2:

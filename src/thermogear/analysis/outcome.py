@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,6 +66,18 @@ VALUES: dict[str, tuple[str, float | int, dict[str, Any]]] = {
 def outcome_variables(dims: tuple[str, ...]) -> dict[str, Variable]:
     """The stored variables of settled motions over ``dims``."""
     return {n: Variable(dims, t, f, a) for n, (t, f, a) in VALUES.items()}
+
+
+def require_free(names: Iterable[str], variables: Iterable[str]) -> None:
+    """InputError where a parameter has the name of something that is stored over it."""
+    for name in names:
+        if name in {*variables, "direction", "start", "section", "coordinate"}:
+            raise InputError(
+                "parameter",
+                repr(name),
+                why="the result has something else of that name",
+                fix="give the model a field with another name",
+            )
 
 
 def outcome_arrays(settled: Settled, status: NDArray[np.int8], lanes: Models = None) -> Arrays:

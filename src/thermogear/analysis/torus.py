@@ -44,7 +44,7 @@ class Torus:
         return self.foretold < FORETOLD and self.distance > 4.0 * self.error
 
 
-def torus(sections: Floats, unit: Floats) -> Torus | None:
+def torus(sections: Floats, *, unit: Floats) -> Torus | None:
     """The torus that ``sections`` (period, d) may lie on; None where they hardly move.
 
     nu is where the windowed sum |sum w_k z_k exp(-2 pi i nu k)| over the component that moves most,
