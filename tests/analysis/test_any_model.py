@@ -12,6 +12,8 @@ from thermogear.analysis.labels import label
 from thermogear.analysis.lyapunov import lyapunov_exponent
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.settle import PERIODIC, Rule, settle
+from thermogear.analysis.torus import torus
+from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.smooth_map import SmoothModel
 
 OMEGA = 2.0 * np.pi
@@ -175,16 +177,19 @@ def test_attractors_of_a_model_that_is_no_single_mass():
 
 
 @pytest.mark.parametrize(
-    ("mu", "name"), [(-0.5, "period-1"), (-0.001, "undecided"), (0.3, "undecided")]
+    ("mu", "name"), [(-0.5, "period-1"), (-0.001, "undecided"), (0.3, "quasi-periodic")]
 )
 def test_a_label_of_any_model_never_calls_a_torus_settled_or_chaotic(mu, name):
-    """|mu| = exp(mu T): near 1, and where the pair has left the circle, nothing is decided."""
+    """|mu| = exp(mu T): near 1 nothing is decided; a pair off the circle leaves a torus."""
     model = turning(mu)
     found = label(model, initial_state=(0.35, 0.0), discard=16, cap=128, max_period=4)
     assert found.name == name
     if name == "period-1":
         assert found.orbit.model is model
         assert found.multipliers[0] == pytest.approx(np.exp(mu + 0.7j), rel=1e-6)
+    if name == "quasi-periodic":
+        lines = torus(return_map(model).carry(np.array([0.8, 0.0]), 1024), unit=np.ones(2))
+        assert lines.frequency == pytest.approx(0.7 / OMEGA, abs=4.0 * lines.error)
 
 
 def test_a_label_of_a_chaotic_model_carries_its_exponent():

@@ -54,8 +54,8 @@ def label(
     ``model``: a clearance oscillator (:class:`TorsionalModel`, :class:`DeadZoneModel`,
     :class:`PairModel`), whose proof rests on its event-exact return map and is told below. Of any
     other model with a return map one start is followed, see
-    :func:`~thermogear.analysis.any_motion.settle`; a torus is undecided there. A model of a
-    derivative and a period alone can be simulated and is refused here.
+    :func:`~thermogear.analysis.any_motion.settle`; a proven torus is "quasi-periodic"
+    there. A model of a derivative and a period alone can be simulated and is refused here.
     ``initial_state`` (x, x') is in the units of the model: pure numbers for
     :class:`TorsionalModel`, SI for a model in SI.
     The transient runs in rounds, ``discard`` periods first, then doubling to at most ``cap``.
