@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -100,6 +99,8 @@ def _lines(nu: float, k: NDArray[np.int64]) -> Floats:
 
 def _frequency(values: Floats) -> float:
     """Cycles a step of the strongest line of ``values``."""
+    from scipy.optimize import minimize_scalar  # slow to import, seldom needed
+
     count = values.size
     t = (np.arange(count) + 0.5) / count
     window = np.exp(-1.0 / (t * (1.0 - t)))
