@@ -110,9 +110,13 @@ class BasinPlan:
         }
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+        named = (("displacement", "1"), ("velocity", "1"))
+        if self.dimension != 2:
+            named = plane_of(self.model).words
+        grid = zip("xv", (self.x, self.v), named, strict=True)
         return {
-            "x": (("x",), np.array(self.x), {"units": "1", "long_name": "start displacement"}),
-            "v": (("v",), np.array(self.v), {"units": "1", "long_name": "start velocity"}),
+            name: ((name,), np.array(values), {"units": unit, "long_name": f"start {words}"})
+            for name, values, (words, unit) in grid
         }
 
     def needs(self, key: Key) -> Key | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,9 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.analysis.section import lanes_of
 from thermogear.base.errors import InputError, nearest
 from thermogear.base.excitation import Periodic
+from thermogear.base.plan import Arrays, Coordinate, Variable
 from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.return_map import return_map
 from thermogear.dynamics.tables import Lanes, Pieces
+
+if TYPE_CHECKING:
+    from thermogear.analysis.settle import Settled
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +42,23 @@ class Family(Protocol):
     def inputs(self) -> dict[str, Any]: ...
 
     def __call__(self, points: Floats) -> Any: ...
+
+
+@runtime_checkable
+class Watching(Protocol):
+    """A family that reads more from a settled motion than its label."""
+
+    def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
+        """The stored variables over ``dims``, some over axes of their own behind them."""
+        ...
+
+    def watched_coordinates(self) -> dict[str, Coordinate]:
+        """Those axes."""
+        ...
+
+    def watch(self, points: Floats, found: Settled) -> Arrays:
+        """The values at ``points`` (point, parameter), whose motions are ``found``."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)

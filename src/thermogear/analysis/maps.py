@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.family import (
     Family,
+    Watching,
     axis_values,
     dimension_of,
     family_for,
@@ -29,6 +30,7 @@ from thermogear.base.errors import InputError
 from thermogear.base.plan import (
     Alive,
     Arrays,
+    Coordinate,
     Key,
     Progress,
     Variable,
@@ -73,11 +75,20 @@ class MapPlan:
 
     @property
     def sizes(self) -> dict[str, int]:
-        return dict(zip(self.family.names, map(len, self.axes), strict=True))
+        inner = {n: len(np.asarray(v)) for n, (_, v, _) in self._watched_axes.items()}
+        return dict(zip(self.family.names, map(len, self.axes), strict=True)) | inner
 
     @property
     def cuts(self) -> dict[str, int]:
-        return {name: min(self.tile, size) for name, size in self.sizes.items()}
+        return {n: min(self.tile, len(v)) for n, v in self._axes.items()}
+
+    @property
+    def _axes(self) -> dict[str, tuple[float, ...]]:
+        return dict(zip(self.family.names, self.axes, strict=True))
+
+    @property
+    def _watched_axes(self) -> dict[str, Coordinate]:
+        return self.family.watched_coordinates() if isinstance(self.family, Watching) else {}
 
     def inputs(self) -> dict[str, Any]:
         return {
@@ -94,10 +105,13 @@ class MapPlan:
         found = outcome_variables(self.family.names)
         words = {"long_name": "0: taken over from equal neighbours, 1: computed"}
         found["computed"] = Variable(self.family.names, "int8", 0, words)
+        if isinstance(self.family, Watching):
+            found |= self.family.watched(self.family.names)
         return found
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
-        return axis_coordinates(self.family.names, self.family.units, self.axes)
+        own = axis_coordinates(self.family.names, self.family.units, self.axes)
+        return own | self._watched_axes
 
     def needs(self, key: Key) -> Key | None:
         return None
@@ -133,8 +147,11 @@ class MapPlan:
             for values, part in zip(self.axes, ranges_of(self, key).values(), strict=True)
         )
         shape = (one.size, two.size)
-        variables = self.variables()
-        found = {n: np.full(shape, v.fill, np.dtype(v.dtype)) for n, v in variables.items()}
+        sizes = self.sizes | dict(zip(self.family.names, shape, strict=True))
+        found = {
+            name: np.full(tuple(sizes[dim] for dim in v.dims), v.fill, np.dtype(v.dtype))
+            for name, v in self.variables().items()
+        }
         stride = self.stride if self.refine else 1
         wanted = np.zeros(shape, bool)
         wanted[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
@@ -154,12 +171,16 @@ class MapPlan:
         self, one: Floats, two: Floats, places: NDArray[np.int64], found: Arrays, alive: Alive
     ) -> None:
         i, j = np.unravel_index(places, (one.size, two.size))
-        lanes, status = lanes_and_status(self.family, np.stack([one[i], two[j]], axis=1))
+        points = np.stack([one[i], two[j]], axis=1)
+        lanes, status = lanes_and_status(self.family, points)
         start = np.broadcast_to(np.array(self.start), (len(lanes), len(self.start))).copy()
         start = begun(start, lanes, dimension_of(self.family))
         settled = settle_with_status(lanes, status, start, self.rule, alive=alive)
         for name, values in outcome_arrays(settled, status, lanes).items():
             found[name][i, j] = values
+        if isinstance(self.family, Watching):
+            for name, values in self.family.watch(points, settled).items():
+                found[name][i, j] = values
         found["computed"][i, j] = 1
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +29,10 @@ Progress = Callable[[int, int], None]
 """Called as ``progress(chunks done, chunks)``."""
 
 
+Coordinate: TypeAlias = "tuple[tuple[str, ...], ArrayLike, dict[str, Any]]"
+"""Dimensions, values and attributes of an axis."""
+
+
 @dataclass(frozen=True)
 class Variable:
     """A stored array: its ``dims``, numpy ``dtype``, ``fill`` and attributes."""
@@ -41,7 +45,7 @@ class Variable:
 
 def axis_coordinates(
     names: Sequence[str], units: Sequence[str], axes: Sequence[ArrayLike]
-) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
+) -> dict[str, Coordinate]:
     """The axes of a grid as coordinates of their own names."""
     return {
         name: ((name,), np.array(values), {"units": unit})
@@ -77,7 +81,7 @@ class Plan(Protocol):
 
     def variables(self) -> dict[str, Variable]: ...
 
-    def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]: ...
+    def coordinates(self) -> dict[str, Coordinate]: ...
 
     def needs(self, key: Key) -> Key | None: ...
 

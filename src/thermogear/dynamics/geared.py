@@ -93,7 +93,8 @@ class GearedModel:
     [N/m] and ``error`` e [m] over the mesh phase, ``half_backlash`` b' [m], ``mesh_damping`` c_m
     [N s/m], ``mesh_frequency`` [Hz]. ``outer`` forces and ``wobbles`` turn with a shaft. ``slip``
     (vector (n,), d [N m s], lag [s]): a motor whose torque falls with its speed. ``cycle``: mesh
-    periods after which all forces come again.
+    periods after which all forces come again. ``seen`` (n, 2): directions of the journal that is
+    drawn in its plane; left out, the teeth are.
     """
 
     mass: Floats
@@ -116,6 +117,7 @@ class GearedModel:
     wobbles: tuple[Wobble, ...] = ()
     slip: tuple[Floats, float, float] | None = None
     cycle: int = 1
+    seen: Floats | None = None
 
     def __post_init__(self) -> None:
         for name in ("half_backlash", "mesh_frequency"):

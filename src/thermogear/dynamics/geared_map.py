@@ -14,6 +14,7 @@ from thermogear.dynamics.plane import Plane
 from thermogear.dynamics.return_map import Stretch, Visit
 
 Floats = NDArray[np.float64]
+MICROMETRE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -68,9 +69,15 @@ class GearedMap:
         """What is drawn: the teeth's deflection over b' and its rate over 2 pi b'/T.
 
         A start moves the train as a blow of the teeth would, from where it rests under its
-        constant loads with the drive flank and the bearings closed.
+        constant loads with the drive flank and the bearings closed. Where the model names a
+        journal, its two displacements in micrometres; a start pushes the train there.
         """
         model = self.model
+        pull = np.zeros(model.dimension)
+        pull[model.size : 2 * model.size] = np.linalg.solve(model.mass, model.force)
+        rest = np.asarray(-np.linalg.solve(model.state_matrix, pull), dtype=float)
+        if model.seen is not None:
+            return _of_journal(model, model.seen, rest)
         n, b = model.size, model.half_backlash
         rate = 2.0 * np.pi * b / model.period
         onto = np.zeros((2, model.dimension))
@@ -79,9 +86,6 @@ class GearedMap:
         shape = shape / float(model.drive @ shape)
         lift = np.zeros((model.dimension, 2))
         lift[:n, 0], lift[n : 2 * n, 1] = b * shape, rate * shape
-        pull = np.zeros(model.dimension)
-        pull[n : 2 * n] = np.linalg.solve(model.mass, model.force)
-        rest = np.asarray(-np.linalg.solve(model.state_matrix, pull), dtype=float)
         return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2))
 
     def determinant(self, periods: int) -> float:
@@ -125,3 +129,14 @@ class GearedMap:
             shares=run.shares,
             samples=run.samples,
         )
+
+
+def _of_journal(model: GearedModel, seen: Floats, rest: Floats) -> Plane:
+    """(u_x, u_y) of a journal [um], in shapes that move it against the least inertia."""
+    n = model.size
+    onto, lift = np.zeros((2, model.dimension)), np.zeros((model.dimension, 2))
+    onto[:, :n] = seen.T / MICROMETRE
+    shape = np.linalg.solve(model.mass, seen)
+    lift[:n] = MICROMETRE * shape @ np.linalg.inv(seen.T @ shape)
+    words = (("displacement of the journal along x", "um"), ("along y", "um"))
+    return Plane(onto=onto, lift=lift, rest=rest, unit=np.ones(2), words=words)

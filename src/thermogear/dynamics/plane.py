@@ -17,13 +17,14 @@ class Plane:
     """(x, v) = ``onto`` z of a state z (d,), and z = ``rest`` + ``lift`` ((x, v) - onto rest).
 
     ``onto`` (2, d), ``lift`` (d, 2) with onto lift = 1, ``rest`` (d,); ``unit`` (2,) the scales of
-    (x, v).
+    (x, v); ``words`` their names and units.
     """
 
     onto: Floats
     lift: Floats
     rest: Floats
     unit: Floats
+    words: tuple[tuple[str, str], tuple[str, str]] = (("displacement", "1"), ("velocity", "1"))
 
     def of(self, states: ArrayLike) -> Floats:
         """(x, v) (..., 2) of ``states`` (..., d)."""

@@ -54,6 +54,41 @@ GEAR_AXES = (
 )
 
 
+def _train(command: Callable[..., None]) -> Callable[..., None]:
+    """Options of the commands that move a drive train where the case has shafts."""
+    options = [
+        click.option("--rigid", is_flag=True,
+                     help="The gear pair on rigid bearings, although CASE has [[shafts]]."),
+        click.option("--operating", type=int, metavar="N",
+                     help="Operating point of the drive train, from 1 [1]."),
+        click.option("--coordinates", type=int, metavar="N",
+                     help="Of the reduced train; the interface and 16 modes if left out."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def _train_of(case: GearCase | DimensionlessCase, options: dict[str, Any], seen: str = "") -> Any:
+    """What is asked of the case's drive train; None where its gears alone are meant."""
+    from thermogear.study.diagrams import Train
+
+    asked = {n: options.pop(n) for n in ("operating", "coordinates")}
+    rigid, has = options.pop("rigid"), getattr(case, "train", None) is not None
+    if rigid and not has:
+        raise InputError(
+            "--rigid", "without shafts", why="CASE has no [[shafts]]", fix="leave it out"
+        )
+    if has and not rigid:
+        number = 1 if asked["operating"] is None else asked["operating"]
+        return Train(operating=number - 1, coordinates=asked["coordinates"], seen=seen)
+    for name, value in (*asked.items(), ("plane", seen or None)):
+        if value is not None:
+            why = "--rigid leaves the shafts out" if rigid else "CASE has no [[shafts]]"
+            raise InputError(f"--{name}", value, why=why, fix="leave it out")
+    return None
+
+
 def _over(words: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     return click.option(
         "--over", multiple=True, required=True, metavar="NAME=FROM:TO:COUNT", help=words
@@ -79,6 +114,7 @@ _but = click.option(
 @click.option("--against", multiple=True, metavar="NAME=VALUE",
               help="A second diagram with these numbers changed (state=VALUE for a gear case), "
               "and a table of what moved.")  # fmt: skip
+@_train
 @_common
 def bifurcation(
     case: str,
@@ -102,12 +138,13 @@ def bifurcation(
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
     begin = tuple(_pair_of(text) for text in starts)
+    train = _train_of(read, options)
     changes = parse_numbers(but)
 
     def plan(state: ThermalState, changed: dict[str, float]) -> Plan:
         return case_diagram(
             read, name, values, bundle=bundle, state=state, changes=changed,
-            branch_period=branch_period, starts=begin,
+            branch_period=branch_period, starts=begin, train=train,
         )  # fmt: skip
 
     bundle, state = _choice(read, options)
@@ -147,6 +184,7 @@ def bifurcation(
 @_over(f"{GEAR_AXES}; zeta, omega, epsilon, F_m, F_h, b, eps_T of a dimensionless one.")
 @_but
 @click.option("--full", is_flag=True, help="Compute every point, give none up to its neighbours.")
+@_train
 @_common
 def map_(
     case: str,
@@ -167,29 +205,38 @@ def map_(
     axes = parse_axes(read, over)
     bundle, state = _choice(read, options)
     plan = case_map(
-        read, axes, bundle=bundle, state=state, changes=parse_numbers(but), refine=not full
-    )
+        read, axes, bundle=bundle, state=state, changes=parse_numbers(but), refine=not full,
+        train=_train_of(read, options),
+    )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
 
 
 @click.command()
 @delivery.case
 @_but
-@click.option("--x", "x", default="-2:2:401", show_default=True, metavar="FROM:TO:COUNT")
-@click.option("--v", "v", default="-2:2:401", show_default=True, metavar="FROM:TO:COUNT")
+@click.option("--x", "x", metavar="FROM:TO:COUNT",
+              help="Starts; -2:2:401, of a drive train -2:2:25.")  # fmt: skip
+@click.option("--v", "v", metavar="FROM:TO:COUNT", help="As --x.")
+@click.option("--plane", metavar="NAME",
+              help="Of a drive train: a bearing, whose journal starts at (x, v) in um, or "
+              "teeth, deflection and rate in half backlashes [teeth].")  # fmt: skip
+@_train
 @_common
 def basins(
-    case: str, but: tuple[str, ...], x: str, v: str, output: str, as_json: bool, **options: Any
-) -> None:
+    case: str, but: tuple[str, ...], x: str | None, v: str | None, plane: str | None, output: str,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
     """Basins of attraction of CASE at its base set (a gear case: first speed and torque)."""
     from thermogear.case.axes import parse_numbers
     from thermogear.study.diagrams import case_basins
 
     read = delivery.load(case, options["overrides"])
     bundle, state = _choice(read, options)
+    train = _train_of(read, options, "" if plane in (None, "teeth") else plane)
+    usual = "-2:2:401" if train is None else "-2:2:25"
     plan = case_basins(
-        read, x=_grid("x", x), v=_grid("v", v), bundle=bundle, state=state,
-        changes=parse_numbers(but),
+        read, x=_grid("x", x or usual), v=_grid("v", v or usual), bundle=bundle, state=state,
+        changes=parse_numbers(but), train=train,
     )  # fmt: skip
     _carry(plan, Path(output), read.title, as_json, options)
 

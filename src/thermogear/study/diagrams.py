@@ -2,26 +2,90 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from thermogear.analysis.basins import BasinPlan, basin_plan
+from thermogear.analysis.basins import BASIN_RULE, BasinPlan, basin_plan
 from thermogear.analysis.branches import KINDS
-from thermogear.analysis.diagram import BRANCH_PERIOD, DiagramPlan, diagram_plan
+from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan, diagram_plan
 from thermogear.analysis.family import Family
-from thermogear.analysis.maps import MapPlan, map_plan
+from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
+from thermogear.analysis.settle import Rule
+from thermogear.base.errors import InputError
 from thermogear.case.base import Case
-from thermogear.case.family import GearFamily, Tabulated, family, moving
-from thermogear.case.thermal_state import HOT, StateLike
+from thermogear.case.case import gear_case
+from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, moving
+from thermogear.case.thermal_state import HOT, StateLike, ThermalState
+from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
+from thermogear.study.shafts.motion import LONGEST
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+TRAIN_TILE, TRAIN_STRIDE = 16, 2
+"""A train's point costs as much as thousands of lanes: small chunks, and few points spared."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Train:
+    """That the drive train of a case moves, not its gears on rigid bearings.
+
+    ``operating`` point, from 0; ``coordinates`` of the reduced train, the interface and 16 modes
+    if left out; ``seen`` the bearing whose journal is drawn, "" the teeth.
+    """
+
+    operating: int = 0
+    coordinates: int | None = None
+    seen: str = ""
+
+
+def case_family(
+    case: Case,
+    names: Sequence[str],
+    *,
+    bundle: str = "",
+    state: StateLike = HOT,
+    changes: Mapping[str, float] | None = None,
+    train: Train | None = None,
+) -> GearFamily | NumberFamily | TrainFamily:
+    """The family of a case over ``names``: of its gears alone, or of its drive ``train``."""
+    if train is None:
+        return family(case, tuple(names), bundle, state, numbers=changes)
+    if changes:
+        raise InputError("--but", ", ".join(changes), why="the case has gears", fix="use --set")
+    gears = gear_case(case)
+    most = len(gears.speeds) * len(gears.torques)
+    if not 0 <= train.operating < most:
+        raise InputError("--operating", train.operating + 1, allowed=f"1..{most}")
+    return TrainFamily(
+        gears, tuple(names), bundle, ThermalState.of(state), operating=train.operating,
+        coordinates=train.coordinates, seen=train.seen,
+    )  # fmt: skip
+
+
+def rule_of(family: TrainFamily, rule: Rule) -> Rule:
+    """``rule``, its periods fewer where shafts turn forces with them: one is then many meshes.
+
+    Raises InputError where all shafts come back in place too late to wait for it.
+    """
+    cycle = family.cycle
+    if cycle == 1:
+        return rule
+    if cycle > LONGEST:
+        raise InputError(
+            "shafts",
+            f"forces that come back after {cycle} mesh periods",
+            allowed=f"up to {LONGEST}",
+            why="unbalance, eccentricity or run-out turn with shafts of these teeth",
+            fix="leave them out here; `waterfall` and `run` follow them",
+        )
+    return replace(rule, first=8, cap=64, max_period=2, chaos_periods=40)
 
 
 def case_diagram(
@@ -34,20 +98,25 @@ def case_diagram(
     changes: Mapping[str, float] | None = None,
     branch_period: int = BRANCH_PERIOD,
     starts: tuple[tuple[float, float], ...] = (),
+    train: Train | None = None,
 ) -> DiagramPlan:
-    """The orbit diagram of a case over one parameter.
+    """The orbit diagram of a case, or of its drive ``train``, over one parameter.
 
     Over a gear parameter the tables are computed at ``values`` and run straight between them,
     which is where bifurcations are located.
     """
-    whole = family(case, (name,), bundle, state, numbers=changes)
+    whole = case_family(case, (name,), bundle=bundle, state=state, changes=changes, train=train)
     whole.require({name: values})
     axis = np.sort(values)
     lanes: Family = whole
-    if isinstance(whole, GearFamily) and axis.size > 1:
+    rule = DIAGRAM_RULE
+    if isinstance(whole, TrainFamily):
+        rule = rule_of(whole, rule)
+        lanes = TabulatedTrains(whole, axis)
+    elif isinstance(whole, GearFamily) and axis.size > 1:
         lanes = Tabulated.of(whole, axis)
     begin = starts or (case.simulation.initial_state,)
-    return diagram_plan(lanes, name, axis, starts=begin, branch_period=branch_period)
+    return diagram_plan(lanes, name, axis, starts=begin, branch_period=branch_period, rule=rule)
 
 
 def case_map(
@@ -58,11 +127,20 @@ def case_map(
     state: StateLike = HOT,
     changes: Mapping[str, float] | None = None,
     refine: bool = True,
+    train: Train | None = None,
 ) -> MapPlan:
-    """The map of regimes of a case over two parameters."""
-    whole = family(case, tuple(axes), bundle, state, numbers=changes)
+    """The map of regimes of a case, or of its drive ``train``, over two parameters."""
+    whole = case_family(
+        case, tuple(axes), bundle=bundle, state=state, changes=changes, train=train
+    )  # fmt: skip
     whole.require(axes)
-    return map_plan(whole, axes, initial_state=case.simulation.initial_state, refine=refine)
+    start = case.simulation.initial_state
+    if not isinstance(whole, TrainFamily):
+        return map_plan(whole, axes, initial_state=start, refine=refine)
+    return map_plan(
+        whole, axes, initial_state=start, refine=refine, rule=rule_of(whole, MAP_RULE),
+        tile=TRAIN_TILE, stride=TRAIN_STRIDE,
+    )  # fmt: skip
 
 
 def case_basins(
@@ -73,9 +151,12 @@ def case_basins(
     bundle: str = "",
     state: StateLike = HOT,
     changes: Mapping[str, float] | None = None,
+    train: Train | None = None,
 ) -> BasinPlan:
-    """The basins of a case at its base set, or at its first speed and torque."""
-    whole = family(case, (), bundle, state, numbers=changes)
+    """The basins of a case, or of its drive ``train``, at its base set or one operating point."""
+    whole = case_family(case, (), bundle=bundle, state=state, changes=changes, train=train)
+    if isinstance(whole, TrainFamily):
+        return basin_plan(whole.model, x=x, v=v, rule=rule_of(whole, BASIN_RULE))
     points = moving(whole(np.empty((1, 0))), whole)
     return basin_plan(points.model() if points.gears else whole.model, x=x, v=v)
 

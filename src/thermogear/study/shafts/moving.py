@@ -102,7 +102,7 @@ def moving(
     if friction is not None:
         six = np.concatenate([assembly.at_gear(s)[:, [0, 1, 4]] for s in SHAFTS], axis=-1)
         columns = np.stack([kept.vector(six @ one) for one in assembly.frame.friction_columns])
-    outer, wobbles, cycle = _shaft_orders(plan_of(case), assembly, kept)
+    outer, wobbles, cycle = shaft_orders(plan_of(case), assembly, kept)
     mesh = state.mesh
     model = GearedModel(
         mass=kept.matrix(assembly.mass),
@@ -158,7 +158,7 @@ def _bearings(state: TrainState, kept: Reduction) -> tuple[Floats, tuple[LocalBe
     return stiffness, tuple(found)
 
 
-def _shaft_orders(
+def shaft_orders(
     plan: TrainPlan, assembly: Assembly, kept: Reduction
 ) -> tuple[tuple[OuterForce, ...], tuple[Wobble, ...], int]:
     """What turns with a shaft, and the mesh periods after which all of it comes again."""

@@ -1,0 +1,76 @@
+"""A model between two others of the same layout, number by number."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from thermogear.base.pieces import Pieces
+from thermogear.dynamics.geared import GearedModel
+
+
+def between(one: GearedModel, other: GearedModel, weight: float) -> GearedModel:
+    """``one`` + ``weight`` (``other`` - ``one``) in every number, functions of the phase included.
+
+    Both are trains of one layout in the same coordinates. Pieces of both functions are kept, and
+    so are the jumps of both. ``weight`` 0 is ``one`` itself.
+    """
+    found: GearedModel = one if weight == 0.0 else _mixed(one, other, weight)
+    return found
+
+
+def _mixed(a: Any, b: Any, weight: float) -> Any:
+    if isinstance(a, Pieces):
+        return _pieces(a, b, weight)
+    if isinstance(a, GearedModel):
+        own = {f.name: getattr(a, f.name) for f in fields(a)}
+        made = {
+            name: _mixed(value, getattr(b, name), weight)
+            for name, value in own.items()
+            if name != "friction_jumps"
+        }
+        return GearedModel(**made, friction_jumps=_jumps(a, b))
+    if is_dataclass(a):
+        made = {f.name: _mixed(getattr(a, f.name), getattr(b, f.name), weight) for f in fields(a)}
+        return type(a)(**made)  # type: ignore[misc]
+    if isinstance(a, tuple):
+        return tuple(_mixed(x, y, weight) for x, y in _alike(a, b))
+    if isinstance(a, float | complex | np.ndarray):
+        return a + weight * (b - a)
+    return a
+
+
+def _alike(a: tuple[Any, ...], b: tuple[Any, ...]) -> Any:
+    """Pairs of both; a series of harmonics is filled up with zeros."""
+    longest = max(len(a), len(b))
+    if all(isinstance(x, complex | float) for x in (*a, *b)):
+        return zip(a + (0.0,) * (longest - len(a)), b + (0.0,) * (longest - len(b)), strict=True)
+    return zip(a, b, strict=True)
+
+
+def _pieces(a: Pieces, b: Pieces, weight: float) -> Pieces:
+    """The mixture as polynomials between the borders of both."""
+    starts = sorted({*a.starts, *b.starts})
+    rows = []
+    for start in starts:
+        one, two = _from(a, start), _from(b, start)
+        size = max(one.size, two.size)
+        one, two = (np.pad(row, (0, size - row.size)) for row in (one, two))
+        rows.append(tuple((one + weight * (two - one)).tolist()))
+    return Pieces(starts=tuple(starts), coefficients=tuple(rows))
+
+
+def _from(function: Pieces, start: float) -> Any:
+    """Coefficients of the polynomial at ``start``, moved to it."""
+    place = int(np.searchsorted(function.starts, start, side="right")) - 1
+    own = np.polynomial.Polynomial(function.coefficients[place])
+    moved = own(np.polynomial.Polynomial([start - function.starts[place], 1.0]))
+    return np.atleast_1d(moved.coef)
+
+
+def _jumps(a: GearedModel, b: GearedModel) -> tuple[float, ...] | None:
+    if a.friction_jumps is None or b.friction_jumps is None:
+        return None
+    return tuple(sorted({*a.friction_jumps, *b.friction_jumps}))
