@@ -327,7 +327,6 @@ def of_moving_trains() -> dict[str, Picture]:
         "train-forces": bearings.bearing_force_time(moved, 0),
         "train-bearing-orders": bearings.bearing_force_order(moved, 0),
         "train-torus": bearings.torus_section(moved, 0),
-        "train-journals": bearings.journals_at(moved, 0, sample=5),
         "train-heard": train_motion.sound(moved, 0),
         "train-over-speed": waterfall.over_speed(swept),
         "train-orders": waterfall.lines(swept, 0),

@@ -114,9 +114,9 @@ def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
 def torus_orders(second: float) -> Floats:
     """Orders k + m nu of a motion with the second frequency nu, in mesh frequencies.
 
-    k up to the 12th harmonic, m up to three either way.
+    k up to the 12th harmonic, m up to two either way.
     """
-    found = np.add.outer(np.arange(HARMONICS + 1), second * np.arange(-3, 4)).ravel()
+    found = np.add.outer(np.arange(HARMONICS + 1), second * np.arange(-2, 3)).ravel()
     return np.unique(np.round(found[(found > 1e-9) & (found <= HARMONICS + 1e-9)], 9))
 
 

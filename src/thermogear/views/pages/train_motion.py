@@ -30,8 +30,8 @@ ORBITS = (
     "circle, the radial clearance of that state of heat, nothing holds it; what reaches beyond is "
     "the contact's deflection. Of rolling elements the free space is the polygon around the "
     "circle, a side for each element. A preloaded bearing has none. The arrow is the mean force "
-    "on the ring. Below: the same paths, each about its own mean, enlarged; the dot is mesh phase "
-    "0, the arrow the way it goes."
+    "on the ring. Below: the same paths, each about its own mean, enlarged; the arrow is the way "
+    "it goes, the dot its place at mesh phase 0, which the dial turns on."
 )
 FORCES = (
     "Amount of the force on each bearing's ring, damping not in it. Dashed: the amount of the "
@@ -48,8 +48,7 @@ TORUS = (
     "the curve are its quarters. A second frequency is known but for whole multiples of the "
     "mesh's and for its sign: the one below half the mesh frequency is told."
 )
-MOVING = "Journals in their outer rings through a mesh period; grey the path, dashed the clearance."
-FRAMES = 32
+FRAMES = 16
 """Moments of a mesh period."""
 FEW = 2
 """Up to so many operating points the bearings of each are shown."""
@@ -116,28 +115,28 @@ def _closer(data: xr.Dataset) -> list[int]:
 
 
 def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) -> None:
-    """Orbits, forces over time and order, and the journals on their way."""
+    """Orbits with a dial of the phase, forces over time and over order."""
     path = ("journal_path", "radial_clearance", "mean_bearing_load")
-    for made, heading, caption, needs in (
-        (bearings.bearing_orbits, "Journals in their bearings", ORBITS, path),
-        (bearings.bearing_force_time, "Force on each bearing over time", FORCES, path),
-        (bearings.bearing_force_order, "Force on each bearing over order", ORDERS, path),
-    ):
-        file = f"{made.__name__.replace('_', '-')}-{place}"
-        make = partial(made, data, place)
-        pictures.add(file, f"{heading}, {name}", caption, data, needs, make, wide=True)
     phases = [f"{f / FRAMES:.3f}" for f in range(FRAMES)]
     turned = Dial("mesh phase", phases, [""] * FRAMES, 0, partial(_frame, data, place))
     pictures.add(
-        f"journals-{place}", f"Journals on their way, {name}", MOVING, data, path,
+        f"bearing-orbits-{place}", f"Journals in their bearings, {name}", ORBITS, data, path,
         partial(_frame, data, place, 0), wide=True, dial=turned,
+    )  # fmt: skip
+    pictures.add(
+        f"bearing-force-{place}", f"Force on each bearing over time, {name}", FORCES, data, path,
+        partial(bearings.bearing_force_time, data, place), wide=True,
+    )  # fmt: skip
+    pictures.add(
+        f"bearing-orders-{place}", f"Force on each bearing over order, {name}", ORDERS, data, path,
+        partial(bearings.bearing_force_order, data, place), wide=True,
     )  # fmt: skip
 
 
 def _frame(data: xr.Dataset, place: int, frame: int) -> Picture:
     phase = data["phase"].values
     sample = round(frame / FRAMES / float(phase[1] - phase[0]))
-    return bearings.journals_at(data, place, sample=sample)
+    return bearings.bearing_orbits(data, place, sample=sample)
 
 
 def _table(data: xr.Dataset, names: list[str]) -> Table:

@@ -15,7 +15,6 @@ from thermogear.views.style import (
     ABOVE,
     BETWEEN,
     BOTTOM,
-    FAINT,
     INK,
     LEFT,
     QUIET,
@@ -43,15 +42,18 @@ BETWEEN_SAMPLES = 4
 """Points of a drawn orbit for every sample."""
 
 
-def bearing_orbits(data: xr.Dataset, operating: int) -> Picture:
-    """Every journal in its clearance, above to scale, below about its mean place alone [um]."""
+def bearing_orbits(data: xr.Dataset, operating: int, *, sample: int = 0) -> Picture:
+    """Every journal in its clearance, above to scale, below about its mean place alone [um].
+
+    A dot below shows where it is at that ``sample`` of the record.
+    """
     here = data.isel(operating=operating)
     rows: list[list[Panel]] = []
     places = range(here.sizes["bearing"])
     for first in range(0, len(places), ACROSS):
         some = places[first : first + ACROSS]
         rows.append([_in_clearance(here, b) for b in some])
-        rows.append([_about_mean(here, b) for b in some])
+        rows.append([_about_mean(here, b, sample) for b in some])
     wide = max(len(row) for row in rows)
     for row in rows:
         row.extend(_empty(row[0]) for _ in range(wide - len(row)))
@@ -65,7 +67,7 @@ def bearing_orbits(data: xr.Dataset, operating: int) -> Picture:
 
 def _axes(words: str, half: float) -> tuple[Axis, Axis]:
     """x and y of one scale, from -``half`` to ``half``."""
-    x, y = (Axis(f"{c}{words} [µm]", low=-half, high=half, small=True, most=5) for c in "xy")
+    x, y = (Axis(f"{c}{words} [µm]", low=-half, high=half, most=5) for c in "xy")
     return x, y
 
 
@@ -87,22 +89,32 @@ def _in_clearance(here: xr.Dataset, bearing: int) -> Panel:
         x, y = _smooth(_once(path[s], here, s))
         panel.curve(x, y, colour=colour, width=1.4, label=f"journal, {state}")
     panel.points(
-        [0.0], [0.0], colour=QUIET, marker="plus", size=6.0, label="centre of the outer ring"
+        [0.0], [0.0], colour=QUIET, marker="plus", size=4.0, label="centre of the outer ring"
     )
     _load(panel, here["mean_bearing_load"].values[-1, bearing], ROOM * most, states[-1])
-    told = [_without(free[s], state) for s, state in enumerate(states)]
-    panel.text(
-        0.03, 0.985, "\n".join(one for one in told if one), at="panel", across="left", up="top",
-        size=7.2, colour=QUIET,
-    )  # fmt: skip
+    _said(panel, _bound(free, states), here["mean_bearing_load"].values[-1, bearing])
     return panel
 
 
-def _without(clearance: float, state: str) -> str:
+def _bound(free: Floats, states: Sequence[str]) -> str:
     """What is said of a bearing without a free circle."""
-    if np.isnan(clearance):
-        return f"{state}: a linear spring"
-    return "" if clearance > 0.0 else f"{state}: preload {-clearance:.1f} µm"
+    if np.isnan(free).all():
+        return "a linear spring"
+    return "\n".join(
+        f"{state}: preload {-gap:.1f} µm"
+        for gap, state in zip(free, states, strict=True)
+        if gap < 0.0
+    )
+
+
+def _said(panel: Panel, words: str, load: Floats) -> None:
+    """``words`` at the rim that the journal is pushed to, where no arrow is."""
+    low = bool(load[1] <= 0.0)
+    if words:
+        panel.text(
+            0.03, 0.015 if low else 0.985, words, at="panel", across="left",
+            up="bottom" if low else "top", size=7.4, colour=QUIET,
+        )  # fmt: skip
 
 
 def _once(path: Floats, here: xr.Dataset, state: int) -> Floats:
@@ -139,10 +151,10 @@ def _load(panel: Panel, load: Floats, half: float, state: str) -> None:
         [tail[0], tip[0]], [tail[1], tip[1]], colour=INK, width=1.4, label=f"mean load, {state}"
     )
     _head(panel, tip, way, 0.1 * half, INK)
-    up = way[1] > 0.0
+    low, left = bool(tail[1] < 0.0), bool(tail[0] > 0.0)
     panel.text(
-        0.97, 0.02 if up else 0.985, f"{number(size)} N", at="panel", across="right",
-        up="bottom" if up else "top", size=7.8,
+        0.03 if left else 0.97, 0.015 if low else 0.985, f"{number(size)} N", at="panel",
+        across="left" if left else "right", up="bottom" if low else "top", size=8.0,
     )  # fmt: skip
 
 
@@ -154,8 +166,8 @@ def _head(panel: Panel, tip: Floats, way: Floats, size: float, colour: str) -> N
     panel.curve(x, y, colour=colour, width=1.4)
 
 
-def _about_mean(here: xr.Dataset, bearing: int) -> Panel:
-    """The orbits alone, each less its mean place; a dot at mesh phase 0, an arrow along the way."""
+def _about_mean(here: xr.Dataset, bearing: int, sample: int) -> Panel:
+    """The orbits alone, each less its mean place; a dot at ``sample``, an arrow along the way."""
     path = 1e6 * here["journal_path"].values[:, bearing]
     path = path - path.mean(axis=2, keepdims=True)
     far = float(np.nanmax(np.hypot(path[:, 0], path[:, 1]), initial=0.0))
@@ -167,7 +179,10 @@ def _about_mean(here: xr.Dataset, bearing: int) -> Panel:
             continue
         x, y = _smooth(_once(path[s], here, s))
         panel.curve(x, y, colour=colour, width=1.1)
-        panel.points([x[0]], [y[0]], colour=colour, size=5.0)
+        now = path[s, :, sample]
+        panel.points(
+            [now[0]], [now[1]], colour=colour, size=5.5, edge="white", edge_width=0.6, order=3.0
+        )
         steps = np.diff([x, y], axis=1)
         longs = np.hypot(*steps)
         fast = int(longs.argmax())
@@ -258,20 +273,22 @@ def torus_section(data: xr.Dataset, operating: int) -> Picture:
         nu = float(one["second_frequency"])
         x, y = 1e6 * one["section_deflection"].values, 1e3 * one["section_rate"].values
         panel = Panel(
-            Axis("approach along the drive flank [µm]"),
-            Axis("its rate [mm/s]"),
-            f"{names_of(here, 'state')[s]}: mesh {mesh:.1f} Hz, second {nu:.6f} of it, "
+            Axis("approach along the drive flank [µm]", margin=0.1),
+            Axis("its rate [mm/s]", margin=0.1),
+            f"{names_of(here, 'state')[s]}: mesh {mesh:.1f} Hz, second base frequency "
             f"{nu * mesh:.1f} Hz",
         )
         own = 1e6 * one["torus_deflection"].values, 1e3 * one["torus_rate"].values
-        panel.curve(*own, colour=QUIET, width=1.0, label="closed curve through them")
+        panel.curve(
+            *own, colour=INK, width=0.8, order=2.5, label="closed curve through the sections"
+        )
         kept = np.isfinite(x) & np.isfinite(y)
         around = np.mod(nu * np.arange(x.size), 1.0)
         part = np.minimum((around * len(HUES)).astype(int), len(HUES) - 1)
         for hue, colour in enumerate(HUES):
             chosen = kept & (part == hue)
             if chosen.any():
-                panel.points(x[chosen], y[chosen], colour=colour, size=4.0)
+                panel.points(x[chosen], y[chosen], colour=colour, size=4.5)
         _quarters(panel, own)
         panels.append(panel)
     return Picture([panels], size=(WIDE if len(panels) > 1 else 6.4, 4.0))
@@ -288,29 +305,3 @@ def _quarters(panel: Panel, curve: tuple[Any, Any]) -> None:
         long = float(np.hypot(*out)) or 1.0
         panel.points([x[at]], [y[at]], colour=INK, size=7.0, open=True)
         panel.text(x[at], y[at], words, offset=(11.0 * out[0] / long, 11.0 * out[1] / long))
-
-
-def journals_at(data: xr.Dataset, operating: int, *, sample: int) -> Picture:
-    """Journals in their clearance at one ``sample`` of the record, with the path they take."""
-    here = data.isel(operating=operating)
-    states = names_of(here, "state")
-    panels = []
-    for b, name in enumerate(names_of(here, "bearing")[: 2 * ACROSS]):
-        path = 1e6 * here["journal_path"].values[:, b]
-        free = 1e6 * here["radial_clearance"].values[:, b]
-        far = float(np.nanmax(np.hypot(path[:, 0], path[:, 1]), initial=0.0))
-        most = max(far, float(np.nanmax(free, initial=0.0))) or 1.0
-        panel = Panel(*_axes("", 1.1 * most), name, equal=True)
-        for s, state in enumerate(states):
-            colour = STATES.get(state, INK)
-            if free[s] > 0.0:
-                x, y = free[s] * np.cos(ROUND), free[s] * np.sin(ROUND)
-                panel.curve(x, y, colour=colour, width=1.0, dash=DASH, label=f"clearance, {state}")
-            trace = _smooth(_once(path[s], here, s))
-            panel.curve(*trace, colour=FAINT, width=1.2, order=1.5)
-            x, y = path[s, :, sample]
-            panel.points([x], [y], colour=colour, size=8.0, label=f"journal, {state}")
-        panels.append(panel)
-    rows = [panels[i : i + ACROSS] for i in range(0, len(panels), ACROSS)]
-    rows[-1].extend(_empty(panels[0]) for _ in range(len(rows[0]) - len(rows[-1])))
-    return Picture(rows, size=(WIDE, 0.8 + 2.5 * len(rows)), legend=4)

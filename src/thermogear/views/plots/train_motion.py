@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 HIGHEST = 12.0
+MANY = 128
+"""Sections from which their dots are small."""
 
 
 def four_panels(data: xr.Dataset, operating: int) -> Picture:
@@ -36,12 +38,14 @@ def four_panels(data: xr.Dataset, operating: int) -> Picture:
                 phase, -one["back_force"].values, colour=colour, dash=(3.0, 2.0),
                 label=f"back, {state}",
             )  # fmt: skip
+        places = one["section_deflection"].values
+        many = np.isfinite(places).sum() > MANY
         plane.points(
-            1e6 * one["section_deflection"].values,
+            1e6 * places,
             1e3 * one["section_rate"].values,
             colour=colour,
-            open=s == 0,
-            size=6.4 if s == 0 else 4.2,
+            open=s == 0 and not many,
+            size=2.4 if many else 6.4 if s == 0 else 4.2,
             label=state,
         )
     order = here["line_order"].values
