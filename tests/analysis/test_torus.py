@@ -106,6 +106,10 @@ def test_a_train_on_a_torus(compared: Compared) -> None:
     compared("second frequency of a torus", "truth Q2", away, within["frequency"])
     path = section.carry(found.state, 3000)[:, : model.size] @ model.drive
     compared("range on a torus", "truth Q2", np.ptp(path) / known["range"] - 1, within["range"])
+    on = section.carry(found.state, 600)
+    angle = np.mod(found.torus.frequency * np.arange(600), 1.0)
+    away = np.abs(found.torus.curve(on, angle=angle) - on) / on.std(axis=0)
+    compared("sections beside their closed curve", "their spread", away, 0.02)
     compared("deviation on a torus", "truth Q2", path.std() / known["std"] - 1, within["std"])
 
 

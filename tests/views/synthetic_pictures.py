@@ -11,6 +11,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.views.gears import DrawnState, GearDrawing
 from thermogear.views.picture import Picture
 from thermogear.views.plots import (
+    bearings,
     claims,
     flanks,
     gears,
@@ -275,6 +276,7 @@ def of_moving_trains() -> dict[str, Picture]:
     rng = np.random.default_rng(5)
     point, over = ("state", "operating"), ("state", "direction", "pinion_speed")
     phase, order = np.arange(32) / 16.0, np.arange(1, 9) / 2.0
+    round_ = np.linspace(0.0, 2.0 * np.pi, 32)
     moved = xr.Dataset(
         {
             "mesh_force": ((*point, "sample"), rng.uniform(0.0, 3e3, (2, 1, 32))),
@@ -286,6 +288,18 @@ def of_moving_trains() -> dict[str, Picture]:
                 (*point, "bearing", "line_order"), rng.uniform(0.1, 50.0, (2, 1, 2, 8)),
             ),
             "housing_line": ((*point, "line_order"), rng.uniform(0.01, 5.0, (2, 1, 8))),
+            "mesh_force_line": ((*point, "line_order"), rng.uniform(0.01, 5.0, (2, 1, 8))),
+            "mean_bearing_force": ((*point, "bearing"), rng.uniform(1.0, 2.0, (2, 1, 2))),
+            "mean_bearing_load": ((*point, "bearing", "axis"), rng.normal(size=(2, 1, 2, 2))),
+            "radial_clearance": ((*point, "bearing"), [[[5e-6, np.nan]], [[-2e-6, np.nan]]]),
+            "journal_path": (
+                (*point, "bearing", "axis", "sample"), rng.normal(0.0, 1e-5, (2, 1, 2, 2, 32)),
+            ),
+            "label": (point, [["period-1"], ["quasi-periodic"]]),
+            "torus_deflection": ((*point, "angle"), np.full((2, 1, 32), np.cos(round_))),
+            "torus_rate": ((*point, "angle"), np.full((2, 1, 32), np.sin(round_))),
+            "second_frequency": (point, [[np.nan], [0.3819]]),
+            "mesh_frequency": ("operating", [800.0]),
         },
         {"state": heat, "bearing": two, "phase": ("sample", phase), "line_order": order},
     )  # fmt: skip
@@ -309,6 +323,10 @@ def of_moving_trains() -> dict[str, Picture]:
     )  # fmt: skip
     return {
         "train-moving": train_motion.four_panels(moved, 0),
+        "train-orbits": bearings.bearing_orbits(moved, 0),
+        "train-forces": bearings.bearing_force_time(moved, 0),
+        "train-bearing-orders": bearings.bearing_force_order(moved, 0),
+        "train-torus": bearings.torus_section(moved, 0),
         "train-heard": train_motion.sound(moved, 0),
         "train-over-speed": waterfall.over_speed(swept),
         "train-orders": waterfall.lines(swept, 0),

@@ -123,7 +123,10 @@ def settle(
                 length = min(length, how.first)
                 continue
         length *= 2
-    return _open(section, state, used, how, alive)
+    try:
+        return _open(section, state, used, how, alive)
+    except ConvergenceError as told:
+        return Motion(name="diverged", period=0, reason=str(told), state=state, used=used)
 
 
 def _lag(section: ReturnMap, window: Floats, max_period: int) -> int:

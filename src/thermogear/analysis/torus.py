@@ -42,6 +42,16 @@ class Torus:
         """The section is a closed curve, and no orbit of up to :data:`LONGEST` periods."""
         return self.foretold < FORETOLD and self.distance > 4.0 * self.error
 
+    def curve(self, sections: Floats, *, angle: Floats) -> Floats:
+        """The closed curve on which ``sections`` (period, d) lie, at ``angle`` -> (angle, d).
+
+        ``angle`` nu k [cycles], 0 at the first section; the harmonics are fitted to them.
+        """
+        model, _, _, _ = np.linalg.lstsq(
+            _lines(self.frequency, np.arange(len(sections))), sections, rcond=None
+        )
+        return np.asarray(_lines(1.0, angle) @ model)
+
 
 def torus(sections: Floats, *, unit: Floats) -> Torus | None:
     """The torus that ``sections`` (period, d) may lie on; None where they hardly move.
@@ -91,7 +101,7 @@ def _foretold(own: Floats, nu: float) -> float:
     return float(np.std(told - own[half : 2 * half]))
 
 
-def _lines(nu: float, k: NDArray[np.int64]) -> Floats:
+def _lines(nu: float, k: NDArray[np.int64] | Floats) -> Floats:
     """cos and sin (period, 2 harmonics + 1) of the harmonics of ``nu``."""
     turn = 2.0 * np.pi * nu * np.multiply.outer(k, np.arange(1, HARMONICS + 1))
     return np.hstack([np.ones((k.size, 1)), np.cos(turn), np.sin(turn)])

@@ -233,6 +233,18 @@ QUANTITIES: dict[str, Quantity] = {
     "dynamic_load_factor": Quantity("1", "greatest over mean mesh force", "DLF"),
     "least_displacement": Quantity("m", "least displacement on the orbit", "x_min"),
     "greatest_displacement": Quantity("m", "greatest displacement on the orbit", "x_max"),
+    # drive trains in motion
+    "journal_path": Quantity("m", "path of the journal against its outer ring", "u"),
+    "radial_clearance": Quantity("m", "radial clearance, half of the play; below zero a preload"),
+    "mean_bearing_load": Quantity("N", "mean force of the journal on its outer ring"),
+    "bearing_contact_share": Quantity("1", "share of time in which the bearing carries load"),
+    "bearing_contact_losses": Quantity("1", "losses of contact of the bearing per mesh period"),
+    "second_frequency": Quantity(
+        "1", "second base frequency of a motion on a torus, in mesh frequencies", "ν"
+    ),
+    "second_frequency_error": Quantity("1", "its error"),
+    "torus_deflection": Quantity("m", "closed curve of the sections: deflection"),
+    "torus_rate": Quantity("m/s", "closed curve of the sections: its rate"),
     "status": Quantity("1", "status of the point"),
 }
 

@@ -236,7 +236,8 @@ def _finish(axes: Axes, panel: data.Panel) -> None:
     if not (panel.x.words or panel.y.words or panel.x.names or panel.y.names):
         axes.set_axis_off()
     if panel.equal:
-        axes.set_aspect("equal", adjustable="datalim")
+        ends = (panel.x.low, panel.x.high, panel.y.low, panel.y.high)
+        axes.set_aspect("equal", adjustable="datalim" if None in ends else "box")
     if panel.top:
         factor = panel.top.factor
         above = axes.secondary_xaxis(

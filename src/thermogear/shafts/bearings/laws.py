@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from thermogear.base.errors import InputError
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 
 class BearingLaw(Protocol):
@@ -33,6 +34,10 @@ class BearingLaw(Protocol):
 
     def stiffness(self, displacement: ArrayLike) -> Floats:
         """Tangent stiffness -dF/du [N/m], (..., 2, 2)."""
+        ...
+
+    def touching(self, displacement: ArrayLike) -> Bools:
+        """Whether journal and ring touch, (...): false where the journal is free to move."""
         ...
 
 
@@ -70,6 +75,9 @@ class LinearLaw:
     def stiffness(self, displacement: ArrayLike) -> Floats:
         u = np.asarray(displacement, dtype=float)
         return np.broadcast_to(np.asarray(self.stiffness_matrix, float), (*u.shape[:-1], 2, 2))
+
+    def touching(self, displacement: ArrayLike) -> Bools:
+        return np.ones(np.shape(displacement)[:-1], dtype=bool)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,6 +135,10 @@ class RingLaw:
         secant = np.divide(force, r, out=np.zeros_like(r), where=r > 0.0)
         return np.asarray(slope * along + secant * (np.eye(2) - along))
 
+    def touching(self, displacement: ArrayLike) -> Bools:
+        r = np.linalg.norm(np.asarray(displacement, dtype=float), axis=-1)
+        return np.asarray((r > self.clearance) | self.linear, dtype=bool)
+
 
 @dataclass(frozen=True, kw_only=True)
 class ElementLaw:
@@ -180,6 +192,9 @@ class ElementLaw:
         loaded = deep > 0.0
         slope[loaded] = self.exponent * self.coefficient * deep[loaded] ** (self.exponent - 1.0)
         return np.asarray(np.einsum("...i,ia,ib->...ab", slope, self.directions, self.directions))
+
+    def touching(self, displacement: ArrayLike) -> Bools:
+        return np.asarray((self.loads(displacement) > 0.0).any(axis=-1), dtype=bool)
 
 
 def _positive(name: str, value: float) -> None:

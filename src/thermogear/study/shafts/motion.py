@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.analysis.torus import Torus
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import STATUS, label
@@ -25,6 +26,7 @@ from thermogear.study.shafts.record import (
     lines,
     orders_of_lines,
     recorded,
+    torus_orders,
 )
 from thermogear.study.shafts.state import TrainState, places_of, plan_of, settled
 
@@ -34,6 +36,11 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 POINT = ("state", "operating")
 SECTIONS = 64
+TORUS_SECTIONS = 512
+TORUS_PERIODS = 64
+"""Mesh periods of a record on a torus: its lines are closer together."""
+TORUS_ANGLES = 256
+"""Steps of the closed curve once around."""
 LONGEST = 4000
 """Mesh periods that a motion is followed for at most where shafts turn forces with them."""
 TURNS = 4
@@ -50,6 +57,7 @@ class Moved:
     train: MovingTrain | None = None
     motion: Motion | None = None
     record: Record | None = None
+    torus_sections: Floats | None = None
 
     @property
     def status(self) -> int:
@@ -78,9 +86,25 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
     # enough to tell the sidebands of both shafts apart
     periods = PERIODS if cycle == 1 else min(cycle, TURNS * teeth)
+    turning = None
+    if found.name == "quasi-periodic":
+        periods = max(periods, TORUS_PERIODS)
+        turning = _on_torus(train, found.state)
     return Moved(
-        state=state, train=train, motion=found, record=recorded(train, found.state, periods)
+        state=state,
+        train=train,
+        motion=found,
+        record=recorded(train, found.state, periods),
+        torus_sections=turning,
     )
+
+
+def _on_torus(train: MovingTrain, state: Floats) -> Floats:
+    """Deflection of the drive flank [m] and its rate [m/s] once a mesh period, (section, 2)."""
+    n, drive = train.model.size, train.model.drive
+    path = train.model.return_map().carry(state, TORUS_SECTIONS - 1)
+    path = np.vstack([state, path])
+    return np.stack([path[:, :n] @ drive, path[:, n : 2 * n] @ drive], axis=1)
 
 
 def _followed(train: MovingTrain) -> Motion:
@@ -124,7 +148,10 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
     shape = (len(found), len(found[0]))
     teeth = (case.pair.pinion.teeth, case.pair.wheel.teeth)
     cycle = max((one.train.model.cycle for one in flat if one.train is not None), default=1)
-    orders = orders_of_lines(teeth, shafts=cycle > 1)
+    own = orders_of_lines(teeth, shafts=cycle > 1)
+    tori = [None if one.torus_sections is None else _torus(one) for one in flat]
+    turned = [torus_orders(one.frequency) for one in tori if one is not None]
+    orders = np.unique(np.round(np.concatenate([own, *turned]), 9))
     names = plan_of(case).bearing_names
     shown = SHOWN * SAMPLES
 
@@ -138,13 +165,28 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         return record.phase.size / SAMPLES
 
     def section(one: Moved, record: Record) -> Floats:
-        del one
-        kept = np.full((SECTIONS, 2), np.nan)
-        points = record.sections[:SECTIONS]
+        kept = np.full((most, 2), np.nan)
+        points = record.sections[:SECTIONS] if one.torus_sections is None else one.torus_sections
         kept[: len(points)] = points
         return kept
 
-    sections = over(section, SECTIONS, 2)
+    def felt(one: Moved, values: Floats) -> Floats:
+        """Lines at the orders that this motion has, nan at those of others."""
+        torus = one.torus_sections is not None
+        there = torus_orders(_torus(one).frequency) if torus else own
+        found = lines(values, orders=orders)
+        found[~np.isin(orders, np.round(there, 9))] = np.nan
+        return found
+
+    most = TORUS_SECTIONS if turned else SECTIONS
+    sections = over(section, most, 2)
+    curves = np.full((len(flat), TORUS_ANGLES + 1, 2), np.nan)
+    for place, one in enumerate(flat):
+        if one.torus_sections is not None:
+            angle = np.linspace(0.0, 1.0, TORUS_ANGLES + 1)
+            curves[place] = _torus(one).curve(one.torus_sections, angle=angle)
+    seconds = [[np.nan, np.nan] if t is None else [t.frequency, t.error] for t in tori]
+    second = np.reshape(seconds, (*shape, 2))
     count = len(names)
     force = over(lambda one, r: np.linalg.norm(r.bearing_force, axis=2)[:shown].T, count, shown)
     variables: dict[str, Any] = {
@@ -156,6 +198,16 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         "deflection": ((*POINT, "sample"), over(lambda one, r: r.deflection[:shown], shown), "m",
                        "approach of the drive flanks, the error taken off"),
         "bearing_force": ((*POINT, "bearing", "sample"), force, "N", "force on the bearing"),
+        "journal_path": ((*POINT, "bearing", "axis", "sample"), over(
+            lambda one, r: r.journal_path[:shown].transpose(1, 2, 0), count, 2, shown)),
+        "radial_clearance": ((*POINT, "bearing"), np.reshape(
+            [one.state.clearances for one in flat], (*shape, count))),
+        "mean_bearing_load": ((*POINT, "bearing", "axis"), over(
+            lambda one, r: r.bearing_force.mean(axis=0), count, 2)),
+        "bearing_contact_share": ((*POINT, "bearing"), over(
+            lambda one, r: r.bearing_contact, count)),
+        "bearing_contact_losses": ((*POINT, "bearing"), over(
+            lambda one, r: r.bearing_losses / periods(r), count)),
         "mean_bearing_force": ((*POINT, "bearing"), over(
             lambda one, r: np.linalg.norm(r.bearing_force.mean(axis=0), axis=1), count), "N",
             "mean force on the bearing, amount of the vector"),
@@ -179,14 +231,20 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
                                "Poincaré section: deflection along the drive flank"),
         "section_rate": ((*POINT, "section"), sections[..., 1], "m/s",
                          "Poincaré section: its rate"),
+        "torus_deflection": ((*POINT, "torus_angle"), curves[..., 0].reshape(*shape, -1)),
+        "torus_rate": ((*POINT, "torus_angle"), curves[..., 1].reshape(*shape, -1)),
+        "second_frequency": (POINT, second[..., 0]),
+        "second_frequency_error": (POINT, second[..., 1]),
+        "mesh_frequency": (("operating",), [
+            teeth[0] * one.state.speed / (2.0 * np.pi) for one in found[0]]),
         "mesh_force_line": ((*POINT, "line_order"), over(
-            lambda one, r: lines(r.mesh_force, orders=orders), orders.size), "N",
+            lambda one, r: felt(one, r.mesh_force), orders.size), "N",
             "line of the force of the drive flanks (peak)"),
         "bearing_force_line": ((*POINT, "bearing", "line_order"), over(
-            lambda one, r: lines(r.bearing_force, orders=orders).max(axis=2).T, count,
+            lambda one, r: felt(one, r.bearing_force).max(axis=2).T, count,
             orders.size), "N", "line of the bearing force, larger of x and y (peak)"),
         "housing_line": ((*POINT, "line_order"), over(
-            lambda one, r: _housing(r, orders), orders.size), "m/s^2",
+            lambda one, r: felt(one, r.housing).max(axis=1), orders.size), "m/s^2",
             "line of the housing's acceleration, larger of x and y (peak)"),
         "reduction_error": (POINT, _errors(flat).reshape(shape), "1",
                             "largest error of the 12 lowest natural frequencies by the reduction"),
@@ -203,9 +261,16 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         {
             "state": [row[0].state.state.kind for row in found],
             "bearing": list(names),
+            "axis": ["x", "y"],
             "side": ["back", "free", "drive"],
             "line_order": (("line_order",), orders, "1", "order of the mesh frequency"),
             "phase": (("sample",), np.arange(shown) / SAMPLES, "1", "time in mesh periods"),
+            "torus_angle": (
+                ("torus_angle",),
+                np.linspace(0.0, 1.0, TORUS_ANGLES + 1),
+                "1",
+                "angle of the second motion, in turns",
+            ),
             "pinion_speed": (("operating",), [one.state.speed for one in first]),
             "pinion_torque": (("operating",), [one.state.torque for one in first]),
         },
@@ -225,10 +290,10 @@ def _of(flat: Sequence[Moved], of: Any) -> Floats:
     return np.array([np.nan if one.motion is None else float(of(one.motion)) for one in flat])
 
 
-def _housing(record: Record, orders: Floats) -> Floats:
-    if np.isnan(record.housing).any():
-        return np.full(orders.size, np.nan)
-    return np.asarray(lines(record.housing, orders=orders).max(axis=1))
+def _torus(one: Moved) -> Torus:
+    assert one.motion is not None
+    assert one.motion.torus is not None
+    return one.motion.torus
 
 
 def _errors(flat: Sequence[Moved]) -> Floats:

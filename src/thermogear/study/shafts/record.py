@@ -28,6 +28,10 @@ class Record:
     ``bearing_force`` (sample, bearing, 2) [N] on the rings, damping not in it, ``housing`` (sample,
     2) acceleration [m/s^2], nan where the housing is fixed. ``sections`` (period, 2): delta_d [m]
     and its rate [m/s] at every mesh phase 0. ``counts`` and ``shares`` of the engine.
+    ``journal_path`` (sample, bearing, 2) [m]: each journal against its outer ring; a force on the
+    ring points the same way. ``bearing_contact`` (bearing,): the share of the samples in which a
+    bearing carries; ``bearing_losses`` (bearing,): how often it ceases to from one sample to the
+    next, the end of the record included.
     """
 
     phase: Floats
@@ -40,6 +44,9 @@ class Record:
     counts: dict[str, int]
     shares: Floats
     state: Floats
+    journal_path: Floats
+    bearing_contact: Floats
+    bearing_losses: NDArray[np.int64]
 
 
 def recorded(train: MovingTrain, state: Floats, periods: int, *, turn: float = 0.0) -> Record:
@@ -55,11 +62,15 @@ def shown(train: MovingTrain, run: Run, turn: float) -> Record:
     found = model.forces(phase, states=run.samples)
     q = run.samples[:, :n]
     rings = np.zeros((phase.size, len(own.bearings), 2))
+    path = np.zeros((phase.size + 1, len(own.bearings), 2))
+    held = np.ones((phase.size + 1, len(own.bearings)), dtype=bool)
+    closed = np.vstack([run.samples, run.state])[:, :n]
     local = 0
     for number, place in enumerate(own.bearings):
+        u = closed @ train.reduction.vector(place.directions)
+        path[:, number], held[:, number] = u, place.bearing.law.touching(u)
         if place.bearing.law.linear:
-            u = q @ train.reduction.vector(place.directions)
-            rings[:, number] = -place.bearing.law.force(u)
+            rings[:, number] = -place.bearing.law.force(u[:-1])
         else:
             rings[:, number] = -found["bearings"][:, local]
             local += 1
@@ -80,6 +91,9 @@ def shown(train: MovingTrain, run: Run, turn: float) -> Record:
         counts=run.counts,
         shares=run.shares,
         state=run.state,
+        journal_path=path[:-1],
+        bearing_contact=held[:-1].mean(axis=0),
+        bearing_losses=(held[:-1] & ~held[1:]).sum(axis=0),
     )
 
 
@@ -95,6 +109,15 @@ def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
     found = {h + b for h in range(HARMONICS + 1) for b in [0.0, *beside]}
     found |= {h - 0.5 for h in range(1, HARMONICS + 1)}
     return np.array(sorted(one for one in {round(o, 9) for o in found} if one > 0.0))
+
+
+def torus_orders(second: float) -> Floats:
+    """Orders k + m nu of a motion with the second frequency nu, in mesh frequencies.
+
+    k up to the 12th harmonic, m up to two either way.
+    """
+    found = np.add.outer(np.arange(HARMONICS + 1), second * np.arange(-2, 3)).ravel()
+    return np.unique(np.round(found[(found > 1e-9) & (found <= HARMONICS + 1e-9)], 9))
 
 
 def lines(values: ArrayLike, *, orders: ArrayLike) -> Floats:

@@ -9,7 +9,10 @@ import numpy as np
 
 from thermogear.base.display import number
 from thermogear.results.result import Result
+from thermogear.views.moving import Dial
 from thermogear.views.page import Block, Pictures, Section, Table, Text
+from thermogear.views.picture import Picture
+from thermogear.views.plots import bearings
 from thermogear.views.plots import train_motion as plots
 from thermogear.views.style import names_of
 from thermogear.views.typesetting import operating_names
@@ -19,9 +22,36 @@ if TYPE_CHECKING:
 
 CAPTION = (
     "Settled motion with clearance in the teeth and in the bearings. Flanks: force of the drive "
-    "flanks, 0 where they part. Bearings: amount of the force, damping not in it. Section: one dot "
-    "for each mesh period; one dot in all means that every tooth pair sees the same."
+    "flanks, 0 where they part. Section: one dot for each mesh period; one dot in all means that "
+    "every tooth pair sees the same. Lines are peak values."
 )
+ORBITS = (
+    "Above: where each journal is in its outer ring, seen along the shafts. Inside the dashed "
+    "circle, the radial clearance of that state of heat, nothing holds it; what reaches beyond is "
+    "the contact's deflection. Of rolling elements the free space is the polygon around the "
+    "circle, a side for each element. A preloaded bearing has none. The arrow is the mean force "
+    "on the ring. Below: the same paths, each about its own mean, enlarged; the arrow is the way "
+    "it goes, the dot its place at mesh phase 0, which the dial turns on."
+)
+FORCES = (
+    "Amount of the force on each bearing's ring, damping not in it. Dashed: the amount of the "
+    "mean force, as a vector."
+)
+ORDERS = (
+    "Lines of the force on each bearing, the larger of x and y, peak values. Whole orders come "
+    "from every tooth alike, halves from a motion that repeats after two mesh periods, what lies "
+    "beside them from the shafts or from a second base frequency."
+)
+TORUS = (
+    "The motion never returns: it has two base frequencies, and its sections fill a closed curve. "
+    "The colour is the second phase at the section, once around from 0 over a half to 1; marked on "
+    "the curve are its quarters. A second frequency is known but for whole multiples of the "
+    "mesh's and for its sign: the one below half the mesh frequency is told."
+)
+FRAMES = 16
+"""Moments of a mesh period."""
+FEW = 2
+"""Up to so many operating points the bearings of each are shown."""
 SOUND = (
     "Lines of the housing's acceleration, the larger of x and y: what a sensor on the housing sees "
     "of the mesh and of both shafts."
@@ -34,21 +64,34 @@ def section(result: Result, pictures: Pictures) -> Section | None:
     if data is None:
         return None
     names = operating_names(data)
+    closer = _closer(data)
     for o, name in enumerate(names):
         here = data.isel(operating=o)
         if np.isnan(here["mesh_force"].values).all():
             continue
         pictures.add(
             f"train-motion-{o}", f"The train in motion, {name}", CAPTION, data,
-            ("mesh_force", "bearing_force", "bearing_force_line"),
+            ("mesh_force", "mesh_force_line", "bearing_force_line"),
             partial(plots.four_panels, data, o), wide=True,
         )  # fmt: skip
+        if o in closer:
+            _of_bearings(data, o, name, pictures)
+        if bearings.turning(data, o):
+            pictures.add(
+                f"train-torus-{o}", f"Section of the torus, {name}", TORUS, data,
+                ("torus_deflection", "second_frequency"), partial(bearings.torus_section, data, o),
+                wide=True,
+            )  # fmt: skip
         if np.isfinite(here["housing_line"].values).any():
             pictures.add(
                 f"train-sound-{o}", f"Acceleration of the housing, {name}", SOUND, data,
                 ("housing_line",), partial(plots.sound, data, o), wide=True,
             )  # fmt: skip
-    blocks: list[Block] = [*pictures.take(), _table(data, names), _rings(data, names)]
+    blocks: list[Block] = [*pictures.take()]
+    if closer and len(closer) < len(names):
+        told = f"Bearings are shown at {names[closer[0]]}, where one carries most."
+        blocks.append(Text(told, "note"))
+    blocks += [_table(data, names), _rings(data, names)]
     worst = float(np.nanmax(data["reduction_error"].values, initial=0.0))
     size = int(data["coordinates"].values.max())
     if size:
@@ -60,6 +103,40 @@ def section(result: Result, pictures: Pictures) -> Section | None:
             )
         )
     return Section("train-motion", "The drive train in motion", blocks)
+
+
+def _closer(data: xr.Dataset) -> list[int]:
+    """Operating points whose bearings are shown: all of a few, of more the hardest on them."""
+    count = data.sizes["operating"]
+    if count <= FEW:
+        return list(range(count))
+    force = data["greatest_bearing_force"].max(["state", "bearing"]).values
+    return [] if np.isnan(force).all() else [int(np.nanargmax(force))]
+
+
+def _of_bearings(data: xr.Dataset, place: int, name: str, pictures: Pictures) -> None:
+    """Orbits with a dial of the phase, forces over time and over order."""
+    path = ("journal_path", "radial_clearance", "mean_bearing_load")
+    phases = [f"{f / FRAMES:.3f}" for f in range(FRAMES)]
+    turned = Dial("mesh phase", phases, [""] * FRAMES, 0, partial(_frame, data, place))
+    pictures.add(
+        f"bearing-orbits-{place}", f"Journals in their bearings, {name}", ORBITS, data, path,
+        partial(_frame, data, place, 0), wide=True, dial=turned,
+    )  # fmt: skip
+    pictures.add(
+        f"bearing-force-{place}", f"Force on each bearing over time, {name}", FORCES, data, path,
+        partial(bearings.bearing_force_time, data, place), wide=True,
+    )  # fmt: skip
+    pictures.add(
+        f"bearing-orders-{place}", f"Force on each bearing over order, {name}", ORDERS, data, path,
+        partial(bearings.bearing_force_order, data, place), wide=True,
+    )  # fmt: skip
+
+
+def _frame(data: xr.Dataset, place: int, frame: int) -> Picture:
+    phase = data["phase"].values
+    sample = round(frame / FRAMES / float(phase[1] - phase[0]))
+    return bearings.bearing_orbits(data, place, sample=sample)
 
 
 def _table(data: xr.Dataset, names: list[str]) -> Table:
@@ -89,7 +166,10 @@ def _table(data: xr.Dataset, names: list[str]) -> Table:
 
 
 def _rings(data: xr.Dataset, names: list[str]) -> Table:
-    head = ["state", "operating point", "bearing", "mean force [N]", "greatest force [N]"]
+    head = [
+        "state", "operating point", "bearing", "mean force [N]", "greatest force [N]",
+        "radial clearance [µm]", "carries load [% of time]", "contact losses per mesh period",
+    ]  # fmt: skip
     rows = []
     for s, state in enumerate(names_of(data, "state")):
         for o, name in enumerate(names):
@@ -97,8 +177,15 @@ def _rings(data: xr.Dataset, names: list[str]) -> Table:
                 one = data.isel(state=s, operating=o, bearing=b)
                 mean, most = one["mean_bearing_force"], one["greatest_bearing_force"]
                 told = [_told(mean, "{:.0f}"), _told(most, "{:.0f}")]
+                if "journal_path" in data:
+                    told += [
+                        _told(1e6 * one["radial_clearance"], "{:.1f}"),
+                        _told(100.0 * one["bearing_contact_share"], "{:.1f}"),
+                        _told(one["bearing_contact_losses"], "{:.2f}"),
+                    ]
                 rows.append([state, name, bearing, *told])
-    return Table("Forces on the bearings.", head, rows, names=3)
+    caption = "The bearings in motion; a clearance below zero is a preload, a spring has none."
+    return Table(caption, head[: len(rows[0])] if rows else head, rows, names=3)
 
 
 def _told(value: Any, form: str) -> str:
@@ -127,7 +214,21 @@ def numbers(result: Result) -> dict[str, Any]:
                     bearing: _plain(one["greatest_bearing_force"][b])
                     for b, bearing in enumerate(names_of(data, "bearing"))
                 },
+                **_contact(one, names_of(data, "bearing")),
             }
+    return found
+
+
+def _contact(one: xr.Dataset, names: list[str]) -> dict[str, Any]:
+    """How long each bearing carries; the second base frequency of a motion on a torus."""
+    if "bearing_contact_share" not in one:
+        return {}
+    share = one["bearing_contact_share"].values
+    found: dict[str, Any] = {
+        "bearing_contact_share": {b: _plain(s) for b, s in zip(names, share, strict=True)}
+    }
+    if np.isfinite(one["second_frequency"].values):
+        found["second_frequency_of_mesh"] = _plain(one["second_frequency"])
     return found
 
 
