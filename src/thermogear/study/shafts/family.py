@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -53,6 +53,7 @@ class TrainFamily:
     names: tuple[str, ...]
     bundle: str = ""
     state: ThermalState = HOT
+    _: KW_ONLY
     operating: int = 0
     coordinates: int | None = None
     seen: str = ""
@@ -169,6 +170,13 @@ class TrainFamily:
 
     def train(self, row: Sequence[float]) -> MovingTrain | None:
         """The train of one row in motion; None where it has no motion."""
+        key = ("motion", *map(float, row))
+        if key not in self._kept:
+            self._keep(key, self._moving(row))
+        found: MovingTrain | None = self._kept[key]
+        return found
+
+    def _moving(self, row: Sequence[float]) -> MovingTrain | None:
         found, case = self.at_rest(row)
         if found.status != 0:
             return None
@@ -232,13 +240,8 @@ class TrainFamily:
         return Models(tuple(found), status)
 
     def _model(self, row: tuple[float, ...]) -> tuple[GearedModel | None, int]:
-        key = ("motion", *row)
-        found: tuple[GearedModel | None, int] | None = self._kept.get(key)
-        if found is None:
-            train = self.train(row)
-            found = (None, self.at_rest(row)[0].status) if train is None else (train.model, 0)
-            self._keep(key, found)
-        return found
+        train = self.train(row)
+        return (None, self.at_rest(row)[0].status) if train is None else (train.model, 0)
 
     # --- what else is seen of a settled motion ----------------------------------------------
 
