@@ -188,20 +188,17 @@ def continuation(
     family, start, behind = _range(orbit, parameter, to, family, start, back_to)
     mirrors, symmetric = _symmetry(orbit, family, start, to)
     curve = Curve(
-        family,
-        parameter,
-        orbit.period,
-        start=start,
+        family, parameter, orbit.period, start=start, mirrors=mirrors, symmetric=symmetric,
         span=abs(to - behind) if span is None else span,
-        mirrors=mirrors,
-        symmetric=symmetric,
-    )
+    )  # fmt: skip
     ahead = curve.upright * float(np.sign(to - start))
     heading, step = (ahead, 0.01) if direction is None else (np.asarray(direction, float), 5e-4)
     first = curve.correct(np.append(orbit.state, start) / curve.unit, normal=heading)
     if first is None:
         raise ConvergenceError(f"continuation in {parameter}: the first orbit does not close")
     course = _Course(curve, [first], progress)
+    if first.floats and not symmetric:  # a surface of orbits has no direction to go in
+        return course.branch(FLOATS)
     stops = {stop_at} if isinstance(stop_at, str) else set(stop_at or ())
     ended = ""
     try:
