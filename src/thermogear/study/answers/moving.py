@@ -15,8 +15,10 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.gears.deviations import Relief
 from thermogear.gears.dynamic_factor import DynamicFactor, dynamic_factor
 from thermogear.gears.iso6336 import iso6336_stiffness
+from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.speeds import LOST, rpm, told
@@ -28,7 +30,6 @@ LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmissio
 
 RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 """Tip reliefs that are tried, over the mean deflection of the loaded teeth."""
-PATH_POSITIONS = 41
 
 
 # --- speeds -------------------------------------------------------------------------------------
@@ -212,6 +213,7 @@ def _swing(
 ) -> float:
     """Static error peak to peak [um] with a tip relief of ``amount`` [m] on both gears."""
     cut = tuple(Relief(gear, amount=amount, length=length) for gear in ("pinion", "wheel"))
-    relieved = replace(case, deviations=(*case.deviations, *(cut if amount else ())))
-    cycle = relieved.cycle(operating, model, PATH_POSITIONS)
-    return float(1e6 * np.ptp(cycle["transmission_error"].values[0]))
+    hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
+    loaded = elastic_pair(hot, (*case.deviations, *(cut if amount else ())))
+    curves = loaded.over(np.arange(case.mesh_positions) / case.mesh_positions)
+    return float(1e6 * np.ptp(curves.transmission_error[0]))
