@@ -42,7 +42,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
             yield undecided(SPEEDS, name, "the hot pair is jammed or did not settle")
         return
     place = asked.hardest
-    natural = float(np.sqrt(asked.hot["mean_stiffness"].values[place] / asked.case.equivalent_mass))
+    natural = float(np.sqrt(asked.hot["mean_stiffness"][place] / asked.case.equivalent_mass))
     main = natural / asked.case.pair.pinion.teeth
     own = asked.case.stated.speed
     nearest = float(own[np.argmin(np.abs(own / main - 1.0))])
@@ -55,8 +55,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         f"{rpm(main)} rpm{peaks}.",
         100.0 * abs(nearest / main - 1.0),
     )
-    speed = found.data["pinion_speed"].values
-    share = found.data["contact_loss_share"].values
+    speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moving = np.isfinite(asked.motion["contact_loss_share"])
     parted = asked.motion["contact_loss_share"][moving] > LOST
     struck = asked.motion["mesh_force_min"][moving] < 0.0
@@ -131,7 +130,7 @@ def _rated_factor(asked: Asked, point: int, grade: int) -> DynamicFactor | str:
 
 def errors(asked: Asked) -> Iterator[Answer]:
     swing = {
-        name: 1e6 * np.ptp(cycle["transmission_error"].values, axis=-1)
+        name: 1e6 * np.ptp(cycle["transmission_error"], axis=-1)
         for name, cycle in (("cold", asked.cold), ("hot", asked.hot))
     }
     for point in asked.points:
