@@ -40,7 +40,7 @@ from thermogear.study.notices import difference_notices, finished, range_notices
 Floats = NDArray[np.float64]
 
 DIRECTIONS = (1, -1)
-BLOCK = 24
+BLOCK = 32
 KEEP = 16
 PILOT = 24
 """Speeds computed at most for an estimate of the time."""
