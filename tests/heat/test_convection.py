@@ -9,6 +9,8 @@ from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.heat.convection import (
     TRANSITION,
+    _gradient_table,
+    _solved_table,
     disc_nusselt,
     disc_torque,
     rotating_disc_flow,
@@ -92,6 +94,12 @@ def test_interpolation_is_as_good_as_the_solution() -> None:
     probe = np.geomspace(0.11, 9e5, 12)
     exact = [rotating_disc_gradient(float(p), exponent=2.0) for p in probe]
     assert disc_nusselt(probe) == pytest.approx(exact, rel=1e-5)
+
+
+def test_the_kept_table_is_what_the_equations_give() -> None:
+    solved, kept = _solved_table(2.0), _gradient_table(2.0)
+    assert kept.domain == pytest.approx(solved.domain, rel=1e-15)
+    assert kept.coef == pytest.approx(solved.coef, abs=1e-9)
 
 
 def test_face_coefficient_laminar_turbulent_and_at_rest() -> None:

@@ -14,7 +14,7 @@ from scipy.optimize import root_scalar
 from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch, Tests
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.return_map import MovedMap
+from thermogear.dynamics.return_map import MovedMap, is_moved
 
 Floats = NDArray[np.float64]
 
@@ -323,7 +323,7 @@ def criticality(bifurcation: Bifurcation, family: Family) -> str:
     equation is linear (Hill's), and orbits of every size exist at the same value.
     """
     orbit = bifurcation.orbit
-    linear = isinstance(orbit.section, MovedMap)
+    linear = is_moved(orbit.section)
     if linear and orbit.contact_losses == 0 and orbit.back_impacts == 0:
         return VERTICAL
     try:
@@ -339,7 +339,7 @@ def criticality(bifurcation: Bifurcation, family: Family) -> str:
 
 def _halved(orbit: Orbit) -> MovedMap:
     """The map of an orbit of one mass, which goes by half periods too."""
-    if not isinstance(orbit.section, MovedMap):
+    if not is_moved(orbit.section):
         raise InputError("orbit", type(orbit.section).__name__, allowed="one of one mass")
     return orbit.section
 
@@ -395,7 +395,7 @@ def mothers_of(curve: Curve, point: Point) -> dict[str, Floats]:
     if curve.period % 2 == 0:
         found[BIRTH] = np.asarray((points[curve.period // 2] - points[0]) / curve.unit[:-1])
     section = curve.map_at(float(point.scaled[-1] * curve.span)) if curve.mirrors else None
-    if isinstance(section, MovedMap):
+    if is_moved(section):
         end, _ = section.flow(points[0], curve.period)
         found[PITCHFORK] = np.asarray((end + points[0]) / curve.unit[:-1])
     return found

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.analysis.section import plain
 from thermogear.base.errors import ConvergenceError, InputError
-from thermogear.dynamics.return_map import MovedMap, ReturnMap, Visit, return_map
+from thermogear.dynamics.return_map import ReturnMap, Visit, is_moved, return_map
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -128,7 +128,8 @@ class Curve:
     ``mirrors``: :func:`mirrored` holds all along. On a ``symmetric`` branch, of orbits with
     x(t + n T/2) = -x(t), P^n is the square of the map H = -(half an orbit), and G = H(z; p) - z:
     where its symmetry breaks the orbit has a multiplier +1 of P^n, but -1 of H, so that the
-    branch runs through the pitchfork as any branch runs through a flip.
+    branch runs through the pitchfork as any branch runs through a flip. ``maps`` of the last
+    values are kept there, for another curve of the same family.
     """
 
     def __init__(
@@ -141,6 +142,7 @@ class Curve:
         span: float,
         mirrors: bool = False,
         symmetric: bool = False,
+        maps: dict[float, ReturnMap] | None = None,
     ) -> None:
         self.family = family
         self.mirrors = mirrors
@@ -148,7 +150,7 @@ class Curve:
         self.period = period
         self.span = span
         self.symmetric = symmetric
-        self._maps: dict[float, ReturnMap] = {}
+        self._maps = {} if maps is None else maps
         self._moved: dict[float, Any] = {}
         self.unit = np.append(self.map_at(start).unit, span)
 
@@ -172,7 +174,7 @@ class Curve:
         """G (d,), the Jacobian (d, d) of the closing map in units of the model, its maps."""
         value = scaled * self.unit
         section = self.map_at(float(value[-1]))
-        if not isinstance(section, MovedMap):
+        if not is_moved(section):
             visit = section.visit(value[:-1], self.period)
             end, jacobian = visit.points[-1], visit.jacobian
         elif self.symmetric:
@@ -190,7 +192,7 @@ class Curve:
         """
         value = scaled * self.unit
         rates = self._rates(float(value[-1]))
-        if not isinstance(section, MovedMap):
+        if not is_moved(section):
             ends = [weight * one.carry(value[:-1], self.period)[-1] for weight, one in rates]
             return np.sum(ends, axis=0) * self.span / self.unit[:-1], np.inf
         halves = self.period if self.symmetric else 2 * self.period
@@ -208,7 +210,7 @@ class Curve:
         if value in self._moved:
             return self._moved[value]
         section = self.map_at(value)
-        small = (SMALL if isinstance(section, MovedMap) else ROUGH) * self.span
+        small = (SMALL if is_moved(section) else ROUGH) * self.span
         for weights in (
             {-1: -0.5, 1: 0.5},
             {0: -1.5, 1: 2.0, 2: -0.5},
@@ -223,7 +225,7 @@ class Curve:
             raise InputError(self.parameter, value, allowed="values with neighbours")
         rates = [(weight / small, around[k]) for k, weight in weights.items()]
         found: Any
-        if isinstance(section, MovedMap):
+        if is_moved(section):
             found = section.rates(rates)
         else:
             found = [(w, return_map(one)) for w, one in rates]

@@ -26,7 +26,7 @@ from thermogear.analysis.continuation import (
 from thermogear.analysis.curve import Curve, Family, Point
 from thermogear.analysis.orbits import closed, shoot
 from thermogear.base.errors import ConvergenceError
-from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.return_map import ReturnMap, return_map
 
 Floats = NDArray[np.float64]
 
@@ -93,11 +93,12 @@ def follow(
     period: int,
     settle: Settle,
     most_leaps: int = MOST_EVENTS,
+    maps: dict[float, ReturnMap] | None = None,
 ) -> Followed:
     """Follow the stable orbit of ``period`` periods at ``state`` from ``start`` to ``to``.
 
     ``family`` value -> model of one lane; ``settle`` finds a motion behind a jump. It ends behind
-    ``most_leaps`` jumps.
+    ``most_leaps`` jumps. ``maps`` keep what was prepared last, for the next call of one family.
     """
     leaps: list[Leap] = []
     stand = _Stand(start, np.asarray(state, dtype=float), period)
@@ -105,7 +106,7 @@ def follow(
         if stand.value == to or stand.period == 0:
             return Followed(stand.value, stand.state, stand.period, tuple(leaps))
         if stand.beside is None:
-            quick = _straight(family, parameter, to, stand)
+            quick = _straight(family, parameter, to, stand, maps)
             if quick is not None:
                 stand = quick
                 continue
@@ -202,14 +203,20 @@ def _pushed(event: Bifurcation) -> Floats:
     return np.asarray(event.state + 0.05 * two * np.linalg.svd(matrix + np.eye(two.size))[2][-1])
 
 
-def _straight(family: Family, parameter: str, to: float, stand: _Stand) -> _Stand | None:
+def _straight(
+    family: Family,
+    parameter: str,
+    to: float,
+    stand: _Stand,
+    maps: dict[float, ReturnMap] | None,
+) -> _Stand | None:
     """Where steps whose straight prediction holds lead: to ``to``.
 
     As far as the orbit has shrunk into one of fewer periods, where it does; None where the
     prediction does not hold.
     """
     start, period = stand.value, stand.period
-    curve = Curve(family, parameter, period, start=start, span=abs(to - start))
+    curve = Curve(family, parameter, period, start=start, span=abs(to - start), maps=maps)
     upright = curve.upright
     end = to / curve.span
     point = curve.correct(np.append(stand.state, start) / curve.unit, normal=upright)

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.dynamics.models import ClearanceModel
 from thermogear.dynamics.tables import Lanes
 
 Floats = NDArray[np.float64]
@@ -17,19 +16,21 @@ def lanes_of(model: object) -> Lanes:
     """The flat parameters of ``model``; InputError where the exact maps do not apply."""
     if isinstance(model, Lanes):
         return model
-    if not isinstance(model, ClearanceModel):
+    made = getattr(model, "lanes", None)
+    if not callable(made):
         raise InputError(
             "model",
             type(model).__name__,
             why="the section needs a piecewise-linear force and coefficients of time alone",
             allowed="TorsionalModel, DeadZoneModel or PairModel",
         )
-    return model.lanes()
+    found: Lanes = made()
+    return found
 
 
 def plain(model: object) -> object:
     """The flat parameters of a one-mass model; any other model as it is."""
-    return lanes_of(model) if isinstance(model, ClearanceModel) else model
+    return lanes_of(model) if callable(getattr(model, "lanes", None)) else model
 
 
 def units_of(lanes: Lanes) -> Floats:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,13 +49,21 @@ class Bounds:
         """Both ends as texts with their unit."""
         return f"{_plain(self.low)} {self.unit}", f"{_plain(self.high)} {self.unit}"
 
-    def require(self, name: str, values: ArrayLike) -> None:
-        """Refuse SI ``values`` of which one lies outside, or is no number."""
-        found = np.asarray(values, dtype=float)
+    @cached_property
+    def _reach(self) -> tuple[float, float]:
+        """Both ends with what rounding may add."""
         slack = 1e-12 * max(abs(self.least), abs(self.most))
         below = 1e-12 * self.least if self.least > 0.0 else slack
-        good = (found >= self.least - below) & (found <= self.most + slack)
-        if not np.all(good):
+        return self.least - below, self.most + slack
+
+    def require(self, name: str, values: ArrayLike) -> None:
+        """Refuse SI ``values`` of which one lies outside, or is no number."""
+        floor, roof = self._reach
+        if type(values) is float and floor <= values <= roof:
+            return
+        found = np.asarray(values, dtype=float)
+        good = (found >= floor) & (found <= roof)
+        if not good.all():
             value = float(found[~good].flat[0])
             allowed = f"{_plain(self.low)}..{_plain(self.high)} {self.unit}".rstrip()
             raise InputError(name, self._shown(value), allowed=allowed, fix=self._meant(value))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import product
 from typing import Any
 
@@ -431,15 +431,29 @@ class Tabulated:
     def inputs(self) -> dict[str, Any]:
         return self.family.inputs()
 
+    @cached_property
+    def _fixed(self) -> bool:
+        """Whether nothing but the speed differs between the points."""
+        one, lanes = self.points, self.points.flat
+        rows = (
+            one.status, one.stiffness, one.length, one.rate, one.error, one.force,
+            one.half_backlash, lanes.damping, lanes.half_backlash, lanes.stiffness,
+        )  # fmt: skip
+        return all(np.array_equal(row[1:], row[:-1]) for row in rows)
+
     def __call__(self, points: Floats) -> Points:
         at = np.asarray(points, dtype=float)[:, 0]
         place = np.clip(np.searchsorted(self.values, at, side="right") - 1, 0, len(self.values) - 2)
         low, high = self.values[place], self.values[place + 1]
         # a little beyond the ends too, so that it can be differentiated there
         weight = np.clip((at - low) / (high - low), -0.01, 1.01)
-        a, b = self.points.take(place), self.points.take(place + 1)
+        a = self.points.take(place)
+        b = a if self._fixed else self.points.take(place + 1)
+        beyond = self.points.mesh_frequency[place + 1]
 
         def mix(one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
+            if one is two:
+                return one
             share = weight[:, None] if one.ndim == 2 else weight
             return np.asarray(one + share * (two - one))
 
@@ -448,7 +462,7 @@ class Tabulated:
         rate = mix(a.rate, b.rate)
         error = mix(a.error, b.error)
         force = mix(a.force, b.force)
-        mesh = mix(a.mesh_frequency, b.mesh_frequency)
+        mesh = mix(a.mesh_frequency, beyond)
         frequency = mesh / rate
         ranks = np.arange(error.shape[1])
         push = error * (ranks * frequency[:, None]) ** 2 / length[:, None]

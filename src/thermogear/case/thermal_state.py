@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base import vocabulary
 from thermogear.base.errors import InputError
@@ -15,10 +17,13 @@ from thermogear.case.allowed import within
 from thermogear.case.case import GearCase
 from thermogear.case.fields import BODY
 from thermogear.case.units import read_quantity
+from thermogear.gears.contact import path_of_contact
 from thermogear.mesh.balance import HeatBalance
-from thermogear.mesh.balance_table import OF_OIL, blanked
+from thermogear.mesh.balance_table import OF_OIL, STATED, blanked
+from thermogear.mesh.cycle import quantities, warn_of_pitch
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,6 +140,30 @@ class ThermalState:
         values = np.where(balance.settled, status.values, STATUS.index("not_converged"))
         kept = cycle.assign(status=(status.dims, values.astype(np.int8), status.attrs))
         return blanked(kept, balance.unknown)
+
+    def quantities(
+        self, case: GearCase, model: MeshModel, want: Sequence[str]
+    ) -> dict[str, NDArray[Any]]:
+        """What :meth:`cycle` holds of ``want``, of the points and the status, as bare arrays."""
+        warn_of_pitch(case.deviations)
+        at = replace(self.operating(case, model), housing=case.housing)
+        s = path_of_contact(case.pair, case.path_positions)
+        phase = np.arange(case.mesh_positions) / case.mesh_positions
+        hot = HotPair(case.pair, at, model)
+        made = quantities(hot, case.deviations, s, phase, want)
+        found = {name: np.asarray(values) for name, values in made.items()}
+        found |= {"pinion_speed": at.speed, "pinion_torque": at.torque}
+        balance = self.balance(case, model)
+        if balance is None:
+            return found
+        if self != UNDEFORMED:
+            lost = STATUS.index("not_converged")
+            found["status"] = np.where(balance.settled, found["status"], lost).astype(np.int8)
+        for name in OF_OIL if self == UNDEFORMED else want:
+            if name in found and name not in STATED and found[name].dtype.kind == "f":
+                known = ~balance.unknown.reshape(-1, *(1,) * (found[name].ndim - 1))
+                found[name] = np.where(known, found[name], np.nan)
+        return found
 
 
 StateLike: TypeAlias = "ThermalState | str | float | None"

@@ -239,6 +239,17 @@ def read_quantity(text: object, kind_name: str) -> float:
         raise refused("a bare number has no unit", fix)
     if not isinstance(text, str):
         raise refused(f"not a text with number and unit of {kind.name}")
+    return _of_text(text, kind)
+
+
+@lru_cache(maxsize=4096)
+def _of_text(text: str, kind: Kind) -> float:
+    """Remembered: a batch of cases reads the same texts and bounds again and again."""
+    example = f'write for instance "{kind.example}"'
+
+    def refused(why: str, fix: str = example) -> InputError:
+        return InputError("", short(text), why=why, fix=fix)
+
     if re.match(r"\s*[+-]?\d+,\d", text):
         raise refused("decimals follow a point, not a comma", _with_point(text, kind))
     match = _TEXT.fullmatch(text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import factorial, prod
@@ -113,12 +113,14 @@ class ExactMaps:
 
     def take(self, keep: Whole) -> ExactMaps:
         """The maps of some lanes, in the order of ``keep``."""
+        if keep.size == self.backlash.size and np.array_equal(keep, np.arange(keep.size)):
+            return self
         (steps,) = _aligned((self.steps.shape[0], -(-keep.size // 8), 11, 8))
         place = np.arange(keep.size)
         rows = self.steps[:, keep // 8, :, keep % 8]
         steps[:, place // 8, :, place % 8] = rows
-        (curves,) = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]))
-        curves[:] = self.curves[:, keep]
+        (curves,) = _aligned((self.curves.shape[0], keep.size, self.curves.shape[2]), of=np.empty)
+        np.take(self.curves, keep, axis=1, out=curves, mode="clip")
         return replace(
             self,
             steps=steps,
@@ -169,10 +171,10 @@ class State:
         self.spent[:] = 0.0
 
 
-def _aligned(*shapes: tuple[int, ...]) -> list[Floats]:
+def _aligned(*shapes: tuple[int, ...], of: Callable[[int], Floats] = np.zeros) -> list[Floats]:
     """Zeros that start on a cache line: eight numbers then lie in one."""
     sizes = [-(-prod(shape) // 8) * 8 for shape in shapes]
-    room = np.zeros(sum(sizes) + 8)
+    room = of(sum(sizes) + 8)
     first = -(room.__array_interface__["data"][0] // 8) % 8
     found = []
     for shape, size in zip(shapes, sizes, strict=True):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,9 +108,32 @@ class MovedMap(ReturnMap, Protocol):
         ...
 
 
+_MAPS: set[type] = set()
+_MOVED: set[type] = set()
+"""Classes that were found to be return maps: asking a protocol member by member is dear."""
+
+
+def is_map(thing: object) -> TypeGuard[ReturnMap]:
+    """Whether it is a return map by itself."""
+    if type(thing) not in _MAPS:
+        if not (hasattr(thing, "visit") and isinstance(thing, ReturnMap)):
+            return False
+        _MAPS.add(type(thing))
+    return True
+
+
+def is_moved(thing: object) -> TypeGuard[MovedMap]:
+    """Whether it is one that can be differentiated in a parameter."""
+    if type(thing) not in _MOVED:
+        if not (hasattr(thing, "moved") and isinstance(thing, MovedMap)):
+            return False
+        _MOVED.add(type(thing))
+    return True
+
+
 def return_map(model: object, samples: int = 0) -> ReturnMap:
     """The return map of ``model``, or ``model`` itself where it is one; else InputError."""
-    if isinstance(model, ReturnMap) and samples == 0:
+    if samples == 0 and is_map(model):
         return model
     lanes = getattr(model, "lanes", None)
     made = getattr(lanes() if callable(lanes) else model, "return_map", None)

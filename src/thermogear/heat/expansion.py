@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Protocol
 
@@ -127,7 +128,7 @@ class RadialField:
         drop = np.asarray(self.addendum_temperature) - np.asarray(self.bore_temperature)
         return np.asarray(drop / np.log(self.tip_radius / self.bore_radius))
 
-    @property
+    @cached_property
     def kinks(self) -> tuple[tuple[float, Floats], ...]:
         """(r_k [m], dg_k [K]) with T(r) = T_x + sum dg_k ln(r/r_k) over the places r_k < r."""
         if not self.between:

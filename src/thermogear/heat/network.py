@@ -97,12 +97,7 @@ class ThermalNetwork:
             kelvin = np.asarray(value, dtype=float)
             if not np.all(np.isfinite(kelvin) & (kelvin > 0.0)):
                 raise InputError(f"temperature of {name}", f"{kelvin} K", allowed="> 0 K, finite")
-        reached = set(self.fixed)
-        for _ in names:
-            for link in self.links:
-                ends = {link.first, link.second}
-                if ends & reached and np.all(np.asarray(link.conductance) > 0.0):
-                    reached |= ends
+        reached = self._reached()
         lost = [name for name in names if name not in reached]
         if lost:
             raise InputError(
@@ -111,6 +106,21 @@ class ThermalNetwork:
                 why="no conductance leads from there to a given temperature",
                 fix="give the ambient, or a temperature on that node",
             )
+
+    def _reached(self) -> set[str]:
+        """The nodes from which a way of conductances leads to a given temperature."""
+        reached, before = set(self.fixed), -1
+        carrying = [
+            (link.first, link.second)
+            for link in self.links
+            if np.all(np.asarray(link.conductance) > 0.0)
+        ]
+        while len(reached) > before:
+            before = len(reached)
+            for first, second in carrying:
+                if first in reached or second in reached:
+                    reached |= {first, second}
+        return reached
 
     @property
     def nodes(self) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from thermogear.heat.lubrication import density, kinematic_viscosity
 from thermogear.heat.network import SteadyState, ThermalNetwork
 from thermogear.mesh.elastic import ElasticPair, elastic_pair
 from thermogear.mesh.friction_path import FrictionPath
-from thermogear.mesh.heat_loop import HOTTEST, Course, Response, asked, follow
+from thermogear.mesh.heat_loop import HOTTEST, Response, asked, follow
 from thermogear.mesh.mesh_heat import mesh_heat
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import ALIKE, Operating, Temperatures, Varied
@@ -199,27 +199,23 @@ def heat_balance(
         tuple(deviations),
     )
     loop.refuse_what_never_works()
-    stand_in, held = (
-        np.full((loop.count, len(box.nodes)), max(STAND_IN, reference + OVER)),
-        loop.held,
+    stand_in = np.full((loop.count, len(box.nodes)), max(STAND_IN, reference + OVER))
+    starts = [box.surroundings.ambient] + [HOTTEST] * from_hot
+    # both ways at once: every point goes its own
+    ways = follow(
+        lambda nodes, index: loop.respond(nodes, index % loop.count),
+        np.concatenate([loop.at(kelvin) for kelvin in starts]),
+        np.concatenate([loop.held] * len(starts)),
+        tolerance=tolerance,
+        most_iterations=most_iterations,
     )
-
-    def course(kelvin: float) -> Course:
-        return follow(
-            loop.respond,
-            loop.at(kelvin),
-            held,
-            tolerance=tolerance,
-            most_iterations=most_iterations,
-        )
-
-    cold = course(box.surroundings.ambient)
+    cold = ways.part(slice(0, loop.count))
     lost = np.zeros(loop.count, np.bool_)
     lost[list(cold.lost)] = True
     settled = cold.settled(tolerance)
     hot, several = np.full(cold.nodes.shape, np.nan), np.zeros(loop.count, np.bool_)
     if from_hot:
-        warm = course(HOTTEST)
+        warm = ways.part(slice(loop.count, 2 * loop.count))
         down = warm.settled(tolerance)
         hot[down] = warm.nodes[down]
         same = down & (np.abs(warm.nodes - cold.nodes).max(axis=1) <= SAME)

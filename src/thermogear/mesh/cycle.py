@@ -99,13 +99,7 @@ def mesh_cycle(
     for name, count in (("path_positions", path_positions), ("mesh_positions", mesh_positions)):
         if count < 2:
             raise InputError(name, count, allowed=">= 2")
-    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in deviations):
-        warnings.warn(
-            "pitch errors: the mesh cycle holds one mesh period, in which the first teeth alone "
-            "stand; ask loaded_contact for phases of a whole revolution",
-            ValidityWarning,
-            stacklevel=2,
-        )
+    warn_of_pitch(deviations)
     hot = HotPair(pair, operating, MeshModel.consistent() if model is None else model)
     s = path_of_contact(pair, path_positions)
     phase = np.arange(mesh_positions) / mesh_positions
@@ -134,6 +128,17 @@ def mesh_cycle(
             "contact_ratio": pair.contact_ratio,
         },
     )
+
+
+def warn_of_pitch(deviations: Sequence[Deviation]) -> None:
+    """ValidityWarning where a cycle of ``deviations`` leaves out what differs between teeth."""
+    if any(isinstance(d, PitchError) and np.ptp(d.errors) > 0.0 for d in deviations):
+        warnings.warn(
+            "pitch errors: the mesh cycle holds one mesh period, in which the first teeth alone "
+            "stand; ask loaded_contact for phases of a whole revolution",
+            ValidityWarning,
+            stacklevel=3,
+        )
 
 
 def quantities(

@@ -80,7 +80,7 @@ class ElasticPair(ABC):
             Moduli(tooth=second[0][:, None], body=second[1][:, None]),
         )
 
-    @property
+    @cached_property
     def contact_modulus(self) -> Floats:
         """E* [Pa], (count, 1)."""
         pinion, wheel = self.moduli
@@ -244,7 +244,7 @@ def loaded_share(elastic: ElasticPair, s: Floats) -> PathShare:
     rank = np.floor(steps + 1e-9).astype(int)
     # rounding below a whole step would be the phase's other end
     phase = np.maximum(steps - rank, 0.0)
-    solved = LoadedPair(elastic.hot, elastic.deviations).solve(phase)
+    solved = loaded_pair(elastic).solve(phase)
     # the candidates begin one pair before the one that entered last
     places = np.broadcast_to((rank + 1)[:, None], (elastic.hot.count, s.size, 1))
     return PathShare(
@@ -257,6 +257,13 @@ def elastic_pair(hot: HotPair, deviations: Sequence[Deviation] = ()) -> ElasticP
     """The springs that the model of ``hot`` chooses."""
     kind = LoadedPair if hot.model.stiffness == "loaded" else TextbookPair
     return kind(hot, deviations)
+
+
+def loaded_pair(elastic: ElasticPair) -> LoadedPair:
+    """The loaded contact of the same teeth, itself where it is one."""
+    if isinstance(elastic, LoadedPair):
+        return elastic
+    return LoadedPair(elastic.hot, elastic.deviations)
 
 
 def mean_stiffness_of_body(elastic: ElasticPair, phase: Floats, body: str) -> Floats:

@@ -58,6 +58,17 @@ class Course:
     known: Flags
     lost: dict[int, str] = field(default_factory=dict)
 
+    def part(self, places: slice) -> Course:
+        """The points at ``places``, a slice without steps, counted from its start."""
+        lost = range(places.start, places.stop)
+        return Course(
+            nodes=self.nodes[places],
+            iterations=self.iterations[places],
+            residual=self.residual[places],
+            known=self.known[places],
+            lost={p - lost.start: why for p, why in self.lost.items() if p in lost},
+        )
+
     def settled(self, tolerance: float) -> Flags:
         """Whether a point ended at a steady state."""
         found = (self.residual <= tolerance) & self.known

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.gears.pair import GearPair
-from thermogear.mesh.elastic import ElasticPair, LoadedPair, PathShare
+from thermogear.mesh.elastic import ElasticPair, PathShare, loaded_pair
 from thermogear.mesh.friction_path import FrictionPath
 
 Floats = NDArray[np.float64]
@@ -79,7 +79,7 @@ def mesh_heat(elastic: ElasticPair, phases: int = PHASES) -> MeshHeat:
 def _around(elastic: ElasticPair, phases: int) -> tuple[Floats, Floats, PathShare]:
     """Positions [m] of every candidate at uniform phases, their weights [m] and shares."""
     pair, count = elastic.pair, elastic.hot.count
-    solved = LoadedPair(elastic.hot, elastic.deviations).solve(np.arange(phases) / phases)
+    solved = loaded_pair(elastic).solve(np.arange(phases) / phases)
     s = solved.points.s.ravel()
     # beyond the tangent points there is no flank: no candidate carries there
     margin = 1e-3 * pair.base_pitch

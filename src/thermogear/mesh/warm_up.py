@@ -382,15 +382,17 @@ class _Chain:
     def clearance_of(self, state: State, piece: ArrayLike) -> tuple[Floats, Floats]:
         """(least half backlash [m], margin to the jam [K]) of temperatures (count,)."""
         at = self.operating(state, piece)
-        found = Clearance(
-            HotPair(self.pair, at, self.model), np.arange(PHASES) / PHASES, self.deviations
-        )
+        found = self._clearance(at)
         margin = found.jam_temperature - np.asarray(at.temperatures.pinion_addendum)
         return found.half_backlash.min(axis=1), margin
 
+    def _clearance(self, at: Operating) -> Clearance:
+        hot = HotPair(self.pair, at, self.model)
+        return Clearance(hot, np.arange(PHASES) / PHASES, self.deviations)
+
     def gap(self, state: State) -> float:
         """Least half backlash [m] of one state; what it does not depend on is no matter."""
-        return float(self.clearance_of(state, 0)[0][0])
+        return float(self._clearance(self.operating(state, 0)).half_backlash.min())
 
     def worst(self, course: Course) -> Worst:
         """The least half backlash of the course, located between the stored moments."""

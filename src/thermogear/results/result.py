@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -44,6 +44,25 @@ class Notice(NamedTuple):
 
     level: str
     text: str
+
+
+class Later(Mapping[str, "xr.Dataset"]):
+    """Groups that are made when first asked for, once."""
+
+    def __init__(self, **made: Callable[[], xr.Dataset]) -> None:
+        self._made = made
+        self._there: dict[str, xr.Dataset] = {}
+
+    def __getitem__(self, name: str) -> xr.Dataset:
+        if name not in self._there:
+            self._there[name] = self._made[name]()
+        return self._there[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._made)
+
+    def __len__(self) -> int:
+        return len(self._made)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from thermogear.analysis.outcome import (
     outcome_variables,
     settle_with_status,
 )
+from thermogear.analysis.section import units_of
 from thermogear.analysis.settle import PERIODIC, Rule, Settled
 from thermogear.base.errors import InputError
 from thermogear.base.plan import Alive, Arrays, Key, Variable, keep_going, ranges_of
@@ -30,7 +32,7 @@ from thermogear.case.family import GearFamily, Tabulated
 from thermogear.case.points import Points
 from thermogear.case.response import RECORD, RULE, Recording, respond, response_variables
 from thermogear.case.thermal_state import HOT, UNDEFORMED, StateLike, ThermalState
-from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.return_map import ReturnMap
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
 from thermogear.study.notices import difference_notices, finished, range_notices
@@ -38,7 +40,7 @@ from thermogear.study.notices import difference_notices, finished, range_notices
 Floats = NDArray[np.float64]
 
 DIRECTIONS = (1, -1)
-BLOCK = 24
+BLOCK = 32
 KEEP = 16
 PILOT = 24
 """Speeds computed at most for an estimate of the time."""
@@ -293,6 +295,7 @@ class _Run:
         self.period = 0
         self.leaps: list[dict[str, float]] = []
         self.early = 0
+        self.maps: dict[float, ReturnMap] = {}
 
     def step(self, point: Points, speed: float) -> Settled:
         """What is felt at ``speed``, coming from where the last step ended."""
@@ -303,12 +306,12 @@ class _Run:
             self.period = 0
         else:
             self._walk(self.table, speed)
-        found = self._settled(point, self.state)
-        if self.period > 0 and before is not None and _period(found) > 0:
-            alone = self._settled(point, before)
-            section = return_map(point.flat)
-            near = section.distance(alone.sections[0], found.sections[0][-1]).min()
-            self.early = int(not near < APART)
+        starts = [self.state, before] if before is not None and self.period > 0 else [self.state]
+        both = self._settled(point.take(np.zeros(len(starts), int)), np.array(starts))
+        found = both.part(slice(0, 1))
+        if len(starts) > 1 and _period(found) > 0:
+            apart = np.abs(both.sections[1] - both.sections[0][-1]) / units_of(point.flat)
+            self.early = int(not np.max(apart, axis=-1).min() < APART)
         if first:
             self._stand(speed, found)
         return found
@@ -316,17 +319,10 @@ class _Run:
     def _walk(self, table: Tabulated, speed: float) -> None:
         """Carry the motion on to ``speed``; where it is none that can be followed, towards it."""
         way = 1.0 if speed > self.at else -1.0
+        do = partial(follow, self._single, "pinion_speed", settle=self._settle, maps=self.maps)
         while True:
             if self.period > 0:
-                followed = follow(
-                    self._single,
-                    "pinion_speed",
-                    start=self.at,
-                    to=speed,
-                    state=self.state,
-                    period=self.period,
-                    settle=self._settle,
-                )
+                followed = do(start=self.at, to=speed, state=self.state, period=self.period)
                 self._keep(followed.leaps)
                 self.at, self.state, self.period = followed.value, followed.state, followed.period
                 if self.period > 0:
@@ -336,7 +332,7 @@ class _Run:
             there = float(np.exp(way * STRIDE * (np.floor(place + 1e-6) + 1.0)))
             if way * (speed - there) < 0.0:
                 return
-            self._stand(there, self._settled(table(np.array([[there]])), self.state))
+            self._stand(there, self._settled(table(np.array([[there]])), self.state[None]))
 
     def _stand(self, speed: float, settled: Settled) -> None:
         if bool(np.isfinite(settled.state).all()):
@@ -348,13 +344,13 @@ class _Run:
         assert self.table is not None
         return self.table(np.array([[speed]]))
 
-    def _settled(self, point: Points, state: Floats) -> Settled:
+    def _settled(self, point: Points, states: Floats) -> Settled:
         return settle_with_status(
-            point.flat, point.status, state[None], self.plan.rule, KEEP, self.alive
+            point.flat, point.status, states, self.plan.rule, KEEP, self.alive
         )
 
     def _settle(self, speed: float, state: Floats) -> tuple[Floats, int]:
-        settled = self._settled(self._single(speed), state)
+        settled = self._settled(self._single(speed), state[None])
         return settled.state[0], _period(settled)
 
     def returned(self, leap: Mapping[str, float], end: float) -> float:

@@ -7,11 +7,13 @@ followed (:func:`~thermogear.study.run_up.run_up` does, with the heat of each sp
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.analysis.side_by_side import motions_along
 from thermogear.base.excitation import Excitations
@@ -42,23 +44,42 @@ VALUES = {
     "contact_loss_share": ("1", "share of time out of drive-side contact"),
     "mesh_force_min": ("N", "dynamic mesh force, least; below 0 on the back flank"),
 }
+MOTIONS = {
+    "period": ("1", "mesh periods of the motion, 0: none"),
+    "label_code": ("1", "kind of the motion"),
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Speeds:
-    """What a look over the speeds found: ``data`` over (motion), and what is read off it."""
+    """What a look over the speeds found: ``columns`` over (motion), and what is read off it."""
 
-    data: xr.Dataset
+    columns: Mapping[str, ArrayLike]
     step: float
+    own: Floats = field(default_factory=lambda: np.empty(0))
+
+    def column(self, name: str) -> Floats:
+        """One of ``columns``."""
+        return np.asarray(self.columns[name])
+
+    @cached_property
+    def data(self) -> xr.Dataset:
+        """The columns with their units, and the case's own speeds [rad/s]."""
+        words = VALUES | MOTIONS
+        found = {name: (("motion",), self.columns[name], *words[name]) for name in words}
+        speed = {
+            "pinion_speed": (("motion",), self.columns["pinion_speed"], "rad/s", "pinion speed")
+        }
+        return label(found, speed, {"own_speeds": self.own})
 
     @property
     def grid(self) -> Floats:
         """Every speed [rad/s], rising."""
-        return np.unique(self.data["pinion_speed"].values)
+        return np.unique(self.column("pinion_speed"))
 
     def ranges(self, where: NDArray[np.bool_]) -> list[tuple[float, float]]:
         """Connected ranges of speed [rad/s] in which a motion of those ``where`` lives."""
-        hit = np.isin(self.grid, self.data["pinion_speed"].values[where])
+        hit = np.isin(self.grid, self.column("pinion_speed")[where])
         edges = np.flatnonzero(np.diff(np.concatenate(([0], hit.astype(int), [0]))))
         return [
             (float(self.grid[a]), float(self.grid[b - 1]))
@@ -68,23 +89,23 @@ class Speeds:
     @property
     def lost(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which the flanks part."""
-        return self.ranges(self.data["contact_loss_share"].values > LOST)
+        return self.ranges(self.column("contact_loss_share") > LOST)
 
     @property
     def back(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which a tooth hits the back side."""
-        return self.ranges(self.data["mesh_force_min"].values < 0.0)
+        return self.ranges(self.column("mesh_force_min") < 0.0)
 
     @property
     def several(self) -> list[tuple[float, float]]:
         """Ranges [rad/s] in which two motions or more exist: a run-up may jump there."""
-        speed = self.data["pinion_speed"].values
+        speed = self.column("pinion_speed")
         _, place, count = np.unique(speed, return_inverse=True, return_counts=True)
         return self.ranges(count[place] > 1)
 
     def peaks(self) -> list[tuple[float, float]]:
         """(speed [rad/s], dynamic factor) of the resonances, the greatest first."""
-        speed, factor = self.data["pinion_speed"].values, self.data["dynamic_factor"].values
+        speed, factor = self.column("pinion_speed"), self.column("dynamic_factor")
         top = np.array([np.nanmax(factor[speed == one], initial=0.0) for one in self.grid])
         inner = np.arange(1, top.size - 1)
         tops = inner[(top[inner] >= top[inner - 1]) & (top[inner] > top[inner + 1])]
@@ -120,20 +141,10 @@ def look(mesh: Excitations, *, teeth: int, own: Floats) -> Speeds:
     starts = [[gap + force, 0.0], [gap + 3.0 * force, 0.0], [-gap, 0.0]]
     motions = motions_along(lanes.flat, starts)
     found = respond(lanes.take(motions.lane), motions.state, RECORD, lines=False)
-    data = label(
-        {name: (("motion",), found[name], unit, words) for name, (unit, words) in VALUES.items()}
-        | {
-            "period": (("motion",), motions.period, "1", "mesh periods of the motion, 0: none"),
-            "label_code": (("motion",), motions.label, "1", "kind of the motion"),
-        },
-        {
-            "pinion_speed": (
-                ("motion",), lanes.mesh_frequency[motions.lane] / teeth, "rad/s", "pinion speed"
-            ),
-        },
-    )  # fmt: skip
-    data = data.assign_attrs(own_speeds=np.unique(own))
-    return Speeds(data, float(ratio[1] / ratio[0] - 1.0))
+    columns = {name: found[name] for name in VALUES}
+    columns |= {"period": motions.period, "label_code": motions.label}
+    columns["pinion_speed"] = lanes.mesh_frequency[motions.lane] / teeth
+    return Speeds(columns, float(ratio[1] / ratio[0] - 1.0), np.unique(own))
 
 
 def rpm(speed: float) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
-import jinja2
 from markupsafe import Markup
 
 from thermogear.results.files import finite
@@ -182,6 +181,31 @@ def galleries(pictures: Iterable[Shown]) -> list[Block]:
 
 LEAD = "pictures"
 """The section of the pictures that carry the answer."""
+
+
+class Made(Sequence[Section]):
+    """Sections that are made when one first looks at them; a terminal does not."""
+
+    def __init__(self, make: Callable[[], Sequence[Section]]) -> None:
+        self._make = make
+
+    @cached_property
+    def _there(self) -> Sequence[Section]:
+        return self._make()
+
+    @overload
+    def __getitem__(self, place: int) -> Section: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Sequence[Section]: ...
+
+    def __getitem__(self, place: int | slice) -> Section | Sequence[Section]:
+        return self._there[place]
+
+    def __len__(self) -> int:
+        return len(self._there)
+
+
 SHOWN = ("first", "all", "none")
 """How many pictures a page shows."""
 
@@ -312,6 +336,8 @@ def render(page: Page) -> str:
 
     Its one script lets the pictures move; without it they are shown still.
     """
+    import jinja2  # what only prints does without it
+
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("thermogear.views"),
         autoescape=True,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,15 +20,27 @@ from thermogear.case.case import GearCase
 from thermogear.case.duty import chosen_point, point_duty
 from thermogear.case.points import excitations, points_of
 from thermogear.case.response import respond
+from thermogear.mesh.excite import EXCITES
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.results.answer import Answer
 from thermogear.study.speeds import RECORD, Speeds, look
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 Floats = NDArray[np.float64]
+Cycle = Mapping[str, NDArray[Any]]
+MOVES = (*EXCITES, "status", "pinion_speed", "pinion_torque")
+OF_COLD = ("transmission_error",)
+OF_HOT = (
+    *EXCITES,
+    "flash_temperature",
+    "film_parameter",
+    "normal_force",
+    "transmission_error",
+    "mean_stiffness",
+    "least_half_backlash",
+    "jam_temperature",
+)
+"""What the answers take from the mesh cycle, undeformed and hot."""
 MOST_POINTS = 60
 """Operating points that are answered one by one."""
 SLOWEST = 1e-3
@@ -43,20 +56,29 @@ class Asked:
 
     case: GearCase
     model: MeshModel
-    cold: xr.Dataset
-    hot: xr.Dataset
+    cold: Cycle
+    hot: Cycle
     progress: Progress
+
+    @property
+    def count(self) -> int:
+        """How many operating points the case has."""
+        return int(self.hot["status"].size)
+
+    def _part(self, points: list[int]) -> dict[str, NDArray[Any]]:
+        """What moves the hot pair at some operating points."""
+        return {name: self.hot[name][points] for name in MOVES}
 
     @cached_property
     def points(self) -> list[int]:
         """The operating points that are answered: all, of very many a spread and the hardest."""
-        count = self.hot.sizes["operating"]
+        count = self.count
         spread = np.linspace(0, count - 1, min(count, MOST_POINTS)).round().astype(int)
         return sorted({*spread.tolist(), self.hardest})
 
     def at(self, point: int) -> str:
         """The operating point in words; empty where the case has one alone."""
-        if self.hot.sizes["operating"] == 1:
+        if self.count == 1:
             return ""
         rpm = float(self.hot["pinion_speed"][point]) / RPM
         return f"{rpm:.6g} rpm, {float(self.hot['pinion_torque'][point]):.6g} N m"
@@ -79,7 +101,7 @@ class Asked:
         """(oil, hotter teeth) [K] of every point."""
         at = self.case.operating_of(self.model)
         teeth = np.maximum(at.temperatures.pinion_addendum, at.temperatures.wheel_addendum)
-        shape = (self.hot.sizes["operating"],)
+        shape = (self.count,)
         return np.broadcast_to(at.oil_temperature, shape), np.broadcast_to(teeth, shape)
 
     @cached_property
@@ -109,8 +131,7 @@ class Asked:
         if not self.moves(self.hardest):
             return None
         self.progress("speeds", 0, 1)
-        here = self.hot.isel(operating=[self.hardest])
-        mesh = excitations(self.case, here)
+        mesh = excitations(self.case, self._part([self.hardest]))
         if mesh.status[0] != STATUS.index("ok"):
             return None
         found = look(mesh, teeth=self.case.pair.pinion.teeth, own=self.case.stated.speed)
@@ -123,7 +144,7 @@ class Asked:
 
         Nan too where the pair turns so slowly that no motion is followed: the load is static.
         """
-        points = points_of(excitations(self.case, self.hot.isel(operating=self.points)))
+        points = points_of(excitations(self.case, self._part(self.points)))
         slow = points.mesh_frequency < SLOWEST * points.rate
         status = np.where(slow, STATUS.index("jammed"), points.status).astype(np.int8)
         points = replace(points, status=status)
@@ -133,7 +154,7 @@ class Asked:
         found = respond(points, settled.state, RECORD, lines=False)
         every = {}
         for name, values in found.items():
-            every[name] = np.full(self.hot.sizes["operating"], np.nan)
+            every[name] = np.full(self.count, np.nan)
             every[name][self.points] = values
         return every
 

@@ -15,8 +15,10 @@ from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.gears.deviations import Relief
 from thermogear.gears.dynamic_factor import DynamicFactor, dynamic_factor
 from thermogear.gears.iso6336 import iso6336_stiffness
+from thermogear.mesh.elastic import elastic_pair
 from thermogear.mesh.model import MeshModel
 from thermogear.mesh.operating import Operating
+from thermogear.mesh.thermal import HotPair
 from thermogear.results.answer import Answer
 from thermogear.study.answers.asked import Asked, answer, undecided
 from thermogear.study.speeds import LOST, rpm, told
@@ -28,7 +30,6 @@ LOADS, ERROR = "How large is the dynamic factor?", "How large is the transmissio
 
 RELIEFS = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
 """Tip reliefs that are tried, over the mean deflection of the loaded teeth."""
-PATH_POSITIONS = 41
 
 
 # --- speeds -------------------------------------------------------------------------------------
@@ -41,7 +42,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
             yield undecided(SPEEDS, name, "the hot pair is jammed or did not settle")
         return
     place = asked.hardest
-    natural = float(np.sqrt(asked.hot["mean_stiffness"].values[place] / asked.case.equivalent_mass))
+    natural = float(np.sqrt(asked.hot["mean_stiffness"][place] / asked.case.equivalent_mass))
     main = natural / asked.case.pair.pinion.teeth
     own = asked.case.stated.speed
     nearest = float(own[np.argmin(np.abs(own / main - 1.0))])
@@ -54,8 +55,7 @@ def speeds(asked: Asked) -> Iterator[Answer]:
         f"{rpm(main)} rpm{peaks}.",
         100.0 * abs(nearest / main - 1.0),
     )
-    speed = found.data["pinion_speed"].values
-    share = found.data["contact_loss_share"].values
+    speed, share = found.column("pinion_speed"), found.column("contact_loss_share")
     moving = np.isfinite(asked.motion["contact_loss_share"])
     parted = asked.motion["contact_loss_share"][moving] > LOST
     struck = asked.motion["mesh_force_min"][moving] < 0.0
@@ -130,7 +130,7 @@ def _rated_factor(asked: Asked, point: int, grade: int) -> DynamicFactor | str:
 
 def errors(asked: Asked) -> Iterator[Answer]:
     swing = {
-        name: 1e6 * np.ptp(cycle["transmission_error"].values, axis=-1)
+        name: 1e6 * np.ptp(cycle["transmission_error"], axis=-1)
         for name, cycle in (("cold", asked.cold), ("hot", asked.hot))
     }
     for point in asked.points:
@@ -212,6 +212,7 @@ def _swing(
 ) -> float:
     """Static error peak to peak [um] with a tip relief of ``amount`` [m] on both gears."""
     cut = tuple(Relief(gear, amount=amount, length=length) for gear in ("pinion", "wheel"))
-    relieved = replace(case, deviations=(*case.deviations, *(cut if amount else ())))
-    cycle = relieved.cycle(operating, model, PATH_POSITIONS)
-    return float(1e6 * np.ptp(cycle["transmission_error"].values[0]))
+    hot = HotPair(case.pair, replace(operating, housing=case.housing), model)
+    loaded = elastic_pair(hot, (*case.deviations, *(cut if amount else ())))
+    curves = loaded.over(np.arange(case.mesh_positions) / case.mesh_positions)
+    return float(1e6 * np.ptp(curves.transmission_error[0]))

@@ -91,7 +91,7 @@ def heat(asked: Asked) -> Iterator[Answer]:
             yield undecided(HEAT, "tooth_temperature", UNSETTLED, limit=of_teeth, at=at)
             continue
         hottest = float(teeth[point]) - ZERO_CELSIUS
-        flash = float(asked.hot["flash_temperature"][point].max())
+        flash = float(np.fmax.reduce(asked.hot["flash_temperature"][point]))
         yield answer(
             HEAT,
             "tooth_temperature",
@@ -122,7 +122,7 @@ def _tooth_limit(case: GearCase) -> str:
 
 
 def gap(asked: Asked) -> Iterator[Answer]:
-    cold = 2e6 * float(asked.hot["cold_half_backlash"].values.flat[0])
+    cold = 2e6 * float(asked.hot["cold_half_backlash"].flat[0])
     for point in asked.points:
         at = asked.at(point)
         if not asked.settled(point):
@@ -190,7 +190,7 @@ def film(asked: Asked) -> Iterator[Answer]:
     whose = f"stage {stage:g}" + ", assumed" * assumed
     for point in asked.points:
         at = asked.at(point)
-        film = asked.hot["film_parameter"][point].values
+        film = asked.hot["film_parameter"][point]
         least = float(np.nanmin(film)) if np.isfinite(film).any() else float("nan")
         if not asked.settled(point):
             yield undecided(FILM, "film", UNSETTLED, at=at)

@@ -7,8 +7,11 @@ Each question has one sentence, one number with its limit, and a verdict by the 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.progress import Progress, silent
@@ -16,9 +19,9 @@ from thermogear.case.case import GearCase
 from thermogear.case.thermal_state import HOT, UNDEFORMED
 from thermogear.mesh.model import MeshModel
 from thermogear.results.answer import Answer
-from thermogear.results.result import Notice, Result
+from thermogear.results.result import Later, Notice, Result
 from thermogear.study.answers import moving, shafts, steady
-from thermogear.study.answers.asked import MOST_POINTS, Asked
+from thermogear.study.answers.asked import MOST_POINTS, MOVES, OF_COLD, OF_HOT, Asked
 from thermogear.study.speeds import Speeds
 
 if TYPE_CHECKING:
@@ -50,15 +53,15 @@ def answers(case: GearCase, *, progress: Progress = silent) -> Result:
     progress("mesh cycle", 0, 2)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "(oil temperature|viscosity|film):", ValidityWarning)
-        hot = HOT.cycle(case, model)
+        hot = HOT.quantities(case, model, OF_HOT)
         progress("mesh cycle", 1, 2)
-        cold = UNDEFORMED.cycle(case, model)
+        cold = UNDEFORMED.quantities(case, model, OF_COLD)
     progress("mesh cycle", 2, 2)
     found, speeds = answered(case, model, cold, hot, progress)
     return Result.of(
         KIND,
         case.title,
-        {} if speeds is None else {"speeds": speeds.data},
+        {} if speeds is None else Later(speeds=lambda: speeds.data),
         notices(case),
         **case.provenance,
         bundle=model.name,
@@ -93,10 +96,16 @@ def notices(case: GearCase) -> Iterator[Notice]:
 
 
 def answered(
-    case: GearCase, model: MeshModel, cold: xr.Dataset, hot: xr.Dataset, progress: Progress = silent
+    case: GearCase,
+    model: MeshModel,
+    cold: xr.Dataset | Mapping[str, NDArray[Any]],
+    hot: xr.Dataset | Mapping[str, NDArray[Any]],
+    progress: Progress = silent,
 ) -> tuple[tuple[Answer, ...], Speeds | None]:
     """Every answer from the mesh cycles undeformed and ``hot`` under ``model``; the speeds."""
-    asked = Asked(case, model, cold, hot, progress)
+    first = {name: np.asarray(cold[name]) for name in OF_COLD}
+    then = {name: np.asarray(hot[name]) for name in (*OF_HOT, *MOVES)}
+    asked = Asked(case, model, first, then, progress)
     found: list[Answer] = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)

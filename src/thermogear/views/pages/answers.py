@@ -10,7 +10,7 @@ from markupsafe import Markup
 from thermogear.base.limits import FINE, LOOK, OPEN
 from thermogear.results.answer import Answer, worst
 from thermogear.results.result import Result
-from thermogear.views.page import Block, Page, Pictures, Section, Table, notice_lines
+from thermogear.views.page import Block, Made, Page, Pictures, Section, Table, notice_lines
 from thermogear.views.pages.background import background
 from thermogear.views.plots.speeds import speeds_picture
 
@@ -25,7 +25,7 @@ def page(result: Result) -> Page:
     return Page(
         result,
         summary(result),
-        sections(result, pictures) + background(result),
+        Made(lambda: sections(result, pictures) + background(result)),
         numbers=lambda: numbers(result),
         lines=lambda: [*lines(result), *notice_lines(result)],
     )
