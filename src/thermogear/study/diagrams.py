@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-TRAIN_TILE, TRAIN_STRIDE = 16, 2
+TRAIN_TILE, TRAIN_STRIDE = 8, 2
 """A train's point costs as much as thousands of lanes: small chunks, and few points spared."""
 
 
