@@ -21,6 +21,9 @@ from thermogear.analysis.family import (
     family_for,
     lanes_and_status,
     taken,
+    watched_arrays,
+    watched_axes,
+    watched_variables,
 )
 from thermogear.analysis.outcome import (
     begun,
@@ -96,6 +99,7 @@ class DiagramPlan:
             self.parameter: len(self.values),
             "section": self.keep,
             **longer,
+            **{n: len(np.asarray(v)) for n, (_, v, _) in watched_axes(self.family).items()},
         }
 
     @property
@@ -131,7 +135,7 @@ class DiagramPlan:
         if self.dimension != 2:
             words = "state carried on, in the model's units"
             found["end"] = Variable((*dims, "coordinate"), "float64", nan, {"long_name": words})
-        return found
+        return found | watched_variables(self.family, dims)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         name, unit = self.parameter, self.family.units[0]
@@ -144,6 +148,7 @@ class DiagramPlan:
             "start_x": (("start",), np.array([s[0] for s in self.starts]), {"units": "1"}),
             "start_v": (("start",), np.array([s[1] for s in self.starts]), {"units": "1"}),
             name: ((name,), np.array(self.values), {"units": unit}),
+            **watched_axes(self.family),
         }
 
     def needs(self, key: Key) -> Key | None:
@@ -200,6 +205,9 @@ class DiagramPlan:
             state = begun(state, here, self.dimension)
             settled = settle_with_status(here, status[same], state, self.rule, self.keep, alive)
             for name, row in outcome_arrays(settled, status[same], here).items():
+                found[name][0, :, place] = row
+            at = np.full((count, 1), values[place])
+            for name, row in watched_arrays(self.family, at, settled).items():
                 found[name][0, :, place] = row
             sections = drawn(settled.sections, here)
             for axis, name in enumerate("xv"):

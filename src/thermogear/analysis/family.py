@@ -46,7 +46,13 @@ class Family(Protocol):
 
 @runtime_checkable
 class Watching(Protocol):
-    """A family that reads more from a settled motion than its label."""
+    """A family that reads more from a settled motion than its label.
+
+    ``kinds``: those of its variables, whole numbers, that tell kinds of motion apart as labels do.
+    """
+
+    @property
+    def kinds(self) -> tuple[str, ...]: ...
 
     def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
         """The stored variables over ``dims``, some over axes of their own behind them."""
@@ -59,6 +65,21 @@ class Watching(Protocol):
     def watch(self, points: Floats, found: Settled) -> Arrays:
         """The values at ``points`` (point, parameter), whose motions are ``found``."""
         ...
+
+
+def watched_variables(family: Family, dims: tuple[str, ...]) -> dict[str, Variable]:
+    """What a family reads from its motions, nothing where it only labels them."""
+    return family.watched(dims) if isinstance(family, Watching) else {}
+
+
+def watched_axes(family: Family) -> dict[str, Coordinate]:
+    """The axes that these variables have of their own."""
+    return family.watched_coordinates() if isinstance(family, Watching) else {}
+
+
+def watched_arrays(family: Family, points: Floats, found: Settled) -> Arrays:
+    """Their values at ``points`` (point, parameter)."""
+    return family.watch(points, found) if isinstance(family, Watching) else {}
 
 
 @dataclass(frozen=True, eq=False)

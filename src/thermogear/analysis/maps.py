@@ -16,6 +16,9 @@ from thermogear.analysis.family import (
     dimension_of,
     family_for,
     lanes_and_status,
+    watched_arrays,
+    watched_axes,
+    watched_variables,
 )
 from thermogear.analysis.outcome import (
     begun,
@@ -30,7 +33,6 @@ from thermogear.base.errors import InputError
 from thermogear.base.plan import (
     Alive,
     Arrays,
-    Coordinate,
     Key,
     Progress,
     Variable,
@@ -75,7 +77,7 @@ class MapPlan:
 
     @property
     def sizes(self) -> dict[str, int]:
-        inner = {n: len(np.asarray(v)) for n, (_, v, _) in self._watched_axes.items()}
+        inner = {n: len(np.asarray(v)) for n, (_, v, _) in watched_axes(self.family).items()}
         return dict(zip(self.family.names, map(len, self.axes), strict=True)) | inner
 
     @property
@@ -87,8 +89,9 @@ class MapPlan:
         return dict(zip(self.family.names, self.axes, strict=True))
 
     @property
-    def _watched_axes(self) -> dict[str, Coordinate]:
-        return self.family.watched_coordinates() if isinstance(self.family, Watching) else {}
+    def _kinds(self) -> tuple[str, ...]:
+        """What tells motions apart, beside label and period."""
+        return self.family.kinds if isinstance(self.family, Watching) else ()
 
     def inputs(self) -> dict[str, Any]:
         return {
@@ -105,13 +108,11 @@ class MapPlan:
         found = outcome_variables(self.family.names)
         words = {"long_name": "0: taken over from equal neighbours, 1: computed"}
         found["computed"] = Variable(self.family.names, "int8", 0, words)
-        if isinstance(self.family, Watching):
-            found |= self.family.watched(self.family.names)
-        return found
+        return found | watched_variables(self.family, self.family.names)
 
     def coordinates(self) -> dict[str, tuple[tuple[str, ...], ArrayLike, dict[str, Any]]]:
         own = axis_coordinates(self.family.names, self.family.units, self.axes)
-        return own | self._watched_axes
+        return own | watched_axes(self.family)
 
     def needs(self, key: Key) -> Key | None:
         return None
@@ -161,7 +162,7 @@ class MapPlan:
                 self._settle(one, two, places, found, alive)
             if stride == 1:
                 return found
-            wanted = _refined(found, stride)
+            wanted = _refined(found, stride, self._kinds)
             stride //= 2
             inside = np.zeros(shape, bool)
             inside[np.ix_(_lattice(one.size, stride), _lattice(two.size, stride))] = True
@@ -178,9 +179,8 @@ class MapPlan:
         settled = settle_with_status(lanes, status, start, self.rule, alive=alive)
         for name, values in outcome_arrays(settled, status, lanes).items():
             found[name][i, j] = values
-        if isinstance(self.family, Watching):
-            for name, values in self.family.watch(points, settled).items():
-                found[name][i, j] = values
+        for name, values in watched_arrays(self.family, points, settled).items():
+            found[name][i, j] = values
         found["computed"][i, j] = 1
 
     def finish(self, data: xr.Dataset) -> xr.Dataset:
@@ -200,15 +200,20 @@ def _lattice(size: int, stride: int) -> NDArray[np.int64]:
     return np.unique(np.append(np.arange(0, size, stride), size - 1))
 
 
-def _refined(found: Arrays, stride: int) -> NDArray[np.bool_]:
+def _refined(found: Arrays, stride: int, kinds: tuple[str, ...]) -> NDArray[np.bool_]:
     """Places inside or next to cells whose corners differ; equal cells take their corners' label.
+
+    Corners differ in label, period or one of the ``kinds``.
 
     A cell counts as equal only when its neighbours are equal too, and never when undecided.
     """
     shape = found["label"].shape
     rows, columns = _lattice(shape[0], stride), _lattice(shape[1], stride)
-    # one number for label and period
+    # one number for label and period, and then for all
     code = found["label"].astype(np.int64) * 2**31 + found["period"]
+    for name in kinds:
+        both = np.stack([code.ravel(), found[name].ravel()])
+        code = np.unique(both, axis=1, return_inverse=True)[1].reshape(shape)
     corner = code[np.ix_(rows, columns)]
     first = corner[:-1, :-1]
     same = (first == corner[1:, :-1]) & (first == corner[:-1, 1:]) & (first == corner[1:, 1:])
@@ -229,7 +234,7 @@ def _refined(found: Arrays, stride: int) -> NDArray[np.bool_]:
             slice(int(columns[j]), int(columns[j + 1]) + 1),
         )
         fresh = (found["computed"][place] == 0) & ~wanted[place]
-        for name in ("label", "period", "status"):
+        for name in ("label", "period", "status", *kinds):
             found[name][place][fresh] = found[name][rows[i], columns[j]]
     return wanted
 

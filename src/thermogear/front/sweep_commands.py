@@ -195,19 +195,28 @@ def map_(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Map of the regimes of CASE over two parameters (--over twice)."""
+    """Map of the regimes of CASE over two parameters (--over twice).
+
+    Of a drive train also what loses contact; undeformed and hot, where neither --state nor --over
+    says how hot.
+    """
     from thermogear.case.axes import parse_axes, parse_numbers
-    from thermogear.study.diagrams import case_map
+    from thermogear.case.samples import GEARS_AT
+    from thermogear.study.diagrams import case_map, train_maps
 
     read = delivery.load(case, options["overrides"])
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
     axes = parse_axes(read, over)
     bundle, state = _choice(read, options)
-    plan = case_map(
-        read, axes, bundle=bundle, state=state, changes=parse_numbers(but), refine=not full,
-        train=_train_of(read, options),
-    )  # fmt: skip
+    changes, train = parse_numbers(but), _train_of(read, options)
+    plan: Plan
+    if train is None or changes or GEARS_AT in axes or options["state"] is not None:
+        plan = case_map(
+            read, axes, bundle=bundle, state=state, changes=changes, refine=not full, train=train
+        )
+    else:
+        plan = train_maps(read, axes, bundle=bundle, refine=not full, train=train)
     _carry(plan, Path(output), read.title, as_json, options)
 
 

@@ -26,8 +26,11 @@ DEGREE = 8
 """Degree of the polynomial of every piece."""
 DEEPEST = 8
 """How often a piece between two borders is halved at most."""
-GRID, BISECTIONS = 96, 30
-"""Phases between which changes of the carrying pairs are looked for, and halvings to find them."""
+GRID = 96
+"""Phases between which changes of the carrying pairs are looked for."""
+PARTS, ROUNDS = 32, 6
+"""Each of so many rounds cuts the place of a change into so many parts: what a phase costs is
+mostly the call."""
 LEAST_PIECE, BESIDE = 1e-7, 1e-12
 """Borders that are one, and where a border's other side is asked, in periods."""
 
@@ -164,13 +167,16 @@ def _changes(ask: Asked) -> list[float] | None:
     states = seen.carrying
     changed = np.flatnonzero(np.any(states[1:] != states[:-1], axis=1))
     low, high, left = grid[changed], grid[changed + 1], states[changed]
-    for _ in range(BISECTIONS if changed.size else 0):
-        middle = 0.5 * (low + high)
-        found = ask(middle)
+    inner = np.arange(1, PARTS) / PARTS
+    for _ in range(ROUNDS if changed.size else 0):
+        marks = low[:, None] + (high - low)[:, None] * inner
+        found = ask(marks.ravel())
         if found is None:
             return None
-        same = np.all(found.carrying == left, axis=1)
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+        same = np.all(found.carrying.reshape(*marks.shape, -1) == left[:, None], axis=-1)
+        part = np.logical_and.accumulate(same, axis=1).sum(axis=1)
+        ends = np.column_stack([low, marks, high])
+        low, high = (ends[np.arange(part.size), part + side] for side in (0, 1))
     return [float(one) for one in 0.5 * (low + high)]
 
 

@@ -16,6 +16,7 @@ from thermogear.analysis.diagram import BRANCH_PERIOD, DIAGRAM_RULE, DiagramPlan
 from thermogear.analysis.family import Family
 from thermogear.analysis.maps import MAP_RULE, MapPlan, map_plan
 from thermogear.analysis.settle import Rule
+from thermogear.analysis.stacked import StackedPlan
 from thermogear.base.errors import InputError
 from thermogear.case.base import Case
 from thermogear.case.case import gear_case
@@ -23,12 +24,13 @@ from thermogear.case.family import GearFamily, NumberFamily, Tabulated, family, 
 from thermogear.case.thermal_state import HOT, StateLike, ThermalState
 from thermogear.study.shafts.family import TabulatedTrains, TrainFamily
 from thermogear.study.shafts.motion import LONGEST
+from thermogear.study.shafts.state import STATES
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-TRAIN_TILE, TRAIN_STRIDE = 16, 2
+TRAIN_TILE, TRAIN_STRIDE = 8, 2
 """A train's point costs as much as thousands of lanes: small chunks, and few points spared."""
 
 
@@ -130,6 +132,35 @@ def case_map(
     train: Train | None = None,
 ) -> MapPlan:
     """The map of regimes of a case, or of its drive ``train``, over two parameters."""
+    return _map(case, axes, bundle, state, changes, refine, train)
+
+
+def train_maps(
+    case: Case,
+    axes: Mapping[str, Floats],
+    *,
+    bundle: str = "",
+    refine: bool = True,
+    train: Train | None = None,
+) -> StackedPlan:
+    """The maps of a case's drive ``train`` undeformed and hot, side by side, over two parameters.
+
+    None of them the temperature.
+    """
+    chosen = Train() if train is None else train
+    plans = [_map(case, axes, bundle, state, None, refine, chosen) for state in STATES]
+    return StackedPlan(plans=tuple(plans), words=tuple(state.words for state in STATES))
+
+
+def _map(
+    case: Case,
+    axes: Mapping[str, Floats],
+    bundle: str,
+    state: StateLike,
+    changes: Mapping[str, float] | None,
+    refine: bool,
+    train: Train | None,
+) -> MapPlan:
     whole = case_family(
         case, tuple(axes), bundle=bundle, state=state, changes=changes, train=train
     )  # fmt: skip

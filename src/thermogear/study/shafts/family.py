@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
@@ -31,11 +32,14 @@ from thermogear.study.shafts.record import SAMPLES, shown
 from thermogear.study.shafts.state import TrainState, plan_of, settled
 
 Floats = NDArray[np.float64]
-KEPT = 64
-"""Trains at rest, and trains in motion, that a family remembers."""
+KEPT = 80
+"""Cases, trains at rest and trains in motion that a family remembers, of each, for every thread:
+more than a chunk of a map has."""
 WATCHED = 32
 """Mesh periods at most of a settled motion that its forces are read from."""
 LOST = STATUS.index("not_converged")
+LOST_FLAGS = ("drive_flank", "back_flank")
+"""The first flags of what loses contact; the bearings follow, one by one."""
 MOVING = (UNDECIDED, PERIODIC, CHAOTIC)
 """Labels of motions whose forces are read."""
 
@@ -57,7 +61,7 @@ class TrainFamily:
     operating: int = 0
     coordinates: int | None = None
     seen: str = ""
-    _kept: dict[Any, Any] = field(init=False, repr=False, default_factory=dict)
+    _kept: dict[str, dict[Any, Any]] = field(init=False, repr=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         plan = plan_of(self.case)
@@ -137,23 +141,35 @@ class TrainFamily:
         """The one-point case with parameters put to other ``values`` [SI]."""
         if not values:
             return self._alone
-        index = [m.name for m in self.case.models].index(self.bundle)
-        whole = replace(self._alone, models=self.case.models)
-        made = whole.with_values(dict(values), told=False)
-        return replace(made, models=(made.models[index],))
-
-    def _at_rest(self, values: dict[str, float], state: ThermalState) -> TrainState:
-        key = ("rest", *values.items(), state.stored)
-        found: TrainState | None = self._kept.get(key)
+        found: GearCase | None = self._known("case", *values.items())
         if found is None:
-            found = settled(self._case_with(values), [0], states=[state])[0][0]
-            self._keep(key, found)
+            index = [m.name for m in self.case.models].index(self.bundle)
+            whole = replace(self._alone, models=self.case.models)
+            made = whole.with_values(dict(values), told=False)
+            found = replace(made, models=(made.models[index],))
+            self._keep(found, "case", *values.items())
         return found
 
-    def _keep(self, key: Any, value: object) -> None:
-        for old in list(self._kept)[: max(len(self._kept) - KEPT + 1, 0)]:
-            self._kept.pop(old, None)
-        self._kept[key] = value
+    def _at_rest(self, values: dict[str, float], state: ThermalState) -> TrainState:
+        key = (*values.items(), state.stored)
+        found: TrainState | None = self._known("rest", *key)
+        if found is None:
+            case = self._case_with(values)
+            # what is reached from hot is asked of no motion
+            state.balance(case, case.models[0], from_hot=False)
+            found = settled(case, [0], states=[state])[0][0]
+            self._keep(found, "rest", *key)
+        return found
+
+    def _known(self, kind: str, *key: object) -> Any:
+        return self._kept.setdefault(kind, {}).get(key)
+
+    def _keep(self, value: object, kind: str, *key: object) -> None:
+        kept = self._kept.setdefault(kind, {})
+        over = len(kept) + 1 - KEPT * threading.active_count()
+        for old in list(kept)[: max(over, 0)]:
+            kept.pop(old, None)
+        kept[key] = value
 
     def at_rest(self, row: Sequence[float]) -> tuple[TrainState, GearCase]:
         """The train of one row at rest under its load, and its case."""
@@ -170,11 +186,12 @@ class TrainFamily:
 
     def train(self, row: Sequence[float]) -> MovingTrain | None:
         """The train of one row in motion; None where it has no motion."""
-        key = ("motion", *map(float, row))
-        if key not in self._kept:
-            self._keep(key, self._moving(row))
-        found: MovingTrain | None = self._kept[key]
-        return found
+        key = tuple(map(float, row))
+        made: tuple[MovingTrain | None] | None = self._known("motion", *key)
+        if made is None:
+            made = (self._moving(row),)
+            self._keep(made, "motion", *key)
+        return made[0]
 
     def _moving(self, row: Sequence[float]) -> MovingTrain | None:
         found, case = self.at_rest(row)
@@ -245,6 +262,8 @@ class TrainFamily:
 
     # --- what else is seen of a settled motion ----------------------------------------------
 
+    kinds = ("lost_contact",)
+
     def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
         """The stored variables of :meth:`watch` over ``dims``."""
 
@@ -252,13 +271,24 @@ class TrainFamily:
             about = {"long_name": words, "units": units}
             return Variable((*dims, *inner), "float64", float("nan"), about)
 
+        bearings = range(1, len(plan_of(self.case).bearing_names) + 1)
+        flags = (*LOST_FLAGS, *(f"bearing_{number}" for number in bearings))
+        lost = {
+            "long_name": "what loses contact, the sum of its flags; 0: nothing, -1: not known",
+            "flag_masks": 2 ** np.arange(len(flags), dtype=np.int32),
+            "flag_meanings": " ".join(flags),
+        }
         return {
             "greatest_mesh_force": one("greatest force of the drive flanks", "N"),
+            "drive_free_share": one("share of time in which no drive flank carries", "1"),
             "back_share": one("share of time in contact of the back flanks", "1"),
             "greatest_bearing_force": one("greatest force on the bearing", "N", "bearing"),
-            "bearing_free_share": one("share of time in which a bearing bears nothing", "1",
-                                      "bearing"),
-        }  # fmt: skip
+            "average_bearing_force": one("mean amount of the force on the bearing", "N", "bearing"),
+            "bearing_free_share": one(
+                "share of time in which a bearing bears nothing", "1", "bearing"
+            ),
+            "lost_contact": Variable(dims, "int32", -1, lost),
+        }
 
     def watched_coordinates(self) -> dict[str, Coordinate]:
         """The axis of the bearings."""
@@ -267,11 +297,18 @@ class TrainFamily:
         return {"bearing": (("bearing",), np.arange(1, len(names) + 1), about)}
 
     def watch(self, points: Floats, found: Settled) -> Arrays:
-        """Forces and losses of contact of the settled motions of rows ``points``."""
+        """Forces and losses of contact of the settled motions of rows ``points``.
+
+        A bearing lifts off where it bears nothing at one of 64 samples a mesh period.
+        """
         rows = np.asarray(points, dtype=float)
         count = len(plan_of(self.case).bearing_names)
         values: Arrays = {
-            name: np.full((len(rows), count) if "bearing" in variable.dims else len(rows), np.nan)
+            name: np.full(
+                (len(rows), count) if "bearing" in variable.dims else len(rows),
+                variable.fill,
+                np.dtype(variable.dtype),
+            )
             for name, variable in self.watched(("row",)).items()
         }
         for place, row in enumerate(rows):
@@ -286,10 +323,16 @@ class TrainFamily:
             run = Engine(train.model).run(found.state[place], periods, samples=SAMPLES)
             record = shown(train, run, 0.0)
             force = np.linalg.norm(record.bearing_force, axis=2)
+            free = (force == 0.0).mean(axis=0)
+            apart = run.shares[0] + run.shares[1]
             values["greatest_mesh_force"][place] = record.mesh_force.max()
+            values["drive_free_share"][place] = apart
             values["back_share"][place] = run.shares[0]
             values["greatest_bearing_force"][place] = force.max(axis=0)
-            values["bearing_free_share"][place] = (force == 0.0).mean(axis=0)
+            values["average_bearing_force"][place] = force.mean(axis=0)
+            values["bearing_free_share"][place] = free
+            lost = np.array([apart, run.shares[0], *free]) > 0.0
+            values["lost_contact"][place] = int(lost @ 2 ** np.arange(lost.size))
         return values
 
 
@@ -336,6 +379,20 @@ class TabulatedTrains:
 
     def __getstate__(self) -> dict[str, Any]:
         return {"family": self.family, "values": self.values}
+
+    kinds = TrainFamily.kinds
+
+    def watched(self, dims: tuple[str, ...]) -> dict[str, Variable]:
+        """As of the family."""
+        return self.family.watched(dims)
+
+    def watched_coordinates(self) -> dict[str, Coordinate]:
+        """As of the family."""
+        return self.family.watched_coordinates()
+
+    def watch(self, points: Floats, found: Settled) -> Arrays:
+        """As of the family, at its ``values``."""
+        return self.family.watch(points, found)
 
     def _at(self, place: int) -> tuple[GearedModel | None, int]:
         found = self._found.get(place)

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
+from thermogear.views.pages.lost_words import lost_rows
+from thermogear.views.plots.lost_contact import has_lost
 from thermogear.views.plots.parameters import shown
 
 if TYPE_CHECKING:
@@ -40,6 +42,8 @@ def _labels(result: Result) -> dict[str, Any]:
     for name in ("total_periods", "full_periods", "computed_points"):
         if name in data.attrs:
             found[name] = int(data.attrs[name])
+    if has_lost(data):
+        found["lost_contact"] = lost_rows(data)
     found["notices"] = [one.text for one in result.notices]
     return found
 

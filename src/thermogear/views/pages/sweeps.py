@@ -14,9 +14,11 @@ from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
 from thermogear.views.page import LEAD, Block, Page, Pictures, Section, Table, Text
 from thermogear.views.pages.findings import finding
+from thermogear.views.pages.lost_words import lost_words
 from thermogear.views.pages.sweep_numbers import JUMPS_AT, lines, numbers
 from thermogear.views.picture import Picture
 from thermogear.views.plots import sweeps
+from thermogear.views.plots.lost_contact import forces_picture, has_lost, lost_contact_picture
 from thermogear.views.plots.parameters import page_words, shown
 
 if TYPE_CHECKING:
@@ -47,6 +49,16 @@ EXPLAINED = {
 }
 
 
+LOST_MAP = (
+    "Teeth: whether the drive flanks part at some moment of the settled motion, and whether the "
+    "back flanks are hit then. Bearings: which bear nothing at some of 64 moments a mesh period. A "
+    "preloaded bearing never does."
+)
+LOST_DIAGRAM = (
+    "Greatest force of the drive flanks and on every bearing, up (full) and down (dashed); below "
+    "the share of the time in which the drive flank, or the bearing, carries nothing."
+)
+
 KINDS = ("diagram", "map", "basins", "sweep", "run-up")
 
 
@@ -72,7 +84,8 @@ def _summary(data: xr.Dataset) -> str:
             f"{sweeps.CLASSES[n][0]} {100.0 * np.mean(code == n):.3g} %" for n in np.unique(code)
         ]
         words = f"{TITLES[kind]}, {code.size} points: " + ", ".join(parts) + "."
-        return f"{finding(data)} {words} {FASTER_RULE.capitalize()}."
+        lost = lost_words(data)
+        return f"{f'{lost} ' * bool(lost)}{finding(data)} {words} {FASTER_RULE.capitalize()}."
     return finding(data)
 
 
@@ -110,6 +123,12 @@ def _pictures(data: xr.Dataset) -> Section:
             ),
         ],
     }  # fmt: skip
+    if has_lost(data) and kind == "map":
+        makers[kind].insert(0, ("contact", "What loses contact", LOST_MAP, lost_contact_picture))
+    if has_lost(data) and kind == "diagram":
+        makers[kind].append(
+            ("forces", "Forces and losses of contact", LOST_DIAGRAM, forces_picture)
+        )
     pictures = Pictures()
     for name, heading, caption, make in makers[kind]:
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from typing import TYPE_CHECKING
+
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.parameters import PARAMETERS, long_name
 from thermogear.views.typesetting import math_symbol, prose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def shown(name: str, values: ArrayLike) -> NDArray[np.float64]:
@@ -30,3 +36,15 @@ def page_words(name: str) -> Markup:
 def _words(name: str) -> str:
     one = PARAMETERS.get(long_name(name))
     return name.replace("_", " ") if one is None else one.label
+
+
+def named(data: xr.Dataset, axis: str) -> list[str]:
+    """The names along a numbered axis, as stored with it."""
+    return [str(one) for one in json.loads(str(data[axis].attrs["names"]))]
+
+
+def each_state(data: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
+    """A map in every state of heat that it has, with the state's name; "" where it has one."""
+    if "state" not in data["label"].dims:
+        return [("", data)]
+    return [(name, data.isel(state=i)) for i, name in enumerate(named(data, "state"))]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.plots.parameters import axis_words, shown
+from thermogear.views.plots.parameters import axis_words, each_state, shown
 from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, WIDE, scale
 
 if TYPE_CHECKING:
@@ -123,8 +123,14 @@ def _branches(panel: Panel, data: xr.Dataset, name: str) -> None:
 
 
 def map_picture(data: xr.Dataset) -> Picture:
-    """The regime over two parameters."""
-    return Picture([[_regimes(data)]], size=(WIDE, 6.4), legend=6)
+    """The regime over two parameters, in every state of heat that it has."""
+    panels = []
+    for state, one in each_state(data):
+        panel = _regimes(one)
+        panel.title = state
+        panels.append(panel)
+    height = 6.4 if len(panels) == 1 else 4.6
+    return Picture([panels], size=(WIDE, height), legend=6, share_y="row")
 
 
 def _over_two(data: xr.Dataset) -> tuple[Panel, tuple[Floats, Floats]]:

@@ -1,0 +1,113 @@
+"""What a drive train loses contact at, in words: from the stored flags alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.display import exactly
+from thermogear.base.parameters import PARAMETERS, long_name
+from thermogear.views.plots.lost_contact import has_lost, things
+from thermogear.views.plots.parameters import each_state, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Flags = NDArray[np.bool_]
+FILLED = 0.75
+"""A stretch of the map is called by its ends alone where so much of it is meant."""
+MOST = 3
+"""Stretches of one axis that are named one by one."""
+
+
+def lost_words(data: xr.Dataset) -> str:
+    """A sentence or several: what loses contact where; "" where nothing says."""
+    if not has_lost(data):
+        return ""
+    told = []
+    for state, here in each_state(data):
+        if (here["lost_contact"].values < 0).all():
+            words = "of no point it is known what loses contact"
+        else:
+            parts = [f"{what} {where(here, flags)}" for what, flags in things(here).items()
+                     if flags.any()]  # fmt: skip
+            words = "; ".join(parts) if parts else "nothing loses contact"
+        begun = f"{state}: {words}" if state else words
+        told.append(f"{begun[0].upper()}{begun[1:]}.")
+    return " ".join(told)
+
+
+def lost_rows(data: xr.Dataset) -> list[dict[str, Any]]:
+    """The same as rows: state, what, points, of so many, where."""
+    rows = []
+    for state, here in each_state(data):
+        for what, flags in things(here).items():
+            if flags.any():
+                row = {"what": what, "points": int(flags.sum()), "of": int(flags.size),
+                       "where": where(here, flags)}  # fmt: skip
+                rows.append({"state": state, **row} if state else row)
+    return rows
+
+
+def where(data: xr.Dataset, flags: Flags) -> str:
+    """Where on the axes of the result ``flags`` are set: ranges in the units shown."""
+    axes = [str(n) for n in data["label"].dims if n not in ("direction", "start")]
+    rest = tuple(i for i, n in enumerate(data["label"].dims) if str(n) not in axes)
+    here = np.asarray(flags.any(axis=rest))
+    if here.all():
+        return "everywhere"
+    units = [_unit(name) for name in axes]
+    alike = len(set(units)) < len(units)
+    if here.ndim == 1:
+        values = shown(axes[0], data[axes[0]].values)
+        return _named(axes[0], units[0], _stretches(values, here, units[0]), alike=False)
+    inside = [np.flatnonzero(here.any(axis=1 - axis)) for axis in (0, 1)]
+    box = here[inside[0][0] : inside[0][-1] + 1, inside[1][0] : inside[1][-1] + 1]
+    words = [
+        _named(name, unit, _range(shown(name, data[name].values), on, unit), alike=alike)
+        for name, unit, on in zip(axes, units, inside, strict=True)
+    ]
+    found = ", ".join(one for one in words if one)
+    share = 100.0 * float(here.mean())
+    if box.mean() >= FILLED and found:
+        return found
+    return f"at {exactly(share, 2)} % of the points{f', {found}' * bool(found)}"
+
+
+def _unit(name: str) -> str:
+    one = PARAMETERS.get(long_name(name))
+    return "" if one is None else one.shown
+
+
+def _named(name: str, unit: str, words: str, *, alike: bool) -> str:
+    """A range behind the parameter's name where its unit does not tell which one it is."""
+    if not words or (unit and not alike):
+        return words
+    one = PARAMETERS.get(long_name(name))
+    return f"{name.replace('_', ' ') if one is None else one.words} {words}"
+
+
+def _range(values: NDArray[np.float64], on: NDArray[np.int64], unit: str) -> str:
+    """From the first to the last of some places of an axis; nothing where these are its ends."""
+    order = np.argsort(values)
+    places = np.flatnonzero(np.isin(order, on))
+    low, high = (exactly(float(values[order[places[end]]])) for end in (0, -1))
+    whole = f" {unit}".rstrip()
+    if places[0] == 0 and places[-1] == values.size - 1:
+        return ""
+    if places[0] == 0:
+        return f"up to {high}{whole}"
+    if places[-1] == values.size - 1:
+        return f"from {low}{whole} on"
+    return f"at {low}{whole}" if low == high else f"from {low} to {high}{whole}"
+
+
+def _stretches(values: NDArray[np.float64], flags: Flags, unit: str) -> str:
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]]))).reshape(-1, 2)
+    if len(edges) > MOST:
+        low, high = (exactly(float(v)) for v in (values[flags].min(), values[flags].max()))
+        return f"at {int(flags.sum())} values from {low} to {high} {unit}".rstrip()
+    ends = [(exactly(float(values[a])), exactly(float(values[b - 1]))) for a, b in edges]
+    return f"at {', '.join(a if a == b else f'{a} to {b}' for a, b in ends)} {unit}".rstrip()

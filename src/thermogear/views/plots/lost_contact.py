@@ -1,0 +1,144 @@
+"""What a drive train loses contact at: flanks and bearings over one parameter or two."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.parameters import axis_words, each_state, named, shown
+from thermogear.views.plots.sweeps import edges
+from thermogear.views.style import FAINT, INK, OKABE_ITO, QUIET, WIDE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Flags = NDArray[np.bool_]
+
+DRIVE, BACK, FIRST = 1, 2, 4
+"""Flags of what loses contact: the drive flank, the back flank (hit), the first bearing."""
+JAMMED = 4
+"""Its label."""
+MOST = 6
+"""Sets of bearings with a colour of their own."""
+ALIKE, UNKNOWN, LOCKED = FAINT, "#999999", "#ffffff"
+TEETH = (
+    ("teeth always in contact", ALIKE),
+    ("drive flank parts", "#E69F00"),
+    ("drive flank parts, back flank is hit", "#D55E00"),
+)
+SETS = ("#0072B2", "#56B4E9", "#009E73", "#CC79A7", "#F0E442", "#8a5a2b")
+BLANK = (("not known", UNKNOWN), ("jammed", LOCKED))
+
+
+def has_lost(data: xr.Dataset) -> bool:
+    """Whether the stored result says what loses contact."""
+    return "lost_contact" in data
+
+
+def things(data: xr.Dataset) -> dict[str, Flags]:
+    """Where what loses contact, arrays as the labels': flanks first, then each bearing."""
+    lost = data["lost_contact"].values
+    some = np.where(lost > 0, lost, 0)
+    found = {
+        "the drive flank parts": (some & DRIVE) > 0,
+        "the back flank is hit": (some & BACK) > 0,
+    }
+    for place, name in enumerate(named(data, "bearing")):
+        found[f"bearing {name} is unloaded at times"] = (some & (FIRST << place)) > 0
+    return found
+
+
+def lost_contact_picture(data: xr.Dataset) -> Picture:
+    """Which flank, and which bearing, loses contact over two parameters, in every state of heat."""
+    states = each_state(data)
+    sets = _sets(data)
+    panels = [[_teeth(one, name) for name, one in states],
+              [_bearings(one, name, sets) for name, one in states]]  # fmt: skip
+    if len(states) == 1:
+        return Picture([[panels[0][0], panels[1][0]]], size=(WIDE, 4.6), legend=3, share_y="row")
+    return Picture(panels, size=(WIDE, 8.2), legend=3, share_y="row", share_x="column")
+
+
+def _panel(data: xr.Dataset, words: str) -> Panel:
+    one, two = (str(name) for name in data["label"].dims[-2:])
+    axes = (
+        Axis(axis_words(name, str(data[name].attrs.get("units", "1")))) for name in (one, two)
+    )  # fmt: skip
+    return Panel(*axes, words)
+
+
+def _put(
+    panel: Panel, data: xr.Dataset, codes: NDArray[np.int64], looks: list[tuple[str, str]]
+) -> Panel:
+    one, two = (str(name) for name in data["label"].dims[-2:])
+    names, colours = zip(*looks, *BLANK, strict=True)
+    whole = np.where(data["lost_contact"].values < 0, len(looks), codes)
+    whole = np.where(data["label"].values == JAMMED, len(looks) + 1, whole)
+    borders = edges(shown(one, data[one].values)), edges(shown(two, data[two].values))
+    panel.field(*borders, whole.T, colours=colours, classes=names)
+    return panel
+
+
+def _teeth(data: xr.Dataset, state: str) -> Panel:
+    lost = data["lost_contact"].values
+    codes = np.where(lost & BACK, 2, np.where(lost & DRIVE, 1, 0))
+    return _put(_panel(data, f"teeth{f', {state}' * bool(state)}"), data, codes, list(TEETH))
+
+
+def _sets(data: xr.Dataset) -> list[int]:
+    """The sets of unloaded bearings that occur, the most frequent first."""
+    lost = data["lost_contact"].values
+    found = Counter((lost[lost > 0] // FIRST).ravel().tolist())
+    return [one for one, _ in found.most_common() if one][:MOST]
+
+
+def _bearings(data: xr.Dataset, state: str, sets: list[int]) -> Panel:
+    bearings, lost = named(data, "bearing"), data["lost_contact"].values
+    own = np.where(lost > 0, lost, 0) // FIRST
+    looks = [("bearings always loaded", ALIKE)]
+    codes = np.where(own == 0, 0, len(sets) + 1)
+    for place, one in enumerate(sets):
+        which = [name for b, name in enumerate(bearings) if one & (1 << b)]
+        words = "every bearing" if len(which) == len(bearings) > 1 else ", ".join(which)
+        looks.append((f"unloaded at times: {words}", SETS[place]))
+        codes[own == one] = place + 1
+    looks.append(("other bearings unloaded", INK))
+    return _put(_panel(data, f"bearings{f', {state}' * bool(state)}"), data, codes, looks)
+
+
+def forces_picture(data: xr.Dataset) -> Picture:
+    """Greatest force on teeth and bearings over a parameter, up and down; what lifts off below."""
+    name = str(data.attrs["parameter"])
+    p = shown(name, data[name].values)
+    dot = "circle" if p.size == 1 else ""
+    along = Axis(axis_words(name, str(data[name].attrs.get("units", "1"))))
+    force = Panel(Axis(), Axis("greatest force [N]", low=0.0))
+    free = Panel(along, Axis("time without contact [%]", low=0.0))
+    ways = (("up", ()), ("down", (3.0, 2.0)))
+    rows = [("teeth", INK, data["greatest_mesh_force"].values, data["drive_free_share"].values)]
+    for b, bearing in enumerate(named(data, "bearing")):
+        rows.append(
+            (
+                bearing, OKABE_ITO[b % len(OKABE_ITO)],
+                data["greatest_bearing_force"].values[..., b],
+                data["bearing_free_share"].values[..., b],
+            )
+        )  # fmt: skip
+    for words, colour, forces, shares in rows:
+        for direction, (way, dash) in enumerate(ways):
+            for start in range(data.sizes["start"]):
+                label = f"{words}, {way}" if start == 0 else ""
+                look = {"colour": colour, "dash": dash, "width": 1.3, "marker": dot}
+                force.curve(p, forces[direction, start], label=label, **look)  # type: ignore[arg-type]
+                free.curve(p, 100.0 * shares[direction, start], **look)  # type: ignore[arg-type]
+    if not np.nansum(data["drive_free_share"].values) + np.nansum(
+        data["bearing_free_share"].values
+    ):
+        free.text(0.5, 0.5, "nothing loses contact", at="panel", colour=QUIET)
+    return Picture(
+        [[force], [free]], size=(WIDE, 6.0), share_x="column", above=0.2, heights=(2, 1), legend=4
+    )
