@@ -45,6 +45,7 @@ def compare(
     *,
     teeth: int | None = None,
     speed: float | None = None,
+    at: Sequence[str] = (),
     u_data: float | None = None,
     u_num: float | None = None,
     tolerances: Mapping[str, float] | None = None,
@@ -62,6 +63,9 @@ def compare(
     ``u_num`` of the simulation (for a case: found by halving the step unless given);
     ``tolerances``: relative standard uncertainty per field of the case, as
     {"operating.torque": 0.05}, sampled ``samples`` times from ``seed``.
+    ``at``: where the record's accelerometers sit on a case with shafts, a text for each channel as
+    "a1=bearing:pinion 1:x"; then their mesh lines are compared with the drive train's at the same
+    place, and not the teeth's displacement.
 
     Raises InputError when no speed is common to both sides, or an uncertainty is impossible.
     """
@@ -85,6 +89,11 @@ def compare(
             published = PUBLISHED[simulated]
             return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
         raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
+    if at:
+        return _at_places(
+            simulated, measured, at, teeth=teeth, speed=speed, u_data=u_data, u_num=u_num,
+            tolerances=tolerances, samples=samples, seed=seed,
+        )  # fmt: skip
     printed = _measured(measured, teeth, speed)
     if isinstance(simulated, str) and simulated in PUBLISHED:
         return compared(PUBLISHED[simulated].models, printed, u_data=u_data, u_num=u_num or 0.0)
@@ -97,6 +106,39 @@ def compare(
         u_input=found.u_input,
         said=found.notices,
     )
+
+
+def _at_places(
+    simulated: str | Path | Case | Result | Mapping[str, LineTable],
+    measured: str | Path | LineTable | Printed | Measurement | Record,
+    at: Sequence[str],
+    *,
+    teeth: int | None,
+    speed: float | None,
+    **how: Any,
+) -> Comparison:
+    """The drive train of a case against the accelerometers of a record."""
+    from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
+
+    if not _computes(simulated):
+        raise InputError(
+            "--at",
+            ", ".join(at),
+            why="stored results and tables do not say how a bearing moves",
+            fix="name the case",
+        )
+    case: Any = simulated
+    table = isinstance(measured, str) and measured in PUBLISHED
+    if isinstance(measured, (str, Path)) and not table and not is_table(measured):
+        measured = read_record(measured)
+    if isinstance(measured, Record):
+        own = gear_case(load_case(case) if isinstance(case, str | Path) else case)
+        measured = measure(measured, teeth=teeth or own.pair.pinion.teeth, speed=speed)
+    if not isinstance(measured, Measurement):
+        raise InputError(
+            "--at", ", ".join(at), why="a table of lines has no channels", fix="name a record"
+        )
+    return compare_sensors(case, measured, at, **how)
 
 
 def _measured(
@@ -200,14 +242,14 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
 
 
 @dataclass(frozen=True)
-class _Runs:
+class CaseRuns:
     """A case that is run again with some of its fields changed."""
 
     text: str
     kept: Mapping[str, str]
 
     @classmethod
-    def of(cls, case: Case | str | Path) -> _Runs:
+    def of(cls, case: Case | str | Path) -> CaseRuns:
         given = load_case(case) if isinstance(case, str | Path) else case
         return cls(given.text, dict(given.overrides))
 
@@ -219,12 +261,16 @@ class _Runs:
 
         return _motion_lines(gear_motion(self.case(changes)))
 
-    def scaled(self, factors: Mapping[str, float]) -> dict[str, LineTable]:
-        """The lines with every named field times its factor."""
+    def changes(self, factors: Mapping[str, float]) -> dict[str, str]:
+        """The overrides that multiply every named field by its factor."""
         changes: dict[str, str] = {}
         for name, factor in factors.items():
             changes |= overrides_of(self.text, self.kept, name, factor)
-        return self.tables(changes)
+        return changes
+
+    def scaled(self, factors: Mapping[str, float]) -> dict[str, LineTable]:
+        """The lines with every named field times its factor."""
+        return self.tables(self.changes(factors))
 
 
 def case_lines(
@@ -236,7 +282,7 @@ def case_lines(
     u_num: float | None,
 ) -> CaseLines:
     """The case simulated, its step doubled for u_num, and sampled within its tolerances."""
-    runs = _Runs.of(case)
+    runs = CaseRuns.of(case)
     notices: list[Notice] = []
     base = runs.tables({})
     if u_num is None:
@@ -340,7 +386,7 @@ def fit_case(
     amplitudes together. ``model`` as "consistent hot" (default: the last of the case);
     ``u_data`` the relative uncertainty of lines that state none.
     """
-    runs = _Runs.of(case)
+    runs = CaseRuns.of(case)
     base = runs.tables({})
     chosen = model or list(base)[-1]
     if chosen not in base:
