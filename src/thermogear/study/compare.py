@@ -167,6 +167,8 @@ def _measured(
 def _computes(simulated: object) -> bool:
     """Whether the lines come from a case that is computed here."""
     if isinstance(simulated, (str, Path)):
+        if "\n" in str(simulated):
+            return True  # a case as text
         path = Path(simulated)
         return str(simulated) not in PUBLISHED and not path.is_dir() and path.suffix != ".nc"
     return not isinstance(simulated, (Mapping, Result))
