@@ -127,8 +127,8 @@ def measure(file: str, as_json: bool, output: str | None, **options: Any) -> Non
     "--at",
     multiple=True,
     metavar="CHANNEL=PLACE:DIRECTION",
-    help="Where an accelerometer sits on the drive train, as a1=bearing:pinion 1:x, a2=housing:y "
-    "or a3=bearing:wheel 1:30 (degrees from x). May be repeated.",
+    help="Where an accelerometer sits on the drive train, as a1=bearing:pinion left:x, a2=housing:y "
+    "or a3=bearing:wheel left:30 (degrees from x). May be repeated.",
 )
 @click.option("--u-data", type=float, metavar="PERCENT", help="Uncertainty of the measurement.")
 @delivery.as_json

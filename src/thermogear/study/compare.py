@@ -64,7 +64,7 @@ def compare(
     ``tolerances``: relative standard uncertainty per field of the case, as
     {"operating.torque": 0.05}, sampled ``samples`` times from ``seed``.
     ``at``: where the record's accelerometers sit on a case with shafts, a text for each channel as
-    "a1=bearing:pinion 1:x"; then their mesh lines are compared with the drive train's at the same
+    "a1=bearing:pinion left:x"; then their mesh lines are compared with the drive train's at the same
     place, and not the teeth's displacement.
 
     Raises InputError when no speed is common to both sides, or an uncertainty is impossible.

@@ -44,9 +44,9 @@ PRINTED = tuple(line.displacement for line in THESIS_5_2.measured.lines)
 SEEN = ("cap", "housing", "journal", "teeth")
 """What is looked at: bearing caps and the housing by an accelerometer, the others by none."""
 WORDS = {
-    "cap": "accelerometer on a bearing's cap",
+    "cap": "accelerometer on a cap",
     "housing": "accelerometer on the housing",
-    "journal": "journal in a bearing",
+    "journal": "journal in its bearing",
     "teeth": "deflection of the teeth",
 }
 

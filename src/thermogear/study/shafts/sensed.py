@@ -25,7 +25,9 @@ from thermogear.study.shafts.record import PERIODS, SAMPLES
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 KINDS = ("bearing", "housing", "journal", "gear")
-FORM = "CHANNEL=PLACE:DIRECTION, as a1=bearing:pinion 1:x, a2=housing:y, a3=bearing:pinion 1:30"
+FORM = (
+    "CHANNEL=PLACE:DIRECTION, as a1=bearing:pinion left:x, a2=housing:y, a3=bearing:pinion left:30"
+)
 DIRECTIONS = {"x": 0.0, "y": 0.5 * math.pi}
 
 
@@ -45,7 +47,7 @@ class Accelerometer:
 
     @property
     def words(self) -> str:
-        """Place and direction as a reader sees them: "bearing pinion 1, x"."""
+        """Place and direction as a reader sees them: "bearing pinion left, x"."""
         for letter, angle in DIRECTIONS.items():
             if self.direction == angle:
                 return f"{self.place}, {letter}"
@@ -53,7 +55,7 @@ class Accelerometer:
 
     @property
     def place(self) -> str:
-        """Its place in words: "bearing pinion 1"."""
+        """Its place in words: "bearing pinion left"."""
         return f"{self.kind} {self.name}".strip()
 
     def vector(self, assembly: Assembly) -> Floats:

@@ -38,13 +38,15 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
         "standard errors.",
         data, ("rank",), lambda: plots.ranks(data), wide=True,
     )  # fmt: skip
-    words = (
-        f"{data.attrs['sentence']} What decides it, by rank correlation: {data.attrs['deciding']}. "
+    decides = f"What decides it, by rank correlation: {data.attrs['deciding']}."
+    how = (
         f"Motions: {data.attrs['motions']}; lines of a motion that did not close within 2048 mesh "
         "periods are read over 64 of them. Every train is followed from rest, hot, with friction "
         f"and clearance. {data.attrs['fixed']}"
     )
-    return [Text(prose(words)), *pictures.take(), _shares(data), _assumed(data)]
+    said = [Text(prose(text)) for text in (str(data.attrs["sentence"]), decides)]
+    drawn = [*pictures.take(), _shares(data), _assumed(data)]
+    return [*said, *drawn, Text(prose(how))]
 
 
 def _shares(data: xr.Dataset) -> Table:

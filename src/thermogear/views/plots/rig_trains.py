@@ -8,7 +8,7 @@ import numpy as np
 
 from thermogear.base.units import RPM
 from thermogear.views.picture import Axis, Panel, Picture
-from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, SINGLE, WIDE, scale
+from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, SINGLE, WIDE, scale
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,8 +32,8 @@ def displacements(data: xr.Dataset) -> Picture:
         )  # fmt: skip
         for number, line in enumerate(1e6 * one["nearest"].values):
             label = "nearest channel of each train" if number == 0 else ""
-            panel.curve(rpm, line, colour=COLD, width=0.3, label=label)
-        panel.curve(rpm, middle, colour=QUIET, width=1.4, dash=(4, 3), label="its median")
+            panel.curve(rpm, line, colour=COLD, width=0.25, opacity=0.6, label=label)
+        panel.curve(rpm, middle, colour=INK, width=1.6, dash=(4, 3), label="its median")
         panel.curve(rpm, 1e6 * data["printed"].values, colour=HOT, width=1.6)
         panel.points(rpm, 1e6 * data["printed"].values, colour=HOT, label="measured, as printed")
         panels.append(panel)
