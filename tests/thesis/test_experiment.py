@@ -21,7 +21,7 @@ def rows() -> list[Shown]:
 
 def test_at_least_200_are_stored_as_drawn_from_the_seed(rows: list[Shown]) -> None:
     assert len(rows) == experiment.SAMPLES_STORED >= 200
-    assert [dict(one.values) for one in rows] == drawn(len(rows), SEED)
+    assert [dict(one.values) for one in rows] == drawn(len(rows), seed=SEED)
     for one in ASSUMED:
         values = [row.values[one.name] for row in rows]
         assert one.low <= min(values) <= max(values) <= one.high
@@ -93,17 +93,27 @@ def test_the_rule_counts_one_channel_near_at_all_speeds_and_growing(rows: list[S
     one = data.sel(seen=EITHER, limit=NEAR)
     assert int(one["hits"]) == 1
     assert (data.attrs["lost"], data.attrs["trains"]) == (1, 24)
-    assert (float(one["share_low"]), float(one["share_high"])) == interval(1, 24, 1)
+    assert (float(one["share_low"]), float(one["share_high"])) == interval(1, count=24, lost=1)
+
+
+def _told(hits: int, lost: int = 0) -> str:
+    low, high = interval(hits, count=256, lost=lost)
+    return answer(low=low, high=high)
 
 
 def test_intervals_and_the_answer_they_give() -> None:
     # (1 - p)^n = 0.025 at the upper end where there is no hit
-    assert interval(0, 256)[1] == pytest.approx(1.0 - 0.025 ** (1.0 / 256.0), rel=1e-9)
-    assert interval(256, 256)[0] == pytest.approx(0.025 ** (1.0 / 256.0), rel=1e-9)
-    assert interval(5, 40)[0] < 5 / 40 < interval(5, 40)[1] < interval(5, 40, lost=3)[1]
-    told = [answer(*interval(n, 256)) for n in (0, 5, 40, 150, 256)]
+    assert interval(0, count=256)[1] == pytest.approx(1.0 - 0.025 ** (1.0 / 256.0), rel=1e-9)
+    assert interval(256, count=256)[0] == pytest.approx(0.025 ** (1.0 / 256.0), rel=1e-9)
+    assert (
+        interval(5, count=40)[0]
+        < 5 / 40
+        < interval(5, count=40)[1]
+        < interval(5, count=40, lost=3)[1]
+    )
+    told = [_told(n) for n in (0, 5, 40, 150, 256)]
     assert told == ["no", "no", "undecided", "yes", "yes"]
-    assert answer(*interval(0, 256, lost=40)) == "undecided"
+    assert _told(0, lost=40) == "undecided"
 
 
 def test_ranks_find_what_decides(rows: list[Shown]) -> None:
@@ -125,8 +135,12 @@ def test_ranks_find_what_decides(rows: list[Shown]) -> None:
 def test_the_stored_trains_answer_with_share_and_spread(rows: list[Shown]) -> None:
     data = results(rows)
     one = data.sel(seen=EITHER, limit=NEAR)
-    assert data.attrs["answer"] == answer(float(one["share_low"]), float(one["share_high"]))
+    assert data.attrs["answer"] == answer(
+        low=float(one["share_low"]), high=float(one["share_high"])
+    )
     word = {"no": "No,", "yes": "Yes,", "undecided": "Undecided:"}[data.attrs["answer"]]
     assert data.attrs["sentence"].startswith(word)
     assert f"{int(one['hits'])} of {len(rows)}" in data.attrs["sentence"]
-    assert "transmission error" in data.attrs["deciding"]
+    strongest = np.abs(data["rank"].values).argmax(axis=1)
+    for words in data["input_words"].values[strongest]:
+        assert words in data.attrs["deciding"]

@@ -127,8 +127,8 @@ def measure(file: str, as_json: bool, output: str | None, **options: Any) -> Non
     "--at",
     multiple=True,
     metavar="CHANNEL=PLACE:DIRECTION",
-    help="Where an accelerometer sits on the drive train, as a1=bearing:pinion left:x, a2=housing:y "
-    "or a3=bearing:wheel left:30 (degrees from x). May be repeated.",
+    help="Where an accelerometer sits on the drive train, as a1=bearing:pinion left:x, "
+    "a2=housing:y or a3=bearing:wheel left:30 (degrees from x). May be repeated.",
 )
 @click.option("--u-data", type=float, metavar="PERCENT", help="Uncertainty of the measurement.")
 @delivery.as_json
@@ -174,8 +174,8 @@ def compare(
         against: Any = measured
         if measured is not None and record:
             known = dict(options)
-            if at and known["teeth"] is None and Path(case).suffix != ".nc":
-                known["teeth"] = _teeth(case)
+            if at:
+                known = _expected(case, known)
             against = _measured(measured, known)
         found = study(
             case,
@@ -192,11 +192,22 @@ def compare(
     delivery.deliver(make, output, as_json=as_json)
 
 
-def _teeth(case: str) -> int | None:
-    """Teeth of the case's pinion, by which the record's mesh line is found; None: no such case."""
+def _expected(case: str, options: dict[str, Any]) -> dict[str, Any]:
+    """``options`` with teeth and speed of the case, by which the record's mesh line is found.
+
+    What is given stays; a speed is known where the case has one alone.
+    """
     from thermogear.case.case import gear_case, load_case
 
-    return None if Path(case).is_dir() else gear_case(load_case(case)).pair.pinion.teeth
+    if Path(case).is_dir() or Path(case).suffix == ".nc":
+        return options
+    read = gear_case(load_case(case))
+    speeds = set(read.stated.speed.tolist())
+    own = {
+        "teeth": read.pair.pinion.teeth,
+        "speed": speeds.pop() / RPM if len(speeds) == 1 else None,
+    }
+    return {**options, **{name: v for name, v in own.items() if options[name] is None}}
 
 
 def _tolerance(text: str) -> tuple[str, float]:

@@ -19,7 +19,7 @@ from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.reduction import Measurement
 from thermogear.results.result import Notice
 from thermogear.shafts.reduction import interface_of
-from thermogear.study.compare import CaseRuns
+from thermogear.study.case_runs import CaseRuns
 from thermogear.study.shafts.motion import moved
 from thermogear.study.shafts.moving import HELD_MODES
 from thermogear.study.shafts.record import SAMPLES, lines
@@ -173,7 +173,7 @@ def _place(case: GearCase, speed: float) -> int:
             "operating.speed",
             f"{told} rpm",
             why=f"the record's mesh line makes {speed / RPM:.6g} rpm",
-            fix="add that speed to the case, or check --rate and --teeth",
+            fix="add that speed to the case, or say --speed, --rate and --teeth of the record",
         )
     return near
 
@@ -202,7 +202,7 @@ def _simulated(
             Notice("info", f"drive train, {state.words}: {one.motion.name}, {one.motion.reason}")
         )
         periods = one.record.phase.size // SAMPLES
-        felt = sensed(one.train, one.motion.state, vectors, periods=periods)
+        felt = sensed(one.train, one.motion.state, vectors=vectors, periods=periods)
         found[state] = lines(felt, orders=np.array(ORDERS, dtype=float))
     if not found:
         raise InputError("simulated", "no line", why="the drive train has no motion at this speed")

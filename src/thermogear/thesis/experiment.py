@@ -159,9 +159,9 @@ def _amplitudes(train: MovingTrain, start: Floats, periods: int) -> dict[str, Fl
     return {**found, "teeth": lines(teeth, orders=[1.0])[0].reshape(1)}
 
 
-def trains(count: int = SAMPLES_STORED, seed: int = SEED, first: int = 0) -> Iterator[Shown]:
+def trains(count: int = SAMPLES_STORED, *, seed: int = SEED, first: int = 0) -> Iterator[Shown]:
     """``count`` sampled trains, one after the other, from number ``first`` on."""
-    for values in drawn(count, seed)[first:]:
+    for values in drawn(count, seed=seed)[first:]:
         yield shown(values)
 
 

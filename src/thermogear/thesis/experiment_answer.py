@@ -55,12 +55,12 @@ def _comes_out(one: Shown, seen: str, limit: float) -> bool:
     )
 
 
-def interval(hits: int, count: int, lost: int = 0) -> tuple[float, float]:
+def interval(hits: int, *, count: int, lost: int = 0) -> tuple[float, float]:
     """Exact (Clopper-Pearson) 95 % interval of a share, ``lost`` of ``count`` not known.
 
     The lost ones are misses for the lower end and hits for the upper.
 
-    >>> low, high = interval(0, 256)
+    >>> low, high = interval(0, count=256)
     >>> low, round(high, 4)
     (0.0, 0.0143)
     """
@@ -72,19 +72,20 @@ def interval(hits: int, count: int, lost: int = 0) -> tuple[float, float]:
     return low, high
 
 
-def answer(low: float, high: float) -> str:
+def answer(*, low: float, high: float) -> str:
     """ "no", "yes" or "undecided" by the interval of the share."""
     if high < NO:
         return "no"
     return "yes" if low > YES else "undecided"
 
 
-def rank_correlations(inputs: Floats, outputs: Floats) -> Floats:
+def rank_correlations(inputs: Floats, *, outputs: Floats) -> Floats:
     """Spearman's rho (output, input) of samples in rows, equal values sharing their mean rank.
 
     Nan where a column has one value.
 
-    >>> rank_correlations(np.array([[1.0], [2.0], [3.0]]), np.array([[1.0], [8.0], [27.0]]))
+    >>> x = np.array([[1.0], [2.0], [3.0]])
+    >>> rank_correlations(x, outputs=x**3)
     array([[1.]])
     """
     from scipy.stats import rankdata
@@ -109,9 +110,9 @@ def _ranks(rows: Sequence[Shown]) -> tuple[Floats, Floats]:
         ]
     )
     rng = np.random.default_rng(BOOTSTRAP_SEED)
-    found = rank_correlations(inputs, targets)
+    found = rank_correlations(inputs, outputs=targets)
     drawn = [
-        rank_correlations(inputs[some], targets[some])
+        rank_correlations(inputs[some], outputs=targets[some])
         for some in rng.integers(0, len(moving), (BOOTSTRAP, len(moving)))
     ]
     return found, np.asarray(np.nanstd(drawn, axis=0, ddof=1))
@@ -122,7 +123,7 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
     lost = sum(not one.moves for one in rows)
     seen = tuple(TOLD)
     hits = np.array([[sum(_comes_out(one, s, f) for one in rows) for f in LIMITS] for s in seen])
-    ends = np.array([[interval(int(n), len(rows), lost) for n in line] for line in hits])
+    ends = np.array([[interval(int(n), count=len(rows), lost=lost) for n in line] for line in hits])
     size = np.array([[one.most[place] for one in rows] for place in SEEN])
     near = np.array([[one.amplitudes[place] for one in rows] for place in SEEN])
     needed = np.array([[factor(one, s) for one in rows] for s in seen])
@@ -130,7 +131,7 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
     with np.errstate(invalid="ignore"):
         spread = np.nanquantile(size, QUANTILES, axis=1).transpose(1, 2, 0)
     at = LIMITS.index(NEAR)
-    said = answer(*ends[0, at])
+    said = answer(low=float(ends[0, at, 0]), high=float(ends[0, at, 1]))
     labels = [name for one in rows for name in one.labels]
     counted = {name: labels.count(name) for name in sorted(set(labels))}
     entries: dict[str, Any] = {

@@ -270,7 +270,7 @@ def _chosen(name: str, values: Mapping[str, float]) -> str:
     return one.choices[int(values[name])]
 
 
-def drawn(count: int, seed: int) -> list[dict[str, float]]:
+def drawn(count: int, *, seed: int) -> list[dict[str, float]]:
     """``count`` sampled trains, a latin hypercube: every range in ``count`` strips, one in each."""
     rng = np.random.default_rng(seed)
     strips = np.stack([rng.permutation(count) for _ in ASSUMED], axis=1)

@@ -143,8 +143,8 @@ def _direction(text: str) -> float:
 def sensed(
     train: MovingTrain,
     state: Floats,
-    vectors: Floats,
     *,
+    vectors: Floats,
     periods: int = PERIODS,
     how: Steps | None = None,
 ) -> Floats:
