@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-coordinates bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-coordinates bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -129,6 +129,9 @@ trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test
 
 trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py
+
+trial-experiment: $(STAMP)  ## the thesis's experiment on 256 sampled drive trains, ten minutes; src/thermogear/thesis/experiment.csv
+	@$(BIN)/python checks/trial_experiment.py
 
 friction-evidence: $(STAMP)  ## every friction law against measurements; docs/friction_evidence.md
 	@$(BIN)/python checks/friction_evidence.py

@@ -26,6 +26,7 @@ def main(target: Path) -> None:
         "thermogear": judged["thermogear"],
         "errata": errata(case, groups),
         "verdicts": judged["verdicts"],
+        "experiment": judged["experiment"],
         "claims": [{name: row[name] for name in TEXTS} for row in judged["rows"]],
     }
     target.write_text(json.dumps(stored, indent=1, ensure_ascii=False) + "\n", "utf-8")

@@ -36,6 +36,37 @@ def _value(value: float | None, unit: str) -> str:
     return shown if unit in ("", "1") else f"{shown} {UNITS.get(unit, unit)}"
 
 
+SEEN = {
+    "either": "an accelerometer on a cap or on the housing",
+    "cap": "an accelerometer on a cap",
+    "housing": "an accelerometer on the housing",
+    "journal": "the journal in its bearing",
+    "teeth": "the deflection of the teeth",
+}
+
+
+def _experiment(found: dict[str, Any]) -> str:
+    """The thesis's experiment on sampled drive trains: the sentence, the shares."""
+    text = (
+        "\n## The experiment once more, with shafts and bearings\n\n"
+        f"{_cell(found['sentence'])} What decides it, by rank correlation: "
+        f"{_cell(found['deciding'])}. Motions: {_cell(found['motions'])}. The page that "
+        "`thermogear thesis -o DIR` writes has the pictures and every assumption with its range "
+        "and reason; `make trial-experiment` samples the trains anew.\n\n"
+    )
+    limits = list(next(iter(found["shares"].values())))
+    text += f"| trains of {found['trains']} that show the printed displacements, growing | "
+    text += " | ".join(f"within {limit}" for limit in limits) + " |\n"
+    text += "|---|" + "---|" * len(limits) + "\n"
+    for place, words in SEEN.items():
+        cells = [
+            f"{one['hits']:.0f} ({100 * one['share_low']:.1f} to {100 * one['share_high']:.1f} %)"
+            for one in found["shares"][place].values()
+        ]
+        text += f"| {words} | " + " | ".join(cells) + " |\n"
+    return text
+
+
 def errata_page() -> dict[str, str]:
     """Errata with both values, then the claims with their verdicts."""
     stored: dict[str, Any] = json.loads(STORED.read_text("utf-8"))
@@ -54,6 +85,7 @@ def errata_page() -> dict[str, str]:
         f"of sections 2 to 6, in our own words. {counts}. `thermogear thesis -o DIR` judges them "
         "anew and writes the full page with every argument and picture.\n"
     )
+    text += _experiment(stored["experiment"])
     section = None
     for claim in stored["claims"]:
         if claim["number"].split(".")[0] != section:

@@ -22,7 +22,8 @@ from thermogear.measured.published import (
 )
 from thermogear.measured.record import simulated_record
 from thermogear.measured.reduction import measure
-from thermogear.study.compare import compare, scaled
+from thermogear.study.case_runs import scaled
+from thermogear.study.compare import compare
 
 
 def test_the_thesis_table_recomputed(compared: Compared) -> None:

@@ -11,7 +11,8 @@ from said import numbers
 from thermogear.analysis.fit import fit
 from thermogear.base.errors import InputError
 from thermogear.measured.published import RPM, LineTable, SpeedLine
-from thermogear.study.compare import fit_case, overrides_of, tree_lines
+from thermogear.study.case_runs import overrides_of
+from thermogear.study.compare import fit_case, tree_lines
 
 RATIOS = np.array([0.2, 0.5, 0.9, 1.0, 1.1, 1.6])
 

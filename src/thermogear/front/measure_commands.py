@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -122,6 +123,13 @@ def measure(file: str, as_json: bool, output: str | None, **options: Any) -> Non
     help="Standard uncertainty of a field of the case, as operating.torque=5. May be repeated.",
 )
 @click.option("--samples", type=int, help="Runs for the input uncertainty of --tolerance [12].")
+@click.option(
+    "--at",
+    multiple=True,
+    metavar="CHANNEL=PLACE:DIRECTION",
+    help="Where an accelerometer sits on the drive train, as a1=bearing:pinion left:x, "
+    "a2=housing:y or a3=bearing:wheel left:30 (degrees from x). May be repeated.",
+)
 @click.option("--u-data", type=float, metavar="PERCENT", help="Uncertainty of the measurement.")
 @delivery.as_json
 @delivery.output("Also write comparison.nc and comparison.html.", required=False)
@@ -130,12 +138,18 @@ def compare(
     measured: str | None,
     tolerances: tuple[str, ...],
     samples: int | None,
+    at: tuple[str, ...],
     u_data: float | None,
     as_json: bool,
     output: str | None,
     **options: Any,
 ) -> None:
-    """Compare CASE (a case, a directory of results, or thesis-5.2) with a record or a table."""
+    """Compare CASE (a case, a directory of results, or thesis-5.2) with a record or a table.
+
+    A case with shafts and --at: mesh lines of accelerometers on bearings or housing are compared
+    with the drive train's at the same place, along the same axis. Places: bearing:NAME, housing,
+    journal:NAME, gear:pinion, gear:wheel.
+    """
     from thermogear.measured.comparison import result_of
     from thermogear.measured.published import PUBLISHED, is_table
     from thermogear.study.compare import compare as study
@@ -145,6 +159,8 @@ def compare(
         raise InputError("--samples", samples, why="beside no --tolerance", fix="leave it out")
     table = measured in PUBLISHED or (measured is not None and is_table(measured))
     record = measured is not None and not table
+    if at and not record:
+        raise InputError("--at", at[0], why="there is no record to read", fix="name a record")
     for name, value in options.items():
         # a table of lines may count in shaft turns: its teeth are asked for
         given = value if name != "method" else value != "frequency"
@@ -157,12 +173,16 @@ def compare(
     def make(report: Progress) -> Result:
         against: Any = measured
         if measured is not None and record:
-            against = _measured(measured, options)
+            known = dict(options)
+            if at:
+                known = _expected(case, known)
+            against = _measured(measured, known)
         found = study(
             case,
             against,
             teeth=options["teeth"],
             speed=None if speed is None else speed * RPM,
+            at=at,
             u_data=None if u_data is None else u_data / 100.0,
             tolerances=tolerated,
             samples=12 if samples is None else samples,
@@ -170,6 +190,24 @@ def compare(
         return result_of(found)
 
     delivery.deliver(make, output, as_json=as_json)
+
+
+def _expected(case: str, options: dict[str, Any]) -> dict[str, Any]:
+    """``options`` with teeth and speed of the case, by which the record's mesh line is found.
+
+    What is given stays; a speed is known where the case has one alone.
+    """
+    from thermogear.case.case import gear_case, load_case
+
+    if Path(case).is_dir() or Path(case).suffix == ".nc":
+        return options
+    read = gear_case(load_case(case))
+    speeds = set(read.stated.speed.tolist())
+    own = {
+        "teeth": read.pair.pinion.teeth,
+        "speed": speeds.pop() / RPM if len(speeds) == 1 else None,
+    }
+    return {**options, **{name: v for name, v in own.items() if options[name] is None}}
 
 
 def _tolerance(text: str) -> tuple[str, float]:

@@ -16,17 +16,31 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
 
 
+MOST_TRAINS = 10_000
+
+
 @click.command()
 @delivery.output("Directory of the report; made if new.")
 @click.option("--redraw", is_flag=True, help="Draw the page anew from what DIR holds already.")
+@click.option(
+    "--experiment",
+    type=int,
+    metavar="N",
+    help="Sample N drive trains of the test rig anew, seconds each; left out, the 256 that come "
+    "with the package.",
+)
 @delivery.as_json
-def thesis(output: str, redraw: bool, as_json: bool) -> None:
+def thesis(output: str, redraw: bool, experiment: int | None, as_json: bool) -> None:
     """Judge every claim of the thesis and write the report to DIR.
 
     Sections 2 to 6: what is said, what is computed as in the thesis and consistently, a verdict,
     its argument and the code behind it. Ctrl+C keeps the claims judged so far.
     """
+    if experiment is not None and not 8 <= experiment <= MOST_TRAINS:
+        raise InputError("--experiment", experiment, allowed=f"8..{MOST_TRAINS} drive trains")
     if redraw:
+        if experiment is not None:
+            raise InputError("--experiment", experiment, why="beside --redraw", fix="leave it out")
         from thermogear.views.write import write_report
 
         click.echo(write_report(Path(output)))
@@ -36,9 +50,13 @@ def thesis(output: str, redraw: bool, as_json: bool) -> None:
     require_salib()
 
     def make(report: Progress) -> Result:
+        from thermogear.thesis.evidence import Size
         from thermogear.thesis.report import build
 
-        return build(progress=lambda stage, done, total: report("thesis", done, total))
+        return build(
+            Size(trains=experiment or 0),
+            progress=lambda stage, done, total: report("thesis", done, total),
+        )
 
     delivery.deliver(make, output, as_json=as_json, kept="the claims judged so far stay")
 

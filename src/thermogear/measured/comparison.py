@@ -28,7 +28,10 @@ UNCERTAINTIES = ("u_num", "u_input", "u_data", "u_val")
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One quantity at one speed; uncertainties relative to ``measured`` (standard, k = 1)."""
+    """One quantity at one speed; uncertainties relative to ``measured`` (standard, k = 1).
+
+    ``where`` an accelerometer sits and which of its lines it is, empty for the teeth's motion.
+    """
 
     speed: float
     quantity: str
@@ -39,6 +42,7 @@ class Row:
     u_data: float = 0.0
     verdict: str = ""
     printed: tuple[str, ...] = ()
+    where: str = ""
 
     @property
     def errors(self) -> tuple[float, ...]:
@@ -74,12 +78,14 @@ class Comparison:
 
     @property
     def conclusion(self) -> str:
-        """One sentence on the displacement rows."""
-        verdicts = [row.verdict for row in self.rows if row.quantity == "displacement"]
+        """One sentence on the displacements, or on the accelerations where these are compared."""
+        compared = [row for row in self.rows if row.quantity != "frequency"]
+        verdicts = [row.verdict.partition("; ")[0] for row in compared]
         if len(self.models) < 2:
             return "one model: its errors stand beside u_val, no other to be better than"
         counts = {v: verdicts.count(v) for v in dict.fromkeys(verdicts)}
-        return f"of {len(verdicts)} displacements: " + ", ".join(
+        kind = compared[0].quantity if compared else "displacement"
+        return f"of {len(verdicts)} {kind}s: " + ", ".join(
             f"{verdict} {count} times" for verdict, count in counts.items()
         )
 
@@ -333,6 +339,7 @@ def result_of(found: Comparison) -> Result:
     table = label(values).assign_coords(
         model=list(found.models),
         quantity=("row", column(rows, "quantity")),
+        where=("row", column(rows, "where")),
         verdict=("row", column(rows, "verdict")),
     )
     gravities = np.array(column(implied, "acceleration_g"))
@@ -367,6 +374,7 @@ def figures(found: Comparison) -> dict[str, Any]:
         *UNCERTAINTIES,
         "verdict",
         "printed",
+        "where",
     )
     rows = [{name: getattr(row, name) for name in told} for row in found.rows]
     return {

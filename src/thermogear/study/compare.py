@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +12,8 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.fit import Fit, fit
 from thermogear.base.errors import InputError, nearest
-from thermogear.case.allowed import gear_parameter
 from thermogear.case.base import Case
-from thermogear.case.case import GearCase, gear_case, load_case
+from thermogear.case.case import gear_case, load_case
 from thermogear.measured.comparison import Comparison, compared, table_of
 from thermogear.measured.published import (
     PUBLISHED,
@@ -30,6 +27,7 @@ from thermogear.measured.readers import read_record
 from thermogear.measured.record import Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.results.result import Notice, Result
+from thermogear.study.case_runs import CaseRuns
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,6 +43,7 @@ def compare(
     *,
     teeth: int | None = None,
     speed: float | None = None,
+    at: Sequence[str] = (),
     u_data: float | None = None,
     u_num: float | None = None,
     tolerances: Mapping[str, float] | None = None,
@@ -62,6 +61,9 @@ def compare(
     ``u_num`` of the simulation (for a case: found by halving the step unless given);
     ``tolerances``: relative standard uncertainty per field of the case, as
     {"operating.torque": 0.05}, sampled ``samples`` times from ``seed``.
+    ``at``: where the record's accelerometers sit on a case with shafts, a text for each channel as
+    "a1=bearing:pinion left:x"; then their mesh lines are compared with the drive train's at the
+    same place, and not the teeth's displacement.
 
     Raises InputError when no speed is common to both sides, or an uncertainty is impossible.
     """
@@ -85,6 +87,11 @@ def compare(
             published = PUBLISHED[simulated]
             return compared(published.models, published, u_data=u_data, u_num=u_num or 0.0)
         raise InputError("measured", "nothing", fix="a record, a table or " + ", ".join(PUBLISHED))
+    if at:
+        return _at_places(
+            simulated, measured, at, teeth=teeth, speed=speed, u_data=u_data, u_num=u_num,
+            tolerances=tolerances, samples=samples, seed=seed,
+        )  # fmt: skip
     printed = _measured(measured, teeth, speed)
     if isinstance(simulated, str) and simulated in PUBLISHED:
         return compared(PUBLISHED[simulated].models, printed, u_data=u_data, u_num=u_num or 0.0)
@@ -97,6 +104,39 @@ def compare(
         u_input=found.u_input,
         said=found.notices,
     )
+
+
+def _at_places(
+    simulated: str | Path | Case | Result | Mapping[str, LineTable],
+    measured: str | Path | LineTable | Printed | Measurement | Record,
+    at: Sequence[str],
+    *,
+    teeth: int | None,
+    speed: float | None,
+    **how: Any,
+) -> Comparison:
+    """The drive train of a case against the accelerometers of a record."""
+    from thermogear.study.compare_sensors import compare_sensors  # drive trains are not light
+
+    if not _computes(simulated):
+        raise InputError(
+            "--at",
+            ", ".join(at),
+            why="stored results and tables do not say how a bearing moves",
+            fix="name the case",
+        )
+    case: Any = simulated
+    table = isinstance(measured, str) and measured in PUBLISHED
+    if isinstance(measured, (str, Path)) and not table and not is_table(measured):
+        measured = read_record(measured)
+    if isinstance(measured, Record):
+        own = gear_case(load_case(case) if isinstance(case, str | Path) else case)
+        measured = measure(measured, teeth=teeth or own.pair.pinion.teeth, speed=speed)
+    if not isinstance(measured, Measurement):
+        raise InputError(
+            "--at", ", ".join(at), why="a table of lines has no channels", fix="name a record"
+        )
+    return compare_sensors(case, measured, at, **how)
 
 
 def _measured(
@@ -125,6 +165,8 @@ def _measured(
 def _computes(simulated: object) -> bool:
     """Whether the lines come from a case that is computed here."""
     if isinstance(simulated, (str, Path)):
+        if "\n" in str(simulated):
+            return True  # a case as text
         path = Path(simulated)
         return str(simulated) not in PUBLISHED and not path.is_dir() and path.suffix != ".nc"
     return not isinstance(simulated, (Mapping, Result))
@@ -199,32 +241,10 @@ def _motion_lines(motion: xr.Dataset) -> dict[str, LineTable]:
     return found
 
 
-@dataclass(frozen=True)
-class _Runs:
-    """A case that is run again with some of its fields changed."""
+def _tables(runs: CaseRuns, changes: Mapping[str, str]) -> dict[str, LineTable]:
+    from thermogear.study.run import gear_motion  # stored lines and tables need none
 
-    text: str
-    kept: Mapping[str, str]
-
-    @classmethod
-    def of(cls, case: Case | str | Path) -> _Runs:
-        given = load_case(case) if isinstance(case, str | Path) else case
-        return cls(given.text, dict(given.overrides))
-
-    def case(self, changes: Mapping[str, str]) -> GearCase:
-        return gear_case(load_case(self.text, {**self.kept, **changes}))
-
-    def tables(self, changes: Mapping[str, str]) -> dict[str, LineTable]:
-        from thermogear.study.run import gear_motion  # stored lines and tables need none
-
-        return _motion_lines(gear_motion(self.case(changes)))
-
-    def scaled(self, factors: Mapping[str, float]) -> dict[str, LineTable]:
-        """The lines with every named field times its factor."""
-        changes: dict[str, str] = {}
-        for name, factor in factors.items():
-            changes |= overrides_of(self.text, self.kept, name, factor)
-        return self.tables(changes)
+    return _motion_lines(gear_motion(runs.case(changes)))
 
 
 def case_lines(
@@ -236,12 +256,12 @@ def case_lines(
     u_num: float | None,
 ) -> CaseLines:
     """The case simulated, its step doubled for u_num, and sampled within its tolerances."""
-    runs = _Runs.of(case)
+    runs = CaseRuns.of(case)
     notices: list[Notice] = []
-    base = runs.tables({})
+    base = _tables(runs, {})
     if u_num is None:
         steps = runs.case({}).simulation.steps_per_period
-        coarse = runs.tables({"simulation.steps_per_period": str(steps // 2)})
+        coarse = _tables(runs, {"simulation.steps_per_period": str(steps // 2)})
         # fourth order: the coarse run's error is 16/15 of the difference, the fine one's 1/15
         u_num = max(map(abs, _relative(base, coarse).values()), default=0.0) / 15.0
         notices.append(
@@ -258,7 +278,7 @@ def case_lines(
                 name: float(1.0 + sigma * rng.standard_normal())
                 for name, sigma in tolerances.items()
             }
-            for speed, value in _relative(base, runs.scaled(factors)).items():
+            for speed, value in _relative(base, _tables(runs, runs.changes(factors))).items():
                 spread.setdefault(speed, []).append(value)
         u_input = {s: float(np.std(v, ddof=1)) for s, v in spread.items() if len(v) > 1}
     else:
@@ -279,54 +299,6 @@ def _relative(base: Mapping[str, LineTable], other: Mapping[str, LineTable]) -> 
     return found
 
 
-def _stated(text: str, changes: Mapping[str, str], name: str) -> str:
-    """A field as the case states it, as text."""
-    if name in changes:
-        return changes[name]
-    value: Any = tomllib.loads(text)
-    for part in name.split("."):
-        if not isinstance(value, dict) or part not in value:
-            raise InputError("tolerances", repr(name), why="the case states no such field")
-        value = value[part]
-    if not isinstance(value, (str, int, float)) or isinstance(value, bool):
-        raise InputError("tolerances", repr(name), why="it is no single number with a unit")
-    return str(value)
-
-
-def scaled(value: str, factor: float) -> str:
-    """A number with its unit times a factor: "100 N m" by 1.1 is "110 N m"."""
-    found = re.match(r"^\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s*(.*)$", value)
-    if not found:
-        raise InputError("tolerances", repr(value), why="it is no number with a unit")
-    number = float(found.group(1)) * factor
-    return f"{number!r} {found.group(2)}".strip()
-
-
-def overrides_of(text: str, changes: Mapping[str, str], name: str, factor: float) -> dict[str, str]:
-    """The overrides that multiply a parameter by a factor, in every field it stands for.
-
-    ``name``: a gear parameter by any of its names, or a dotted field;
-    "transmission_error.amplitude" means the amplitudes of all its harmonics.
-    """
-    if name != "transmission_error.amplitude":
-        fields = gear_parameter(name, "tolerances").fields
-        return {one: scaled(_stated(text, changes, one), factor) for one in fields}
-    field = "transmission_error.harmonics"
-    if field in changes:
-        table: Any = tomllib.loads(f"harmonics = {changes[field]}")
-    else:
-        table = tomllib.loads(text).get("transmission_error", {})
-    rows = table.get("harmonics", [])
-    if not rows:
-        raise InputError("parameters", repr(name), why="the case states no transmission error")
-    parts = []
-    for row in rows:
-        grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
-        pairs = (f"{k} = {v if not isinstance(v, str) else repr(v)}" for k, v in grown.items())
-        parts.append("{ " + ", ".join(pairs) + " }")
-    return {field: "[" + ", ".join(parts) + "]"}
-
-
 def fit_case(
     case: Case | str | Path,
     measured: LineTable,
@@ -340,8 +312,8 @@ def fit_case(
     amplitudes together. ``model`` as "consistent hot" (default: the last of the case);
     ``u_data`` the relative uncertainty of lines that state none.
     """
-    runs = _Runs.of(case)
-    base = runs.tables({})
+    runs = CaseRuns.of(case)
+    base = _tables(runs, {})
     chosen = model or list(base)[-1]
     if chosen not in base:
         raise InputError("model", repr(chosen), allowed=", ".join(base))
@@ -353,7 +325,7 @@ def fit_case(
 
     def simulate(factors: Floats) -> Floats:
         named = zip(names, map(float, factors), strict=True)
-        table = runs.scaled(dict(named))[chosen]
+        table = _tables(runs, runs.changes(dict(named)))[chosen]
         found = [table.near(line.speed) for line in lines]
         return np.array([0.0 if line is None else line.displacement for line in found])
 

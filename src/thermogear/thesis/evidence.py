@@ -25,7 +25,7 @@ from thermogear.results.result import Result
 from thermogear.study.compare import compare
 from thermogear.study.run import run
 from thermogear.study.sensitivity import Plan, sensitivity
-from thermogear.thesis import chain, motions
+from thermogear.thesis import chain, experiment, experiment_answer, motions
 from thermogear.thesis.errata import with_errata
 
 if TYPE_CHECKING:
@@ -41,19 +41,24 @@ STAGES = (
     "temperature row",
     "table of the tests",
     "sensitivity",
+    "drive trains of the rig",
     "verdicts",
 )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Size:
-    """How much is computed; a small one answers every claim too, on coarser grids."""
+    """How much is computed; a small one answers every claim too, on coarser grids.
+
+    ``trains``: drive trains of the rig that are sampled anew; 0: those that come with the package.
+    """
 
     speeds: int = 6
     torques: int = 4
     diagram: int = 241
     flips: int = 4
     samples: int = 128
+    trains: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +148,14 @@ class Evidence:
         self._tell(STAGES[6])
         plan = Plan(samples=self.size.samples)
         return sensitivity(self.case, plan)
+
+    @cached_property
+    def rig_trains(self) -> xr.Dataset:
+        """What accelerometers show on drive trains that the rig could have been."""
+        self._tell(STAGES[7])
+        count = self.size.trains
+        rows = list(experiment.trains(count)) if count else experiment.stored()
+        return experiment_answer.results(rows)
 
     @cached_property
     def two_gears(self) -> dict[str, float]:

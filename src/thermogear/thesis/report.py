@@ -62,6 +62,8 @@ def build(size: Size | None = None, progress: Progress = silent) -> Result:
         groups[name] = getattr(evidence, name)
     if evidence.finished("comparison"):
         groups["experiment"] = _experiment(evidence)
+    if evidence.finished("rig_trains"):
+        groups["rig_trains"] = evidence.rig_trains
     if evidence.finished("sensitivity"):
         groups["sensitivity"] = evidence.sensitivity.data.assign(
             sentence=(("output",), plain_words(evidence.sensitivity.data))

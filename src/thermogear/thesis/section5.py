@@ -68,7 +68,7 @@ def _integrated(e: Evidence) -> Finding:
         Verdict.UNDECIDED,
         "Rate, filter, window and integration are not stated, and they decide the amplitude. "
         "Accelerations as high are implausible on a housing, whose motion is not the relative "
-        "displacement of the teeth either.",
+        f"displacement of the teeth either. {e.rig_trains.attrs['sentence']}",
     )
 
 
@@ -244,7 +244,8 @@ _ROWS = (
      (PUBLISHED,), "experiment"),
     ("5.1.3", "5.1", "statement",
      "Acceleration was filtered and integrated twice to displacement.", _integrated,
-     ("thermogear.signals.integration.trapezoid_factor",), ""),
+     ("thermogear.signals.integration.trapezoid_factor", "thermogear.thesis.experiment.trains"),
+     "rig-trains"),
     ("5.2.1", "5.2", "statement", "The measured main lines lie near the mesh frequency.",
      _near_mesh, (PUBLISHED,), "experiment"),
     ("5.2.2", "5.2", "figure", "At 1000 rpm the main line is measured at 419.7 Hz.",

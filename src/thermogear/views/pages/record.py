@@ -160,23 +160,34 @@ def _settings(results: Result) -> Section | None:
     return Section("settings", "Settings", [table])
 
 
+_SHOWN_AS = {
+    "displacement": ("displacement [µm]", 1e6),
+    "frequency": ("frequency [Hz]", 1.0),
+    "acceleration": ("acceleration [m/s²]", 1.0),
+}
+
+
 def _comparison(results: Result) -> Section | None:
     data = results.group("comparison")
     if data is None:
         return None
     models = [str(name) for name in data["model"].values]
+    placed = [str(one) for one in data["where"].values] if "where" in data.coords else []
+    placed = placed if any(placed) else []
     head: list[Cell] = ["speed [rpm]", "quantity", "verdict", "measured", *models]
+    if placed:
+        head.insert(1, "channel: place, axis; line")
     head += [f"error {name} [%]" for name in models]
     head += [html_symbol(f"{u} [%]") for u in ("u_num", "u_input", "u_D", "u_val")]
     rows: list[list[str | Markup]] = []
     for place in range(data.sizes["row"]):
         one = data.isel(row=place)
-        is_x = str(one["quantity"].values) == "displacement"
-        factor = 1e6 if is_x else 1.0
+        words, factor = _SHOWN_AS[str(one["quantity"].values)]
         rows.append(
             [
                 number(float(one["pinion_speed"]) / RPM, 4),
-                "displacement [µm]" if is_x else "frequency [Hz]",
+                *placed[place : place + 1],
+                words,
                 str(one["verdict"].values) or "–",
                 number(float(one["measured_value"]) * factor, 5),
                 *(number(float(v) * factor, 5) for v in one["simulated_value"].values),
@@ -187,7 +198,9 @@ def _comparison(results: Result) -> Section | None:
                 *(f"{100 * float(one[u]):.2f}" for u in ("u_num", "u_input", "u_data", "u_val")),
             ]
         )
-    blocks: list[Block] = [Table("Error: (simulated − measured)/measured.", head, rows, names=3)]
+    blocks: list[Block] = [
+        Table("Error: (simulated − measured)/measured.", head, rows, names=3 + bool(placed))
+    ]
     implied = results.group("implied")
     if implied is not None:
         lines: list[list[str | Markup]] = [

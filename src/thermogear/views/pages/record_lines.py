@@ -33,12 +33,15 @@ def _cell(value: float | None, width: int, digits: int, factor: float = 1.0) -> 
     return "-".rjust(width) if value is None else f"{factor * value:{width}.{digits}f}"
 
 
+UNITS = {"displacement": (1e6, "um"), "frequency": (1.0, "Hz"), "acceleration": (1.0, "m/s^2")}
+
+
 def comparison(result: Result) -> list[str]:
     """A row for each quantity and speed, what the lines imply, the conclusion."""
     found = result.table("figures")
     told = [f"{one.level}: {one.text}" for one in result.notices]
     for row in found["rows"]:
-        factor, unit = (1e6, "um") if row["quantity"] == "displacement" else (1.0, "Hz")
+        factor, unit = UNITS[row["quantity"]]
         models = ", ".join(
             f"{name} {value * factor:.5g} {unit} ({100 * error:+.2f} %)"
             for name, value, error in zip(
@@ -46,7 +49,7 @@ def comparison(result: Result) -> list[str]:
             )
         )
         told.append(
-            f"{row['speed'] / RPM:.0f} rpm, {row['quantity']}: measured "
+            f"{row['speed'] / RPM:.0f} rpm, {row.get('where') or row['quantity']}: measured "
             f"{row['measured'] * factor:.5g} {unit}; {models}; u_val {100 * row['u_val']:.2f} % "
             f"(num {100 * row['u_num']:.2f}, input {100 * row['u_input']:.2f}, data "
             f"{100 * row['u_data']:.2f}); {row['verdict']}"

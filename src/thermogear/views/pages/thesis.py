@@ -14,7 +14,7 @@ from thermogear.base.display import celsius
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 from thermogear.views.page import Block, Cell, Gallery, Page, Pictures, Section, Table, Text, Tile
-from thermogear.views.pages import gear_sections, row_sections
+from thermogear.views.pages import gear_sections, rig_trains, row_sections
 from thermogear.views.pages.background import background
 from thermogear.views.pages.sensitivity import sensitivity_section
 from thermogear.views.plots import claims as plots
@@ -264,6 +264,7 @@ def _tests(results: Result, pictures: Pictures) -> list[Block]:
         data, ("u_val",), lambda: plots.experiment(data),
     )  # fmt: skip
     found: list[Block] = [_experiment_table(data), *pictures.take()]
+    found += rig_trains.blocks(results, pictures)
     return found + _blocks(gear_sections.vibration(results, pictures))
 
 
@@ -326,6 +327,9 @@ def _numbers(result: Result) -> dict[str, Any]:
         "seconds": round(float(result.text("seconds")), 1),
         "rows": rows,
     }
+    trains = result.group("rig_trains")
+    if trains is not None:
+        found["experiment"] = rig_trains.numbers(trains)
     if "sensitivity" in result.groups:
         ranked = result.groups["sensitivity"]
         found["sensitivity"] = {

@@ -1,0 +1,303 @@
+"""``compare`` for drive trains: accelerometers of a record against a train in motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.base.units import RPM, STANDARD_GRAVITY
+from thermogear.case.base import Case
+from thermogear.case.case import GearCase
+from thermogear.case.thermal_state import ThermalState
+from thermogear.measured.comparison import Comparison, Implied, Row, verdict
+from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.reduction import Measurement
+from thermogear.results.result import Notice
+from thermogear.shafts.reduction import interface_of
+from thermogear.study.case_runs import CaseRuns
+from thermogear.study.shafts.motion import moved
+from thermogear.study.shafts.moving import HELD_MODES
+from thermogear.study.shafts.record import SAMPLES, lines
+from thermogear.study.shafts.sensed import Accelerometer, accelerometer, sensed
+from thermogear.study.shafts.state import STATES, plan_of, settled
+
+Floats = NDArray[np.float64]
+NEAR = 0.05
+"""How far the record's speed may be off an operating point of the case, relative."""
+AGREES = 2.0
+"""Errors within so many u_val are told as agreement."""
+ORDERS = (1, 2, 3)
+"""Harmonics of the mesh line that are compared, where the record has them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Line:
+    """A measured line with the sensor it belongs to: a row of the comparison."""
+
+    sensor: Accelerometer
+    order: int
+    found: MeasuredLine
+
+
+def compare_sensors(
+    case: Case | str | Path,
+    measured: Measurement,
+    at: Sequence[str],
+    *,
+    u_data: float | None = None,
+    u_num: float | None = None,
+    tolerances: Mapping[str, float] | None = None,
+    samples: int = 12,
+    seed: int = 0,
+) -> Comparison:
+    """Mesh lines of accelerometers against those of the case's drive train at the same place.
+
+    ``at`` says where each channel sits (:func:`~thermogear.study.shafts.sensed.accelerometer`). The
+    train moves at the record's own speed, cold and hot, with the torque of the operating point next
+    to it. Uncertainties are relative and standard, per line: ``u_data`` of the measurement (left
+    out: as the record tells), ``u_num`` (left out: by twice as many modes), ``tolerances`` of
+    fields of the case, sampled ``samples`` times from ``seed``.
+
+    Raises InputError for a case without shafts, a place, direction or channel that is none, a place
+    that cannot move, and a speed that the case does not have.
+    """
+    runs = CaseRuns.of(case)
+    base = runs.case({})
+    bearings = plan_of(base).bearing_names
+    rows = _rows(measured, [_sensor(text, bearings, measured) for text in at])
+    speed = _speed(measured, base)
+    place = _place(base, speed)
+    own = tuple(dict.fromkeys(row.sensor for row in rows))
+    sensors = own + tuple(_turned(one) for one in own)
+    found, notices = _simulated(base, place, speed, sensors)
+    real = np.array([row.found.acceleration for row in rows])
+    told = {state.words: _picked(table, rows, sensors) for state, table in found.items()}
+    numeric = np.full(real.size, u_num or 0.0)
+    last = list(found)[-1]
+    if u_num is None:
+        finer, _ = _simulated(base, place, speed, sensors, held=2 * HELD_MODES, only=last)
+        change = _picked(finer[last], rows, sensors) - told[last.words]
+        numeric = np.abs(change) / real
+        notices.append(
+            Notice("info", f"u_num: change of a line with {2 * HELD_MODES} modes of the shafts "
+                   f"instead of {HELD_MODES}")
+        )  # fmt: skip
+    entered = np.zeros(real.size)
+    if tolerances:
+        entered = _spread(runs, tolerances, samples, seed, (place, speed, sensors, last, rows))
+        entered = entered / real
+    else:
+        notices.append(Notice("warning", "no tolerances of the case are stated: u_input is 0"))
+    names = tuple(told)
+    made = []
+    for number, row in enumerate(rows):
+        one = Row(
+            speed=speed,
+            quantity="acceleration",
+            where=f"{row.sensor.channel}: {row.sensor.words}; mesh x {row.order}",
+            measured=row.found.acceleration,
+            simulated=tuple(float(told[name][number]) for name in names),
+            u_num=float(numeric[number]),
+            u_input=float(entered[number]),
+            u_data=row.found.uncertainty if u_data is None else u_data,
+        )
+        made.append(replace(one, verdict=_verdict(one, names)))
+    counts = [
+        f"{name} {sum(abs(one.errors[k]) <= AGREES * one.u_val for one in made)}"
+        for k, name in enumerate(names)
+    ]
+    notices.append(
+        Notice("info", f"of {len(made)} lines within {AGREES:g} u_val: {', '.join(counts)}")
+    )
+    notices += _exchanged(made, rows, found[last], sensors)
+    return Comparison(
+        measured.record.source,
+        names,
+        tuple(made),
+        (_implied(measured, rows, base, place, speed),),
+        (*_seen(own), *notices),
+    )
+
+
+def _sensor(text: str, bearings: Sequence[str], measured: Measurement) -> Accelerometer:
+    return accelerometer(text, bearings=bearings, channels=measured.channels)
+
+
+def _rows(measured: Measurement, sensors: Sequence[Accelerometer]) -> list[_Line]:
+    """Every mesh line of every sensor's channel."""
+    names = [one.channel for one in sensors]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("--at", f"channel {name!r} twice", allowed="one place a channel")
+    found = []
+    for sensor in sensors:
+        mine = [one for one in measured.lines if one.channel == sensor.channel]
+        own = {f"mesh x {order}": order for order in ORDERS}
+        lines = [one for one in mine if one.name in own]
+        if not lines:
+            raise InputError(
+                "measured", measured.record.source, why="no mesh line was found", fix="--speed"
+            )
+        if not all(np.isfinite(one.acceleration) for one in lines):
+            unit = measured.record.channel(sensor.channel).unit or "no unit"
+            raise InputError(
+                f"channel {sensor.channel!r}",
+                unit,
+                allowed="an acceleration",
+                fix="give it, for example --unit g or --unit m/s^2",
+            )
+        found += [_Line(sensor=sensor, order=own[one.name], found=one) for one in lines]
+    return found
+
+
+def _speed(measured: Measurement, case: GearCase) -> float:
+    """Speed of the pinion [rad/s] by the record's mesh line and the case's teeth."""
+    if measured.record.rate is None or measured.gearing is None:
+        missing = "--rate" if measured.record.rate is None else "--speed"
+        raise InputError("measured", "no speed", why="the record does not tell it", fix=missing)
+    turns = measured.gearing.mesh_frequency * measured.record.rate / case.pair.pinion.teeth
+    return float(2.0 * np.pi * turns)
+
+
+def _place(case: GearCase, speed: float) -> int:
+    known = case.stated.speed
+    near = int(np.argmin(np.abs(known - speed)))
+    if abs(float(known[near]) - speed) > NEAR * speed:
+        told = ", ".join(f"{one / RPM:.6g}" for one in dict.fromkeys(known.tolist()))
+        raise InputError(
+            "operating.speed",
+            f"{told} rpm",
+            why=f"the record's mesh line makes {speed / RPM:.6g} rpm",
+            fix="add that speed to the case, or say --speed, --rate and --teeth of the record",
+        )
+    return near
+
+
+def _simulated(
+    case: GearCase,
+    place: int,
+    speed: float,
+    sensors: Sequence[Accelerometer],
+    *,
+    held: int = HELD_MODES,
+    only: ThermalState | None = None,
+) -> tuple[dict[ThermalState, Floats], list[Notice]]:
+    """Line amplitudes (order, sensor) [m/s^2] of every state that moves, and what is to be told."""
+    found: dict[ThermalState, Floats] = {}
+    notices = []
+    states = STATES if only is None else (only,)
+    for state, (there,) in zip(states, settled(case, [place], states=states), strict=True):
+        vectors = np.stack([one.vector(there.assembly) for one in sensors], axis=-1)
+        wanted = len(interface_of(there.assembly)) - 1 + held
+        one = moved(case, replace(there, speed=speed), coordinates=wanted)
+        if one.train is None or one.record is None or one.motion is None:
+            notices.append(Notice("warning", f"drive train, {state.words}: no motion"))
+            continue
+        notices.append(
+            Notice("info", f"drive train, {state.words}: {one.motion.name}, {one.motion.reason}")
+        )
+        periods = one.record.phase.size // SAMPLES
+        felt = sensed(one.train, one.motion.state, vectors=vectors, periods=periods)
+        found[state] = lines(felt, orders=np.array(ORDERS, dtype=float))
+    if not found:
+        raise InputError("simulated", "no line", why="the drive train has no motion at this speed")
+    return found, notices
+
+
+def _picked(table: Floats, rows: Sequence[_Line], sensors: Sequence[Accelerometer]) -> Floats:
+    """The amplitudes of ``rows`` out of a table (order, sensor)."""
+    return np.array([table[ORDERS.index(one.order), sensors.index(one.sensor)] for one in rows])
+
+
+def _spread(
+    runs: CaseRuns,
+    tolerances: Mapping[str, float],
+    samples: int,
+    seed: int,
+    what: tuple[int, float, tuple[Accelerometer, ...], ThermalState, list[_Line]],
+) -> Floats:
+    """Standard deviation of every line [m/s^2] over cases within their tolerances."""
+    place, speed, sensors, state, rows = what
+    rng = np.random.default_rng(seed)
+    seen = []
+    for _ in range(max(2, samples)):
+        factors = {name: float(1.0 + s * rng.standard_normal()) for name, s in tolerances.items()}
+        case = runs.case(runs.changes(factors))
+        found, _ = _simulated(case, place, speed, sensors, only=state)
+        seen.append(_picked(found[state], rows, sensors))
+    return np.asarray(np.std(seen, axis=0, ddof=1))
+
+
+def _turned(sensor: Accelerometer) -> Accelerometer:
+    """The same accelerometer a quarter turn on."""
+    turned = sensor.direction + 0.5 * np.pi
+    return replace(sensor, direction=turned if turned < np.pi else turned - np.pi)
+
+
+def _exchanged(
+    made: Sequence[Row], rows: Sequence[_Line], table: Floats, sensors: Sequence[Accelerometer]
+) -> list[Notice]:
+    """Channels that would agree along the other axis on their strongest line, and do not here."""
+    found = []
+    for sensor in dict.fromkeys(row.sensor for row in rows):
+        mine = [k for k, row in enumerate(rows) if row.sensor == sensor]
+        k = max(mine, key=lambda k: rows[k].found.acceleration)
+        other = replace(rows[k], sensor=_turned(sensor))
+        error = float(_picked(table, [other], sensors)[0]) / made[k].measured - 1.0
+        allowed = AGREES * made[k].u_val
+        if abs(error) <= allowed < abs(made[k].errors[-1]):
+            found.append(
+                Notice(
+                    "important",
+                    f"channel {sensor.channel!r} does not agree along {sensor.words}, and would "
+                    f"along {other.sensor.words}: are the axes exchanged?",
+                )
+            )
+    return found
+
+
+def _verdict(row: Row, names: Sequence[str]) -> str:
+    """Which model is better, and which agree."""
+    agree = [
+        name
+        for name, error in zip(names, row.errors, strict=True)
+        if abs(error) <= AGREES * row.u_val
+    ]
+    said = f"{' and '.join(agree) or 'none'} within {AGREES:g} u_val"
+    return said if len(names) < 2 else f"{verdict(row.errors, names, row.u_val)}; {said}"
+
+
+def _implied(
+    measured: Measurement, rows: Sequence[_Line], case: GearCase, place: int, speed: float
+) -> Implied:
+    nominal = float(case.stated.speed[place])
+    offset = case.pair.pinion.teeth * (speed - nominal) / (2.0 * np.pi)
+    width = (measured.record.rate or 1.0) / measured.samples
+    return Implied(
+        speed=nominal,
+        acceleration_g=max(one.found.acceleration for one in rows) / STANDARD_GRAVITY,
+        shaft_speed=speed,
+        offset_hertz=offset,
+        offset_bins=offset / width,
+    )
+
+
+def _seen(sensors: Sequence[Accelerometer]) -> list[Notice]:
+    """What the accelerometers see, where it is easily taken for something else."""
+    found = []
+    if any(one.kind == "bearing" for one in sensors):
+        found.append(
+            Notice("info", "a bearing's cap moves with the outer ring's seat, or with the housing "
+                   "where the seat is rigid; neither the journal nor the teeth move like it")
+        )  # fmt: skip
+    if any(one.kind in ("journal", "gear") for one in sensors):
+        found.append(
+            Notice("info", "journal and gear: motion of the shaft's centre in the fixed frame, "
+                   "which no accelerometer on the housing sees")
+        )  # fmt: skip
+    return found

@@ -1,0 +1,281 @@
+"""Drive trains that the thesis's rig could have been: what is assumed of them, with ranges.
+
+The document states the gears, an induction motor, a magnetic powder brake and accelerometers. All
+else is ours: every range is as wide as rigs of this kind are, and says where it comes from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.shafts.bearings.catalogue import catalogue_bearing
+
+Floats = NDArray[np.float64]
+SPEEDS = (1000.0, 2000.0, 3000.0)
+"""Speeds of the pinion [rpm] in the document."""
+DIGITS = 5
+"""Significant digits of a sampled value, as stored: a stored row can be computed again."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assumed:
+    """One assumed quantity: its range in ``unit``, why, and where the range comes from.
+
+    ``logarithmic``: all decades alike. ``choices``: names instead of numbers, low to high.
+    """
+
+    name: str
+    words: str
+    unit: str
+    low: float
+    high: float
+    why: str
+    logarithmic: bool = False
+    choices: tuple[str, ...] = ()
+
+    def value(self, share: float) -> float:
+        """The value at a place 0..1 of the range; of choices the number of one."""
+        if self.choices:
+            return float(min(int(share * len(self.choices)), len(self.choices) - 1))
+        if self.logarithmic:
+            found = self.low * (self.high / self.low) ** share
+        else:
+            found = self.low + (self.high - self.low) * share
+        return float(f"{found:.{DIGITS}g}")
+
+    @property
+    def span(self) -> str:
+        """The range as a reader sees it."""
+        if self.choices:
+            return ", ".join(self.choices)
+        return f"{self.low:g} to {self.high:g} {self.unit}".strip()
+
+
+def _of(
+    name: str,
+    words: str,
+    span: tuple[float, float],
+    unit: str,
+    why: str,
+    logarithmic: bool = False,
+) -> Assumed:
+    return Assumed(
+        name=name,
+        words=words,
+        unit=unit,
+        low=span[0],
+        high=span[1],
+        why=why,
+        logarithmic=logarithmic,
+    )
+
+
+def _choice(name: str, words: str, choices: tuple[str, ...], why: str) -> Assumed:
+    last = float(len(choices) - 1)
+    return Assumed(name=name, words=words, unit="", low=0.0, high=last, why=why, choices=choices)
+
+
+AS_BEFORE = "as in the sensitivity study of the pair"
+ASSUMED: tuple[Assumed, ...] = (
+    _of("face_width", "face width", (15.0, 40.0), "mm", AS_BEFORE),
+    _of("torque", "torque of the pinion", (50.0, 200.0), "N m",
+        f"{AS_BEFORE}; 16 to 63 kW at 3000 rpm"),
+    _of("backlash", "backlash, normal, total", (0.20, 0.40), "mm", AS_BEFORE),
+    _of("damping", "damping ratio of the mesh", (0.03, 0.17), "", AS_BEFORE),
+    _of("error", "transmission error, amplitude of the first order", (1.0, 20.0), "um",
+        "twice the range of the pair's study: up to accuracy class 8"),
+    _of("gears", "temperature of the gears", (100.0, 160.0), "degC", "the document's"),
+    _of("shafts_below", "shafts and inner rings colder than the gears by", (0.0, 40.0), "K",
+        AS_BEFORE),
+    _of("housing_below", "housing and outer rings colder than the shafts by", (0.0, 20.0), "K",
+        "5 to 10 K between the rings are usual, 15 to 20 K in fast bearings (makers)"),
+    _choice("pinion_bearing", "bearings of the pinion's shaft",
+            ("6206", "6306", "6208", "6308"), "deep groove balls on 30 and 40 mm, for this power"),
+    _choice("wheel_bearing", "bearings of the wheel's shaft", ("6208", "6308"),
+            "three times the torque: 40 mm"),
+    _of("thickness", "shaft between the bearings over the bearing's bore", (1.1, 1.5), "",
+        "a shoulder for the bearing, and no thicker than the gear's bore"),
+    _of("span", "distance of a shaft's bearings", (100.0, 250.0), "mm",
+        "face width, walls, and room for the wheel of 385 mm"),
+    _of("place", "gear's place between its bearings, as a share", (0.35, 0.65), "",
+        "near the middle; 0.5 is the middle"),
+    _of("play", "play of the bearings as delivered", (6.0, 33.0), "um",
+        "classes CN and C3 of 30 to 40 mm bore (ISO 5753-1)"),
+    _of("bearing_damping", "damping of a bearing", (150.0, 1000.0), "N s/m",
+        "150 to 350 measured of small ball bearings; 2 to 5 µs times their stiffness of larger",
+        True),
+    _of("seat_stiffness", "stiffness of a bearing's seat in the wall", (100.0, 500.0), "N/um",
+        "recalled for housings; 100 a thin wall", True),
+    _of("seat_mass", "mass that moves with the seat: ring, cap, wall", (0.5, 5.0), "kg",
+        "ring and cap alone to a piece of the wall", True),
+    _of("seat_loss", "damping of the seat over its stiffness", (1.0, 10.0), "µs",
+        "0.3 to 3 % at 1 kHz: bolted steel and cast iron", True),
+    _of("housing_mass", "mass of the housing", (30.0, 150.0), "kg",
+        "40 kg in the ready-made case rig; a base plate may add to it", True),
+    _of("mount_stiffness", "stiffness of the housing's feet", (5.0, 500.0), "N/um",
+        "rubber to bolts on a bed", True),
+    _of("mount_damping", "damping ratio of the housing on its feet", (0.01, 0.10), "",
+        "bolted steel to rubber", True),
+    _of("centre_line", "line of centres from the level", (0.0, 90.0), "deg",
+        "wheel beside or above the pinion"),
+    _of("motor_inertia", "inertia of the motor", (0.02, 0.15), "kg m^2",
+        "four poles, 7.5 to 22 kW", True),
+    _of("brake_inertia", "inertia of the powder brake", (0.05, 0.50), "kg m^2",
+        "rotors of 200 to 1000 N m brakes, a guess", True),
+    _of("coupling", "stiffness of the couplings", (500.0, 20000.0), "N m/rad",
+        "5 (rubber tyre) to 150 (jaw) times the torque", True),
+)  # fmt: skip
+
+FIXED = (
+    "Fixed: tooth numbers, module and pressure angle of the document; no profile shift; mineral "
+    "oil 40 K colder than the gears; gears as solid discs; steel; an induction motor whose torque "
+    "falls by 33 N m per rad/s behind 20 ms; couplings that lose 0.5 ms times their stiffness; a "
+    "brake of constant torque; shafts balanced and gears centred: their errors give lines at shaft "
+    "order beside the mesh line."
+)
+
+_TEXT = """\
+title = "A drive train of the rig"
+[gears]
+module = "5 mm"
+pressure_angle = "20 deg"
+face_width = "{face_width!r} mm"
+[gears.pinion]
+teeth = 25
+bore_radius = "{pinion_bore!r} mm"
+[gears.wheel]
+teeth = 75
+bore_radius = "{wheel_bore!r} mm"
+[oil]
+name = "M100"
+temperature_below_addendum = "40 K"
+[operating]
+speed = "2000 rpm"
+torque = "{torque!r} N m"
+[temperatures]
+pinion_addendum = "{gears!r} degC"
+wheel_addendum = "{gears!r} degC"
+pinion_bore_below_addendum = "{shafts_below!r} K"
+wheel_bore_below_addendum = "{shafts_below!r} K"
+housing_below_addendum = "{box_below!r} K"
+[backlash]
+value = "{backlash!r} mm"
+direction = "normal"
+extent = "total"
+[dynamics]
+damping_ratio = {damping!r}
+[transmission_error]
+harmonics = [{{ order = 1, amplitude = "{error!r} um", phase = "0 deg" }}]
+[model]
+bundle = "consistent"
+[grid]
+mesh_positions = 64
+harmonics = 12
+[[shafts]]
+gear = "pinion"
+gear_position = "{pinion_gear!r} mm"
+sections = [{pinion_sections}]
+[[shafts]]
+gear = "wheel"
+gear_position = "{wheel_gear!r} mm"
+sections = [{wheel_sections}]
+{bearings}
+[motor]
+inertia = "{motor_inertia!r} kg m^2"
+coupling_stiffness = "{coupling!r} N m/rad"
+coupling_damping = "{coupling_damping!r} N m s/rad"
+slip_damping = "33 N m s/rad"
+lag = "0.02 s"
+[load]
+inertia = "{brake_inertia!r} kg m^2"
+coupling_stiffness = "{coupling!r} N m/rad"
+coupling_damping = "{coupling_damping!r} N m s/rad"
+[housing]
+mass = "{housing_mass!r} kg"
+mount_stiffness = "{mount_stiffness!r} N/um"
+mount_damping = "{feet!r} N s/m"
+[train]
+centre_line = "{centre_line!r} deg"
+elements = 6
+"""
+_BEARING = """\
+[[bearings]]
+shaft = "{shaft}"
+name = "{name}"
+position = "{position!r} mm"
+type = "{kind}"
+play = "{play!r} um"
+damping = "{bearing_damping!r} N s/m"
+seat_stiffness = "{seat_stiffness!r} N/um"
+seat_mass = "{seat_mass!r} kg"
+seat_damping = "{seat_damping!r} N s/m"
+"""
+_OVERHANG = 50.0
+_WALL = 5.0
+"""Shaft outside a bearing towards its coupling, and beyond the other bearing [mm]."""
+
+
+def case_text(values: Mapping[str, float]) -> str:
+    """The case file of one sampled train; ``values`` by the names of :data:`ASSUMED`."""
+    told: dict[str, object] = dict(values)
+    bearings = []
+    for shaft in ("pinion", "wheel"):
+        kind = _chosen(f"{shaft}_bearing", values)
+        size = catalogue_bearing(kind)
+        bore, half = 1e3 * size.bore, 500.0 * size.width
+        middle = bore * values["thickness"]
+        ends = (_OVERHANG + half, _WALL + half)
+        # the coupling is on the left of the pinion's shaft, on the right of the wheel's
+        before, after = ends if shaft == "pinion" else ends[::-1]
+        span, place = values["span"], values["place"]
+        lengths = (before + half, span - 2.0 * half, after + half)
+        pieces = zip(lengths, (bore, middle, bore), strict=True)
+        told[f"{shaft}_sections"] = ", ".join(
+            f'{{ length = "{length!r} mm", diameter = "{diameter!r} mm" }}'
+            for length, diameter in pieces
+        )
+        told[f"{shaft}_gear"] = before + place * span
+        told[f"{shaft}_bore"] = 0.5 * middle
+        for side, position in (("left", before), ("right", before + span)):
+            bearings.append(
+                _BEARING.format(
+                    shaft=shaft,
+                    name=f"{shaft} {side}",
+                    position=position,
+                    kind=kind,
+                    seat_damping=values["seat_loss"] * values["seat_stiffness"],
+                    **{n: values[n] for n in _OF_BEARINGS},
+                )
+            )
+    told["bearings"] = "".join(bearings)
+    told["box_below"] = values["shafts_below"] + values["housing_below"]
+    told["coupling_damping"] = 5e-4 * values["coupling"]
+    told["feet"] = (
+        2.0
+        * values["mount_damping"]
+        * float(np.sqrt(values["housing_mass"] * values["mount_stiffness"] * 1e6))
+    )
+    return _TEXT.format(**told)
+
+
+_OF_BEARINGS = ("play", "bearing_damping", "seat_stiffness", "seat_mass")
+
+
+def _chosen(name: str, values: Mapping[str, float]) -> str:
+    (one,) = (a for a in ASSUMED if a.name == name)
+    return one.choices[int(values[name])]
+
+
+def drawn(count: int, *, seed: int) -> list[dict[str, float]]:
+    """``count`` sampled trains, a latin hypercube: every range in ``count`` strips, one in each."""
+    rng = np.random.default_rng(seed)
+    strips = np.stack([rng.permutation(count) for _ in ASSUMED], axis=1)
+    shares = (strips + rng.random(strips.shape)) / count
+    return [
+        {one.name: one.value(float(share)) for one, share in zip(ASSUMED, row, strict=True)}
+        for row in shares
+    ]

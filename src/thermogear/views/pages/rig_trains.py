@@ -1,0 +1,103 @@
+"""The thesis's experiment on sampled drive trains: the sentence, shares, assumptions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermogear.results.result import Result
+from thermogear.views.page import Block, Cell, Pictures, Table, Text
+from thermogear.views.plots import rig_trains as plots
+from thermogear.views.typesetting import prose
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def blocks(results: Result, pictures: Pictures) -> list[Block]:
+    """What comes of it on the page, nothing where it was not computed."""
+    data = results.group("rig_trains")
+    if data is None:
+        return []
+    pictures.add(
+        "rig-trains", "The experiment once more, with shafts and bearings",
+        "Displacements at the mesh line that accelerometers show after two integrations, one thin "
+        "line for each sampled drive train; right, what no accelerometer sees.",
+        data, ("nearest",), lambda: plots.displacements(data), wide=True,
+    )  # fmt: skip
+    pictures.add(
+        "rig-factors", "How near the sampled trains come",
+        "A train counts where one channel lies within the factor of all three printed values; "
+        "dashed: the factor 1.5 that was fixed beforehand.",
+        data, ("needed_factor",), lambda: plots.factors(data),
+    )  # fmt: skip
+    pictures.add(
+        "rig-ranks", "What decides it",
+        "Rank correlation [%] of results and assumptions, written where it is beyond three "
+        "standard errors.",
+        data, ("rank",), lambda: plots.ranks(data), wide=True,
+    )  # fmt: skip
+    decides = f"What decides it, by rank correlation: {data.attrs['deciding']}."
+    how = (
+        f"Motions: {data.attrs['motions']}; lines of a motion that did not close within 2048 mesh "
+        "periods are read over 64 of them. Every train is followed from rest, hot, with friction "
+        f"and clearance. {data.attrs['fixed']}"
+    )
+    said = [Text(prose(text)) for text in (str(data.attrs["sentence"]), decides)]
+    drawn = [*pictures.take(), _shares(data), _assumed(data)]
+    return [*said, *drawn, Text(prose(how))]
+
+
+def _shares(data: xr.Dataset) -> Table:
+    head: list[Cell] = ["seen by", *(f"within {float(v):g}" for v in data["limit"].values)]
+    rows: list[list[Cell]] = []
+    for k, words in enumerate(data["seen_words"].values):
+        cells = []
+        for n in range(data.sizes["limit"]):
+            one = data.isel(seen=k, limit=n)
+            share, low, high = (100.0 * float(one[v]) for v in ("share", "share_low", "share_high"))
+            cells.append(f"{int(one['hits'])}: {share:.1f} % ({low:.1f} to {high:.1f} %)")
+        rows.append([str(words), *cells])
+    caption = (
+        f"Of {data.attrs['trains']} sampled drive trains so many show 10.4, 19.3 and 48.5 µm "
+        "within a factor, growing; in brackets the 95 % interval of the share."
+    )
+    return Table(caption, head, rows, names=1)
+
+
+def _assumed(data: xr.Dataset) -> Table:
+    names = ("input_words", "input_range", "input_why")
+    rows: list[list[Cell]] = [
+        [prose(str(text)) for text in line]
+        for line in zip(*(data[name].values for name in names), strict=True)
+    ]
+    return Table(
+        "What is assumed of the rig, all ours unless said.",
+        ["quantity", "range", "reason or source"],
+        rows,
+        names=3,
+        wordy=True,
+    )
+
+
+def numbers(data: xr.Dataset) -> dict[str, Any]:
+    """The answer JSON-ready, with shares by place and factor."""
+    shares = {
+        str(place): {
+            f"{float(limit):g}": {
+                name: float(data[name].sel(seen=place, limit=limit))
+                for name in ("hits", "share", "share_low", "share_high")
+            }
+            for limit in data["limit"].values
+        }
+        for place in data["seen"].values
+    }
+    told = ("answer", "sentence", "deciding", "motions")
+    return {
+        **{name: str(data.attrs[name]) for name in told},
+        "trains": int(data.attrs["trains"]),
+        "lost": int(data.attrs["lost"]),
+        "nearest_factor": float(np.min(data["needed_factor"].sel(seen="either").values)),
+        "shares": shares,
+    }
