@@ -133,6 +133,7 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
     at = LIMITS.index(NEAR)
     said = answer(low=float(ends[0, at, 0]), high=float(ends[0, at, 1]))
     labels = [name for one in rows for name in one.labels]
+    open_ = np.array(["undecided" in one.labels for one in rows])
     counted = {name: labels.count(name) for name in sorted(set(labels))}
     entries: dict[str, Any] = {
         "hits": (("seen", "limit"), hits, "1", "trains that show the printed displacements"),
@@ -169,6 +170,9 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
         "answer": said,
         "trains": len(rows),
         "lost": lost,
+        "near": NEAR,
+        "open": int(np.sum(open_)),
+        "open_nearest": float(np.min(needed[0, open_])) if np.any(open_) else float("nan"),
         "largest": float(np.nanmax(size[:2, :, -1])),
         "motions": ", ".join(f"{name} {number}" for name, number in counted.items()),
         "fixed": FIXED,
