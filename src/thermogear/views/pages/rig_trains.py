@@ -29,7 +29,7 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
     pictures.add(
         "rig-factors", "How near the sampled trains come",
         "A train counts where one channel lies within the factor of all three printed values; "
-        "dashed: the factor that was fixed beforehand.",
+        "dashed: the factor of the answer.",
         data, ("needed_factor",), lambda: plots.factors(data),
     )  # fmt: skip
     pictures.add(
