@@ -122,6 +122,9 @@ def test_compare_as_json() -> None:
         ),
         (compare, ["thesis-5.2", "--teeth", 10**20], r"^teeth: got a number of more than"),
         (compare, ["nowhere", "thesis-5.2"], r"^"),
+        (compare, ["rig", "--at", "a=housing:x"], r"^--at: got a=housing:x; there is no record"),
+        (compare, ["rig", "FILE", "--at", "a=housing:x"], r"^shafts: got nothing; "),
+        (compare, ["motor-train", "FILE", "--at", "a=housing"], r"^--at: got 'a=housing'; "),
     ],
 )
 def test_refusals_are_one_line(

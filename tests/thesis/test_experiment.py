@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from conftest import Compared
+from thermogear.base.errors import InputError
 from thermogear.case.case import gear_case, load_case
+from thermogear.front.thesis_commands import thesis
 from thermogear.thesis import experiment, experiment_answer
 from thermogear.thesis.experiment import PRINTED, SEED, Shown, shown, stored
 from thermogear.thesis.experiment_answer import EITHER, NEAR, answer, factor, interval, results
@@ -50,10 +55,15 @@ def test_a_stored_row_is_what_the_code_computes(number: int, rows: list[Shown]) 
         assert found.most[place] == pytest.approx(told.most[place], rel=1e-3)
 
 
-def test_few_coordinates_are_enough(rows: list[Shown]) -> None:
+def test_few_coordinates_are_enough(rows: list[Shown], compared: Compared) -> None:
     found = shown(rows[1].values, held=2 * experiment.HELD_MODES)
-    for place in experiment.SEEN:
-        assert found.most[place] == pytest.approx(rows[1].most[place], rel=0.05)
+    pairs = [(found.most[place], rows[1].most[place]) for place in experiment.SEEN]
+    compared(
+        "displacements of a sampled drive train of the thesis's rig, relative",
+        "twice as many modes of its shafts",
+        [np.divide(a, b) - 1.0 for a, b in pairs],
+        0.05,
+    )
 
 
 def test_a_sampled_case_holds_what_was_drawn(rows: list[Shown]) -> None:
@@ -93,7 +103,18 @@ def test_the_rule_counts_one_channel_near_at_all_speeds_and_growing(rows: list[S
     one = data.sel(seen=EITHER, limit=NEAR)
     assert int(one["hits"]) == 1
     assert (data.attrs["lost"], data.attrs["trains"]) == (1, 24)
+    open_ = [one for one in rows[:20] if "undecided" in one.labels]
+    assert data.attrs["open"] == len(open_) > 0
+    assert data.attrs["open_nearest"] == min(factor(one, EITHER) for one in open_)
     assert (float(one["share_low"]), float(one["share_high"])) == interval(1, count=24, lost=1)
+
+
+def test_too_few_trains_are_refused(tmp_path: Path) -> None:
+    for words in (["--experiment", "7"], ["--experiment", "8", "--redraw"]):
+        done = CliRunner().invoke(thesis, ["-o", str(tmp_path / "new"), *words])
+        assert isinstance(done.exception, InputError)
+        assert str(done.exception).startswith("--experiment: got ")
+        assert not (tmp_path / "new").exists()
 
 
 def _told(hits: int, lost: int = 0) -> str:

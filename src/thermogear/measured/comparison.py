@@ -68,13 +68,17 @@ class Implied:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Rows for every speed, what the lines imply, and what should be known before believing."""
+    """Rows for every speed, what the lines imply, and what should be known before believing.
+
+    ``agreement``: how many lines of each model lie within u_val, in words, where that is told.
+    """
 
     measured: str
     models: tuple[str, ...]
     rows: tuple[Row, ...]
     implied: tuple[Implied, ...]
     notices: tuple[Notice, ...]
+    agreement: str = ""
 
     @property
     def conclusion(self) -> str:
@@ -85,9 +89,10 @@ class Comparison:
             return "one model: its errors stand beside u_val, no other to be better than"
         counts = {v: verdicts.count(v) for v in dict.fromkeys(verdicts)}
         kind = compared[0].quantity if compared else "displacement"
-        return f"of {len(verdicts)} {kind}s: " + ", ".join(
+        said = f"of {len(verdicts)} {kind}s: " + ", ".join(
             f"{verdict} {count} times" for verdict, count in counts.items()
         )
+        return f"{said}; {self.agreement}" if self.agreement else said
 
     def row(self, speed: float, quantity: str) -> Row:
         """The row of a quantity at the speed [rad/s] nearest to ``speed``."""

@@ -111,9 +111,6 @@ def compare_sensors(
         f"{name} {sum(abs(one.errors[k]) <= AGREES * one.u_val for one in made)}"
         for k, name in enumerate(names)
     ]
-    notices.append(
-        Notice("info", f"of {len(made)} lines within {AGREES:g} u_val: {', '.join(counts)}")
-    )
     notices += _exchanged(made, rows, found[last], sensors)
     return Comparison(
         measured.record.source,
@@ -121,6 +118,7 @@ def compare_sensors(
         tuple(made),
         (_implied(measured, rows, base, place, speed),),
         (*_seen(own), *notices),
+        f"within {AGREES:g} u_val: {', '.join(counts)} of {len(made)}",
     )
 
 

@@ -1,6 +1,6 @@
 """What the sampled drive trains say of the thesis's experiment: shares, a sentence, what decides.
 
-Rules fixed before the samples were drawn: a place shows the printed displacements where one and the
+Rules set before the shares were counted: a place shows the printed displacements where one and the
 same channel lies within a factor :data:`NEAR` of them at all three speeds and grows; the answer is
 "no" where the upper end of the 95 % interval of the share is below :data:`NO`, "yes" where its
 lower end is above :data:`YES`, else "undecided". Trains without a motion count against either end.
@@ -133,6 +133,7 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
     at = LIMITS.index(NEAR)
     said = answer(low=float(ends[0, at, 0]), high=float(ends[0, at, 1]))
     labels = [name for one in rows for name in one.labels]
+    open_ = np.array(["undecided" in one.labels for one in rows])
     counted = {name: labels.count(name) for name in sorted(set(labels))}
     entries: dict[str, Any] = {
         "hits": (("seen", "limit"), hits, "1", "trains that show the printed displacements"),
@@ -169,6 +170,9 @@ def results(rows: Sequence[Shown]) -> xr.Dataset:
         "answer": said,
         "trains": len(rows),
         "lost": lost,
+        "near": NEAR,
+        "open": int(np.sum(open_)),
+        "open_nearest": float(np.min(needed[0, open_])) if np.any(open_) else float("nan"),
         "largest": float(np.nanmax(size[:2, :, -1])),
         "motions": ", ".join(f"{name} {number}" for name, number in counted.items()),
         "fixed": FIXED,
@@ -189,12 +193,12 @@ def sentence(data: xr.Dataset) -> str:
     last = 1e6 * float(data.attrs["largest"])
     return (
         f"{said} an accelerometer on a bearing's cap or on the housing. On {int(one['hits'])} of "
-        f"{data.attrs['trains']} sampled drive trains one shows 10.4, 19.3 and 48.5 um within a "
+        f"{data.attrs['trains']} sampled drive trains one shows 10.4, 19.3 and 48.5 µm within a "
         f"factor {NEAR:g} at all three speeds, growing ({100 * float(one['share']):.1f} %, 95 % "
         f"interval {100 * float(one['share_low']):.1f} to {100 * float(one['share_high']):.1f} %, "
         f"{data.attrs['lost']} without a motion counted against either end); the nearest is off "
         f"by a factor {nearest:.2f}, and the largest displacement of any of them at 3000 rpm is "
-        f"{last:.1f} um."
+        f"{last:.1f} µm."
     )
 
 

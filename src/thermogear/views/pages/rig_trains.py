@@ -29,7 +29,7 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
     pictures.add(
         "rig-factors", "How near the sampled trains come",
         "A train counts where one channel lies within the factor of all three printed values; "
-        "dashed: the factor 1.5 that was fixed beforehand.",
+        "dashed: the factor of the answer.",
         data, ("needed_factor",), lambda: plots.factors(data),
     )  # fmt: skip
     pictures.add(
@@ -39,10 +39,13 @@ def blocks(results: Result, pictures: Pictures) -> list[Block]:
         data, ("rank",), lambda: plots.ranks(data), wide=True,
     )  # fmt: skip
     decides = f"What decides it, by rank correlation: {data.attrs['deciding']}."
+    nearest = float(data.attrs["open_nearest"])
+    near = f"; the nearest of them is off by a factor {nearest:.2f}" if nearest == nearest else ""
     how = (
-        f"Motions: {data.attrs['motions']}; lines of a motion that did not close within 2048 mesh "
-        "periods are read over 64 of them. Every train is followed from rest, hot, with friction "
-        f"and clearance. {data.attrs['fixed']}"
+        f"Motions: {data.attrs['motions']}. Lines of a motion that did not close within 2048 mesh "
+        f"periods are read over 64 of them: so on {data.attrs['open']} trains{near}. Every train "
+        "is followed from rest, hot, with friction of the teeth and clearance of the bearings. "
+        f"{data.attrs['fixed']}"
     )
     said = [Text(prose(text)) for text in (str(data.attrs["sentence"]), decides)]
     drawn = [*pictures.take(), _shares(data), _assumed(data)]

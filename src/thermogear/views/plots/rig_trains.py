@@ -53,7 +53,7 @@ def factors(data: xr.Dataset) -> Picture:
         share = 100.0 * np.arange(1, count + 1) / count
         words = str(data["seen_words"].sel(seen=place).item())
         panel.curve(needed, share, colour=colour, label=words)
-    panel.line(x=1.5, colour=HOT, width=1.0, dash=(4, 3))
+    panel.line(x=float(data.attrs["near"]), colour=HOT, width=1.0, dash=(4, 3))
     return Picture([[panel]], size=(SINGLE[0] + 1.6, SINGLE[1]), legend=1)
 
 
