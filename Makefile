@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-coordinates bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-branches trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-long trial-pairs unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -71,6 +71,9 @@ bench-geared: $(BENCH_STAMP)  ## drive trains that lose contact, our engine besi
 
 bench-coordinates: $(STAMP)  ## what more coordinates change in a drive train's impacts, and cost
 	$(BIN)/python bench/coordinates.py
+
+bench-train-map: $(STAMP)  ## a drive train's map on one thread, two and two dask workers; TRAIN_MAP="--grid 6x4" a short one, --write the page
+	$(BIN)/python bench/train_map.py $(TRAIN_MAP)
 
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)

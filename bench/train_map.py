@@ -164,12 +164,14 @@ def page(grid: tuple[int, int], rows: list[str]) -> str:
     cores = os.cpu_count()
     return "\n".join(
         [
-            "---", "orphan: true", "---", "# A map of a drive train on threads and on a cluster", "",
+            "---", "orphan: true", "---",
+            "# A map of a drive train on threads and on a cluster", "",
             f"Made by `make bench-train-map`: a map of {grid[0]} speeds (1000 to 6000 rpm) by "
             f"{grid[1]} gear temperatures",
             f"(30 to 110 °C) of a 27:44 pair on two shafts in four ball bearings, {COORDINATES} "
             "coordinates. Each way computes",
-            f"everything anew; {cores} cores, {platform.machine()}, other work beside it.", "",
+            f"everything anew; {cores} cores, {platform.machine()}. Seconds are of the clock, with "
+            "whatever else the machine", "does; processor seconds are of the map alone.", "",
             *rows, "",
         ]
     )  # fmt: skip

@@ -17,6 +17,7 @@ from thermogear.views.plots import (
     gears,
     laws,
     loaded,
+    lost_contact,
     one_motion,
     relief,
     shafts,
@@ -70,6 +71,18 @@ def of_sweeps() -> dict[str, Picture]:
          for name, values in codes.items()},
         {"damping_ratio": rising("damping_ratio")[1], "frequency": rising("frequency")[1]},
     )  # fmt: skip
+    names = {"names": json.dumps(["left", "right"])}
+    lost = grid.assign(
+        lost_contact=(grid["label"].dims, np.resize([0, 1, 3, 4, 13, -1], (5, 4)))
+    ).assign_coords(bearing=("bearing", np.arange(2), names))  # fmt: skip
+    forces = (
+        made("direction start damping_ratio", "greatest_mesh_force", "drive_free_share")
+        .assign(
+            greatest_bearing_force=rising("direction", "start", "damping_ratio", "bearing"),
+            bearing_free_share=rising("direction", "start", "damping_ratio", "bearing", high=1.5),
+        )
+        .assign_coords(damping_ratio=rising("damping_ratio"), bearing=lost["bearing"])
+    )
     basins = made("attractor_number point", "attractor_x", "attractor_v").assign(
         x=rising("x"), v=rising("v"), fraction=rising("attractor_number"),
         attractor=(("x", "v"), np.resize([-2, -1, 0, 1], (4, 5))),
@@ -92,6 +105,8 @@ def of_sweeps() -> dict[str, Picture]:
     return {
         "diagram": sweeps.orbit_diagram_picture(diagram),
         "map": sweeps.map_picture(grid),
+        "lost-contact": lost_contact.lost_contact_picture(lost),
+        "train-forces": lost_contact.forces_picture(forces.assign_attrs(parameter="damping_ratio")),
         "basins": sweeps.basins_picture(basins),
         "runup": sweeps.run_up_picture(run_up.merge(events)),
         "waterfall": sweeps.waterfall_picture(run_up),

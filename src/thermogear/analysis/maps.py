@@ -200,7 +200,7 @@ def _lattice(size: int, stride: int) -> NDArray[np.int64]:
     return np.unique(np.append(np.arange(0, size, stride), size - 1))
 
 
-def _refined(found: Arrays, stride: int, kinds: tuple[str, ...]) -> NDArray[np.bool_]:
+def _refined(found: Arrays, stride: int, kinds: tuple[str, ...] = ()) -> NDArray[np.bool_]:
     """Places inside or next to cells whose corners differ; equal cells take their corners' label.
 
     Corners differ in label, period or one of the ``kinds``.

@@ -74,10 +74,10 @@ class TrainFamily:
                 "over", name, why="a drive train has no such number", fix="vary a gear parameter"
             )
         if self.seen and self.seen not in plan.bearing_names:
-            known = list(plan.bearing_names)
+            known = ["teeth", *plan.bearing_names]
             raise InputError(
-                "--plane", repr(self.seen), allowed=" | ".join(["teeth", *known]),
-                fix=nearest(self.seen, known),
+                "--plane", repr(self.seen), allowed=" | ".join(known),
+                fix=nearest(self.seen.lower(), known),
             )  # fmt: skip
 
     def __getstate__(self) -> dict[str, Any]:

@@ -64,11 +64,11 @@ def lost_contact_picture(data: xr.Dataset) -> Picture:
 
 
 def _panel(data: xr.Dataset, words: str) -> Panel:
-    one, two = (str(name) for name in data["label"].dims[-2:])
-    axes = (
-        Axis(axis_words(name, str(data[name].attrs.get("units", "1")))) for name in (one, two)
-    )  # fmt: skip
-    return Panel(*axes, words)
+    along, up = (
+        Axis(axis_words(str(name), str(data[name].attrs.get("units", "1"))))
+        for name in data["label"].dims[-2:]
+    )
+    return Panel(along, up, words)
 
 
 def _put(
