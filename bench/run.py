@@ -234,7 +234,8 @@ from thermogear.analysis.lyapunov import lyapunov_exponent
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.dynamics.models import TorsionalModel
 t.append(time.process_time())
-m = TorsionalModel(0.1535, 1.245, 0.1, 0.017, -1.16)
+m = TorsionalModel(damping_ratio=0.1535, frequency=1.245, stiffness_amplitude=0.1,
+                   mean_force=0.017, force_amplitude=-1.16)
 periodic_orbit(m, 1, (1.08, -0.25))
 lyapunov_exponent(m, discard=2, batches=2, batch_periods=2)
 t.append(time.process_time())

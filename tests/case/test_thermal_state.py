@@ -6,8 +6,20 @@ import numpy as np
 import pytest
 
 from thermogear.base.errors import InputError
-from thermogear.case.case import GearCase, load_example
+from thermogear.case.case import GearCase, load_case, load_example
 from thermogear.case.thermal_state import COMPUTED, HOT, UNDEFORMED, ThermalState
+
+OWN = """[gears]
+module = "3 mm"
+face_width = "30 mm"
+[gears.pinion]
+teeth = 20
+[gears.wheel]
+teeth = 40
+[operating]
+speed = "3000 rpm"
+torque = "80 N m"
+"""
 
 
 @pytest.fixture(scope="module")
@@ -90,3 +102,19 @@ def test_a_held_state_stays_at_another_speed(rig: GearCase) -> None:
     moved = held.operating(rig, model)
     assert np.array_equal(moved.speed, rig.stated.speed)
     assert moved.temperatures is here.temperatures
+
+
+@pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+@pytest.mark.parametrize("state", [HOT, UNDEFORMED])
+def test_bare_quantities_are_the_cycle_s_own(state: ThermalState) -> None:
+    """Of computed temperatures, the second point's beyond every steady state."""
+    small = ["grid.mesh_positions=48", "grid.path_positions=11", "grid.harmonics=12"]
+    heavy = 'operating.torque=["80 N m", "2000 N m"]'
+    case = load_case(OWN, [*small, heavy])
+    assert isinstance(case, GearCase)
+    model = case.models[0]
+    cycle = state.cycle(case, model)
+    want = ("transmission_error", "film_parameter", "jam_temperature", "mean_stiffness")
+    bare = state.quantities(case, model, want)
+    for name in (*want, "status", "pinion_speed", "pinion_torque"):
+        assert np.array_equal(bare[name], cycle[name].values, equal_nan=name != "status"), name

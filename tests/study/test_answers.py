@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from functools import cache
 
@@ -250,3 +252,19 @@ def test_the_worst_of_several_is_the_gravest() -> None:
     hot, hotter = made(LOOK, 95.0, "at most 90"), made(LOOK, 99.0, "at most 90")
     assert worst([hot, hotter]) is hotter
     assert Limit("K", most=90.0, source="s").verdict(float(np.nextafter(90.0, 91.0))) == LOOK
+
+
+def test_answers_alone_load_no_labelled_datasets() -> None:
+    """They are half of what a start costs: the speeds behind the answers are labelled on demand."""
+    script = (
+        "import sys\n"
+        "from thermogear.case.case import load_case\n"
+        "from thermogear.study.answers.survey import answers\n"
+        "from thermogear.views.write import page_of\n"
+        f"found = answers(load_case({FIVE!r}, {list(SMALL)!r}))\n"
+        "lines = page_of(found).lines()\n"
+        "print(sorted({'xarray', 'pandas', 'jinja2'} & set(sys.modules)), len(lines) > 20)\n"
+        "print(found.group('speeds').pinion_speed.attrs['units'], 'xarray' in sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stdout.splitlines() == ["[] True", "rad/s True"], done.stderr

@@ -133,11 +133,9 @@ class RadialField:
         """(r_k [m], dg_k [K]) with T(r) = T_x + sum dg_k ln(r/r_k) over the places r_k < r."""
         if not self.between:
             return ((self.bore_radius, self.gradient),)
-        places = [
-            (self.bore_radius, np.asarray(self.bore_temperature)),
-            *((r, np.asarray(t)) for r, t in self.between),
-            (self.tip_radius, np.asarray(self.addendum_temperature)),
-        ]
+        ends = (self.tip_radius, self.addendum_temperature)
+        all_of_them = ((self.bore_radius, self.bore_temperature), *self.between, ends)
+        places = [(r, np.asarray(t)) for r, t in all_of_them]
         found: list[tuple[float, Floats]] = []
         before: Floats | float = 0.0
         for (low, cool), (high, warm) in pairwise(places):
