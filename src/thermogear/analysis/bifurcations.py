@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch, Tests
+from thermogear.analysis.curve import Curve, Family, Point, Stretch, Tests
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import MovedMap
@@ -38,6 +38,8 @@ PROBE = 1e-6
 """Scaled step of differences that Newton's method onto a bifurcation takes; rough ones do."""
 FARTHEST = 0.25
 """Half backlashes, or shares of the parameter, in which it looks around."""
+HIDDEN = ("fold", "flip", "margin", "spiral")
+"""What of a point may dip to 0 and back within a step."""
 MOST_STEPS = 8
 MOST_LOOKS = 30
 CARRIED = 1e-8
@@ -144,7 +146,7 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
         high = min(
             step
             for step, point in stretch.points.items()
-            if step > max(start, found - 2.0 * ZERO) and counts(point) != before
+            if step > max(start, found - 2.0 * stretch.near) and counts(point) != before
         )
         after = counts(stretch.at(high))
         yield high, _grazed(before, after)
@@ -291,12 +293,12 @@ def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> lis
 def _may_hide(beside: Point | None, a: Point, b: Point) -> bool:
     if beside is None:
         # the first step of a walk is short; only next to a zero anything may hide in it
-        pairs = [(abs(getattr(a, n)), abs(getattr(b, n))) for n in ("fold", "flip", "margin")]
+        pairs = [(abs(getattr(a, n)), abs(getattr(b, n))) for n in HIDDEN]
         return any(min(one, other) < 4.0 * abs(one - other) + LOOK_CLOSER for one, other in pairs)
     width = float(np.linalg.norm(b.scaled - a.scaled))
     near, far = (float(np.linalg.norm(p.scaled - beside.scaled)) for p in (a, b))
     along = -near if near < far else width + far
-    for name in ("fold", "flip", "margin"):
+    for name in HIDDEN:
         one, other, third = (float(getattr(p, name)) for p in (a, b, beside))
         if name != "margin" and one * other < 0.0:
             continue

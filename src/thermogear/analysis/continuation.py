@@ -368,7 +368,9 @@ def _walk(
             return
         yield point
         last, here = here, point
-        longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
+        # of longer states each component may move as far as those of (x, x')
+        longest = LONGEST_STEP * np.sqrt(0.5 * curve.dimension)
+        longest *= max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
         if turn > 0.98:
             step = min(longest, LONGEST_STEP / max(abs(here.tangent[-1]), 1e-9), 1.5 * step)
         elif turn < 0.95:

@@ -55,8 +55,8 @@ class Plane:
         notices = []
         if any(b.kind == GRAZING for b in events):
             notices.append(
-                f"grazings are located at the first value of {self.second.name} alone: they have no "
-                "multiplier to be followed by"
+                f"grazings are located at the first value of {self.second.name} alone: they have "
+                "no multiplier to be followed by"
             )
         curves: list[EventCurve] = []
         try:

@@ -186,8 +186,7 @@ def _stored(leg: Leg, varied: Parameter) -> xr.Dataset:
         for value, state in zip(branch.values, branch.states, strict=True)
     ]
     events = [
-        _greatest(branch.family(one.value), one.state, branch.period)
-        for one in branch.bifurcations
+        _greatest(branch.family(one.value), one.state, branch.period) for one in branch.bifurcations
     ]
     words = {"long_name": "greatest force of the drive flanks", "units": "N"}
     data["mesh_force"] = ("point", np.array(forces, dtype=float), words)

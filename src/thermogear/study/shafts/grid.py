@@ -29,9 +29,7 @@ class TrainGrid:
 
     family: TrainFamily
     axes: tuple[Floats, ...]
-    _kept: dict[tuple[int, ...], GearedModel] = field(
-        init=False, repr=False, default_factory=dict
-    )
+    _kept: dict[tuple[int, ...], GearedModel] = field(init=False, repr=False, default_factory=dict)
 
     def __call__(self, *values: float) -> GearedModel:
         """The train in motion at one value of each parameter.
