@@ -23,7 +23,10 @@ FLIP = "period doubling"
 GRAZING = "grazing"
 BIRTH = "period halving"
 PITCHFORK = "pitchfork"
-"""Only where the equation has a symmetry: an orbit that is its own mirror image loses it."""
+"""Only where the equation has a symmetry: an orbit that is its own mirror image loses it.
+
+Also of a drive train with alike halves left and right of its gears.
+"""
 TORUS = "torus"
 """A complex pair of multipliers leaves or enters the unit circle (Neimark-Sacker)."""
 TESTS = {FOLD: "fold", TORUS: "torus"}
@@ -97,15 +100,42 @@ def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
             nodes |= {s for s in (graze - near, graze + near) if 0.0 < s < length}
     broken = PITCHFORK if curve.symmetric else FLIP
     for low, high in pairwise(sorted(nodes)):
+        if crossed(stretch.at(low), stretch.at(high)):
+            # turns back without a multiplier beyond +1: into an orbit's mirror image
+            step = stretch.zero(_ahead, low=low, high=high)
+            events.append((step, _bifurcation(curve, stretch.at(step), PITCHFORK)))
         for name, kind in (("fold", FOLD), ("flip", broken), *_tori(stretch)):
             test = attrgetter(name)
             one, other = test(stretch.at(low)), test(stretch.at(high))
             if one * other < 0.0 and min(abs(one), abs(other)) > SILENT:
                 step = stretch.zero(test, low=low, high=high)
+                if kind == FOLD and _straight_on(stretch.at(low), stretch.at(high)):
+                    kind = PITCHFORK
                 if kind == TORUS and not _complex_pair(stretch.at(step)):
                     continue  # mu and 1/mu, both real
                 events.append((step, _bifurcation(curve, stretch.at(step), kind)))
     return [event for _, event in sorted(events, key=lambda pair: pair[0])]
+
+
+def _ahead(point: Point) -> float:
+    """How fast the parameter grows along the branch."""
+    return float(point.tangent[-1])
+
+
+def crossed(a: Point, b: Point) -> bool:
+    """Whether a branch of long states turns back between two points without a fold.
+
+    At a fold (1 - mu_1)(1 - mu_2)... changes sign with the parameter's direction. Where only one of
+    them does, branches cross: in a train that is its own mirror image, two motions that mirror each
+    other meet in one that does not change by it.
+    """
+    long = a.scaled.size > 3
+    return long and _ahead(a) * _ahead(b) < 0.0 and a.fold * b.fold > 0.0
+
+
+def _straight_on(a: Point, b: Point) -> bool:
+    """Whether a multiplier of a long state passes +1 although the branch does not turn."""
+    return a.scaled.size > 3 and _ahead(a) * _ahead(b) > 0.0
 
 
 def _tori(stretch: Stretch) -> tuple[tuple[str, str], ...]:
@@ -157,7 +187,7 @@ def _bifurcation(curve: Curve, point: Point, kind: str, note: str = "") -> Bifur
     """The bifurcation at a point, of a flip or a pitchfork with its side."""
     value = float(point.scaled[-1] * curve.span)
     found = Bifurcation(kind, curve.parameter, value, curve.orbit(point), note)
-    if kind in (FLIP, PITCHFORK):
+    if kind == FLIP or (kind == PITCHFORK and isinstance(found.orbit.section, MovedMap)):
         found = replace(found, note=criticality(found, curve.family))
     return found
 

@@ -18,6 +18,7 @@ from thermogear.analysis.bifurcations import (
     PITCHFORK,
     Bifurcation,
     birth_of,
+    crossed,
     doubled_beside,
     locate,
     looked_closer,
@@ -265,6 +266,10 @@ class _Course:
         except ConvergenceError as error:
             return f"{GAP}: {error}"
         self.found += fresh
+        image = next((k for k, two in enumerate(fine) if crossed([here, *fine][k], two)), None)
+        if image is not None:
+            self.points += fine[:image]
+            return SHRUNK[PITCHFORK]
         self.points += fine
         if self.progress is not None:
             self.progress(len(self.points), float(point.scaled[-1] * curve.span))

@@ -46,6 +46,9 @@ tangent a little: points slip along the branch, by 1e-13, and not off it.
 class Tests:
     """What vanishes where a multiplier is +1, -1, or the product of two multipliers is 1.
 
+    Of two multipliers with a known product the products of all factors themselves, of more the
+    smallest factor with the sign of their product.
+
     ``spiral``: 1 less the largest modulus of a complex pair; inf where there is none, or where the
     product of both is known.
     """
@@ -66,10 +69,22 @@ class Tests:
         turning = np.abs(mu[np.abs(mu.imag) > 1e-6])
         return cls(
             spiral=float(1.0 - turning.max()) if turning.size else np.inf,
-            fold=float(np.prod(1.0 - mu).real),
-            flip=float(np.prod(1.0 + mu).real),
-            torus=float(np.prod(1.0 - mu[pairs[0]] * mu[pairs[1]]).real),
+            fold=_nearest(1.0 - mu),
+            flip=_nearest(1.0 + mu),
+            torus=_nearest(1.0 - mu[pairs[0]] * mu[pairs[1]]),
         )
+
+
+def _nearest(factors: NDArray[np.complex128]) -> float:
+    """The smallest of ``factors`` by modulus, with the sign of their product, which is real.
+
+    Of hundreds the product itself may be as small as rounding without any of them.
+    """
+    sizes = np.abs(factors)
+    least = float(sizes.min()) if sizes.size else 1.0
+    if not least > 0.0:
+        return least
+    return float(np.copysign(least, np.prod(factors / sizes).real))
 
 
 @dataclass(frozen=True, kw_only=True)

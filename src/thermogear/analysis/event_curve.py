@@ -366,6 +366,9 @@ def event_curve(
     """
     if bifurcation.kind not in CARRIED:
         raise InputError("bifurcation", bifurcation.kind, allowed=" | ".join(CARRIED))
+    one_mass = isinstance(bifurcation.orbit.section, MovedMap)
+    if bifurcation.kind == PITCHFORK and not one_mass:
+        raise InputError("bifurcation", PITCHFORK, why="of a model of more than one mass")
     marks = np.atleast_1d(np.asarray(asked, dtype=float))
     if not np.all(np.isfinite(marks)) or marks.size == 0 or marks[-1] == start:
         raise InputError("asked", marks.tolist(), allowed=f"finite, the last not {start}")

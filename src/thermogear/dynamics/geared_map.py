@@ -116,6 +116,11 @@ class GearedMap:
             growth[number], along, state = np.log(size), along / size, run.state
         return Stretch(state=state, direction=along * self.unit, growth=growth)
 
+    def spread(self, start: Floats, directions: Floats) -> tuple[Floats, Floats]:
+        """State (d,) and tangent vectors (d, count) one cycle later."""
+        run = self.engine.run(start, self.model.cycle, directions=directions.T)
+        return run.state, run.directions.T
+
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` cycles from ``start`` with the variational equations."""
         cycle = self.model.cycle

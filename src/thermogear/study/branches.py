@@ -22,7 +22,7 @@ from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
-from thermogear.study.event_plane import Plane
+from thermogear.study.event_plane import Plane, one_mass
 from thermogear.study.orbit import complex_rows, found, orbit_of
 
 if TYPE_CHECKING:
@@ -169,8 +169,9 @@ def parameter_of(point: OnePoint, name: str) -> Parameter:
 
 
 def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
-    """Where other branches begin: period doublings, and pitchforks of symmetric orbits."""
-    return tuple(b for b in branch.bifurcations if b.kind in (FLIP, PITCHFORK))
+    """Where other branches begin: period doublings, and pitchforks of one mass."""
+    events = branch.bifurcations
+    return tuple(b for b in events if b.kind == FLIP or (b.kind == PITCHFORK and one_mass(b)))
 
 
 def _walk(

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.analysis.bifurcations import GRAZING, Bifurcation
+from thermogear.analysis.bifurcations import GRAZING, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import Branch
 from thermogear.analysis.event_curve import CARRIED, EventCurve, Sheet, event_curve
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
+from thermogear.dynamics.return_map import MovedMap
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,13 +52,14 @@ class Plane:
     ) -> tuple[list[EventCurve], list[str], bool]:
         """A curve for every fold, doubling, pitchfork and torus; notices; whether Ctrl+C cut it."""
         events = [b for branch in branches for b in branch.bifurcations]
-        chosen = [b for b in events if b.kind in CARRIED]
+        chosen = [b for b in events if b.kind in CARRIED and (b.kind != PITCHFORK or one_mass(b))]
         notices = []
-        if any(b.kind == GRAZING for b in events):
-            notices.append(
-                f"grazings are located at the first value of {self.second.name} alone: they have "
-                "no multiplier to be followed by"
-            )
+        for kind, why in (
+            (GRAZING, "they have no multiplier to be followed by"),
+            (PITCHFORK, "those of a drive train are not followed"),
+        ):
+            if any(b.kind == kind and b not in chosen for b in events):
+                notices.append(f"{kind}s stand at the first value of {self.second.name}: {why}")
         curves: list[EventCurve] = []
         try:
             for event in chosen:
@@ -137,6 +139,11 @@ class Plane:
             data["second"].attrs["units"] = self.second.unit
             found[f"curve_{number}"] = data
         return found
+
+
+def one_mass(event: Bifurcation) -> bool:
+    """Whether its orbit is that of one mass."""
+    return isinstance(event.orbit.section, MovedMap)
 
 
 def _ends_at(
