@@ -134,6 +134,9 @@ def _point(options: dict[str, Any], case: Any) -> OnePoint:
 def orbit(period: int | None, direct: bool, **options: Any) -> None:
     """The closed orbit a motion settles on, with its Floquet multipliers.
 
+    Of a case with [[shafts]] too it is the gear pair's on rigid bearings; what its drive train
+    settles on is shown by run, its orbits are followed by continue.
+
     \b
       thermogear orbit table-4.2 --row zeta --point 2
       thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2

@@ -153,4 +153,5 @@ def _ends_at(
     if (curve.kind, curve.period) != (event.kind, event.period):
         return False
     p, q = curve.values[-1]
-    return bool(q == start and abs(p - event.value) < SAME * abs(limits[1] - limits[0]))
+    back = abs(q - start) < SAME * float(np.ptp(curve.values[:, 1]))
+    return bool(back and abs(p - event.value) < SAME * abs(limits[1] - limits[0]))
