@@ -1,6 +1,6 @@
 """Random drive trains: located bifurcations against a fine settled sweep, and what a proof costs.
 
-``make trial-trains`` moves six random drive trains (seed fixed before the first run) over their
+``make trial-trains`` moves 24 random drive trains (seed fixed before the first run) over their
 mesh frequency, in steps from one settled motion to the next, follows their periodic motion with
 :func:`continuation`, and asks of every located fold, period doubling and torus of a stable orbit
 whether the settled label changes between the two neighbouring values of the sweep. It then measures
@@ -200,9 +200,9 @@ orphan: true
 ---
 # Random drive trains: located bifurcations against a fine sweep
 
-Made by `make trial-trains`, seed {SEED}: {VALUES} settled values of the mesh frequency a train, each
-from the last state of the one before. The branch is followed to its first fold, period doubling or
-torus; the sweep until its label, or its orbit, is another. *Steps apart*: by how many steps later
+Made by `make trial-trains`, seed {SEED}: {VALUES} settled values of the mesh frequency a train,
+each from the last state of the one before. The branch is followed to its first fold, period
+doubling or torus; the sweep until its label, or its orbit, is another. *Steps apart*: by how many steps later
 (above 0) or earlier the sweep leaves the branch than in the step with the event.
 
 | train | first event, over the first frequency | settled labels | steps apart |
@@ -213,14 +213,14 @@ COST = """
 
 Processor seconds of one core on a shared machine.
 
-| coordinates | settled motion (periods) | closed orbit and multipliers | one located event | it is |
+| coordinates | settled motion (periods) | orbit and multipliers | one located event | it is |
 |---|---|---|---|---|
 """
 
 
 def main() -> None:
     """Print, and without a number of trains write, both tables."""
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 6
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 24
     random = np.random.default_rng(SEED)
     text, worst, seen, number = HEAD, 0, 0, 0
     while seen < count and number < 10 * count:

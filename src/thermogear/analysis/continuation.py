@@ -184,19 +184,15 @@ def continuation(
     >>> branch.ended, bool(branch.stable.all())
     ('reached the end', True)
     """
-    if span is not None and not 0.0 < span < np.inf:
+    if not (span is None or 0.0 < span < np.inf):
         raise InputError("span", span, allowed="> 0, finite")
     family, start, behind = _range(orbit, parameter, to, family, start, back_to)
     mirrors, symmetric = _symmetry(orbit, family, start, to)
+    size = abs(to - behind) if span is None else span
     curve = Curve(
-        family,
-        parameter,
-        orbit.period,
-        start=start,
-        span=abs(to - behind) if span is None else span,
-        mirrors=mirrors,
+        family, parameter, orbit.period, start=start, span=size, mirrors=mirrors,
         symmetric=symmetric,
-    )
+    )  # fmt: skip
     ahead = curve.upright * float(np.sign(to - start))
     heading, step = (ahead, 0.01) if direction is None else (np.asarray(direction, float), 5e-4)
     first = curve.correct(np.append(orbit.state, start) / curve.unit, normal=heading)
@@ -266,9 +262,9 @@ class _Course:
         except ConvergenceError as error:
             return f"{GAP}: {error}"
         self.found += fresh
-        image = next((k for k, two in enumerate(fine) if crossed([here, *fine][k], two)), None)
-        if image is not None:
-            self.points += fine[:image]
+        turned = [k for k, pair in enumerate(pairwise([here, *fine])) if crossed(*pair)]
+        if turned:
+            self.points += fine[: turned[0]]
             return SHRUNK[PITCHFORK]
         self.points += fine
         if self.progress is not None:
@@ -319,16 +315,11 @@ def _walk(
         while True:
             guess = here.scaled + step * here.tangent
             near, slope = _ahead(last, here, step)
-            point = None
             try:
                 point = curve.correct(
-                    guess,
-                    normal=here.tangent,
-                    old=here.tangent,
-                    reach=0.5 * step,
-                    near=near,
+                    guess, normal=here.tangent, old=here.tangent, reach=0.5 * step, near=near,
                     slope=slope,
-                )
+                )  # fmt: skip
             except InputError:
                 # the step left what the parameter may be; the walk's end may lie right there
                 point = None
@@ -373,9 +364,11 @@ def _walk(
             return
         yield point
         last, here = here, point
-        # of longer states each component may move as far as those of (x, x')
-        longest = LONGEST_STEP * np.sqrt(0.5 * curve.dimension)
-        longest *= max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
+        longest = (
+            LONGEST_STEP
+            * np.sqrt(0.5 * curve.dimension)
+            * max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
+        )
         if turn > 0.98:
             step = min(longest, LONGEST_STEP / max(abs(here.tangent[-1]), 1e-9), 1.5 * step)
         elif turn < 0.95:

@@ -75,7 +75,7 @@ class Tests:
         )
 
 
-def _nearest(factors: NDArray[np.complex128]) -> float:
+def _nearest(factors: Any) -> float:
     """The smallest of ``factors`` by modulus, with the sign of their product, which is real.
 
     Of hundreds the product itself may be as small as rounding without any of them.
