@@ -16,7 +16,7 @@ from thermogear.analysis.bifurcations import TORUS
 from thermogear.analysis.continuation import continuation
 from thermogear.analysis.orbits import periodic_orbit
 from thermogear.analysis.torus import torus
-from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.return_map import Visit, return_map, stretched
 
 ONE = np.ones(3)
 K = np.arange(2048)
@@ -30,6 +30,69 @@ def curve(rng: np.random.Generator, nu: float) -> Any:
         turn = 2.0 * np.pi * m * nu * K
         found += np.outer(np.cos(turn), size[0]) + np.outer(np.sin(turn), size[1])
     return found
+
+
+class Turning:
+    """r' = 1 + 0.3 (r - 1), theta' = theta + 2 pi nu - pull sin(q theta) of (x, y)."""
+
+    dimension, period, unit = 2, 1.0, np.ones(2)
+
+    def __init__(self, nu: float, *, pull: float = 0.0, times: int = 1) -> None:
+        self.nu, self.pull, self.times = nu, pull, times
+
+    def determinant(self, periods: int) -> float:
+        return float("nan")
+
+    def distance(self, one: Any, other: Any) -> Any:
+        return np.max(np.abs(one - other), axis=-1)
+
+    def _once(self, z: Any) -> tuple[Any, Any]:
+        r, angle = np.hypot(*z), np.arctan2(z[1], z[0])
+        own, turned = 1.0 + 0.3 * (r - 1.0), angle + 2.0 * np.pi * self.nu
+        turned -= self.pull * np.sin(self.times * angle)
+        rate = 1.0 - self.pull * self.times * np.cos(self.times * angle)
+        c, s = np.cos(turned), np.sin(turned)
+        out = np.array([[c, -own * s], [s, own * c]])
+        inner = np.array([z / r, [-z[1] / r**2, z[0] / r**2]])
+        return own * np.array([c, s]), out @ np.diag([0.3, rate]) @ inner
+
+    def carry(self, start: Any, periods: int) -> Any:
+        found, z = np.empty((periods, 2)), start
+        for k in range(periods):
+            z, _ = self._once(z)
+            found[k] = z
+        return found
+
+    def visit(self, start: Any, periods: int = 1, *, sampled: bool = False) -> Visit:
+        points, jacobian = [start], np.eye(2)
+        for _ in range(periods):
+            end, one = self._once(points[-1])
+            points.append(end)
+            jacobian = one @ jacobian
+        return Visit(
+            points=np.array(points), jacobian=jacobian, contact_losses=0, back_impacts=0,
+            shares=np.zeros(3), samples=np.empty((0, 2)),
+        )  # fmt: skip
+
+    def stretch(self, start: Any, *, direction: Any, periods: int) -> Any:
+        return stretched(self, start, direction=direction, periods=periods)
+
+
+def test_a_rational_order_is_a_long_period() -> None:
+    """7/37 turns a period, held there: periodic, and said so."""
+    found = settle(Turning(7.0 / 37.0, pull=0.01, times=37), np.array([1.4, 0.2]))
+    assert (found.name, found.period) == ("period-37", 37)
+    assert found.reason.startswith("periodic with a long period: ")
+    # all exponents of the orbit, in closed form; 0.3^37 is beyond the rounding of an eigenvalue
+    assert found.exponents[0] == pytest.approx(np.log(1.0 - 0.37), abs=1e-6)
+    assert found.exponents[1] == pytest.approx(np.log(0.3), abs=1e-4)
+
+
+def test_an_irrational_order_is_a_torus_of_two_exponents(compared: Compared) -> None:
+    found = settle(Turning(0.5 * (3.0 - np.sqrt(5.0))), np.array([1.4, 0.2]))
+    assert found.name == "quasi-periodic"
+    worst = float(np.abs(found.exponents - [0.0, np.log(0.3)]).max())
+    compared("two leading exponents on a torus", "0 and ln 0.3", worst, 1e-9)
 
 
 def folded(nu: float) -> float:
@@ -101,6 +164,7 @@ def test_a_train_on_a_torus(compared: Compared) -> None:
     found = settle(section, 1.05 * start)
     assert found.name == "quasi-periodic"
     assert found.torus is not None
+    assert found.exponents[1] < 0.0
     assert abs(found.lyapunov) < 4.0 * found.lyapunov_error < 0.01 / section.period
     away = found.torus.frequency - known["frequency"]
     compared("second frequency of a torus", "truth Q2", away, within["frequency"])

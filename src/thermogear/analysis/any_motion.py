@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.orbits import Orbit, shoot
-from thermogear.analysis.torus import Torus, torus
+from thermogear.analysis.torus import LONGEST, Torus, torus
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.plan import Alive, keep_going
 from thermogear.dynamics.return_map import ReturnMap
@@ -30,6 +30,8 @@ BATCH = 50
 ROUND = 2048
 ROUNDS = 3
 """Sections that a torus is looked for in, and how often: it may be reached slowly."""
+LONG_CLOSE = 1e-6
+"""Distance of a return after many periods, in units of the map, that is believed."""
 LONG_BATCHES = 16
 """Batches in so many periods, for the exponent on a torus."""
 
@@ -60,8 +62,10 @@ class Motion:
 
     ``period`` n (0: none), ``reason`` in words, the last ``state`` (d,), on the ``orbit`` where
     there is one; ``multiplier``, the largest by modulus (nan: not known); ``lyapunov`` [1/time]
-    with its ``lyapunov_error`` and the means of its ``batches``; the ``torus`` it is on; ``used``
-    periods run; ``away`` how far the motion itself still was from its orbit, in units of the map.
+    with its ``lyapunov_error`` and the means of its ``batches``; ``exponents``: as much of the
+    spectrum as the label needs, the largest first: all of a periodic orbit, two on a torus; the
+    ``torus`` it is on; ``used`` periods run; ``away`` how far the motion itself still was from its
+    orbit, in units of the map.
     """
 
     name: str
@@ -74,6 +78,7 @@ class Motion:
     lyapunov: float = float("nan")
     lyapunov_error: float = float("nan")
     batches: Floats = field(default_factory=lambda: np.empty(0))
+    exponents: Floats = field(default_factory=lambda: np.empty(0))
     torus: Torus | None = None
     away: float = float("nan")
 
@@ -86,9 +91,11 @@ def settle(
     Periodic: the motion returns to itself, Newton's rule finds an orbit there whose multipliers all
     stay below 0.998, and the motion comes nearer to it from one round to the next. Chaotic: it does
     not return, and the largest Lyapunov exponent exceeds four standard errors in both halves of its
-    record. Quasi-periodic: that exponent is zero within four standard errors, and the sections lie
-    on a closed curve with a second base frequency (:class:`~thermogear.analysis.torus.Torus`).
-    ``alive`` raises to end the work.
+    record. Quasi-periodic: that exponent is zero within four standard errors, the second one
+    negative beyond its own, and the sections lie on a closed curve with a second base frequency
+    (:class:`~thermogear.analysis.torus.Torus`). A motion that closes after more periods than are
+    looked for at first, up to 512, is periodic with a long period: the second frequency is rational
+    to the first. ``alive`` raises to end the work.
     """
     how = search or Search()
     state = np.asarray(start, dtype=float)
@@ -150,10 +157,10 @@ def _orbit(section: ReturnMap, window: Floats, max_period: int) -> Orbit | None:
     return orbit if orbit is not None and orbit.stable else None
 
 
-def _proven(orbit: Orbit, away: float, used: int, near_border: float) -> Motion:
+def _proven(orbit: Orbit, away: float, used: int, near_border: float, words: str = "") -> Motion:
     mu = complex(orbit.multipliers[0])
     plural = "s" * (orbit.period > 1)
-    shown = f"largest Floquet multiplier |{abs(mu):.6f}| over {orbit.period} period{plural}"
+    shown = f"{words}largest Floquet multiplier |{abs(mu):.6f}| over {orbit.period} period{plural}"
     sure = abs(mu) <= near_border
     return Motion(
         name=f"period-{orbit.period}" if sure else "undecided",
@@ -165,8 +172,34 @@ def _proven(orbit: Orbit, away: float, used: int, near_border: float) -> Motion:
         multiplier=mu,
         lyapunov=float(np.log(abs(mu)) / (orbit.period * orbit.section.period)),
         lyapunov_error=0.0,
+        exponents=np.log(np.maximum(np.abs(orbit.multipliers), 1e-300))
+        / (orbit.period * orbit.section.period),
         away=away,
     )
+
+
+def _long(section: ReturnMap, motion: Motion, how: Search) -> Motion | None:
+    """The orbit of many periods that a motion has closed to, up to the longest; else None."""
+    try:
+        path = section.carry(motion.state, ROUND)
+    except ConvergenceError:
+        return None
+    lags = np.arange(1, LONGEST + 1)
+    gaps = section.distance(path[-1 - lags], path[-1])
+    closed = np.flatnonzero(gaps < LONG_CLOSE)
+    if closed.size == 0:
+        return None
+    period = int(lags[closed[0]])
+    try:
+        orbit = shoot(section, path[-1], period, tolerance=1e-11, most=4)
+    except ConvergenceError:
+        return None
+    if orbit is None or not orbit.stable:
+        return None
+    away = float(section.distance(orbit.points, path[-1]).min())
+    words = "" if period <= how.max_period else "periodic with a long period: "
+    used = motion.used + ROUND
+    return _proven(orbit, away, used, how.near_border, words) if away < CLOSE else None
 
 
 def _closing(section: ReturnMap, window: Floats, used: int, how: Search) -> Motion | None:
@@ -210,8 +243,14 @@ def _open(section: ReturnMap, state: Floats, used: int, how: Search, alive: Aliv
         lyapunov=value,
         lyapunov_error=error,
         batches=means,
+        exponents=np.array([value]),
     )
-    return found if sure or abs(value) > 4.0 * error else _turning(section, found, alive)
+    if sure:
+        return found
+    long = _long(section, found, how) if how.polish and value <= 4.0 * error else None
+    if long is not None or abs(value) > 4.0 * error:
+        return long or found
+    return _turning(section, found, alive)
 
 
 def _turning(section: ReturnMap, motion: Motion, alive: Alive) -> Motion:
@@ -234,25 +273,51 @@ def _turning(section: ReturnMap, motion: Motion, alive: Alive) -> Motion:
 
 def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
     """A motion on a closed curve, if its exponent is zero over a longer run, too."""
-    along = np.zeros(section.dimension)
-    along[0] = section.unit[0]
-    lead = section.stretch(motion.state, direction=along, periods=BATCH)
-    path = section.stretch(lead.state, direction=lead.direction, periods=ROUND)
-    means = path.growth.reshape(LONG_BATCHES, -1).mean(axis=1) / section.period
-    value, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(LONG_BATCHES))
+    state, growth = leading(section, motion.state, count=2, periods=BATCH + ROUND)
+    means = growth[BATCH:].reshape(LONG_BATCHES, -1, 2).mean(axis=1) / section.period
+    values, errors = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(LONG_BATCHES)
+    value, error = float(values[0]), float(errors[0])
+    alone = bool(values[1] < -4.0 * errors[1])
     shown = (
-        f"largest Lyapunov exponent {value:.4g} +- {error:.2g}; sections on a closed curve, second "
-        f"base frequency {found.frequency:.9g} +- {found.error:.1g} cycles a period, foretold to "
+        f"largest Lyapunov exponent {value:.4g} +- {error:.2g}, second {values[1]:.4g} +- "
+        f"{errors[1]:.2g}; sections on a closed curve, second base frequency "
+        f"{found.frequency:.9g} +- {found.error:.1g} cycles a period, foretold to "
         f"{found.foretold:.1g}"
     )
+    if not alone:
+        shown += "; the second exponent is not surely negative: a third frequency may be there"
     return replace(
         motion,
-        name="quasi-periodic" if abs(value) <= 4.0 * error else "undecided",
+        name="quasi-periodic" if alone and abs(value) <= 4.0 * error else "undecided",
         reason=shown,
-        state=path.state,
+        state=state,
         used=motion.used + BATCH + ROUND,
         lyapunov=value,
         lyapunov_error=error,
-        batches=means,
+        batches=means[:, 0],
+        exponents=values,
         torus=found,
     )
+
+
+def leading(
+    section: ReturnMap, start: Floats, *, count: int, periods: int
+) -> tuple[Floats, Floats]:
+    """The last state (d,) and ln of the growth (periods, count) in the directions that grow most.
+
+    Tangent vectors are made orthonormal after every period (Benettin's way), in units of the map:
+    the means of the columns over the period's duration are the leading Lyapunov exponents.
+    """
+    run = getattr(section, "spread", None)
+    state, frame = np.asarray(start, dtype=float), np.eye(section.dimension, count)
+    growth = np.zeros((periods, count))
+    unit = section.unit[:, None]
+    for number in range(periods):
+        if run is None:
+            visit = section.visit(state)
+            state, turned = visit.points[-1], visit.jacobian @ (frame * unit)
+        else:
+            state, turned = run(state, frame * unit)
+        frame, upper = np.linalg.qr(turned / unit)
+        growth[number] = np.log(np.maximum(np.abs(np.diag(upper)), 1e-300))
+    return state, growth

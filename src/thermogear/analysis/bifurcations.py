@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
-from thermogear.analysis.curve import ZERO, Curve, Family, Point, Stretch, Tests
+from thermogear.analysis.curve import Curve, Family, Point, Stretch, Tests
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import MovedMap, is_moved
@@ -23,7 +23,10 @@ FLIP = "period doubling"
 GRAZING = "grazing"
 BIRTH = "period halving"
 PITCHFORK = "pitchfork"
-"""Only where the equation has a symmetry: an orbit that is its own mirror image loses it."""
+"""Only where the equation has a symmetry: an orbit that is its own mirror image loses it.
+
+Also of a drive train with alike halves left and right of its gears.
+"""
 TORUS = "torus"
 """A complex pair of multipliers leaves or enters the unit circle (Neimark-Sacker)."""
 TESTS = {FOLD: "fold", TORUS: "torus"}
@@ -38,6 +41,8 @@ PROBE = 1e-6
 """Scaled step of differences that Newton's method onto a bifurcation takes; rough ones do."""
 FARTHEST = 0.25
 """Half backlashes, or shares of the parameter, in which it looks around."""
+HIDDEN = ("fold", "flip", "margin", "spiral")
+"""What of a point may dip to 0 and back within a step."""
 MOST_STEPS = 8
 MOST_LOOKS = 30
 CARRIED = 1e-8
@@ -95,15 +100,42 @@ def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
             nodes |= {s for s in (graze - near, graze + near) if 0.0 < s < length}
     broken = PITCHFORK if curve.symmetric else FLIP
     for low, high in pairwise(sorted(nodes)):
+        if crossed(stretch.at(low), stretch.at(high)):
+            # turns back without a multiplier beyond +1: into an orbit's mirror image
+            step = stretch.zero(_ahead, low=low, high=high)
+            events.append((step, _bifurcation(curve, stretch.at(step), PITCHFORK)))
         for name, kind in (("fold", FOLD), ("flip", broken), *_tori(stretch)):
             test = attrgetter(name)
             one, other = test(stretch.at(low)), test(stretch.at(high))
             if one * other < 0.0 and min(abs(one), abs(other)) > SILENT:
                 step = stretch.zero(test, low=low, high=high)
+                if kind == FOLD and _straight_on(stretch.at(low), stretch.at(high)):
+                    kind = PITCHFORK
                 if kind == TORUS and not _complex_pair(stretch.at(step)):
                     continue  # mu and 1/mu, both real
                 events.append((step, _bifurcation(curve, stretch.at(step), kind)))
     return [event for _, event in sorted(events, key=lambda pair: pair[0])]
+
+
+def _ahead(point: Point) -> float:
+    """How fast the parameter grows along the branch."""
+    return float(point.tangent[-1])
+
+
+def crossed(a: Point, b: Point) -> bool:
+    """Whether a branch of long states turns back between two points without a fold.
+
+    At a fold (1 - mu_1)(1 - mu_2)... changes sign with the parameter's direction. Where only one of
+    them does, branches cross: in a train that is its own mirror image, two motions that mirror each
+    other meet in one that does not change by it.
+    """
+    long = a.scaled.size > 3
+    return long and _ahead(a) * _ahead(b) < 0.0 and a.fold * b.fold > 0.0
+
+
+def _straight_on(a: Point, b: Point) -> bool:
+    """Whether a multiplier of a long state passes +1 although the branch does not turn."""
+    return a.scaled.size > 3 and _ahead(a) * _ahead(b) > 0.0
 
 
 def _tori(stretch: Stretch) -> tuple[tuple[str, str], ...]:
@@ -144,7 +176,7 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
         high = min(
             step
             for step, point in stretch.points.items()
-            if step > max(start, found - 2.0 * ZERO) and counts(point) != before
+            if step > max(start, found - 2.0 * stretch.near) and counts(point) != before
         )
         after = counts(stretch.at(high))
         yield high, _grazed(before, after)
@@ -155,7 +187,7 @@ def _bifurcation(curve: Curve, point: Point, kind: str, note: str = "") -> Bifur
     """The bifurcation at a point, of a flip or a pitchfork with its side."""
     value = float(point.scaled[-1] * curve.span)
     found = Bifurcation(kind, curve.parameter, value, curve.orbit(point), note)
-    if kind in (FLIP, PITCHFORK):
+    if kind == FLIP or (kind == PITCHFORK and is_moved(found.orbit.section)):
         found = replace(found, note=criticality(found, curve.family))
     return found
 
@@ -291,12 +323,12 @@ def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> lis
 def _may_hide(beside: Point | None, a: Point, b: Point) -> bool:
     if beside is None:
         # the first step of a walk is short; only next to a zero anything may hide in it
-        pairs = [(abs(getattr(a, n)), abs(getattr(b, n))) for n in ("fold", "flip", "margin")]
+        pairs = [(abs(getattr(a, n)), abs(getattr(b, n))) for n in HIDDEN]
         return any(min(one, other) < 4.0 * abs(one - other) + LOOK_CLOSER for one, other in pairs)
     width = float(np.linalg.norm(b.scaled - a.scaled))
     near, far = (float(np.linalg.norm(p.scaled - beside.scaled)) for p in (a, b))
     along = -near if near < far else width + far
-    for name in ("fold", "flip", "margin"):
+    for name in HIDDEN:
         one, other, third = (float(getattr(p, name)) for p in (a, b, beside))
         if name != "margin" and one * other < 0.0:
             continue

@@ -18,6 +18,7 @@ from thermogear.analysis.bifurcations import (
     PITCHFORK,
     Bifurcation,
     birth_of,
+    crossed,
     doubled_beside,
     locate,
     looked_closer,
@@ -183,7 +184,7 @@ def continuation(
     >>> branch.ended, bool(branch.stable.all())
     ('reached the end', True)
     """
-    if span is not None and not 0.0 < span < np.inf:
+    if not (span is None or 0.0 < span < np.inf):
         raise InputError("span", span, allowed="> 0, finite")
     family, start, behind = _range(orbit, parameter, to, family, start, back_to)
     mirrors, symmetric = _symmetry(orbit, family, start, to)
@@ -197,12 +198,11 @@ def continuation(
     if first is None:
         raise ConvergenceError(f"continuation in {parameter}: the first orbit does not close")
     course = _Course(curve, [first], progress)
-    if first.floats and not symmetric:  # a surface of orbits has no direction to go in
-        return course.branch(FLOATS)
     stops = {stop_at} if isinstance(stop_at, str) else set(stop_at or ())
-    ended = ""
+    # a surface of orbits has no direction to go in
+    ended = FLOATS if first.floats and not symmetric else ""
     try:
-        for point in _walk(curve, first, (behind, to), most_points, step):
+        for point in () if ended else _walk(curve, first, (behind, to), most_points, step):
             ended = point if isinstance(point, str) else course.add(point, stops)
             if ended or len(course.points) > most_points:
                 break
@@ -262,6 +262,10 @@ class _Course:
         except ConvergenceError as error:
             return f"{GAP}: {error}"
         self.found += fresh
+        turned = [k for k, pair in enumerate(pairwise([here, *fine])) if crossed(*pair)]
+        if turned:
+            self.points += fine[: turned[0]]
+            return SHRUNK[PITCHFORK]
         self.points += fine
         if self.progress is not None:
             self.progress(len(self.points), float(point.scaled[-1] * curve.span))
@@ -311,16 +315,11 @@ def _walk(
         while True:
             guess = here.scaled + step * here.tangent
             near, slope = _ahead(last, here, step)
-            point = None
             try:
                 point = curve.correct(
-                    guess,
-                    normal=here.tangent,
-                    old=here.tangent,
-                    reach=0.5 * step,
-                    near=near,
+                    guess, normal=here.tangent, old=here.tangent, reach=0.5 * step, near=near,
                     slope=slope,
-                )
+                )  # fmt: skip
             except InputError:
                 # the step left what the parameter may be; the walk's end may lie right there
                 point = None
@@ -365,7 +364,11 @@ def _walk(
             return
         yield point
         last, here = here, point
-        longest = LONGEST_STEP * max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
+        longest = (
+            LONGEST_STEP
+            * np.sqrt(0.5 * curve.dimension)
+            * max(1.0, float(np.max(np.abs(here.scaled[:-1]))) / LARGE)
+        )
         if turn > 0.98:
             step = min(longest, LONGEST_STEP / max(abs(here.tangent[-1]), 1e-9), 1.5 * step)
         elif turn < 0.95:

@@ -32,6 +32,8 @@ ZERO = 1e-13
 """Scaled distance along the branch to which events are located."""
 ROUGH = 1e-4
 """That step where the return map itself is differentiated, which carries more rounding."""
+FOUND = 1e-9
+"""As :data:`ZERO`, of such a map."""
 SMALL = 1e-5
 """Step of the parameter (of its range) in which the numbers of the equation are differentiated.
 
@@ -42,11 +44,19 @@ tangent a little: points slip along the branch, by 1e-13, and not off it.
 
 @dataclass(frozen=True, kw_only=True)
 class Tests:
-    """What vanishes where a multiplier is +1, -1, or the product of two multipliers is 1."""
+    """What vanishes where a multiplier is +1, -1, or the product of two multipliers is 1.
+
+    Of two multipliers with a known product the products of all factors themselves, of more the
+    smallest factor with the sign of their product.
+
+    ``spiral``: 1 less the largest modulus of a complex pair; inf where there is none, or where the
+    product of both is known.
+    """
 
     fold: float
     flip: float
     torus: float
+    spiral: float = np.inf
 
     @classmethod
     def of(cls, jacobian: Floats, closing: float) -> Tests:
@@ -56,11 +66,25 @@ class Tests:
             return cls(fold=1.0 - trace + closing, flip=1.0 + trace + closing, torus=1.0 - closing)
         mu = np.linalg.eigvals(jacobian).astype(complex)
         pairs = np.triu_indices(mu.size, 1)
+        turning = np.abs(mu[np.abs(mu.imag) > 1e-6])
         return cls(
-            fold=float(np.prod(1.0 - mu).real),
-            flip=float(np.prod(1.0 + mu).real),
-            torus=float(np.prod(1.0 - mu[pairs[0]] * mu[pairs[1]]).real),
+            spiral=float(1.0 - turning.max()) if turning.size else np.inf,
+            fold=_nearest(1.0 - mu),
+            flip=_nearest(1.0 + mu),
+            torus=_nearest(1.0 - mu[pairs[0]] * mu[pairs[1]]),
         )
+
+
+def _nearest(factors: Any) -> float:
+    """The smallest of ``factors`` by modulus, with the sign of their product, which is real.
+
+    Of hundreds the product itself may be as small as rounding without any of them.
+    """
+    sizes = np.abs(factors)
+    least = float(sizes.min()) if sizes.size else 1.0
+    if not least > 0.0:
+        return least
+    return float(np.copysign(least, np.prod(factors / sizes).real))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +120,11 @@ class Point:
     def torus(self) -> float:
         """The product of 1 - mu_i mu_j over all pairs."""
         return self.tests.torus
+
+    @property
+    def spiral(self) -> float:
+        """1 less the largest modulus of a complex pair."""
+        return self.tests.spiral
 
     @property
     def contacts(self) -> tuple[int, int]:
@@ -151,6 +180,7 @@ class Curve:
         self.span = span
         self.symmetric = symmetric
         self._maps = {} if maps is None else maps
+        self._last: tuple[bytes, Visit] | None = None
         self._moved: dict[float, Any] = {}
         self.unit = np.append(self.map_at(start).unit, span)
 
@@ -175,7 +205,11 @@ class Curve:
         value = scaled * self.unit
         section = self.map_at(float(value[-1]))
         if not is_moved(section):
-            visit = section.visit(value[:-1], self.period)
+            try:
+                visit = self._visit(scaled, section)
+            except ConvergenceError:  # Newton's step led to where motions run away
+                d = self.dimension
+                return np.full(d, np.nan), np.full((d, d), np.nan), section
             end, jacobian = visit.points[-1], visit.jacobian
         elif self.symmetric:
             end, jacobian = section.flow(value[:-1], self.period)
@@ -184,17 +218,35 @@ class Curve:
             end, jacobian = section.flow(value[:-1], 2 * self.period)
         return (end - value[:-1]) / self.unit[:-1], jacobian, section
 
+    def _visit(self, scaled: Floats, section: ReturnMap) -> Visit:
+        """The whole orbit with its Jacobian; the last one is remembered."""
+        key = scaled.tobytes()
+        if self._last is None or self._last[0] != key:
+            value = scaled[:-1] * self.unit[:-1]
+            self._last = (key, section.visit(value, self.period))
+        return self._last[1]
+
+    @property
+    def exact(self) -> bool:
+        """Whether the maps are exact to rounding; otherwise they carry an integrator's error."""
+        return all(is_moved(one) for one in self._maps.values())
+
     def in_parameter(self, scaled: Floats, section: ReturnMap) -> tuple[Floats, float]:
         """dG/dp (d,) along the path of this orbit, and its margin in half backlashes.
 
         Of one mass the maps are differentiated, not the trajectory: crossings stay at their phases,
-        so that no grazing lies between the ends of a difference. Of other models by differences.
+        so that no grazing lies between the ends of a difference. Of other models by differences;
+        nan where the motion runs away.
         """
         value = scaled * self.unit
         rates = self._rates(float(value[-1]))
         if not is_moved(section):
-            ends = [weight * one.carry(value[:-1], self.period)[-1] for weight, one in rates]
-            return np.sum(ends, axis=0) * self.span / self.unit[:-1], np.inf
+            try:
+                ends = [weight * one.carry(value[:-1], self.period)[-1] for weight, one in rates]
+            except ConvergenceError:
+                return np.full(self.dimension, np.nan), np.inf
+            moved = np.sum(ends, axis=0) * self.span / self.unit[:-1]
+            return moved, np.inf
         halves = self.period if self.symmetric else 2 * self.period
         moved, margin = section.moved(value[:-1], halves, rates)
         sign = -1.0 if self.symmetric else 1.0
@@ -268,7 +320,8 @@ class Curve:
                 best, stalled = (size, scaled, jacobian, section), 0
             else:
                 stalled += 1
-            if size <= NEWTON_TOLERANCE or best[0] < ENOUGH[min(stalled, 2)]:
+            enough = NEWTON_TOLERANCE if is_moved(section) else ROUNDING
+            if size <= enough or best[0] < ENOUGH[min(stalled, 2)]:
                 break
             flat = jacobian / units[:, None] * units - np.eye(d)
             if upright:
@@ -303,6 +356,9 @@ class Curve:
         """The point at ``scaled``, its tangent along ``direction``; None without numbers."""
         units = self.unit[:-1]
         slope, margin = self.in_parameter(scaled, section)
+        watch = getattr(section, "margin", None)
+        if watch is not None:
+            margin = float(watch(scaled[:-1] * units, self.period))
         flat = jacobian / units[:, None] * units
         matrix = np.column_stack([flat - np.eye(self.dimension), slope])
         if not np.all(np.isfinite(matrix)):
@@ -312,7 +368,7 @@ class Curve:
         return Point(
             scaled=scaled,
             tangent=-null if null @ direction < 0.0 else null,
-            visit=section.visit(scaled[:-1] * units, self.period),
+            visit=self._visit(scaled, section),
             determinant=whole,
             tests=Tests.of(jacobian, float(np.sqrt(whole)) if self.symmetric else whole),
             margin=margin,
@@ -334,7 +390,8 @@ def _keep(kept: dict[float, Any], value: float, found: object) -> None:
 def _null(matrix: Floats) -> Floats:
     """The unit vector (d + 1,) that all rows (d, d + 1) are normal to."""
     if matrix.shape != (2, 3):
-        return np.asarray(np.linalg.svd(matrix)[2][-1])
+        # the columns of the transpose span d of d + 1 directions; the last of Q is the other
+        return np.asarray(np.linalg.qr(matrix.T, mode="complete")[0][:, -1])
     (a, b, c), (d, e, f) = matrix.tolist()
     null = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
     size = float(np.linalg.norm(null))
@@ -393,4 +450,10 @@ class Stretch:
 
     def zero(self, test: Callable[[Point], float], *, low: float, high: float) -> float:
         """Where ``test`` of the point, of different signs at both ends, vanishes between them."""
-        return float(brentq(lambda step: test(self.at(step)), low, high, xtol=ZERO, rtol=8.9e-16))
+        near = self.near
+        return float(brentq(lambda step: test(self.at(step)), low, high, xtol=near, rtol=8.9e-16))
+
+    @property
+    def near(self) -> float:
+        """Scaled distance to which a zero is located."""
+        return ZERO if self.curve.exact else FOUND

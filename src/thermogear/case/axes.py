@@ -21,7 +21,7 @@ from thermogear.case.case import GearCase
 Floats = NDArray[np.float64]
 
 
-def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
+def parse_axis(case: Case, text: str, option: str = "over") -> tuple[str, Floats]:
     """NAME=FROM:TO:COUNT or NAME=A,B,C in the units a person writes, as name and SI values.
 
     Gear values carry their unit as in a case file (``20 mm:30 mm:3``); those that have a name of
@@ -40,7 +40,7 @@ def parse_axis(case: Case, text: str) -> tuple[str, Floats]:
     counted = len(parts) == 2 and number.isdecimal() and len(number) < 9 and int(number) > 0
     if not sign or (":" in rest and not counted):
         raise InputError(
-            "over",
+            option,
             repr(text),
             allowed="NAME=FROM:TO:COUNT, COUNT 1..99999999, or NAME=A,B,C",
             fix=f"as {example}",

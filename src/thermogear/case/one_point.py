@@ -94,16 +94,24 @@ class OnePoint:
 
     def along(self, parameter: str) -> Callable[[float], Points]:
         """value -> the point with ``parameter`` put to it; temperature is both addenda's."""
-        if long_name(parameter) == "gear_temperature":
-            if self.state != HOT:
-                raise InputError(
-                    "--state",
-                    f"{self.state.words}, with a temperature to vary",
-                    why="it says the temperature already",
-                    fix="use --state hot and --from '20 degC'",
-                )
-            return along(family(self.case, (parameter,)))
-        return along(family(self.case, (parameter,), state=self._held))
+        return along(self._over((parameter,)))
+
+    def over(self, first: str, second: str) -> Callable[[float, float], Points]:
+        """(p, q) -> the point with two parameters put to them, as :meth:`along`."""
+        whole = self._over((first, second))
+        return lambda p, q: moving(whole(np.array([[p, q]])), whole)
+
+    def _over(self, names: tuple[str, ...]) -> GearFamily | NumberFamily:
+        if "gear_temperature" not in map(long_name, names):
+            return family(self.case, names, state=self._held)
+        if self.state != HOT:
+            raise InputError(
+                "--state",
+                f"{self.state.words}, with a temperature to vary",
+                why="it says the temperature already",
+                fix="use --state hot and --from '20 degC'",
+            )
+        return family(self.case, names)
 
     @property
     def _held(self) -> ThermalState:

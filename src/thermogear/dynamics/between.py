@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass
+from math import comb
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.pieces import Pieces
 from thermogear.dynamics.geared import GearedModel
+
+Floats = NDArray[np.float64]
 
 
 def between(one: GearedModel, other: GearedModel, weight: float) -> GearedModel:
@@ -52,22 +56,28 @@ def _alike(a: tuple[Any, ...], b: tuple[Any, ...]) -> Any:
 
 def _pieces(a: Pieces, b: Pieces, weight: float) -> Pieces:
     """The mixture as polynomials between the borders of both."""
-    starts = sorted({*a.starts, *b.starts})
-    rows = []
-    for start in starts:
-        one, two = _from(a, start), _from(b, start)
-        size = max(one.size, two.size)
-        one, two = (np.pad(row, (0, size - row.size)) for row in (one, two))
-        rows.append(tuple((one + weight * (two - one)).tolist()))
-    return Pieces(starts=tuple(starts), coefficients=tuple(rows))
+    starts = np.array(sorted({*a.starts, *b.starts}))
+    one, two = _from(a, starts), _from(b, starts)
+    size = max(one.shape[1], two.shape[1])
+    one, two = (np.pad(row, ((0, 0), (0, size - row.shape[1]))) for row in (one, two))
+    rows = (one + weight * (two - one)).tolist()
+    return Pieces(starts=tuple(starts.tolist()), coefficients=tuple(map(tuple, rows)))
 
 
-def _from(function: Pieces, start: float) -> Any:
-    """Coefficients of the polynomial at ``start``, moved to it."""
-    place = int(np.searchsorted(function.starts, start, side="right")) - 1
-    own = np.polynomial.Polynomial(function.coefficients[place])
-    moved = own(np.polynomial.Polynomial([start - function.starts[place], 1.0]))
-    return np.atleast_1d(moved.coef)
+def _from(function: Pieces, starts: Floats) -> Floats:
+    """Coefficients (start, power) of the polynomials at ``starts``, moved to them."""
+    place = np.searchsorted(function.starts, starts, side="right") - 1
+    size = max(len(row) for row in function.coefficients)
+    table = np.zeros((len(function.starts), size))
+    for number, row in enumerate(function.coefficients):
+        table[number, : len(row)] = row
+    own = table[place]
+    step = starts - np.asarray(function.starts)[place]
+    found = np.zeros_like(own)
+    for power in range(size):
+        for higher in range(power, size):
+            found[:, power] += comb(higher, power) * own[:, higher] * step ** (higher - power)
+    return found
 
 
 def _jumps(a: GearedModel, b: GearedModel) -> tuple[float, ...] | None:

@@ -15,6 +15,8 @@ from thermogear.dynamics.return_map import Stretch, Visit
 
 Floats = NDArray[np.float64]
 MICROMETRE = 1e-6
+WATCHED = 128
+"""Samples a mesh period in which extremes of a gap are looked for."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -114,6 +116,11 @@ class GearedMap:
             growth[number], along, state = np.log(size), along / size, run.state
         return Stretch(state=state, direction=along * self.unit, growth=growth)
 
+    def spread(self, start: Floats, directions: Floats) -> tuple[Floats, Floats]:
+        """State (d,) and tangent vectors (d, count) one cycle later."""
+        run = self.engine.run(start, self.model.cycle, directions=directions.T)
+        return run.state, run.directions.T
+
     def visit(self, start: Floats, periods: int = 1, *, sampled: bool = False) -> Visit:
         """Run ``periods`` cycles from ``start`` with the variational equations."""
         cycle = self.model.cycle
@@ -129,6 +136,27 @@ class GearedMap:
             shares=run.shares,
             samples=run.samples,
         )
+
+    def margin(self, start: Floats, periods: int) -> float:
+        """How near an extreme of a flank's gap comes to 0 along ``periods`` cycles, over b'.
+
+        From samples, between them by parabolas. Where it is 0 a loss of contact, or a back impact,
+        begins or ends.
+        """
+        model = self.model
+        run = self.engine.run(start, periods * model.cycle, samples=WATCHED)
+        q = run.samples[:, : model.size]
+        drive, back = model.errors_at(run.sample_phase)
+        found = np.inf
+        for gap in (q @ model.drive - drive, q @ model.back - back):
+            y = gap - model.half_backlash
+            before, after = np.roll(y, 1), np.roll(y, -1)
+            turning = (y - before) * (after - y) <= 0.0
+            slope, bend = 0.5 * (after - before), after - 2.0 * y + before
+            away = y - 0.5 * slope**2 / np.where(bend == 0.0, np.inf, bend)
+            if turning.any():
+                found = min(found, float(np.abs(away[turning]).min()))
+        return found / model.half_backlash
 
 
 def _of_journal(model: GearedModel, seen: Floats, rest: Floats) -> Plane:

@@ -134,6 +134,9 @@ def _point(options: dict[str, Any], case: Any) -> OnePoint:
 def orbit(period: int | None, direct: bool, **options: Any) -> None:
     """The closed orbit a motion settles on, with its Floquet multipliers.
 
+    Of a case with [[shafts]] too it is the gear pair's on rigid bearings; what its drive train
+    settles on is shown by run, its orbits are followed by continue.
+
     \b
       thermogear orbit table-4.2 --row zeta --point 2
       thermogear orbit --zeta 0.1535 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 --period 2
@@ -197,6 +200,23 @@ def lyapunov(discard: int, batches: int, batch_periods: int, **options: Any) -> 
     help="Find the first N period doublings of every row (or of --parameter).",
 )  # fmt: skip
 @click.option("--hot", is_flag=True, help="The cascades with section 4.1's heat beside the cold.")
+@click.option(
+    "--and", "second", metavar="NAME=FROM:TO:COUNT",
+    help="A second parameter: every fold, doubling, pitchfork and torus point found at FROM is "
+    "followed to TO, as a curve in the plane of both.",
+)  # fmt: skip
+@click.option(
+    "--rigid", is_flag=True, help="The gear pair on rigid bearings, although CASE has [[shafts]]."
+)
+@click.option(
+    "--coordinates", type=int, metavar="N",
+    help="Of the reduced train; the interface and 16 modes if left out.",
+)  # fmt: skip
+@click.option(
+    "--values", type=click.IntRange(2, 1000), metavar="N",
+    help="Values of the parameter at which a train's mesh, bearings and friction are computed; "
+    "straight between them [9].",
+)  # fmt: skip
 def continue_(
     parameter: str | None,
     begin: str | None,
@@ -206,15 +226,22 @@ def continue_(
     switch: int,
     cascade: int | None,
     hot: bool,
+    second: str | None,
+    rigid: bool,
+    coordinates: int | None,
+    values: int | None,
     **options: Any,
 ) -> None:
-    """Follow an orbit in a parameter; locate folds, flips, pitchforks and grazing.
+    """Follow an orbit in a parameter; locate folds, flips, pitchforks, tori and grazing.
+
+    The drive train's orbit where CASE has [[shafts]], else that of the gear pair.
 
     \b
     fold             the branch turns back: the motion jumps there
     period doubling  supercritical: the doubled motion takes over smoothly; subcritical: it
                      jumps; vertical: the linear motion in contact becomes unstable
     pitchfork        a symmetric motion loses its symmetry
+    torus            of a drive train: a second frequency begins (Neimark-Sacker)
     grazing          the motion just touches an edge of the gap: contacts begin or end
 
     \b
@@ -222,14 +249,17 @@ def continue_(
       thermogear continue rig.toml --parameter speed --to "6000 rpm" -o branches
       thermogear continue --zeta 0.18 --w 1.245 --eps 0.335 --fm 0.017 --fh -1.16 \\
         --parameter zeta --to 0.10 --switch 2
+      thermogear continue own.toml --parameter speed --from "2000 rpm" --to "4000 rpm" \\
+        --and "temperature=20 degC:100 degC:5" -o jumps
     """
     from thermogear.case.one_point import parameter_name, parameter_value
     from thermogear.study.branches import branch_results, cascade_results
 
     case = _case(options)
+    train = _is_train(case, rigid, {"coordinates": coordinates, "values": values})
     if cascade is not None:
-        own = {"period": period, "direct": direct, "switch": switch} | options
-        _unused(own, ("period", "direct", "switch", *OF_GEARS), "beside --cascade")
+        own = {"period": period, "direct": direct, "switch": switch, "and": second} | options
+        _unused(own, ("period", "direct", "switch", "and", *OF_GEARS), "beside --cascade")
         if parameter is None:
             _unused(own, ("point",), "a cascade runs through the whole row")
         sweeps, title = _sweeps(options, case, parameter, begin, to)
@@ -251,14 +281,52 @@ def continue_(
     name = parameter_name(point, parameter)
     end = parameter_value("--to", point, name, to)
     first = None if begin is None else parameter_value("--from", point, name, begin)
+    plane = None if second is None else _second(point, name, second)
 
     def make(report: Progress) -> Result:
+        if train:
+            from thermogear.study.shafts.branches import VALUES, Trains, train_branch_results
+
+            trains = Trains.of(case, point, options["operating"], coordinates)
+            return train_branch_results(
+                trains, name, end, begin=first, start=_start(options["start"]), period=period,
+                transient=not direct, switch=switch, count=VALUES if values is None else values,
+                second=plane, progress=report,
+            )  # fmt: skip
         return branch_results(
             point, name, end, start=first, period=period, transient=not direct, switch=switch,
-            progress=report,
+            second=plane, progress=report,
         )  # fmt: skip
 
     delivery.deliver(make, options["output"], as_json=options["as_json"])
+
+
+def _is_train(case: Any, rigid: bool, asked: dict[str, Any]) -> bool:
+    """Whether the case's drive train moves; options of one are refused without it."""
+    has = getattr(case, "train", None) is not None
+    if rigid and not has:
+        raise InputError(
+            "--rigid", "without shafts", why="CASE has no [[shafts]]", fix="leave it out"
+        )
+    if has and not rigid:
+        return True
+    for name, value in asked.items():
+        if value is not None:
+            why = "--rigid leaves the shafts out" if rigid else "CASE has no [[shafts]]"
+            raise InputError(f"--{name}", value, why=why, fix="leave it out")
+    return False
+
+
+def _second(point: OnePoint, first: str, text: str) -> tuple[str, Any]:
+    """Name and values of a second parameter, as no case file would refuse them."""
+    from thermogear.case.axes import parse_axis
+
+    name, values = parse_axis(point.case, text, "--and")
+    if name == first:
+        raise InputError("--and", repr(text), why="it is --parameter", fix="name another one")
+    if values.size < 2 or values[0] == values[-1]:
+        raise InputError("--and", repr(text), allowed="two values or more, from one to another")
+    return name, values
 
 
 def _sweeps(

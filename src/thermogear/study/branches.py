@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import Branch, continuation, switch_branch
+from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.base.parameters import NUMBERS, Parameter
@@ -20,11 +22,13 @@ from thermogear.case.case import DimensionlessCase, GearCase, load_example
 from thermogear.case.dimensionless import Point
 from thermogear.case.one_point import OnePoint, of_numbers
 from thermogear.results.result import Result
+from thermogear.study.event_plane import Plane, one_mass
 from thermogear.study.orbit import complex_rows, found, orbit_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
+Floats = NDArray[np.float64]
 STEPS = 1000
 """Progress of a branch counts in thousandths of the parameter's way."""
 MOST_DEPTH = 6
@@ -52,19 +56,60 @@ def branch_results(
     period: int | None = None,
     transient: bool = True,
     switch: int = 0,
+    second: tuple[str, Floats] | None = None,
     progress: Progress = silent,
 ) -> Result:
     """Follow the orbit of ``point`` in ``parameter`` to ``to``; at flips ``switch`` levels deeper.
 
     ``start`` a value of the parameter to begin at (default: the present one). Folds, flips,
-    pitchforks and grazing are located; Ctrl+C keeps the branches walked so far.
+    pitchforks and grazing are located; Ctrl+C keeps the branches walked so far. ``second``: a
+    parameter and values of it; the branch is walked at the first of these, and all but grazings are
+    followed on to the last, as curves in the plane of both parameters.
     """
     varied = parameter_of(point, parameter)
-    models = point.along(varied.name)
     begin = point.value(varied.name) if start is None else start
+    plane = None
+    if second is not None:
+        sheet = point.over(varied.name, second[0])
+        plane = Plane(parameter_of(point, second[0]), second[1], sheet)
+    models = point.along(varied.name) if plane is None else plane.models
+    require_depth(switch)
+    orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
+    legs, cut = walked(orbit, varied, models, begin, to, switch, progress)
+    curves: list[EventCurve] = []
+    notices: list[str] = []
+    if plane is not None and not cut:
+        branches = [leg.branch for leg in legs]
+        curves, notices, cut = plane.followed(branches, varied, (begin, to), progress)
+    summary = summary_of(point.title, varied, legs, (begin, to), cut)
+    summary["parameters"] = point.parameters
+    summary["notices"] += notices
+    groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
+    if plane is not None:
+        summary |= plane.summary(curves, varied)
+        groups |= plane.groups(curves, varied)
+    return found("branch", groups, summary, interrupted=cut)
+
+
+def require_depth(switch: int) -> None:
+    """Refuse more levels of doubled branches than are followed."""
     if not 0 <= switch <= MOST_DEPTH:
         raise InputError("--switch", switch, allowed=f"0..{MOST_DEPTH}")
-    orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
+
+
+def walked(
+    orbit: Orbit,
+    varied: Parameter,
+    models: Models,
+    begin: float,
+    to: float,
+    switch: int,
+    progress: Progress,
+) -> tuple[list[Leg], bool]:
+    """The branch of ``orbit`` from ``begin`` to ``to``, and at flips ``switch`` levels deeper.
+
+    Whether Ctrl+C cut it short.
+    """
     legs = [Leg(_walk(orbit, varied.name, to, models, begin, "branch", progress))]
     cut = legs[0].branch.ended == INTERRUPTED
     waiting = [(flip, 1) for flip in _forks(legs[0].branch)]
@@ -96,9 +141,16 @@ def branch_results(
             waiting += [(one, level + 1) for one in _forks(branch)]
     except KeyboardInterrupt:
         cut = True
-    summary = {
-        "title": point.title,
-        "parameters": point.parameters,
+    return legs, cut
+
+
+def summary_of(
+    title: str, varied: Parameter, legs: Sequence[Leg], ends: tuple[float, float], cut: bool
+) -> dict[str, Any]:
+    """What is told of branches: where they go, and their bifurcations."""
+    begin, to = ends
+    return {
+        "title": title,
         "parameter": varied.name,
         "from": begin,
         "to": to,
@@ -108,8 +160,6 @@ def branch_results(
         "interrupted": cut,
         "notices": [],
     }
-    groups = {f"branch_{i}": dataset(leg, varied.unit) for i, leg in enumerate(legs)}
-    return found("branch", groups, summary, interrupted=cut)
 
 
 def parameter_of(point: OnePoint, name: str) -> Parameter:
@@ -119,8 +169,9 @@ def parameter_of(point: OnePoint, name: str) -> Parameter:
 
 
 def _forks(branch: Branch) -> tuple[Bifurcation, ...]:
-    """Where other branches begin: period doublings, and pitchforks of symmetric orbits."""
-    return tuple(b for b in branch.bifurcations if b.kind in (FLIP, PITCHFORK))
+    """Where other branches begin: period doublings, and pitchforks of one mass."""
+    events = branch.bifurcations
+    return tuple(b for b in events if b.kind == FLIP or (b.kind == PITCHFORK and one_mass(b)))
 
 
 def _walk(

@@ -20,9 +20,16 @@ from thermogear.views.page import (
     Text,
     notice_lines,
 )
+from thermogear.views.pages.event_plane import (
+    PLANE,
+    plane_caption,
+    plane_headline,
+    plane_tables,
+)
 from thermogear.views.pages.motion_lines import LINES
 from thermogear.views.picture import Picture
 from thermogear.views.plots import one_motion as plots
+from thermogear.views.plots.event_plane import plane_picture
 from thermogear.views.plots.parameters import page_words
 from thermogear.views.plots.shared import shared_picture
 from thermogear.views.typesetting import prose
@@ -41,13 +48,16 @@ def page(result: Result) -> Page:
     """One picture, and the numbers of the summary as tables."""
     kind, groups, summary = result.kind, result.groups, result.summary
     caption = _caption(kind, summary, groups)
-    shown = Shown(kind, HEADINGS[kind], caption, _picture(kind, groups), wide=True)
+    shown = [Shown(kind, HEADINGS[kind], caption, _picture(kind, groups), wide=True)]
+    if "curve_0" in groups:
+        made = partial(plane_picture, _numbered(groups, "curve_"))
+        shown.append(Shown("plane", PLANE, plane_caption(summary), made, wide=True))
     return Page(
         result,
         _headline(kind, summary),
         [
             Section("numbers", "Numbers", [*_TABLES[kind](summary)]),
-            Section(LEAD, "In pictures", [Gallery([shown])], folded=False),
+            Section(LEAD, "In pictures", [Gallery(shown)], folded=False),
         ],
         numbers=lambda: summary,
         lines=lambda: [*LINES[kind](summary), *notice_lines(result)],
@@ -63,30 +73,30 @@ def _picture(kind: str, groups: Groups) -> Callable[[], Picture]:
         return partial(plots.lyapunov_picture, groups["lyapunov"])
     if kind == "shared":
         return partial(shared_picture, groups["rest"], groups["motion"])
-    branches = _branches(groups)
+    branches = _numbered(groups, "branch_")
     maker = plots.branch_picture if kind == "branch" else plots.cascade_picture
     return partial(maker, branches)
 
 
-def _branches(groups: Groups) -> list[xr.Dataset]:
-    names = sorted((n for n in groups if n.startswith("branch_")), key=lambda n: int(n[7:]))
+def _numbered(groups: Groups, begin: str) -> list[xr.Dataset]:
+    """The groups named ``begin`` and a number, in order."""
+    names = sorted((n for n in groups if n.startswith(begin)), key=lambda n: int(n[len(begin) :]))
     return [groups[name] for name in names]
 
 
 def csv_tables(kind: str, groups: Groups) -> dict[str, str]:
     """Every array along an axis as CSV: one file for each axis, branches below each other."""
     files: dict[str, list[str]] = {}
-    several = [f"branch_{i}" for i in range(len(groups))] if kind in ("branch", "cascade") else []
-    for name in several or list(groups):
-        data = groups[name]
-        own = {k: data.attrs[k] for k in ("row", "heat", "period") if k in data.attrs}
+    for name, data in groups.items():
+        file = "plane" if name.startswith("curve_") else kind
+        own = {k: data.attrs[k] for k in ("row", "heat", "kind", "period") if k in data.attrs}
         for axis in data.dims:
             columns = [str(v) for v in data.variables if data[v].dims == (axis,)]
-            if not columns or axis == "multiplier":
+            if not columns or axis in ("multiplier", "coordinate"):
                 continue
             units = [str(data[c].attrs.get("units", "")) for c in columns]
             heads = [f"{c} [{u}]" if u else c for c, u in zip(columns, units, strict=True)]
-            lines = files.setdefault(f"{kind}_{axis}.csv", [",".join([*own, *heads])])
+            lines = files.setdefault(f"{file}_{axis}.csv", [",".join([*own, *heads])])
             arrays = [data[c].values.tolist() for c in columns]
             for row in zip(*arrays, strict=True):
                 lines.append(",".join(_cell(v) for v in (*own.values(), *row)))
@@ -149,7 +159,8 @@ def _headline(kind: str, summary: Summary) -> str:
         )
     if kind == "branch":
         events, legs = len(summary["bifurcations"]), len(summary["branches"])
-        return f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
+        told = f"{events} bifurcation{'s' * (events != 1)} on {legs} branch{'es' * (legs != 1)}."
+        return f"{told} {plane_headline(summary)}".strip()
     if kind == "shared":
         return (
             "Mean stiffness of the load-shared force and of the one spring differ by "
@@ -244,7 +255,7 @@ def _branch_tables(summary: Summary) -> list[Block]:
     else:
         found.append(Text("No bifurcation was found on the way."))
     found.append(Table("Branches", ["orbit", "ended", "points", "stable"], legs, names=2))
-    return found
+    return found + plane_tables(summary)
 
 
 def _cascade_tables(summary: Summary) -> list[Block]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from thermogear.views.pages.event_plane import plane_lines
+
 
 def _orbit_lines(s: dict[str, Any]) -> list[str]:
     si = s["units"] == "SI"
@@ -56,6 +58,9 @@ def _lyapunov_lines(s: dict[str, Any]) -> list[str]:
 
 def _branch_lines(s: dict[str, Any]) -> list[str]:
     lines = [s["title"]]
+    if "train" in s:
+        train = s["train"]
+        lines.append(f"  drive train in {train['coordinates']} coordinates; {train['began']}")
     for event in s["bifurcations"]:
         mu = event["multipliers"][0]
         imag = f"{mu['imag']:+.6f}i" if mu["imag"] else ""
@@ -69,7 +74,7 @@ def _branch_lines(s: dict[str, Any]) -> list[str]:
             f"  branch of period {branch['period']}: {branch['points']} orbits, "
             f"{branch['stable_points']} stable; {branch['ended']}"
         )
-    return lines
+    return lines + plane_lines(s)
 
 
 def _cascade_lines(s: dict[str, Any]) -> list[str]:

@@ -30,6 +30,7 @@ MARKS = {
     "grazing": ("up", "#009E73"),
     "period halving": ("down", "#CC79A7"),
     "pitchfork": ("diamond", "#E69F00"),
+    "torus": ("cross", "#56B4E9"),
 }
 
 
@@ -125,20 +126,49 @@ def lyapunov_picture(data: xr.Dataset) -> Picture:
 def branch_picture(branches: Sequence[xr.Dataset], title: str = "") -> Picture:
     """Displacement at phase 0 along the parameter: stable solid, unstable dotted."""
     parameter = str(branches[0].attrs["parameter"])
-    panel = Panel(Axis(axis_words(parameter)), Axis("displacement X at phase 0 [–]"), plain(title))
+    train = "mesh_force" in branches[0]
+    words = "greatest mesh force [N]" if train else "displacement X at phase 0 [–]"
+    panel = Panel(Axis(axis_words(parameter)), Axis(words), plain(title))
+    rows = ("mesh_force", "event_mesh_force") if train else ("section_x", "event_x")
     for data in branches:
         period = int(data.attrs["period"])
         colour = OKABE_ITO[min(int(np.log2(period)), len(OKABE_ITO) - 1)]
-        draw_branch(panel, data, parameter, colour, f"period {period}")
-    _marks(panel, branches, parameter)
-    return Picture([[panel]], size=(WIDE, 4.0), legend=4)
+        draw_branch(panel, data, parameter, colour, f"period {period}", rows)
+    _marks(panel, branches, parameter, rows[1])
+    if not train:
+        return Picture([[panel]], size=(WIDE, 4.0), legend=4)
+    return Picture([[panel], [_sizes(branches, parameter)]], size=(WIDE, 6.2), legend=4)
 
 
-def draw_branch(panel: Panel, data: xr.Dataset, parameter: str, colour: str, label: str) -> None:
-    """One branch, cut at the located bifurcations where its stability changes."""
+def _sizes(branches: Sequence[xr.Dataset], parameter: str) -> Panel:
+    """The largest multiplier of every orbit, stable below 1."""
+    panel = Panel(Axis(axis_words(parameter)), Axis("largest Floquet multiplier, modulus [–]"))
+    panel.line(y=1.0, colour=QUIET, width=1.0, dash=DASHED)
+    for data in branches:
+        period = int(data.attrs["period"])
+        colour = OKABE_ITO[min(int(np.log2(period)), len(OKABE_ITO) - 1)]
+        size = np.hypot(data["multiplier_real"].values, data["multiplier_imag"].values)
+        panel.curve(
+            shown(parameter, data["value"].values), size.max(axis=1), colour=colour, width=1.3
+        )
+    return panel
+
+
+def draw_branch(
+    panel: Panel,
+    data: xr.Dataset,
+    parameter: str,
+    colour: str,
+    label: str,
+    rows: tuple[str, str] = ("section_x", "event_x"),
+) -> None:
+    """One branch, cut at the located bifurcations where its stability changes.
+
+    ``rows``: what is drawn of its points, and of its bifurcations.
+    """
     value = shown(parameter, data["value"].values)
     events = shown(parameter, data["event_value"].values)
-    x, stable = data["section_x"].values, data["stable"].values.astype(bool)
+    x, stable = data[rows[0]].values, data["stable"].values.astype(bool)
     cuts = [0, *(np.flatnonzero(np.diff(stable.astype(int))) + 1).tolist(), value.size]
     for first, last in pairwise(cuts):
         along, up = value[first:last].tolist(), x[first:last].tolist()
@@ -146,7 +176,7 @@ def draw_branch(panel: Panel, data: xr.Dataset, parameter: str, colour: str, lab
             if 0 < cut < value.size:
                 end = _between(events, value[cut - 1], value[cut])
                 at = (
-                    (events[end], float(data["event_x"].values[end]))
+                    (events[end], float(data[rows[1]].values[end]))
                     if end is not None
                     else ((value[cut - 1], x[cut - 1]) if place == 0 else (value[cut], x[cut]))
                 )
@@ -166,14 +196,16 @@ def _between(events: Floats, one: float, other: float) -> int | None:
     return int(inside[-1]) if inside.size else None
 
 
-def _marks(panel: Panel, branches: Sequence[xr.Dataset], parameter: str) -> None:
+def _marks(
+    panel: Panel, branches: Sequence[xr.Dataset], parameter: str, row: str = "event_x"
+) -> None:
     for kind, (marker, colour) in MARKS.items():
         for data in branches:
             here = data["event_kind"].values.astype(str) == kind
             if here.any():
                 at = shown(parameter, data["event_value"].values[here])
                 panel.points(
-                    at, data["event_x"].values[here], marker=marker, size=5.5, colour=colour,
+                    at, data[row].values[here], marker=marker, size=5.5, colour=colour,
                     edge="white", edge_width=0.6, label=kind,
                 )  # fmt: skip
 

@@ -1,0 +1,157 @@
+"""Bifurcations of branches, followed in a second parameter: where a motion jumps, as a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.bifurcations import GRAZING, PITCHFORK, Bifurcation
+from thermogear.analysis.continuation import Branch
+from thermogear.analysis.event_curve import CARRIED, EventCurve, Sheet, event_curve
+from thermogear.base.errors import ConvergenceError
+from thermogear.base.parameters import Parameter
+from thermogear.base.progress import Progress
+from thermogear.dynamics.return_map import MovedMap
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+MOST_CURVES = 16
+STEPS = 1000
+SAME = 1e-6
+"""Of the range: a curve that comes back this near to another event ends at it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """The ``second`` parameter, the ``values`` asked for, and ``sheet`` (p, q) -> model."""
+
+    second: Parameter
+    values: Floats
+    sheet: Sheet
+
+    @property
+    def models(self) -> Callable[[float], object]:
+        """value of the first parameter -> model, at the first value of the second."""
+        start = float(self.values[0])
+        return lambda value: self.sheet(value, start)
+
+    def followed(
+        self,
+        branches: Sequence[Branch],
+        first: Parameter,
+        limits: tuple[float, float],
+        progress: Progress,
+    ) -> tuple[list[EventCurve], list[str], bool]:
+        """A curve for every fold, doubling, pitchfork and torus; notices; whether Ctrl+C cut it."""
+        events = [b for branch in branches for b in branch.bifurcations]
+        chosen = [b for b in events if b.kind in CARRIED and (b.kind != PITCHFORK or one_mass(b))]
+        notices = []
+        for kind, why in (
+            (GRAZING, "they have no multiplier to be followed by"),
+            (PITCHFORK, "those of a drive train are not followed"),
+        ):
+            if any(b.kind == kind and b not in chosen for b in events):
+                notices.append(f"{kind}s stand at the first value of {self.second.name}: {why}")
+        curves: list[EventCurve] = []
+        try:
+            for event in chosen:
+                if any(_ends_at(one, event, limits, float(self.values[0])) for one in curves):
+                    continue
+                if len(curves) == MOST_CURVES:
+                    notices.append(f"more than {MOST_CURVES} curves: the rest is not followed")
+                    break
+                try:
+                    curves.append(self._curve(event, first, limits, progress))
+                except ConvergenceError as error:
+                    notices.append(str(error))
+        except KeyboardInterrupt:
+            return curves, notices, True
+        return curves, notices, False
+
+    def _curve(
+        self, event: Bifurcation, first: Parameter, limits: tuple[float, float], progress: Progress
+    ) -> EventCurve:
+        start, end = float(self.values[0]), float(self.values[-1])
+        stage = f"{event.kind} in {self.second.name}"
+
+        def told(_points: int, value: float) -> None:
+            done = round(STEPS * abs(value - start) / abs(end - start))
+            progress(stage, min(STEPS, done), STEPS)
+
+        progress(stage, 0, STEPS)
+        found = event_curve(
+            event, self.sheet, (first.name, self.second.name), start=start, asked=self.values,
+            limits=limits, progress=told,
+        )  # fmt: skip
+        progress(stage, STEPS, STEPS)
+        return found
+
+    def summary(self, curves: Sequence[EventCurve], first: Parameter) -> dict[str, Any]:
+        """What is told of the curves; values in SI."""
+        return {
+            "second": self.second.name,
+            "second_unit": self.second.shown,
+            "second_from": float(self.values[0]),
+            "second_to": float(self.values[-1]),
+            "curves": [self._told(one, first) for one in curves],
+        }
+
+    def _told(self, curve: EventCurve, first: Parameter) -> dict[str, Any]:
+        asked = [
+            {
+                "first": float(p),
+                "second": float(q),
+                "shown": f"{first.show(float(p)):.8g} {first.shown}".strip(),
+                "second_shown": f"{self.second.show(float(q)):.6g} {self.second.shown}".strip(),
+                "stable": bool(stable),
+            }
+            for (p, q), mark, stable in zip(curve.values, curve.asked, curve.stable, strict=True)
+            if mark
+        ]
+        turns = [
+            f"{first.show(float(p)):.6g} {first.shown} at "
+            f"{self.second.show(float(q)):.6g} {self.second.shown}".strip()
+            for p, q in curve.values[list(curve.turns)]
+        ]
+        return {
+            "kind": curve.kind,
+            "period": curve.period,
+            "points": len(curve.values),
+            "ended": curve.ended,
+            "asked": asked,
+            "turns": turns,
+        }
+
+    def groups(self, curves: Sequence[EventCurve], first: Parameter) -> dict[str, xr.Dataset]:
+        """The curves as they are stored."""
+        found = {}
+        for number, curve in enumerate(curves):
+            data = curve.dataset()
+            data["first"].attrs["units"] = first.unit
+            data["second"].attrs["units"] = self.second.unit
+            found[f"curve_{number}"] = data
+        return found
+
+
+def one_mass(event: Bifurcation) -> bool:
+    """Whether its orbit is that of one mass."""
+    return isinstance(event.orbit.section, MovedMap)
+
+
+def _ends_at(
+    curve: EventCurve, event: Bifurcation, limits: tuple[float, float], start: float
+) -> bool:
+    """Whether a curve came back to another event where it began: one curve joins both."""
+    if (curve.kind, curve.period) != (event.kind, event.period):
+        return False
+    p, q = curve.values[-1]
+    back = abs(q - start) < SAME * float(np.ptp(curve.values[:, 1]))
+    return bool(back and abs(p - event.value) < SAME * abs(limits[1] - limits[0]))

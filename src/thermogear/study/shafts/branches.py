@@ -1,0 +1,202 @@
+"""Branches of a drive train's periodic motions along a parameter, and in a second one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.analysis.event_curve import EventCurve
+from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
+from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.parameters import Parameter
+from thermogear.base.progress import Progress, silent
+from thermogear.case.case import GearCase
+from thermogear.case.one_point import OnePoint
+from thermogear.dynamics.geared import GearedModel
+from thermogear.dynamics.ladder import Engine
+from thermogear.dynamics.plane import plane_of
+from thermogear.dynamics.return_map import return_map
+from thermogear.results.result import Result
+from thermogear.study.branches import Leg, parameter_of, require_depth, summary_of, walked
+from thermogear.study.event_plane import Plane
+from thermogear.study.orbit import found
+from thermogear.study.shafts.family import TrainFamily
+from thermogear.study.shafts.grid import TrainGrid
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+VALUES = 9
+"""Values of the parameter at which mesh, bearings and friction of a train are computed."""
+SAMPLES = 128
+"""Samples a mesh period that the greatest mesh force is read from."""
+LONG = Search(first=8, cap=64, max_period=2)
+"""How a motion is followed whose forces come again after many mesh periods."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trains:
+    """The drive train at one ``point`` of its case, in the coordinates of ``family``.
+
+    ``family`` has no parameter of its own; ``point`` is that of the gears, for its words and
+    present values.
+    """
+
+    point: OnePoint
+    family: TrainFamily
+
+    @classmethod
+    def of(
+        cls, case: GearCase, point: OnePoint, operating: int | None, coordinates: int | None
+    ) -> Trains:
+        """The train of ``case`` where ``point`` is, its ``operating`` point counted from 1."""
+        family = TrainFamily(
+            case, (), point.bundle.name, point.state,
+            operating=0 if operating is None else operating - 1, coordinates=coordinates,
+        )  # fmt: skip
+        return cls(point=point, family=family)
+
+    def over(self, names: tuple[str, ...], axes: tuple[Floats, ...]) -> TrainGrid:
+        """The train over parameters, computed at the values of ``axes``."""
+        one = self.family
+        whole = TrainFamily(
+            one.case, names, one.bundle, one.state, operating=one.operating,
+            coordinates=one.coordinates,
+        )  # fmt: skip
+        whole.require(dict(zip(names, axes, strict=True)))
+        return TrainGrid(whole, tuple(np.unique(axis) for axis in axes))
+
+
+def train_orbit(
+    model: GearedModel,
+    start: tuple[float, float] | None = None,
+    period: int | None = None,
+    *,
+    transient: bool = True,
+) -> tuple[Orbit, Motion | None]:
+    """The closed orbit that a train's motion settles on, or the one of ``period`` near its end.
+
+    ``start`` (x, v) in half backlashes of the teeth, the state at rest if left out. Without
+    ``transient`` Newton starts there itself, which reaches unstable orbits. Raises ConvergenceError
+    where no orbit is reached.
+    """
+    section, plane = return_map(model), plane_of(model)
+    begin = plane.rest if start is None else plane.starts(start)
+    if not transient:
+        return periodic_orbit(model, 1 if period is None else period, begin), None
+    motion = settle(section, begin, LONG if model.cycle > 1 else Search())
+    if motion.orbit is not None and period in (None, motion.period):
+        orbit = shoot(section, motion.orbit.state, motion.period, model=model)
+        if orbit is not None:
+            return orbit, motion
+    if period is None:
+        raise ConvergenceError(
+            f"no closed orbit: the drive train's motion is {motion.name} ({motion.reason}); begin "
+            "at another value of the parameter, or give --period to look for an orbit inside it"
+        )
+    return periodic_orbit(model, period, motion.state), motion
+
+
+def train_branch_results(
+    trains: Trains,
+    parameter: str,
+    to: float,
+    *,
+    begin: float | None = None,
+    start: tuple[float, float] | None = None,
+    period: int | None = None,
+    transient: bool = True,
+    switch: int = 0,
+    count: int = VALUES,
+    second: tuple[str, Floats] | None = None,
+    progress: Progress = silent,
+) -> Result:
+    """Follow the orbit of a drive train in ``parameter``, as ``branch_results`` does of a pair.
+
+    Mesh, bearings and friction are computed at ``count`` values from ``begin`` to ``to``, in a
+    ``second`` parameter at those asked for, and run straight between them.
+    """
+    if count < 2:
+        raise InputError("--values", count, allowed=">= 2")
+    point = trains.point
+    varied = parameter_of(point, parameter)
+    first = point.value(varied.name) if begin is None else begin
+    if first == to:
+        raise InputError("--to", to, allowed=f"another value than that of --from ({first:.6g})")
+    require_depth(switch)
+    axis = np.linspace(first, to, count)
+    plane = None
+    if second is None:
+        grid = trains.over((varied.name,), (axis,))
+        models: Any = grid
+    else:
+        other = parameter_of(point, second[0])
+        grid = trains.over((varied.name, other.name), (axis, second[1]))
+        plane = Plane(other, second[1], grid)
+        models = plane.models
+    progress("settling", 0, 1)
+    orbit, motion = train_orbit(models(first), start, period, transient=transient)
+    progress("settling", 1, 1)
+    legs, cut = walked(orbit, varied, models, first, to, switch, progress)
+    curves: list[EventCurve] = []
+    notices: list[str] = []
+    if plane is not None and not cut:
+        branches = [leg.branch for leg in legs]
+        curves, notices, cut = plane.followed(branches, varied, (first, to), progress)
+    summary = summary_of(point.title, varied, legs, (first, to), cut)
+    summary |= {
+        "train": {
+            "coordinates": orbit.model.size if isinstance(orbit.model, GearedModel) else 0,
+            "cycle": grid.family.cycle,
+            "began": "" if motion is None else f"{motion.name}: {motion.reason}",
+            "values": count,
+        }
+    }
+    cycle = grid.family.cycle
+    if cycle > 1:
+        notices.append(
+            f"unbalance, eccentricity or run-out turn with the shafts: one period here is {cycle} "
+            "mesh periods, after which all forces come again"
+        )
+    summary["notices"] += notices
+    groups = {f"branch_{i}": _stored(leg, varied) for i, leg in enumerate(legs)}
+    if plane is not None:
+        summary |= plane.summary(curves, varied)
+        groups |= plane.groups(curves, varied)
+    return found("branch", groups, summary, interrupted=cut)
+
+
+def _stored(leg: Leg, varied: Parameter) -> xr.Dataset:
+    """A branch as it is stored: points along it with their greatest force, and bifurcations."""
+    branch = leg.branch
+    data = branch.dataset()
+    data["stable"] = data["stable"].astype(np.int8)
+    data["section"].attrs["units"] = "1"
+    for name in ("value", "event_value"):
+        data[name].attrs["units"] = varied.unit
+    for name in ("event_kind", "event_note"):
+        data[name] = data[name].astype(str)
+    forces = [
+        _greatest(branch.family(float(value)), state, branch.period)
+        for value, state in zip(branch.values, branch.states, strict=True)
+    ]
+    events = [
+        _greatest(branch.family(one.value), one.state, branch.period) for one in branch.bifurcations
+    ]
+    words = {"long_name": "greatest force of the drive flanks", "units": "N"}
+    data["mesh_force"] = ("point", np.array(forces, dtype=float), words)
+    data["event_mesh_force"] = ("event", np.array(events, dtype=float), words)
+    data.attrs.update({"level": leg.level, "heat": leg.heat, "row": leg.row})
+    return data
+
+
+def _greatest(model: object, state: Floats, period: int) -> float:
+    """Greatest force of the drive flanks [N] on an orbit."""
+    assert isinstance(model, GearedModel)
+    run = Engine(model).run(state, period * model.cycle, samples=SAMPLES)
+    return float(model.forces(run.sample_phase, states=run.samples)["drive"].max())

@@ -1,0 +1,67 @@
+"""What is said of bifurcations followed in a second parameter: tables, lines, a caption."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from thermogear.views.page import Block, Table, Text
+from thermogear.views.plots.parameters import page_words
+
+Summary = dict[str, Any]
+PLANE = "Where the motion jumps or changes"
+
+
+def plane_headline(summary: Summary) -> str:
+    """How many were followed; "" without a second parameter."""
+    if "curves" not in summary:
+        return ""
+    count = len(summary["curves"])
+    return f"{count} followed in a second parameter." if count else "None followed further."
+
+
+def plane_caption(summary: Summary) -> str:
+    """What the plane shows: only what is drawn in it."""
+    words = ["A motion that crosses a solid line changes there"]
+    if any(not one["stable"] for curve in summary["curves"] for one in curve["asked"]):
+        words.append("dotted: the orbit is unstable already, so that no motion meets it")
+    return "; ".join(words) + ". Dots: at the values asked for."
+
+
+def plane_tables(summary: Summary) -> list[Block]:
+    """The curves at the values asked for, and how each ended."""
+    if "curves" not in summary:
+        return []
+    second = page_words(summary["second"])
+    if not summary["curves"]:
+        return [Text(f"No bifurcation was followed in the second parameter, {second}.")]
+    rows, ends = [], []
+    for number, curve in enumerate(summary["curves"], start=1):
+        name = f"{number} {curve['kind']}, period {curve['period']}"
+        for one in curve["asked"]:
+            met = "" if one["stable"] else "on an unstable orbit"
+            rows.append([name, one["second_shown"], one["shown"], met])
+        turns = "; ".join(curve["turns"]) or "–"
+        ends.append([name, str(curve["points"]), turns, curve["ended"]])
+    head = ["curve", second, page_words(summary["parameter"]), ""]
+    return [
+        Table("Bifurcations in two parameters", head, rows, names=1),
+        Table("The curves", ["curve", "points", "turns at", "ended"], ends, names=1),
+    ]
+
+
+def plane_lines(s: Summary) -> list[str]:
+    """The same in a terminal."""
+    lines: list[str] = []
+    for number, curve in enumerate(s.get("curves", ()), start=1):
+        lines.append(
+            f"  curve {number}: {curve['kind']} of period {curve['period']} in {s['second']}, "
+            f"{curve['points']} points; {curve['ended']}"
+        )
+        for one in curve["asked"]:
+            met = "" if one["stable"] else "  (on an unstable orbit)"
+            lines.append(
+                f"    {s['second']} = {one['second_shown']:<14} {s['parameter']} = "
+                f"{one['shown']}{met}"
+            )
+        lines += [f"    turns at {one}" for one in curve["turns"]]
+    return lines
