@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-branches trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-long trial-pairs trial-trains unit
+.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-branches trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-long trial-pairs trial-located unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -130,8 +130,8 @@ trial-heat: $(STAMP)  ## every steady state of the heat balance, from cold, hot 
 trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test, ten minutes; docs/trial_labels.md
 	@$(BIN)/python checks/trial_labels.py
 
-trial-trains: $(STAMP)  ## located bifurcations of random drive trains against a fine sweep, cost of a proof; docs/trial_trains.md
-	@$(BIN)/python checks/trial_trains.py
+trial-located: $(STAMP)  ## located bifurcations of random drive trains against a fine sweep, cost of a proof; docs/trial_located.md
+	@$(BIN)/python checks/trial_located.py
 
 trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py
