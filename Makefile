@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: bench-coordinates bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
+.PHONY: bench-coordinates bench-geared bench-paths bench-shafts chromium friction-evidence trial-branches trial-damage trial-heat trial-hostile trial-labels trial-long trial-pairs trial-trains audit bench demo licences mutate same sbom test check lint unit lock compile clean look house
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -126,6 +126,9 @@ trial-heat: $(STAMP)  ## every steady state of the heat balance, from cold, hot 
 
 trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test, ten minutes; docs/trial_labels.md
 	@$(BIN)/python checks/trial_labels.py
+
+trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways, 40 by another integration, an hour; TRAINS="--count 20" for a short one; docs/trial_trains.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -W ignore checks/trial_trains.py $(TRAINS)
 
 trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py
