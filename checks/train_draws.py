@@ -41,6 +41,7 @@ TYPES = {
 """Shafts [mm] and the rolling bearings that fit them."""
 ROUGH = "\n[grid]\nmesh_positions = 48\npath_positions = 51\nharmonics = 8\n"
 """Enough to know where the teeth's resonance is."""
+FINE = "\n[grid]\nmesh_positions = 120\npath_positions = 101\nharmonics = 16\n"
 IN_TURN = 0.08
 """Share of trains with forces at shaft orders: unbalance and eccentric teeth."""
 MOST_TRIES = 50
@@ -87,7 +88,7 @@ def _tried(number: int, rng: Random) -> Drawn | None:
     if rest.status != 0:
         return None
     rpm = 60.0 * ratio * _mesh_mode(rest) / start.pair.pinion.teeth
-    case = _case(text, rpm, torque)
+    case = _case(text + FINE, rpm, torque)
     there = settled(case, [0], states=[HOT if hot else UNDEFORMED])[0][0]
     if there.status != 0:
         return None

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import inspect
 import json
 import sys
 import time
@@ -30,7 +31,7 @@ from thermogear.analysis.any_motion import Motion, settle
 from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Steps
 from thermogear.study.shafts.motion import search_of
-from thermogear.study.shafts.moving import HELD_MODES, MovingTrain
+from thermogear.study.shafts.moving import MovingTrain
 
 Floats = NDArray[np.float64]
 Record = dict[str, Any]
@@ -40,8 +41,8 @@ PAGE = ROOT / "docs" / "trial_trains.md"
 KEPT = ROOT / ".trial"
 COUNT, CHECKED = 200, 40
 FINER = Steps(accuracy=1e-11, longest=16, rungs=12)
-MORE_MODES = 8
-"""Coordinates added for another reduction."""
+MODES, MORE_MODES = 6, 10
+"""Modes kept beside the interface, and those added: then as many as the studies keep."""
 MOVES = (1e-3, 3e-3, 0.01, 0.02)
 """Shares by which the speed is moved to look for the border of a label that changed."""
 WAYS = ("label", "transient", "steps", "reduction")
@@ -79,7 +80,7 @@ def told(found: Motion, seconds: float) -> Record:
 def labelled(number: int) -> Record:
     """All four labels of a train, what it loses, and why a label changed."""
     one = drawn(number)
-    train = one.train(HELD_MODES)
+    train = one.train(MODES)
     section = GearedMap(model=train.model)
     first, seconds = label_of(section, train.start)
     found: Record = {
@@ -101,7 +102,7 @@ def labelled(number: int) -> Record:
     found["transient"] = told(*label_of(section, late))
     fine = GearedMap(model=train.model, how=FINER)
     found["steps"] = told(*label_of(fine, train.start))
-    other = one.train(HELD_MODES + MORE_MODES)
+    other = one.train(MODES + MORE_MODES)
     wider = GearedMap(model=other.model)
     found["reduction"] = told(*label_of(wider, other.start))
     found["reduction"]["coordinates"] = other.model.size
@@ -153,9 +154,9 @@ def across(state: Floats, one: MovingTrain, other: MovingTrain) -> Floats:
 
 APART = 1e-9
 """How far apart neighbours begin, in units of the map."""
-LONG = 4000
+LONG = 2000
 """Mesh periods at least that a motion is followed."""
-LONGER = 20_000
+LONGER = 8000
 LONGEST = 512
 CLOSES = 1e-4
 """Units of the map within which a motion has returned."""
@@ -179,7 +180,7 @@ def chosen(records: Sequence[Record], count: int) -> list[Record]:
 def checked(record: Record) -> str:
     """What a long independent integration has against the label of ``record``; "" for nothing."""
     one = drawn(record["number"])
-    model = one.train(HELD_MODES).model
+    model = one.train(MODES).model
     section, other = GearedMap(model=model), Independent(model)
     label = record["label"]
     state = np.array(label["state"])
@@ -255,13 +256,15 @@ def _turns_like(section: GearedMap, path: Floats, frequency: float) -> float:
 
 
 def code() -> str:
-    """A mark of the code that labels: records of another are not reused."""
+    """A mark of the code that labels and checks: records of another are not reused."""
     parts = [Path(__file__).parent / name for name in ("train_draws.py", "train_reference.py")]
     for floor in ("base", "gears", "shafts", "heat", "mesh", "case", "dynamics", "analysis"):
         parts += sorted((ROOT / "src" / "thermogear" / floor).rglob("*.py"))
     parts += sorted((ROOT / "src" / "thermogear" / "study" / "shafts").glob("*.py"))
-    text = b"".join(one.read_bytes() for one in [Path(__file__), *parts])
-    return hashlib.sha256(text).hexdigest()[:16]
+    own = [label_of, told, labelled, why, across, checked, _closes, _stays_open, _turns_like]
+    text = "".join([*(one.read_text("utf-8") for one in parts), *map(inspect.getsource, own)])
+    text += repr((FINER, MODES, MORE_MODES, MOVES, APART, LONG, LONGER, LONGEST, CLOSES))
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def kept(path: Path) -> dict[str, dict[int, Record]]:

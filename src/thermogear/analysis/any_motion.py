@@ -30,10 +30,12 @@ NEAR_BORDER = 0.998
 """A largest multiplier above it leaves the label undecided, see :func:`settle`."""
 BESIDE_DAMPING = 0.1
 """Share of its own slowest decay at rest by which a model must still decay on an orbit."""
-TRIES = 3
+TRIES = 2
 """Lags at most from which an orbit is looked for after one round."""
 LONGEST = 512
 """Periods of the longest orbit that is looked for where no short one is found."""
+BESIDE = 16
+"""Returns at both ends of a record by which it is told whether they become closer."""
 RETURNED = 1e-3
 """Distance of a return, in units of the map, from which a long orbit is looked for."""
 BATCHES = 10
@@ -114,6 +116,7 @@ def settle(
     state = np.asarray(start, dtype=float)
     used, length = 0, how.first
     known: _Approach | None = None
+    failed: dict[int, float] = {}
     while used < how.cap:
         alive()
         length = min(length, how.cap - used)
@@ -130,7 +133,7 @@ def settle(
                 return found
         else:
             if known is None:
-                orbit = _orbit(section, window, how.max_period)
+                orbit = _orbit(section, window, how.max_period, failed)
                 known = None if orbit is None else _Approach(orbit)
             if known is not None:
                 if known.reached(state, used):
@@ -208,22 +211,30 @@ class _Approach:
         return self._bases[place]
 
 
-def _orbit(section: ReturnMap, window: Floats, max_period: int) -> Orbit | None:
+def _orbit(
+    section: ReturnMap, window: Floats, max_period: int, failed: dict[int, float]
+) -> Orbit | None:
     """The stable orbit at the end of ``window``, by the least lag of those that return that is one.
 
-    A motion of small size returns near itself after any lag: the next lag tried comes twice as
-    near.
+    A motion of small size returns near itself after any lag: the next lag tried comes five times
+    as near. ``failed``: distances of the returns from which a lag was tried in vain so far; it is
+    tried again from half of it.
     """
     bound, tries = CLOSE, 0
     for lag in range(1, min(max_period, len(window) - 1) + 1):
         away = float(section.distance(window[-1 - lag], window[-1]))
         if away >= bound:
             continue
+        bound = 0.2 * away
+        if away > 0.5 * failed.get(lag, np.inf):
+            continue
         orbit = _closed(section, window[-1], lag)
         tries += 1
-        if orbit is not None or tries == TRIES:
+        if orbit is not None:
             return orbit
-        bound = 0.5 * away
+        failed[lag] = away
+        if tries == TRIES:
+            break
     return None
 
 
@@ -333,24 +344,25 @@ def _exponent(section: ReturnMap, state: Floats, used: int, batches: int, batch:
 
 
 def _long(section: ReturnMap, path: Floats, used: int, how: Search) -> Motion | None:
-    """A motion on a stable orbit of up to :data:`LONGEST` periods, shorter ones among them."""
-    longest = min(LONGEST, (len(path) - 1) // 2)
-    back = section.distance(path[-1 - longest : -1], path[-1])[::-1]
-    bound, tries = RETURNED, 0
-    for lag in range(1, longest + 1):
-        away = float(back[lag - 1])
-        if away >= bound:
+    """A motion on a stable orbit of up to :data:`LONGEST` periods, shorter ones among them.
+
+    On a torus some return is close, too, but does not become closer.
+    """
+    tries = 0
+    for lag in range(1, min(LONGEST, (len(path) - BESIDE) // 2) + 1):
+        back = section.distance(path[lag:], path[:-lag])
+        first, last = float(back[:BESIDE].max()), float(back[-BESIDE:].max())
+        if last >= RETURNED or (last >= 1e-9 and last >= 0.3 * first):
             continue
         orbit = _closed(section, path[-1], lag)
         if orbit is not None:
             off = float(section.distance(orbit.points, path[-1]).min())
-            before = float(section.distance(orbit.points, path[-1 - longest]).min())
+            before = float(section.distance(orbit.points, path[0]).min())
             if off < 1e-7 or off < 0.7 * before < 0.7 * CLOSE:
                 return _proven(section, orbit, off, used, how.near_border)
         tries += 1
         if tries == TRIES:
-            return None
-        bound = 0.1 * away
+            break
     return None
 
 
