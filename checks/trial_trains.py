@@ -1,10 +1,11 @@
 """Random drive trains: is the label of a settled motion the same when it is asked otherwise?
 
 ``make trial-trains`` draws 200 trains (seed fixed before the first run) and labels each four times:
-as the studies do, after twice the transient, with finer steps, and in more coordinates. A label
-that changed is put to tests that say why. 40 labels are held against a long integration by another
-rule, which shares nothing with the engine. Writes docs/trial_trains.md; what is done is kept in a
-file until the code changes, so that a stopped trial goes on. ``--count 20`` prints a short one.
+by the rule of the studies, after twice the transient, with finer steps, and in more coordinates.
+A label that changed is put to tests that say why. 40 labels are held against a long integration by
+another rule, which shares nothing with the engine. Writes docs/trial_trains.md; what is done is
+kept in a file until the code changes, so that a stopped trial goes on. ``--count 20`` prints a
+short one.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ MODES, MORE_MODES = 6, 10
 """Modes kept beside the interface, and those added: then as many as the studies keep."""
 MOVES = (1e-3, 3e-3, 0.01, 0.02)
 """Shares by which the speed is moved to look for the border of a label that changed."""
+ONE_OPEN = "undecided in one of both"
 WAYS = ("label", "transient", "steps", "reduction")
 WORDS = {
     "transient": "twice the transient",
@@ -100,44 +102,57 @@ def labelled(number: int) -> Record:
     if first.name != "diverged":
         late = section.carry(train.start, 2 * first.used)[-1]
     found["transient"] = told(*label_of(section, late))
-    fine = GearedMap(model=train.model, how=FINER)
-    found["steps"] = told(*label_of(fine, train.start))
+    found["steps"] = told(*label_of(GearedMap(model=train.model, how=FINER), train.start))
     other = one.train(MODES + MORE_MODES)
-    wider = GearedMap(model=other.model)
-    found["reduction"] = told(*label_of(wider, other.start))
-    found["reduction"]["coordinates"] = other.model.size
-    maps = {"transient": section, "steps": fine, "reduction": wider}
-    found["why"] = {
-        way: why(one, section, train, maps[way], other if way == "reduction" else train, found, way)
-        for way in maps
-        if found[way]["name"] != first.name
-    }
+    found["reduction"] = told(*label_of(GearedMap(model=other.model), other.start))
     return found
+
+
+def changed(record: Record) -> list[str]:
+    """The ways to ask that gave another label than the first."""
+    return [way for way in WAYS[1:] if record[way]["name"] != record["label"]["name"]]
+
+
+def explained(record: Record) -> dict[str, str]:
+    """Which test explains each label that changed; "unexplained" where none does."""
+    one = drawn(record["number"])
+    train, other = one.train(MODES), one.train(MODES + MORE_MODES)
+    here = GearedMap(model=train.model)
+    maps = {
+        "transient": here,
+        "steps": GearedMap(model=train.model, how=FINER),
+        "reduction": GearedMap(model=other.model),
+    }
+    return {
+        way: why(one, here, train, maps[way], other if way == "reduction" else train, record, way)
+        for way in changed(record)
+    }
 
 
 def why(
     one: Drawn,
-    section: GearedMap,
+    here: GearedMap,
     train: MovingTrain,
     there: GearedMap,
     other: MovingTrain,
-    found: Record,
+    record: Record,
     way: str,
 ) -> str:
-    """Which test explains that the label ``there`` is another; "unexplained" where none does."""
-    names = (found["label"]["name"], found[way]["name"])
+    """Which test explains that the label ``there`` is another than ``here``."""
+    names = (record["label"]["name"], record[way]["name"])
     if "undecided" in names:
-        return "undecided in one of both"
-    state = np.array(found["label"]["state"])
-    if label_of(there, across(state, train, other))[0].name == names[0]:
-        return "both motions exist there"
-    back = across(np.array(found[way]["state"]), other, train)
-    if label_of(section, back)[0].name == names[1]:
+        return ONE_OPEN
+    state = np.array(record["label"]["state"])
+    back = across(np.array(record[way]["state"]), other, train)
+    if (
+        label_of(there, across(state, train, other))[0].name == names[0]
+        or label_of(here, back)[0].name == names[1]
+    ):
         return "both motions exist there"
     for share in MOVES:
         for turn in (1.0 - share, 1.0 + share):
             moved = train.at_speed(one.case, one.rest.speed * turn)
-            if label_of(GearedMap(model=moved.model), state)[0].name == names[1]:
+            if label_of(GearedMap(model=moved.model), state)[0].name not in (names[0], "undecided"):
                 return f"border within {100.0 * share:g} % of the speed"
     return "unexplained"
 
@@ -261,15 +276,16 @@ def code() -> str:
     for floor in ("base", "gears", "shafts", "heat", "mesh", "case", "dynamics", "analysis"):
         parts += sorted((ROOT / "src" / "thermogear" / floor).rglob("*.py"))
     parts += sorted((ROOT / "src" / "thermogear" / "study" / "shafts").glob("*.py"))
-    own = [label_of, told, labelled, why, across, checked, _closes, _stays_open, _turns_like]
+    own = [label_of, told, labelled, explained, why, across]
+    own += [checked, _closes, _stays_open, _turns_like]
     text = "".join([*(one.read_text("utf-8") for one in parts), *map(inspect.getsource, own)])
     text += repr((FINER, MODES, MORE_MODES, MOVES, APART, LONG, LONGER, LONGEST, CLOSES))
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def kept(path: Path) -> dict[str, dict[int, Record]]:
-    """Records of an earlier run: "labelled" and "checked" by number; a torn last line is left."""
-    found: dict[str, dict[int, Record]] = {"labelled": {}, "checked": {}}
+def kept(path: Path) -> dict[str, dict[int, Any]]:
+    """Records of an earlier run: what was done, by number; a torn last line is left."""
+    found: dict[str, dict[int, Any]] = {"labelled": {}, "explained": {}, "checked": {}}
     if path.exists():
         for line in path.read_text("utf-8").splitlines():
             try:
@@ -309,7 +325,12 @@ def reason_of(label: Record) -> str:
     return "does not return in time"
 
 
-def page(records: Sequence[Record], complaints: dict[int, str], asked: int) -> str:
+def page(
+    records: Sequence[Record],
+    reasons: dict[int, dict[str, str]],
+    complaints: dict[int, str],
+    asked: int,
+) -> str:
     """The table of docs/trial_trains.md."""
     count = len(records)
     names = Counter(one["label"]["name"] for one in records)
@@ -336,7 +357,8 @@ def page(records: Sequence[Record], complaints: dict[int, str], asked: int) -> s
         f"{ERRORS[1]:g} um,",
         "damping ratio of the mesh 0.01 to 0.1, friction of the teeth, "
         f"{100.0 * IN_TURN:g} % of draws with unbalance and",
-        "eccentric teeth. Each is labelled from rest as `run` does, and three times more.",
+        f"eccentric teeth. Each is labelled from rest, in the interface of contacts and {MODES} "
+        "modes, and three times more.",
         "",
         "| trains | |",
         "|---|---:|",
@@ -355,37 +377,33 @@ def page(records: Sequence[Record], complaints: dict[int, str], asked: int) -> s
         "",
         "| asked otherwise | undecided | another label | why |",
         "|---|---:|---:|---|",
-        f"| as `run` does | {undecided['label']} of {count} | | |",
+        f"| from rest | {undecided['label']} of {count} | | |",
     ]
     for way in WAYS[1:]:
-        changed = Counter(
-            one["why"][way]
-            for one in records
-            if way in one["why"] and one["why"][way] != "undecided in one of both"
+        other = Counter(
+            found[way] for found in reasons.values() if found.get(way, ONE_OPEN) != ONE_OPEN
         )
-        words = "; ".join(f"{n} {what}" for what, n in sorted(changed.items()))
-        lines.append(
-            f"| {WORDS[way]} | {undecided[way]} of {count} | {changed.total()} | {words} |"
-        )
-    reasons = Counter(
+        words = "; ".join(f"{n} {what}" for what, n in sorted(other.items()))
+        lines.append(f"| {WORDS[way]} | {undecided[way]} of {count} | {other.total()} | {words} |")
+    open_labels = Counter(
         reason_of(one[way]) for one in records for way in WAYS if one[way]["name"] == "undecided"
     )
     lines += [
         "",
         f"Undecided: {sum(undecided.values())} of {4 * count} labels, "
         f"{100.0 * sum(undecided.values()) / (4 * count):.2f} %.",
-        *(f"- {n}: {what}." for what, n in sorted(reasons.items())),
+        *(f"- {n}: {what}." for what, n in sorted(open_labels.items())),
         "",
         "A label counts as changed where both are decided and differ. *Both motions exist there*: "
         "started on the",
-        "other's motion, the train keeps it. *Border*: a speed as little away has the other label.",
+        "other's motion, the train keeps it. *Border*: a speed as little away has another label.",
         "",
         "Changed, by number:",
         "",
         *(
             f"- {one['number']}: {one['label']['name']}, {WORDS[way]}: {one[way]['name']}: {what}"
             for one in records
-            for way, what in one["why"].items()
+            for way, what in reasons.get(one["number"], {}).items()
         ),
         "",
         f"**Wrong: {len(wrong)} of {len(complaints)}** labels held against a long integration of "
@@ -417,6 +435,10 @@ def main(words: Sequence[str]) -> int:
         for _, one in each("labelled", numbers, done["labelled"], path, labelled):
             records.append(one)
         by_number = {one["number"]: one for one in records}
+        others = [number for number, one in by_number.items() if changed(one)]
+        reasons = dict(
+            each("explained", others, done["explained"], path, lambda n: explained(by_number[n]))
+        )
         some = [one["number"] for one in chosen(records, min(CHECKED, asked.count))]
         complaints = dict(
             each("checked", some, done["checked"], path, lambda n: checked(by_number[n]))
@@ -424,7 +446,7 @@ def main(words: Sequence[str]) -> int:
     except KeyboardInterrupt:
         print(f"\nstopped; what is done is kept in {path.relative_to(ROOT)}", file=sys.stderr)
         return 130
-    text = page(records, complaints, COUNT)
+    text = page(records, reasons, complaints, COUNT)
     if asked.count == COUNT or asked.write:
         PAGE.write_text(text, "utf-8")
         print(PAGE.relative_to(ROOT))
