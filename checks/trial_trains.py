@@ -44,7 +44,7 @@ COUNT, CHECKED = 200, 40
 FINER = Steps(accuracy=1e-11, longest=16, rungs=12)
 MODES, MORE_MODES = 6, 10
 """Modes kept beside the interface, and those added: then as many as the studies keep."""
-MOVES = (1e-3, 3e-3, 0.01, 0.02)
+MOVES = (1e-3, 3e-3, 0.01, 0.03)
 """Shares by which the speed is moved to look for the border of a label that changed."""
 ONE_OPEN = "undecided in one of both"
 WAYS = ("label", "transient", "steps", "reduction")
@@ -123,10 +123,15 @@ def explained(record: Record) -> dict[str, str]:
         "steps": GearedMap(model=train.model, how=FINER),
         "reduction": GearedMap(model=other.model),
     }
-    return {
+    found = {
         way: why(one, here, train, maps[way], other if way == "reduction" else train, record, way)
         for way in changed(record)
     }
+    if "reduction" in found:
+        few, many = (each.reduction.frequencies(one.rest.linear, 12) for each in (train, other))
+        apart = 100.0 * float(np.max(np.abs(few[: many.size] / many[: few.size] - 1.0)))
+        found["reduction"] += f" (12 lowest frequencies up to {apart:.2g} % apart)"
+    return found
 
 
 def why(
@@ -380,9 +385,8 @@ def page(
         f"| from rest | {undecided['label']} of {count} | | |",
     ]
     for way in WAYS[1:]:
-        other = Counter(
-            found[way] for found in reasons.values() if found.get(way, ONE_OPEN) != ONE_OPEN
-        )
+        said = [found[way].split(" (")[0] for found in reasons.values() if way in found]
+        other = Counter(one for one in said if one != ONE_OPEN)
         words = "; ".join(f"{n} {what}" for what, n in sorted(other.items()))
         lines.append(f"| {WORDS[way]} | {undecided[way]} of {count} | {other.total()} | {words} |")
     open_labels = Counter(
