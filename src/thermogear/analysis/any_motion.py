@@ -22,18 +22,32 @@ Floats = NDArray[np.float64]
 
 CLOSE = 0.05
 """Distance of a return, in units of the map, from which an orbit is looked for."""
+FAR = 1.0
+"""An orbit further away than this is not the one that is neared."""
+FORETOLD = 0.2
+"""Share of its size to which a deviation must go as the multipliers say."""
 NEAR_BORDER = 0.998
-"""A largest multiplier above it leaves the label undecided."""
+"""A largest multiplier above it leaves the label undecided, see :func:`settle`."""
+BESIDE_DAMPING = 0.1
+"""Share of its own slowest decay at rest by which a model must still decay on an orbit."""
+TRIES = 2
+"""Lags at most from which an orbit is looked for after one round."""
+BESIDE = 16
+"""Returns at both ends of a record by which it is told whether they become closer."""
+RETURNED = 1e-3
+"""Distance of a return, in units of the map, from which a long orbit is looked for."""
 BATCHES = 10
 BATCH = 50
 """Batches of periods, and their length, for the Lyapunov exponent."""
 ROUND = 2048
-ROUNDS = 3
-"""Sections that a torus is looked for in, and how often: it may be reached slowly."""
-LONG_CLOSE = 1e-6
-"""Distance of a return after many periods, in units of the map, that is believed."""
+ROUNDS = 4
+"""Sections that a torus is looked for in, twice as many each of so many times."""
+MORE_BATCHES = 40
+"""Batches for an exponent that the first ones leave open."""
 LONG_BATCHES = 16
-"""Batches in so many periods, for the exponent on a torus."""
+"""Batches in so many periods, for the exponents on a torus."""
+ROUNDED = 1e-7
+"""Growth over a whole record that the integration may add or take by itself."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +56,9 @@ class Search:
 
     ``max_period`` of an orbit. ``polish``: with Newton and multipliers; without, a motion that
     comes nearer to itself by ``approach`` from one period to the next, to ``closed`` units of the
-    map, is periodic. A largest multiplier above ``near_border`` leaves it undecided. ``exponent``:
-    whether chaos is asked for.
+    map, is periodic. A largest multiplier above ``near_border`` leaves it undecided, see
+    :func:`settle`. ``exponent``: whether chaos is asked for, in batches of ``batch`` periods, and
+    what closes or turns in ``sections`` of them (0: no orbit of up to 512 periods, no torus).
     """
 
     first: int = 64
@@ -54,6 +69,8 @@ class Search:
     approach: float = 0.9
     exponent: bool = True
     near_border: float = NEAR_BORDER
+    batch: int = BATCH
+    sections: int = ROUND
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,18 +106,21 @@ def settle(
     """Follow ``start`` (d,) until it is proven what it settles on, or the search ends.
 
     Periodic: the motion returns to itself, Newton's rule finds an orbit there whose multipliers all
-    stay below 0.998, and the motion comes nearer to it from one round to the next. Chaotic: it does
-    not return, and the largest Lyapunov exponent exceeds four standard errors in both halves of its
-    record. Quasi-periodic: that exponent is zero within four standard errors, the second one
-    negative beyond its own, and the sections lie on a closed curve with a second base frequency
-    (:class:`~thermogear.analysis.torus.Torus`). A motion that closes after more periods than are
-    looked for at first, up to 512, is periodic with a long period: the second frequency is rational
-    to the first. ``alive`` raises to end the work.
+    stay below 0.998, and the motion comes nearer to it from round to round: to 0.7 of its distance,
+    or twice as its multipliers say. Where the model by itself decays as slowly as that (a map that
+    knows its ``slowest`` multiplier at rest), a tenth of this decay is enough. A motion that does
+    not close so soon is looked at for orbits of up to 512 periods: such a one is periodic with a
+    long period, its second frequency rational to the first. Chaotic: it does not return, and the
+    largest Lyapunov exponent exceeds four standard errors in both halves of its record.
+    Quasi-periodic: that exponent is zero within four standard errors, the second one negative
+    beyond its own, and the sections lie on a closed curve with a second base frequency
+    (:class:`~thermogear.analysis.torus.Torus`). ``alive`` raises to end the work.
     """
     how = search or Search()
     state = np.asarray(start, dtype=float)
     used, length = 0, how.first
-    orbit, near = None, np.inf
+    known: _Approach | None = None
+    failed: dict[int, float] = {}
     while used < how.cap:
         alive()
         length = min(length, how.cap - used)
@@ -116,18 +136,15 @@ def settle(
             if found is not None:
                 return found
         else:
-            if orbit is None:
-                orbit = _orbit(section, window, how.max_period)
-                near = np.inf
-            if orbit is not None:
-                away = float(section.distance(orbit.points, state).min())
-                if away < 1e-9 or (away < CLOSE and away < 0.7 * near):
-                    if np.isfinite(near) or away < 1e-9:
-                        return _proven(orbit, away, used, how.near_border)
-                    near = away
-                elif away > CLOSE:
-                    orbit = None
-                length = min(length, how.first)
+            if known is None:
+                orbit = _orbit(section, window, how.max_period, failed)
+                known = None if orbit is None else _Approach(orbit)
+            if known is not None:
+                if known.reached(state, used):
+                    return _proven(section, known.orbit, known.away, used, how)
+                length = known.next_round(how.first)
+                if known.lost:
+                    known = None
                 continue
         length *= 2
     try:
@@ -136,20 +153,99 @@ def settle(
         return Motion(name="diverged", period=0, reason=str(told), state=state, used=used)
 
 
-def _lag(section: ReturnMap, window: Floats, max_period: int) -> int:
-    """The least lag after which the last state returns; 0: none."""
+class _Approach:
+    """How a motion nears a stable ``orbit``, told after every round of whole orbits.
+
+    Its deviation in the eigenvectors of the orbit's Jacobian, each of which shrinks by its
+    multiplier. ``away``: the distance from the orbit in units of the map; ``lost``: too far, or not
+    as the multipliers say.
+    """
+
+    def __init__(self, orbit: Orbit) -> None:
+        self.orbit = orbit
+        self.away, self.near = np.inf, np.inf
+        self.lost = False
+        self._right = 0
+        self._before: tuple[int, NDArray[np.complex128]] | None = None
+        self._bases: dict[int, tuple[NDArray[np.complex128], NDArray[np.complex128]]] = {}
+
+    def next_round(self, first: int) -> int:
+        """Periods of the next round: about ``first``, whole orbits."""
+        return self.orbit.period * -(-first // self.orbit.period)
+
+    def reached(self, state: Floats, used: int) -> bool:
+        """Whether the motion, in ``state`` after ``used`` periods, comes to the orbit."""
+        orbit = self.orbit
+        distance = orbit.section.distance(orbit.points, state)
+        place = int(distance.argmin())
+        self.away = float(distance[place])
+        if self.away < 1e-9:
+            return True
+        foretold = self._as_foretold(state, place, used)
+        self._right = self._right + 1 if foretold else 0
+        if self.away >= CLOSE:
+            self.lost = self.away > FAR or not foretold
+            return self._right >= 2
+        if self.away < 0.7 * self.near and np.isfinite(self.near):
+            return True
+        self.near = min(self.near, self.away) if np.isfinite(self.near) else self.away
+        return self._right >= 2
+
+    def _as_foretold(self, state: Floats, place: int, used: int) -> bool:
+        values, into = self._basis(place)
+        now = into @ ((state - self.orbit.points[place]) / self.orbit.section.unit)
+        before, self._before = self._before, (used, now)
+        if before is None or (used - before[0]) % self.orbit.period:
+            return before is None
+        shrunk = values ** ((used - before[0]) // self.orbit.period)
+        size, told = float(np.linalg.norm(before[1])), shrunk * before[1]
+        slowest = float(np.abs(shrunk).max())
+        nearer = float(np.linalg.norm(now)) <= size * (1.0 - 0.5 * (1.0 - slowest))
+        return nearer and float(np.linalg.norm(now - told)) <= FORETOLD * size
+
+    def _basis(self, place: int) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Multipliers, and what takes a deviation at a point of the orbit to its eigenvectors."""
+        if place not in self._bases:
+            orbit, unit = self.orbit, self.orbit.section.unit
+            jacobian = orbit.jacobian
+            if place:
+                jacobian = orbit.section.visit(orbit.points[place], orbit.period).jacobian
+            values, vectors = np.linalg.eig(jacobian * unit / unit[:, None])
+            self._bases[place] = (values.astype(complex), np.linalg.pinv(vectors.astype(complex)))
+        return self._bases[place]
+
+
+def _orbit(
+    section: ReturnMap, window: Floats, max_period: int, failed: dict[int, float]
+) -> Orbit | None:
+    """The stable orbit at the end of ``window``, by the least lag of those that return that is one.
+
+    A motion of small size returns near itself after any lag: the next lag tried comes five times
+    as near. ``failed``: distances of the returns from which a lag was tried in vain so far; it is
+    tried again from half of it.
+    """
+    bound, tries = CLOSE, 0
     for lag in range(1, min(max_period, len(window) - 1) + 1):
-        if float(section.distance(window[-1 - lag], window[-1])) < CLOSE:
-            return lag
-    return 0
+        away = float(section.distance(window[-1 - lag], window[-1]))
+        if away >= bound:
+            continue
+        bound = 0.2 * away
+        if away > 0.5 * failed.get(lag, np.inf):
+            continue
+        orbit = _closed(section, window[-1], lag)
+        tries += 1
+        if orbit is not None:
+            return orbit
+        failed[lag] = away
+        if tries == TRIES:
+            break
+    return None
 
 
-def _orbit(section: ReturnMap, window: Floats, max_period: int) -> Orbit | None:
-    lag = _lag(section, window, max_period)
-    if lag == 0:
-        return None
+def _closed(section: ReturnMap, state: Floats, lag: int) -> Orbit | None:
+    """The stable orbit of least period that Newton's rule finds from ``state``."""
     try:
-        orbit = shoot(section, window[-1], lag, tolerance=1e-11, most=12)
+        orbit = shoot(section, state, lag, tolerance=1e-11, most=12)
         if orbit is not None and orbit.minimal_period != orbit.period:
             orbit = shoot(section, orbit.state, orbit.minimal_period, tolerance=1e-11, most=12)
     except ConvergenceError:
@@ -157,49 +253,35 @@ def _orbit(section: ReturnMap, window: Floats, max_period: int) -> Orbit | None:
     return orbit if orbit is not None and orbit.stable else None
 
 
-def _proven(orbit: Orbit, away: float, used: int, near_border: float, words: str = "") -> Motion:
+def _border(section: ReturnMap, near_border: float, periods: int) -> float:
+    """Largest multiplier that is told from 1: closer only where the model decays so slowly."""
+    slowest = float(getattr(section, "slowest", 0.0))
+    if not 0.0 < slowest < 1.0:
+        return near_border
+    return max(near_border, float(slowest ** (BESIDE_DAMPING * periods)))
+
+
+def _proven(section: ReturnMap, orbit: Orbit, away: float, used: int, how: Search) -> Motion:
     mu = complex(orbit.multipliers[0])
     plural = "s" * (orbit.period > 1)
+    words = "periodic with a long period: " if orbit.period > how.max_period else ""
     shown = f"{words}largest Floquet multiplier |{abs(mu):.6f}| over {orbit.period} period{plural}"
-    sure = abs(mu) <= near_border
+    border = _border(section, how.near_border, orbit.period)
+    duration = orbit.period * orbit.section.period
+    sure = abs(mu) <= border
     return Motion(
         name=f"period-{orbit.period}" if sure else "undecided",
         period=orbit.period,
-        reason=shown if sure else f"{shown}: within {1.0 - near_border:.2g} of a bifurcation",
+        reason=shown if sure else f"{shown}: within {1.0 - border:.2g} of a bifurcation",
         state=orbit.state,
         used=used,
         orbit=orbit,
         multiplier=mu,
-        lyapunov=float(np.log(abs(mu)) / (orbit.period * orbit.section.period)),
+        lyapunov=float(np.log(abs(mu)) / duration),
         lyapunov_error=0.0,
-        exponents=np.log(np.maximum(np.abs(orbit.multipliers), 1e-300))
-        / (orbit.period * orbit.section.period),
+        exponents=np.log(np.maximum(np.abs(orbit.multipliers), 1e-300)) / duration,
         away=away,
     )
-
-
-def _long(section: ReturnMap, motion: Motion, how: Search) -> Motion | None:
-    """The orbit of many periods that a motion has closed to, up to the longest; else None."""
-    try:
-        path = section.carry(motion.state, ROUND)
-    except ConvergenceError:
-        return None
-    lags = np.arange(1, LONGEST + 1)
-    gaps = section.distance(path[-1 - lags], path[-1])
-    closed = np.flatnonzero(gaps < LONG_CLOSE)
-    if closed.size == 0:
-        return None
-    period = int(lags[closed[0]])
-    try:
-        orbit = shoot(section, path[-1], period, tolerance=1e-11, most=4)
-    except ConvergenceError:
-        return None
-    if orbit is None or not orbit.stable:
-        return None
-    away = float(section.distance(orbit.points, path[-1]).min())
-    words = "" if period <= how.max_period else "periodic with a long period: "
-    used = motion.used + ROUND
-    return _proven(orbit, away, used, how.near_border, words) if away < CLOSE else None
 
 
 def _closing(section: ReturnMap, window: Floats, used: int, how: Search) -> Motion | None:
@@ -225,49 +307,92 @@ def _open(section: ReturnMap, state: Floats, used: int, how: Search, alive: Aliv
     if not how.exponent:
         reason = f"does not return within {used} periods"
         return Motion(name="undecided", period=0, reason=reason, state=state, used=used)
+    found = _exponent(section, state, used, BATCHES, how.batch)
+    if found.name == "chaotic":
+        return found
+    if how.sections:
+        alive()
+        path = section.carry(found.state, how.sections)
+        found = replace(found, state=path[-1], used=found.used + len(path))
+        closed = _long(section, path, found.used, how)
+        if closed is not None:
+            return closed
+        if abs(found.lyapunov) <= 4.0 * found.lyapunov_error:
+            found = _turning(section, found, path, alive)
+            if found.torus is not None:
+                return found
+    alive()
+    # the other way round: what neither closes nor turns may part slowly
+    again = _exponent(section, found.state, found.used, MORE_BATCHES, how.batch)
+    return again if again.name == "chaotic" else replace(found, used=again.used, state=again.state)
+
+
+def _exponent(section: ReturnMap, state: Floats, used: int, batches: int, batch: int) -> Motion:
+    """Chaotic by the exponent over so many batches, or undecided."""
     direction = np.zeros(section.dimension)
     direction[0] = section.unit[0]
-    lead = section.stretch(state, direction=direction, periods=BATCH)
-    path = section.stretch(lead.state, direction=lead.direction, periods=BATCHES * BATCH)
-    means = path.growth.reshape(BATCHES, BATCH).mean(axis=1) / section.period
-    value, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(BATCHES))
-    halves = means[: BATCHES // 2].mean(), means[BATCHES // 2 :].mean()
+    lead = section.stretch(state, direction=direction, periods=batch)
+    path = section.stretch(lead.state, direction=lead.direction, periods=batches * batch)
+    means = path.growth.reshape(batches, batch).mean(axis=1) / section.period
+    value, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(batches))
+    error = max(error, ROUNDED / (batches * batch * section.period))
+    halves = means[: batches // 2].mean(), means[batches // 2 :].mean()
     sure = value > 4.0 * error and min(halves) > 0.0
     told = f"largest Lyapunov exponent {value:.4g} +- {error:.2g}"
-    found = Motion(
+    return Motion(
         name="chaotic" if sure else "undecided",
         period=0,
         reason=f"{told} > 0" if sure else f"does not return within {used} periods; {told}",
         state=path.state,
-        used=used + (BATCHES + 1) * BATCH,
+        used=used + (batches + 1) * batch,
         lyapunov=value,
         lyapunov_error=error,
         batches=means,
         exponents=np.array([value]),
     )
-    if sure:
-        return found
-    long = _long(section, found, how) if how.polish and value <= 4.0 * error else None
-    if long is not None or abs(value) > 4.0 * error:
-        return long or found
-    return _turning(section, found, alive)
 
 
-def _turning(section: ReturnMap, motion: Motion, alive: Alive) -> Motion:
+def _long(section: ReturnMap, path: Floats, used: int, how: Search) -> Motion | None:
+    """A motion on a stable orbit of up to :data:`LONGEST` periods, shorter ones among them.
+
+    On a torus some return is close, too, but does not become closer.
+    """
+    tries = 0
+    for lag in range(1, min(LONGEST, (len(path) - BESIDE) // 2) + 1):
+        back = section.distance(path[lag:], path[:-lag])
+        first, last = float(back[:BESIDE].max()), float(back[-BESIDE:].max())
+        if last >= RETURNED or (last >= 1e-9 and last >= 0.3 * first):
+            continue
+        orbit = _closed(section, path[-1], lag)
+        if orbit is not None:
+            off = float(section.distance(orbit.points, path[-1]).min())
+            before = float(section.distance(orbit.points, path[0]).min())
+            if off < 1e-7 or off < 0.7 * before < 0.7 * CLOSE:
+                return _proven(section, orbit, off, used, how)
+        tries += 1
+        if tries == TRIES:
+            break
+    return None
+
+
+def _turning(section: ReturnMap, motion: Motion, path: Floats, alive: Alive) -> Motion:
     """The torus of a motion whose exponent is zero within its error, where one is proven."""
     if section.dimension == 2 and section.determinant(1) < 1.0:
         return motion  # areas shrink at one rate: no closed curve maps onto itself
     state, used = motion.state, motion.used
-    for _ in range(ROUNDS):
-        alive()
-        try:
-            path = section.carry(state, ROUND)
-        except ConvergenceError:
-            return motion
-        state, used = path[-1], used + ROUND
+    for number in range(ROUNDS):
         found = torus(path, unit=section.unit)
         if found is not None and found.proven:
             return _proven_torus(section, replace(motion, state=state, used=used), found)
+        if number == ROUNDS - 1:
+            break
+        alive()
+        # a longer record: a second frequency near a ratio is told from it
+        try:
+            path = section.carry(state, 2 * len(path))
+        except ConvergenceError:
+            break
+        state, used = path[-1], used + len(path)
     return replace(motion, state=state, used=used)
 
 
@@ -276,6 +401,7 @@ def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
     state, growth = leading(section, motion.state, count=2, periods=BATCH + ROUND)
     means = growth[BATCH:].reshape(LONG_BATCHES, -1, 2).mean(axis=1) / section.period
     values, errors = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(LONG_BATCHES)
+    errors = np.maximum(errors, ROUNDED / (ROUND * section.period))
     value, error = float(values[0]), float(errors[0])
     alone = bool(values[1] < -4.0 * errors[1])
     shown = (

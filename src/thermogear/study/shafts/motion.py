@@ -43,6 +43,8 @@ TORUS_ANGLES = 256
 """Steps of the closed curve once around."""
 LONGEST = 4000
 """Mesh periods that a motion is followed for at most where shafts turn forces with them."""
+POLISHED = 256
+"""Mesh periods of the longest cycle whose Jacobian is asked for."""
 TURNS = 4
 """Turns of the slower shaft in a record with forces at shaft orders."""
 ERRORS = 12
@@ -73,14 +75,10 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
         return Moved(state=state)
     train = moving(case, state, coordinates=coordinates, friction=rubbing(case, state))
     cycle = train.model.cycle
-    search = Search()
-    if cycle > 1:
-        # all shafts back in place takes long: no Jacobian over it
-        search = Search(first=3, cap=24, max_period=2, polish=False, exponent=False)
     if cycle > LONGEST:
         found = _followed(train)
     else:
-        found = settle(train.model.return_map(), train.start, search)
+        found = settle(train.model.return_map(), train.start, search_of(cycle))
     if found.name == "diverged":
         return Moved(state=state, train=train, motion=found)
     teeth = max(case.pair.pinion.teeth, case.pair.wheel.teeth)
@@ -96,6 +94,23 @@ def moved(case: GearCase, state: TrainState, *, coordinates: int | None = None) 
         motion=found,
         record=recorded(train, found.state, periods),
         torus_sections=turning,
+    )
+
+
+def search_of(cycle: int) -> Search:
+    """How long a motion is followed whose forces come again after ``cycle`` mesh periods."""
+    if cycle == 1:
+        return Search()
+    if cycle > POLISHED:
+        return Search(first=3, cap=24, max_period=2, polish=False, exponent=False)
+    # as many mesh periods as without
+    whole = Search()
+    return Search(
+        first=max(whole.first // cycle, 1),
+        cap=max(whole.cap // cycle, 24),
+        max_period=4,
+        batch=max(whole.batch // cycle, 1),
+        sections=0,
     )
 
 
