@@ -42,6 +42,8 @@ BATCH = 50
 ROUND = 2048
 ROUNDS = 4
 """Sections that a torus is looked for in, twice as many each of so many times."""
+HOPELESS = 0.3
+"""What a record foretells this badly, a longer one will not: it lies on no closed curve."""
 MORE_BATCHES = 40
 """Batches for an exponent that the first ones leave open."""
 LONG_BATCHES = 16
@@ -384,7 +386,7 @@ def _turning(section: ReturnMap, motion: Motion, path: Floats, alive: Alive) -> 
         found = torus(path, unit=section.unit)
         if found is not None and found.proven:
             return _proven_torus(section, replace(motion, state=state, used=used), found)
-        if number == ROUNDS - 1:
+        if number == ROUNDS - 1 or found is None or found.foretold > HOPELESS:
             break
         alive()
         # a longer record: a second frequency near a ratio is told from it
