@@ -24,6 +24,7 @@ from thermogear.views.pages.lost_words import lost_rows, lost_words
 from thermogear.views.plots.lost_contact import lost_contact_picture
 from thermogear.views.write import page_of
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*foundation of the gear")
 PAIR = """
 [gears]
 module = "3 mm"
@@ -61,8 +62,8 @@ NOTHING = "Nothing loses contact."
 UNKNOWN = "Of no point it is known what loses contact."
 SCATTERED = "The drive flank parts at 17 % of the points."
 SAID = (
-    "The drive flank parts from 3000 rpm on, from 80 °C on; the back flank is hit from 3300 rpm on, "
-    "from 100 °C on; bearing pinion right is unloaded at times up to 40 °C."
+    "The drive flank parts from 3000 rpm on, from 80 °C on; the back flank is hit from 3300 rpm "
+    "on, from 100 °C on; bearing pinion right is unloaded at times up to 40 °C."
 )
 CLASSES = [
     "unloaded at times: pinion left",
@@ -121,7 +122,6 @@ def equal(one: xr.Dataset, other: xr.Dataset) -> None:
         assert one[name].values.tobytes() == other[name].values.tobytes(), name
 
 
-@pytest.mark.filterwarnings("ignore:foundation of the gear")
 def test_a_train_in_stiff_bearings_is_the_pair(compared: Compared) -> None:
     speeds = np.array([100.0, 220.0, 360.0, 500.0]) * RPM
     train = gather(case_diagram(stiff(), "pinion_speed", speeds, branch_period=0, train=FEW))
@@ -207,7 +207,7 @@ def test_what_loses_contact_is_flagged_by_its_share() -> None:
     flags = [float(share) > 0.0 for share in free]
     assert flags[0]
     assert int(found["lost_contact"]) == sum(1 << n for n, flag in enumerate(flags) if flag)
-    assert found["lost_contact"].attrs["flag_meanings"].split()[-1] == "bearing_4"
+    assert found["lost_contact"].attrs["flags"].split()[-1] == "bearing_4"
 
 
 def test_a_map_refines_where_contact_ends() -> None:

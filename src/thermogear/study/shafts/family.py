@@ -276,7 +276,7 @@ class TrainFamily:
         lost = {
             "long_name": "what loses contact, the sum of its flags; 0: nothing, -1: not known",
             "flag_masks": 2 ** np.arange(len(flags), dtype=np.int32),
-            "flag_meanings": " ".join(flags),
+            "flags": " ".join(flags),
         }
         return {
             "greatest_mesh_force": one("greatest force of the drive flanks", "N"),
