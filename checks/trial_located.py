@@ -202,8 +202,8 @@ orphan: true
 
 Made by `make trial-located`, seed {SEED}: {VALUES} settled values of the mesh frequency a train,
 each from the last state of the one before. The branch is followed to its first fold, period
-doubling or torus; the sweep until its label, or its orbit, is another. *Steps apart*: by how many steps later
-(above 0) or earlier the sweep leaves the branch than in the step with the event.
+doubling or torus; the sweep until its label, or its orbit, is another. *Steps apart*: by how many
+steps later (above 0) or earlier the sweep leaves the branch than in the step with the event.
 
 | train | first event, over the first frequency | settled labels | steps apart |
 |---|---|---|---|

@@ -13,8 +13,8 @@ from tests.dynamics.geared_trains import moving_six
 from tests.dynamics.test_geared_truth import TRUTH
 
 from thermogear.analysis.bifurcations import FLIP, FOLD, GRAZING, PITCHFORK, TORUS
-from thermogear.analysis.continuation import Branch, continuation, family_of
-from thermogear.analysis.event_curve import event_curve
+from thermogear.analysis.continuation import SHRUNK, Branch, continuation, family_of
+from thermogear.analysis.event_curve import REACHED, event_curve
 from thermogear.analysis.orbits import periodic_orbit, shoot
 from thermogear.base.errors import InputError
 from thermogear.dynamics.models import TorsionalModel
@@ -66,7 +66,7 @@ def test_thermal_stiffness_is_removed_by_scaling(
         event, scaled, ("frequency", "thermal_stiffness"), start=0.0,
         asked=[0.0, 0.1, 0.25, 0.4], limits=(0.3, 2.0),
     )  # fmt: skip
-    assert curve.ended == "reached the end"
+    assert curve.ended == REACHED
     assert curve.values[curve.asked, 1].tolist() == [0.0, 0.1, 0.25, 0.4]
     law = event.value * np.sqrt(1.0 + curve.values[:, 1])
     worst = float(np.abs(curve.values[:, 0] / law - 1.0).max())
@@ -88,7 +88,7 @@ def test_the_first_tongue_of_hills_equation(compared: Compared) -> None:
         ("frequency", "stiffness_amplitude"), start=0.2, asked=[0.05], limits=(1.7, 2.4),
     )  # fmt: skip
     assert len(curve.turns) == 1
-    assert curve.ended == "came back to stiffness_amplitude = 0.2"
+    assert curve.values[-1, 1] == pytest.approx(0.2)
     tip = float(curve.values[:, 1].min())
     # the next term is of the order zeta^2
     assert tip == pytest.approx(4.0 * model.damping_ratio, rel=0.01)
@@ -114,7 +114,7 @@ def test_folds_that_meet_in_a_cusp_are_one_curve() -> None:
         lower, lambda w, zeta: FORCED.replace(frequency=w, damping_ratio=zeta),
         ("frequency", "damping_ratio"), start=0.05, asked=[0.05, 0.08, 0.12], limits=(0.3, 1.0),
     )  # fmt: skip
-    assert curve.ended == "came back to damping_ratio = 0.05"
+    assert curve.values[-1, 1] == pytest.approx(0.05)
     assert len(curve.turns) == 1
     assert curve.values[-1, 0] == pytest.approx(upper.value, rel=1e-9)
     # a straight line between neighbours is not far from the points computed
@@ -156,7 +156,7 @@ def test_a_neimark_sacker_point_in_a_second_parameter(compared: Compared) -> Non
         branch.of_kind(TORUS)[0], lambda e, rpm: train(e, rpm)[0], ("eps", "speed"), start=1.0,
         asked=speeds, limits=(0.03, 0.2),
     )  # fmt: skip
-    assert curve.ended == "reached the end"
+    assert curve.ended == REACHED
     assert curve.stable.all()
     first = curve.values[0, 0] - TRUTH["Q1"]["values"]["eps"]
     compared("Neimark-Sacker curve where it begins", "truth Q1", first, 1e-6)
@@ -198,5 +198,4 @@ def test_mirror_motions_of_a_long_state_meet_in_a_pitchfork(side: float) -> None
     assert [one.kind for one in branch.bifurcations] == [PITCHFORK]
     # v^3 closes to 1e-10, so that v is known to some 1e-3 there and p = v^2 to its square
     assert branch.bifurcations[0].value == pytest.approx(0.0, abs=1e-5)
-    told = "the orbit became its own mirror image" if side else "reached the end"
-    assert branch.ended == told
+    assert branch.ended == (SHRUNK[PITCHFORK] if side else REACHED)

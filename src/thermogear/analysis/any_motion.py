@@ -445,7 +445,7 @@ def leading(
             visit = section.visit(state)
             state, turned = visit.points[-1], visit.jacobian @ (frame * unit)
         else:
-            state, turned = run(state, frame * unit)
+            state, turned = run(state, directions=frame * unit)
         frame, upper = np.linalg.qr(turned / unit)
         growth[number] = np.log(np.maximum(np.abs(np.diag(upper)), 1e-300))
     return state, growth

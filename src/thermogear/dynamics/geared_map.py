@@ -121,7 +121,7 @@ class GearedMap:
             growth[number], along, state = np.log(size), along / size, run.state
         return Stretch(state=state, direction=along * self.unit, growth=growth)
 
-    def spread(self, start: Floats, directions: Floats) -> tuple[Floats, Floats]:
+    def spread(self, start: Floats, *, directions: Floats) -> tuple[Floats, Floats]:
         """State (d,) and tangent vectors (d, count) one cycle later."""
         run = self.engine.run(start, self.model.cycle, directions=directions.T)
         return run.state, run.directions.T

@@ -287,7 +287,7 @@ def continue_(
         if train:
             from thermogear.study.shafts.branches import VALUES, Trains, train_branch_results
 
-            trains = Trains.of(case, point, options["operating"], coordinates)
+            trains = Trains.of(case, point, operating=options["operating"], coordinates=coordinates)
             return train_branch_results(
                 trains, name, end, begin=first, start=_start(options["start"]), period=period,
                 transient=not direct, switch=switch, count=VALUES if values is None else values,

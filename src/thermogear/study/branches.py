@@ -75,7 +75,7 @@ def branch_results(
     models = point.along(varied.name) if plane is None else plane.models
     require_depth(switch)
     orbit, _ = orbit_of(point, period, transient=transient, model=models(begin))
-    legs, cut = walked(orbit, varied, models, begin, to, switch, progress)
+    legs, cut = walked(orbit, varied, models, begin=begin, to=to, switch=switch, progress=progress)
     curves: list[EventCurve] = []
     notices: list[str] = []
     if plane is not None and not cut:
@@ -101,6 +101,7 @@ def walked(
     orbit: Orbit,
     varied: Parameter,
     models: Models,
+    *,
     begin: float,
     to: float,
     switch: int,

@@ -52,7 +52,7 @@ class Trains:
 
     @classmethod
     def of(
-        cls, case: GearCase, point: OnePoint, operating: int | None, coordinates: int | None
+        cls, case: GearCase, point: OnePoint, *, operating: int | None, coordinates: int | None
     ) -> Trains:
         """The train of ``case`` where ``point`` is, its ``operating`` point counted from 1."""
         family = TrainFamily(
@@ -142,7 +142,7 @@ def train_branch_results(
     progress("settling", 0, 1)
     orbit, motion = train_orbit(models(first), start, period, transient=transient)
     progress("settling", 1, 1)
-    legs, cut = walked(orbit, varied, models, first, to, switch, progress)
+    legs, cut = walked(orbit, varied, models, begin=first, to=to, switch=switch, progress=progress)
     curves: list[EventCurve] = []
     notices: list[str] = []
     if plane is not None and not cut:
