@@ -1,12 +1,12 @@
 """Random drive trains: located bifurcations against a fine settled sweep, and what a proof costs.
 
-``make trial-located`` moves 24 random drive trains (seed fixed before the first run) over their
+``make trial-located`` moves six random drive trains (seed fixed before the first run) over their
 mesh frequency, in steps from one settled motion to the next, follows their periodic motion with
 :func:`continuation`, and asks of every located fold, period doubling and torus of a stable orbit
 whether the settled label changes between the two neighbouring values of the sweep. It then measures
 processor time of a settled motion, a closed orbit with multipliers and a located event for trains
-of 6, 12, 30 and 60 coordinates. It writes docs/trial_located.md;
-``python checks/trial_located.py 2`` prints a short one.
+of 6, 12, 30 and 60 coordinates. It writes docs/trial_located.md; ``python checks/trial_located.py 2``
+prints a short one.
 """
 
 from __future__ import annotations
@@ -220,7 +220,7 @@ Processor seconds of one core on a shared machine.
 
 def main() -> None:
     """Print, and without a number of trains write, both tables."""
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 24
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 6
     random = np.random.default_rng(SEED)
     text, worst, seen, number = HEAD, 0, 0, 0
     while seen < count and number < 10 * count:
