@@ -5,8 +5,8 @@ mesh frequency, in steps from one settled motion to the next, follows their peri
 :func:`continuation`, and asks of every located fold, period doubling and torus of a stable orbit
 whether the settled label changes between the two neighbouring values of the sweep. It then measures
 processor time of a settled motion, a closed orbit with multipliers and a located event for trains
-of 6, 12, 30 and 60 coordinates. It writes docs/trial_located.md; ``python checks/trial_located.py 2``
-prints a short one.
+of 6, 12, 30 and 60 coordinates. It writes docs/trial_located.md;
+``python checks/trial_located.py 2`` prints a short one.
 """
 
 from __future__ import annotations
