@@ -13,6 +13,7 @@ from thermogear.views.picture import Picture
 from thermogear.views.plots import (
     bearings,
     claims,
+    event_plane,
     flanks,
     gears,
     laws,
@@ -20,6 +21,7 @@ from thermogear.views.plots import (
     lost_contact,
     one_motion,
     relief,
+    rig_trains,
     shafts,
     speeds,
     sweeps,
@@ -286,6 +288,40 @@ def of_claims() -> dict[str, Picture]:
     }
 
 
+def of_sampled_rigs() -> dict[str, Picture]:
+    places, speeds = ["cap", "teeth"], np.array([100.0, 200.0, 300.0])
+    spread = np.linspace(1e-7, 5e-5, 18).reshape(2, 3, 3)
+    data = xr.Dataset(
+        {
+            "spread": (("place", "rig_speed", "quantile"), spread),
+            "nearest": (("place", "train", "rig_speed"), spread),
+            "printed": ("rig_speed", np.array([1e-5, 2e-5, 5e-5])),
+            "place_words": ("place", ["on a cap", "of the teeth"]),
+            "needed_factor": (("seen", "train"), np.array([[2.0, 5.0, 70.0], [3.0, 9.0, 40.0]])),
+            "seen_words": ("seen", ["on a cap", "of the teeth"]),
+            "rank": (("target", "input"), np.array([[0.8, -0.5, 0.0], [0.1, 0.3, -0.9]])),
+            "rank_error": (("target", "input"), np.full((2, 3), 0.05)),
+            "target_words": ("target", ["how far off", "largest"]),
+            "input_words": ("input", ["face width", "torque", "error"]),
+        },
+        coords={"place": places, "seen": places, "rig_speed": speeds},
+        attrs={"near": 1.5},
+    )
+    return {
+        "rig-displacements": rig_trains.displacements(data),
+        "rig-factors": rig_trains.factors(data),
+        "rig-ranks": rig_trains.ranks(data),
+    }
+
+
+def of_planes() -> dict[str, Picture]:
+    about = {"kind": "fold", "first": "frequency", "second": "damping_ratio", "period": 1}
+    curve = made("point", "first", "second").assign(
+        stable=("point", np.array([1, 0])), asked=("point", np.array([1, 1]))
+    )
+    return {"event-plane": event_plane.plane_picture([curve.assign_attrs(about)])}
+
+
 def of_moving_trains() -> dict[str, Picture]:
     heat, two = ["undeformed", "hot"], ["left", "right"]
     rng = np.random.default_rng(5)
@@ -408,4 +444,5 @@ def of_shafts() -> dict[str, Picture]:
 
 def every() -> dict[str, Picture]:
     """All of them by name."""
-    return of_sweeps() | of_orbits() | of_surveys() | of_claims() | of_shafts()
+    gears = of_sweeps() | of_orbits() | of_surveys() | of_shafts()
+    return gears | of_claims() | of_sampled_rigs() | of_planes()
