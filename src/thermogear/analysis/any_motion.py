@@ -399,13 +399,22 @@ def _turning(section: ReturnMap, motion: Motion, path: Floats, alive: Alive) -> 
 
 
 def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
-    """A motion on a closed curve, if its exponent is zero over a longer run, too."""
-    state, growth = leading(section, motion.state, count=2, periods=BATCH + ROUND)
-    means = growth[BATCH:].reshape(LONG_BATCHES, -1, 2).mean(axis=1) / section.period
-    values, errors = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(LONG_BATCHES)
-    errors = np.maximum(errors, ROUNDED / (ROUND * section.period))
-    value, error = float(values[0]), float(errors[0])
-    alone = bool(values[1] < -4.0 * errors[1])
+    """A motion on a closed curve, if its exponent is zero over a longer run, too.
+
+    A second exponent that is negative, and not yet surely so, is followed eight times as long.
+    """
+    state, frame, _ = leading(section, motion.state, np.eye(section.dimension, 2), BATCH)
+    growth = np.empty((0, 2))
+    for periods in (ROUND, 7 * ROUND):
+        state, frame, more = leading(section, state, frame, periods)
+        growth = np.vstack([growth, more])
+        means = growth.reshape(LONG_BATCHES, -1, 2).mean(axis=1) / section.period
+        values, errors = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(LONG_BATCHES)
+        errors = np.maximum(errors, ROUNDED / (len(growth) * section.period))
+        value, error = float(values[0]), float(errors[0])
+        alone = bool(values[1] < -4.0 * errors[1])
+        if alone or values[1] >= 0.0 or abs(value) > 4.0 * error:
+            break
     shown = (
         f"largest Lyapunov exponent {value:.4g} +- {error:.2g}, second {values[1]:.4g} +- "
         f"{errors[1]:.2g}; sections on a closed curve, second base frequency "
@@ -419,7 +428,7 @@ def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
         name="quasi-periodic" if alone and abs(value) <= 4.0 * error else "undecided",
         reason=shown,
         state=state,
-        used=motion.used + BATCH + ROUND,
+        used=motion.used + BATCH + len(growth),
         lyapunov=value,
         lyapunov_error=error,
         batches=means[:, 0],
@@ -429,16 +438,17 @@ def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
 
 
 def leading(
-    section: ReturnMap, start: Floats, *, count: int, periods: int
-) -> tuple[Floats, Floats]:
-    """The last state (d,) and ln of the growth (periods, count) in the directions that grow most.
+    section: ReturnMap, start: Floats, frame: Floats, periods: int
+) -> tuple[Floats, Floats, Floats]:
+    """The last state (d,), the last frame and ln of the growth (periods, count) of its directions.
 
-    Tangent vectors are made orthonormal after every period (Benettin's way), in units of the map:
-    the means of the columns over the period's duration are the leading Lyapunov exponents.
+    ``frame`` (d, count): tangent vectors, made orthonormal after every period (Benettin's way), in
+    units of the map; they turn to the directions that grow most, and the means of the columns over
+    the period's duration are the leading Lyapunov exponents.
     """
     run = getattr(section, "spread", None)
-    state, frame = np.asarray(start, dtype=float), np.eye(section.dimension, count)
-    growth = np.zeros((periods, count))
+    state = np.asarray(start, dtype=float)
+    growth = np.zeros((periods, frame.shape[1]))
     unit = section.unit[:, None]
     for number in range(periods):
         if run is None:
@@ -448,4 +458,4 @@ def leading(
             state, turned = run(state, directions=frame * unit)
         frame, upper = np.linalg.qr(turned / unit)
         growth[number] = np.log(np.maximum(np.abs(np.diag(upper)), 1e-300))
-    return state, growth
+    return state, frame, growth
