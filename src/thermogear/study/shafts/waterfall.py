@@ -29,7 +29,7 @@ from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
-from thermogear.study.notices import finished
+from thermogear.study.notices import finished, up_and_down
 from thermogear.study.shafts.campbell import critical_speeds
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import HARMONICS, SAMPLES, lines, shown
@@ -379,11 +379,7 @@ class WaterfallPlan:
             f"{100.0 * error:.2g} %",
         ]
         if rows:
-            told_all.append(
-                f"up and down differ on {len(rows)} stretch{'es' * (len(rows) > 1)} of speed; on "
-                f"{held} of them two motions exist at a steady speed too, so that a run jumps at "
-                "its ends, on the others the difference is the rate's"
-            )
+            told_all.append(up_and_down(len(rows), held))
         else:
             told_all.append(f"up and down agree between {low:.6g} and {high:.6g} rpm: no jump")
         return data.assign_attrs(
