@@ -122,7 +122,15 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
 
 def _in_words(data: xr.Dataset) -> xr.Dataset:
     """The same with the words of its flags in place of their numbers."""
-    words = {}
+    words: dict[Any, Any] = {}
+    for name, variable in data.coords.items():
+        if "names" in variable.attrs and variable.dims == (name,):
+            words[name] = (variable.dims, json.loads(variable.attrs["names"]))
+    if "state" in data.dims and "state_names" in data.attrs:
+        words["state"] = (("state",), json.loads(data.attrs["state_names"]))
+    if "direction" in data.coords:
+        ways = np.where(data["direction"].values > 0, "up", "down")
+        words["direction"] = (("direction",), ways)
     for name, variable in data.data_vars.items():
         if "flag_meanings" in variable.attrs:
             meanings = np.array([*str(variable.attrs["flag_meanings"]).split(), "unknown"])

@@ -161,7 +161,7 @@ class WaterfallPlan:
             attributes = {"long_name": words, "units": units}
             return Variable((*dims, *inner), "float64", float("nan"), attributes)
 
-        flags = {"long_name": "0: moved, else as the flags of status say"}
+        flags = {"long_name": "whether it moved", "flag_meanings": " ".join(STATUS)}
         return {
             "status": Variable(dims, "int8", STATUS.index("not_converged"), flags),
             "mesh_force_rms": real("vibration of the drive flanks' force, rms", "N"),
@@ -187,7 +187,10 @@ class WaterfallPlan:
         speed = {"units": "rad/s", "long_name": "pinion speed"}
         order = {"units": "1", "long_name": "order of the mesh frequency"}
         way = {"long_name": "direction of the run: 1 up, -1 down"}
+        names = json.dumps(plan_of(self.case).bearing_names)
+        bearings = np.arange(1, self.sizes["bearing"] + 1)
         return {
+            "bearing": (("bearing",), bearings, {"long_name": "bearing", "names": names}),
             "direction": (("direction",), np.array(DIRECTIONS, np.int8), way),
             "pinion_speed": (("pinion_speed",), np.array(self.speeds), speed),
             "order": (("order",), self.orders, order),
