@@ -105,3 +105,19 @@ def test_no_text_is_a_formula_or_a_tag() -> None:
     shown = Result.of("gear", "<script>x</script>", {}, ["<b>"])._repr_html_()
     assert not re.search(r"<script|<b>(?!&lt;)(?=<)", shown)
     assert "&lt;script&gt;" in shown
+
+
+def test_sums_of_flags_and_bearings_are_words_and_columns() -> None:
+    import xarray as xr
+
+    from thermogear.results.tables import frames, spread
+
+    lost = ("speed", [0, 5, -1], {"flags": "drive back left", "flag_masks": [1, 2, 4]})
+    force = (("speed", "bearing"), [[1.0], [2.0], [3.0]], {"units": "N"})
+    bearing = ("bearing", [1], {"names": '["left end"]'})
+    data = xr.Dataset(
+        {"lost": lost, "force": force}, {"speed": [1.0, 2.0, 3.0], "bearing": bearing}
+    )
+    table = frames(spread(data))[("speed",)]
+    assert [one.split() for one in table["lost"]] == [["none"], ["drive", "left"], ["unknown"]]
+    assert table["force_left_end [N]"].tolist() == [1.0, 2.0, 3.0]

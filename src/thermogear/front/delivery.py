@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -77,6 +77,17 @@ def load(path: str, changes: tuple[str, ...]) -> GearCase | DimensionlessCase:
     from thermogear.case.case import load_case
 
     return load_case(Path(path), changes)
+
+
+def heat_once(axes: Collection[str], state: str | None) -> None:
+    """Refuse ``--state`` beside an axis of gear temperatures: neither says which one is meant."""
+    if "gear_temperature" in axes and state is not None:
+        raise InputError(
+            "--state",
+            state,
+            why="the gear temperature itself is varied here",
+            fix="leave out --state, or the temperature",
+        )
 
 
 def load_gears(path: str, changes: tuple[str, ...]) -> GearCase:

@@ -69,7 +69,9 @@ def _train(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-def _train_of(case: GearCase | DimensionlessCase, options: dict[str, Any], seen: str = "") -> Any:
+def _train_of(
+    case: GearCase | DimensionlessCase, options: dict[str, Any], plane: str | None = None
+) -> Any:
     """What is asked of the case's drive train; None where its gears alone are meant."""
     from thermogear.study.diagrams import Train
 
@@ -81,8 +83,9 @@ def _train_of(case: GearCase | DimensionlessCase, options: dict[str, Any], seen:
         )
     if has and not rigid:
         number = 1 if asked["operating"] is None else asked["operating"]
+        seen = "" if plane in (None, "teeth") else plane or " "
         return Train(operating=number - 1, coordinates=asked["coordinates"], seen=seen)
-    for name, value in (*asked.items(), ("plane", seen or None)):
+    for name, value in (*asked.items(), ("plane", plane)):
         if value is not None:
             why = "--rigid leaves the shafts out" if rigid else "CASE has no [[shafts]]"
             raise InputError(f"--{name}", value, why=why, fix="leave it out")
@@ -137,6 +140,7 @@ def bifurcation(
     if len(over) != 1:
         raise InputError("over", f"{len(over)} parameters", allowed="one for a diagram")
     name, values = parse_axis(read, over[0])
+    delivery.heat_once([name], options["state"])
     begin = tuple(_pair_of(text) for text in starts)
     train = _train_of(read, options)
     changes = parse_numbers(but)
@@ -208,6 +212,7 @@ def map_(
     if len(over) != 2:
         raise InputError("over", f"{len(over)} parameters", allowed="two for a map")
     axes = parse_axes(read, over)
+    delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
     changes, train = parse_numbers(but), _train_of(read, options)
     plan: Plan
@@ -241,7 +246,7 @@ def basins(
 
     read = delivery.load(case, options["overrides"])
     bundle, state = _choice(read, options)
-    train = _train_of(read, options, "" if plane in (None, "teeth") else plane)
+    train = _train_of(read, options, plane)
     usual = "-2:2:401" if train is None else "-2:2:25"
     plan = case_basins(
         read, x=_grid("x", x or usual), v=_grid("v", v or usual), bundle=bundle, state=state,
@@ -297,6 +302,7 @@ def sweep(case: str, over: tuple[str, ...], output: str, as_json: bool, **option
 
     read = delivery.load_gears(case, options["overrides"])
     axes = parse_axes(read, over)
+    delivery.heat_once(axes, options["state"])
     bundle, state = _choice(read, options)
     plan = sweep_plan(read, axes, bundle=bundle, state=state)
     _carry(plan, Path(output), read.title, as_json, options)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thermogear.base.display import display
 from thermogear.base.errors import InputError
@@ -66,7 +68,7 @@ def points(groups: Iterable[xr.Dataset]) -> xr.Dataset:
     """
     import xarray as xr
 
-    every = list(groups)
+    every = [spread(data) for data in groups]
     counts: dict[frozenset[str], int] = {}
     for data in every:
         for variable in data.data_vars.values():
@@ -83,6 +85,20 @@ def points(groups: Iterable[xr.Dataset]) -> xr.Dataset:
     return xr.merge(kept, combine_attrs="drop_conflicts", compat="no_conflicts")
 
 
+def spread(data: xr.Dataset, dim: str = "bearing") -> xr.Dataset:
+    """What every ``bearing`` has of a point as variables of the point, one for each by its name."""
+    if dim not in data.dims or "names" not in data[dim].attrs:
+        return data
+    names = [one.replace(" ", "_") for one in json.loads(data[dim].attrs["names"])]
+    own = {
+        f"{name}_{word}": variable.isel({dim: place})
+        for name, variable in data.data_vars.items()
+        if dim in variable.dims
+        for place, word in enumerate(names)
+    }
+    return data.assign({name: one.drop_vars(dim) for name, one in own.items()})
+
+
 def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
     frame = _in_words(data).to_dataframe().reset_index()
     dims = [name for name in map(str, data.dims) if name in frame.columns]
@@ -90,7 +106,7 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
     frame = frame[[*first, *(name for name in map(str, frame.columns) if name not in first)]]
     heads = {}
     for column in map(str, frame.columns):
-        if column not in data.variables or "flag_meanings" in data[column].attrs:
+        if column not in data.variables or {"flag_meanings", "flags"} & set(data[column].attrs):
             continue
         unit = str(data[column].attrs.get("units", ""))
         # a time of minutes is no number of milliseconds
@@ -106,11 +122,38 @@ def _frame(data: xr.Dataset, units: str) -> pd.DataFrame:
 
 def _in_words(data: xr.Dataset) -> xr.Dataset:
     """The same with the words of its flags in place of their numbers."""
-    words = {}
+    words: dict[Any, Any] = {}
+    for name, variable in data.coords.items():
+        if "names" in variable.attrs and variable.dims == (name,):
+            words[name] = (variable.dims, json.loads(variable.attrs["names"]))
+    if "state" in data.dims and "state_names" in data.attrs:
+        words["state"] = (("state",), json.loads(data.attrs["state_names"]))
+    if "direction" in data.coords:
+        ways = np.where(data["direction"].values > 0, "up", "down")
+        words["direction"] = (("direction",), ways)
     for name, variable in data.data_vars.items():
         if "flag_meanings" in variable.attrs:
             meanings = np.array([*str(variable.attrs["flag_meanings"]).split(), "unknown"])
             places = variable.values.astype(int)
             known = (places >= 0) & (places < meanings.size - 1)
             words[name] = (variable.dims, meanings[np.where(known, places, -1)])
+        elif "flag_masks" in variable.attrs and "flags" in variable.attrs:
+            words[name] = (variable.dims, _sums(variable))
     return data.assign(words)
+
+
+def _sums(variable: xr.DataArray) -> NDArray[np.object_]:
+    """The words of a sum of flags, with spaces between; "none", and "unknown" below zero."""
+    flags = list(
+        zip(str(variable.attrs["flags"]).split(), variable.attrs["flag_masks"], strict=True)
+    )
+    told = {
+        int(value): "unknown"
+        if value < 0
+        else " ".join(word for word, mask in flags if int(value) & int(mask)) or "none"
+        for value in np.unique(variable.values)
+    }
+    found = np.empty(variable.shape, dtype=object)
+    for place, value in np.ndenumerate(variable.values):
+        found[place] = told[int(value)]
+    return found

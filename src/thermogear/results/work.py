@@ -33,6 +33,11 @@ if TYPE_CHECKING:
 WORKSPACE = 48 * 2**20
 """Bytes that one thread's kernels and maps take, about."""
 
+BRIEF, LONG = 1.0, 10.0
+"""Seconds of the first points of an estimate: below the one it looks at as many as it likes, below
+the other at a few, else those must do."""
+FEW = 8
+
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
@@ -78,17 +83,22 @@ def estimate(plan: Plan, *, threads: int | None = None, pilot: int = 64) -> Esti
     """What ``plan`` will take, from its sizes and from ``pilot`` points computed now.
 
     Points near borders cost more than others and refinement saves some: the time is a guess
-    within a factor of about 3. ``pilot`` 0 leaves it out (infinite).
+    within a factor of about 3. Of points that take long a few are computed, not ``pilot``.
+    ``pilot`` 0 leaves it out (infinite).
     """
     count = threads or os.cpu_count() or 1
     size = bytes_of(plan)
     chunks = math.prod(-(-plan.sizes[name] // length) for name, length in plan.cuts.items())
     seconds = float("inf")
     if pilot > 0:
-        plan.pilot(2)  # loads the compiled kernels
         begun = time.perf_counter()
-        run = plan.pilot(pilot)
-        each = (time.perf_counter() - begun) / max(run, 1)
+        run = plan.pilot(2)  # loads the compiled kernels
+        took = time.perf_counter() - begun
+        if took < LONG:
+            begun = time.perf_counter()
+            run = plan.pilot(pilot if took < BRIEF else FEW)
+            took = time.perf_counter() - begun
+        each = took / max(run, 1)
         seconds = each * points_of(plan) / count
     return Estimate(
         points=points_of(plan),

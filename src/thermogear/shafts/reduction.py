@@ -85,23 +85,30 @@ def interface_of(assembly: Assembly) -> tuple[str, ...]:
     return tuple(assembly.coordinates[row] for row in sorted(wanted))
 
 
+def usual(assembly: Assembly, modes: int) -> int:
+    """So many coordinates: the interface and ``modes``, or all where a train has fewer."""
+    return min(len(interface_of(assembly)) - 1 + modes, assembly.size - 1)
+
+
 def reduced(assembly: Assembly, coordinates: int | None = None) -> Reduction:
     """The train in ``coordinates`` of them; left out: all, with the rigid rotation dropped.
 
     At least the interface is kept, less one for the rotation. Raises InputError for a number below
-    that, or where a motion is free with the interface held.
+    that or above all, or where a motion is free with the interface held.
     """
     names = interface_of(assembly)
     kept = np.array([assembly.index[name] for name in names], dtype=int)
     rest = np.setdiff1d(np.arange(assembly.size), kept)
     least, most = kept.size - 1, assembly.size - 1
-    wanted = most if coordinates is None else min(coordinates, most)
-    if wanted < least:
+    wanted = most if coordinates is None else coordinates
+    if not least <= wanted <= most:
         raise InputError(
             "coordinates",
             coordinates,
             allowed=f"{least}..{most}",
-            why="gears and bearings with clearance are kept",
+            why="gears and bearings with clearance are kept"
+            if wanted < least
+            else "the whole train has no more",
         )
     stiff = assembly.stiffness.copy()
     for place in assembly.bearings:

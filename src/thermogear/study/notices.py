@@ -216,3 +216,13 @@ def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:
     }
     parts = ((law.name, 100.0 * float(np.mean(beyond(law, values)))) for law in LUBRICATED)
     return [f"{name} on {part:.0f} % of the path" for name, part in parts if part > 0.0]
+
+
+def up_and_down(count: int, held: int) -> str:
+    """That a run-up and a run-down differ on ``count`` stretches, on ``held`` of them to stay."""
+    rate = "the difference comes from the rate of the run"
+    words = f"up and down differ on {count} stretch{'es' * (count > 1)} of speed; "
+    if not held:
+        return f"{words}at a steady speed no second motion was found there, {rate}"
+    jumps = "two motions exist at a steady speed too, so that a run jumps at its ends"
+    return f"{words}on {held} of them {jumps}{f'; on the others {rate}' * (held < count)}"

@@ -74,7 +74,12 @@ def _fixed(result: Result) -> Iterator[str]:
     bundle = " and ".join(bundles) if bundles else result.text("bundle")
     if bundle:
         yield f"{bundle} bundle"
-    for name, value in result.table("model").items():
+    model = result.table("model")
+    if "mesh_frequency" in model:  # a drive train, in SI
+        yield f"mesh frequency {number(float(model['mesh_frequency']), 4)} Hz"
+        yield f"half backlash {number(1e6 * float(model['half_backlash']), 4)} µm"
+        model = {}
+    for name, value in model.items():
         if name in MODEL and isinstance(value, int | float):
             yield f"{MODEL[name]} {number(float(value), 4)}"
     changes = [f"{path} = {value}" for path, value in result.values("overrides")]

@@ -26,7 +26,7 @@ from thermogear.dynamics.between import between
 from thermogear.dynamics.geared import GearedModel
 from thermogear.dynamics.ladder import Engine
 from thermogear.shafts.assembly import Assembly
-from thermogear.shafts.reduction import Reduction, interface_of, reduced
+from thermogear.shafts.reduction import Reduction, reduced, usual
 from thermogear.study.shafts.moving import HELD_MODES, MovingTrain, moving, rubbing, shaft_orders
 from thermogear.study.shafts.record import SAMPLES, shown
 from thermogear.study.shafts.state import TrainState, plan_of, settled
@@ -133,9 +133,8 @@ class TrainFamily:
     def _reference(self) -> Reduction:
         """The coordinates of every row: those of the case as it stands."""
         assembly = self._at_rest({}, self.state).assembly
-        least = len(interface_of(assembly)) - 1
-        wanted = least + HELD_MODES if self.coordinates is None else self.coordinates
-        return reduced(assembly, wanted)
+        wanted = self.coordinates
+        return reduced(assembly, usual(assembly, HELD_MODES) if wanted is None else wanted)
 
     def _case_with(self, values: Mapping[str, float]) -> GearCase:
         """The one-point case with parameters put to other ``values`` [SI]."""

@@ -16,7 +16,7 @@ from thermogear.dynamics.geared import GearedModel, LocalBearing, OuterForce, Wo
 from thermogear.mesh.tooth_friction import friction_split
 from thermogear.shafts.assembly import Assembly
 from thermogear.shafts.bearings.laws import ElementLaw, RingLaw
-from thermogear.shafts.reduction import Reduction, interface_of, reduced
+from thermogear.shafts.reduction import Reduction, reduced, usual
 from thermogear.shafts.response import run_out_errors, unbalance_pull
 from thermogear.shafts.train import SHAFTS
 from thermogear.study.shafts.state import TrainState, plan_of
@@ -84,8 +84,8 @@ def moving(
     assembly, rest = state.assembly, state.rest
     kept = reduction
     if kept is None:
-        least = len(interface_of(assembly)) - 1
-        kept = reduced(assembly, least + HELD_MODES if coordinates is None else coordinates)
+        most = usual(assembly, HELD_MODES)
+        kept = reduced(assembly, most if coordinates is None else coordinates)
     linear = rest.linear()
     omega = assembly.frame.sense * state.speed
     stiffness, bearings = _bearings(state, kept)

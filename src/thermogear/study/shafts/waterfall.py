@@ -29,7 +29,7 @@ from thermogear.dynamics.geared_map import GearedMap
 from thermogear.dynamics.ladder import Engine, Steps
 from thermogear.results.result import Result
 from thermogear.results.work import Report, carry_out
-from thermogear.study.notices import finished
+from thermogear.study.notices import finished, up_and_down
 from thermogear.study.shafts.campbell import critical_speeds
 from thermogear.study.shafts.moving import MovingTrain, moving, rubbing
 from thermogear.study.shafts.record import HARMONICS, SAMPLES, lines, shown
@@ -161,7 +161,7 @@ class WaterfallPlan:
             attributes = {"long_name": words, "units": units}
             return Variable((*dims, *inner), "float64", float("nan"), attributes)
 
-        flags = {"long_name": "0: moved, else as the flags of status say"}
+        flags = {"long_name": "whether it moved", "flag_meanings": " ".join(STATUS)}
         return {
             "status": Variable(dims, "int8", STATUS.index("not_converged"), flags),
             "mesh_force_rms": real("vibration of the drive flanks' force, rms", "N"),
@@ -187,7 +187,10 @@ class WaterfallPlan:
         speed = {"units": "rad/s", "long_name": "pinion speed"}
         order = {"units": "1", "long_name": "order of the mesh frequency"}
         way = {"long_name": "direction of the run: 1 up, -1 down"}
+        names = json.dumps(plan_of(self.case).bearing_names)
+        bearings = np.arange(1, self.sizes["bearing"] + 1)
         return {
+            "bearing": (("bearing",), bearings, {"long_name": "bearing", "names": names}),
             "direction": (("direction",), np.array(DIRECTIONS, np.int8), way),
             "pinion_speed": (("pinion_speed",), np.array(self.speeds), speed),
             "order": (("order",), self.orders, order),
@@ -379,11 +382,7 @@ class WaterfallPlan:
             f"{100.0 * error:.2g} %",
         ]
         if rows:
-            told_all.append(
-                f"up and down differ on {len(rows)} stretch{'es' * (len(rows) > 1)} of speed; on "
-                f"{held} of them two motions exist at a steady speed too, so that a run jumps at "
-                "its ends, on the others the difference is the rate's"
-            )
+            told_all.append(up_and_down(len(rows), held))
         else:
             told_all.append(f"up and down agree between {low:.6g} and {high:.6g} rpm: no jump")
         return data.assign_attrs(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.base.vocabulary import FASTER_RULE
 from thermogear.results.result import Result
-from thermogear.views.pages.lost_words import lost_rows
+from thermogear.views.pages.lost_words import lost_line, lost_rows
 from thermogear.views.plots.lost_contact import has_lost
 from thermogear.views.plots.parameters import shown
 
@@ -147,7 +147,9 @@ def lines(result: Result) -> list[str]:
     """The same as a terminal shows it."""
     found = []
     for name, value in numbers(result).items():
-        if isinstance(value, list):
+        if name == "lost_contact":
+            found += [f"- {lost_line(row)}" for row in value] or ["- nothing loses contact"]
+        elif isinstance(value, list):
             found += [f"- {row if isinstance(row, str) else _line(row)}" for row in value]
         else:
             found.append(f"{name}: {_line(value) if isinstance(value, dict) else value}")

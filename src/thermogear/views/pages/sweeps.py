@@ -79,13 +79,15 @@ def page(result: Result) -> Page:
 def _summary(data: xr.Dataset) -> str:
     kind = str(data.attrs["kind"])
     if "label" in data:
-        code = sweeps.classes_of(data)
-        parts = [
-            f"{sweeps.CLASSES[n][0]} {100.0 * np.mean(code == n):.3g} %" for n in np.unique(code)
-        ]
-        words = f"{TITLES[kind]}, {code.size} points: " + ", ".join(parts) + "."
-        lost = lost_words(data)
-        return f"{f'{lost} ' * bool(lost)}{finding(data)} {words} {FASTER_RULE.capitalize()}."
+        said = [lost_words(data), finding(data), f"{FASTER_RULE.capitalize()}."]
+        if kind in ("diagram", "run-up"):  # of the others the finding counts the points
+            code = sweeps.classes_of(data)
+            parts = [
+                f"{sweeps.CLASSES[n][0]} at {100.0 * np.mean(code == n):.3g} %"
+                for n in np.unique(code)
+            ]
+            said.insert(2, f"Of {code.size} points: {', '.join(parts)}.")
+        return " ".join(one for one in said if one)
     return finding(data)
 
 

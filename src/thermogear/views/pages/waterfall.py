@@ -121,6 +121,10 @@ def numbers(result: Result) -> dict[str, Any]:
     return found
 
 
+def _span(low: str, high: str) -> str:
+    return low if low == high else f"{low} to {high}"
+
+
 def _plain(values: Any) -> list[float | None]:
     return [float(v) if np.isfinite(v) else None for v in np.ravel(values)]
 
@@ -131,7 +135,7 @@ def lines(result: Result) -> list[str]:
     found = [summary(data)]
     for row in _jumps(data).rows:
         found.append(
-            f"  {row[0]}, {row[1]} to {row[2]} rpm: {row[4]} {row[5]} N rms up, {row[6]} N down, "
-            f"by {row[7]}"
+            f"  {row[0]}, {_span(row[1], row[2])} rpm: {row[4]} {row[5]} N rms up, {row[6]} N "
+            f"down, because of {row[7]}"
         )
     return found

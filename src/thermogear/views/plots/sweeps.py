@@ -60,6 +60,10 @@ def edges(values: Floats) -> Floats:
     )
 
 
+FEW = 24
+"""Up to so many values the sections are drawn as large dots."""
+
+
 def _dot(values: Floats) -> str:
     """The marker of a line: a line of one value would not be seen."""
     return "circle" if values.size == 1 else ""
@@ -85,7 +89,7 @@ def orbit_diagram_picture(data: xr.Dataset) -> Picture:
         places = np.broadcast_to(p[None, :, None], x.shape)
         top.points(
             places.ravel(), x.ravel(), colour=colour, marker="dot", edge_width=0.0, opacity=0.8,
-            size=1.6 if p.size > 1 else 8.0, pixels=True,
+            size=1.6 if p.size > FEW else 8.0, pixels=True,
         )  # fmt: skip
         top.points([], [], marker="dot", colour=colour, label=word)
         for row in data["lyapunov"].values[direction]:
