@@ -403,10 +403,11 @@ def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
 
     A second exponent that is negative, and not yet surely so, is followed eight times as long.
     """
-    state, frame, _ = leading(section, motion.state, np.eye(section.dimension, 2), BATCH)
+    frame = np.eye(section.dimension, 2)
+    state, frame, _ = leading(section, motion.state, frame=frame, periods=BATCH)
     growth = np.empty((0, 2))
     for periods in (ROUND, 7 * ROUND):
-        state, frame, more = leading(section, state, frame, periods)
+        state, frame, more = leading(section, state, frame=frame, periods=periods)
         growth = np.vstack([growth, more])
         means = growth.reshape(LONG_BATCHES, -1, 2).mean(axis=1) / section.period
         values, errors = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(LONG_BATCHES)
@@ -438,7 +439,7 @@ def _proven_torus(section: ReturnMap, motion: Motion, found: Torus) -> Motion:
 
 
 def leading(
-    section: ReturnMap, start: Floats, frame: Floats, periods: int
+    section: ReturnMap, start: Floats, *, frame: Floats, periods: int
 ) -> tuple[Floats, Floats, Floats]:
     """The last state (d,), the last frame and ln of the growth (periods, count) of its directions.
 
