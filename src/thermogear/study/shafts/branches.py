@@ -149,11 +149,16 @@ def train_branch_results(
         branches = [leg.branch for leg in legs]
         curves, notices, cut = plane.followed(branches, varied, (first, to), progress)
     summary = summary_of(point.title, varied, legs, (first, to), cut)
+    began = "Newton's method from the start itself"
+    if motion is not None:
+        began = f"{motion.name}: {motion.reason}"
+        if motion.period != orbit.period:
+            began += f"; the orbit of period {orbit.period} was asked for"
     summary |= {
         "train": {
             "coordinates": orbit.model.size if isinstance(orbit.model, GearedModel) else 0,
             "cycle": grid.family.cycle,
-            "began": "" if motion is None else f"{motion.name}: {motion.reason}",
+            "began": began,
             "values": count,
         }
     }
