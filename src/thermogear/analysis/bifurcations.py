@@ -97,7 +97,8 @@ def locate(curve: Curve, a: Point, b: Point) -> list[Bifurcation]:
         events.append((graze, _bifurcation(curve, stretch.at(graze), GRAZING, note)))
         # multipliers turn sharply where contact changes: folds come in pairs close by
         for near in (1e-6, 1e-5, 1e-4, 1e-3):
-            nodes |= {s for s in (graze - near, graze + near) if 0.0 < s < length}
+            steps = {s for s in (graze - near, graze + near) if 0.0 < s < length}
+            nodes |= {s for s in steps if stretch.closes(s)}
     broken = PITCHFORK if curve.symmetric else FLIP
     for low, high in pairwise(sorted(nodes)):
         if crossed(stretch.at(low), stretch.at(high)):
@@ -168,11 +169,17 @@ def _grazes(stretch: Stretch) -> Iterator[tuple[float, str]]:
     while before != counts(stretch.at(stretch.length)):
         known = before
 
-        def apart(point: Point, known: tuple[int, int] = known) -> float:
-            size = min(max(point.margin, 1e-300), 1.0)
-            return size if counts(point) == known else -size
+        def same(point: Point, known: tuple[int, int] = known) -> bool:
+            return counts(point) == known
 
-        found = stretch.zero(apart, low=start, high=stretch.length)
+        def apart(point: Point, same: Callable[[Point], bool] = same) -> float:
+            size = min(max(point.margin, 1e-300), 1.0)
+            return size if same(point) else -size
+
+        try:
+            found = stretch.zero(apart, low=start, high=stretch.length)
+        except ConvergenceError:
+            found = stretch.narrowed(same, start)
         high = min(
             step
             for step, point in stretch.points.items()
@@ -313,7 +320,9 @@ def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> lis
     length = float((b.scaled - a.scaled) @ a.tangent)
     if length <= LOOK_CLOSER or not _may_hide(before, a, b):
         return [b]
-    middle = Stretch(curve, a, b).at(0.5 * length)
+    stretch = Stretch(curve, a, b)
+    half = stretch.between(0.0, length)
+    middle = stretch.at(0.5 * length if half is None else half)
     return [
         *looked_closer(curve, b, a, middle),
         *looked_closer(curve, a, middle, b),

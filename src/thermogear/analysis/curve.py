@@ -34,6 +34,12 @@ ROUGH = 1e-4
 """That step where the return map itself is differentiated, which carries more rounding."""
 FOUND = 1e-9
 """As :data:`ZERO`, of such a map."""
+SHARES = (0.5, 0.4, 0.6, 0.2, 0.8)
+"""Where between two orbits another one is looked for."""
+JUMP = 3e-5
+"""Scaled distance within which no orbit may close, where such a map jumps."""
+HOPELESS = 6
+"""Newton's steps without a smaller residual, from one side of such a jump to the other."""
 SMALL = 1e-5
 """Step of the parameter (of its range) in which the numbers of the equation are differentiated.
 
@@ -321,7 +327,8 @@ class Curve:
             else:
                 stalled += 1
             enough = NEWTON_TOLERANCE if is_moved(section) else ROUNDING
-            if size <= enough or best[0] < ENOUGH[min(stalled, 2)]:
+            hopeless = stalled >= HOPELESS and not is_moved(section)
+            if size <= enough or best[0] < ENOUGH[min(stalled, 2)] or hopeless:
                 break
             flat = jacobian / units[:, None] * units - np.eye(d)
             if upright:
@@ -433,6 +440,37 @@ class Stretch:
                 )
             self.points[step] = found
         return found
+
+    def between(self, low: float, high: float) -> float | None:
+        """A step between two of them where Newton finds an orbit; None where it finds none.
+
+        An engine misses contacts that are shorter than its steps; where it begins to see one its
+        map jumps by rounding's size or more, and on a short piece of the branch no orbit closes.
+        """
+        steps = (low + share * (high - low) for share in SHARES)
+        return next((step for step in steps if self.closes(step)), None)
+
+    def closes(self, step: float) -> bool:
+        """Whether Newton finds an orbit a distance ``step`` on."""
+        try:
+            self.at(step)
+        except ConvergenceError:
+            return False
+        return True
+
+    def narrowed(self, same: Callable[[Point], bool], low: float) -> float:
+        """The first step known beyond ``low`` that is not ``same``, within :data:`JUMP` of one.
+
+        ConvergenceError where no orbits close that near to each other.
+        """
+        while True:
+            known = sorted(step for step in self.points if step >= low)
+            place = next(i for i, step in enumerate(known) if not same(self.points[step]))
+            below, high = known[place - 1], known[place]
+            if high - below <= JUMP:
+                return high
+            if self.between(below, high) is None:
+                self.at(0.5 * (below + high))  # raises what it says of that orbit
 
     def _near(self, step: float) -> tuple[Floats, Floats]:
         """On the cubic through the neighbours on either side and their tangents; dG/dp there."""

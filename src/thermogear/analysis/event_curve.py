@@ -46,6 +46,7 @@ MOST_STEPS = 10
 OUTSIDE = 1e-6
 """Beyond 1 by more, a multiplier other than the one that bifurcates makes the orbit unstable."""
 REACHED = "reached the end"
+LOST = "no further point"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -392,8 +393,7 @@ def event_curve(
     while not ended:
         there, step = _step(walk, here, step)
         if there is None:
-            p, q = (here.scaled * walk.whole)[-2:]
-            ended = f"no further point beyond {names[0]} = {p:.6g}, {names[1]} = {q:.6g}"
+            ended = LOST
             break
         found, ended = _landed(walk, here, there, marks, (low, high), start, names)
         for point, mark in found:
@@ -463,7 +463,7 @@ def _landed(
         ended = REACHED
     elif way * (q1 - start) < 0.0:
         stops.append((start, -1, False))
-        ended = f"came back to {names[1]} = {start:.6g}"
+        ended = f"came back to the first value of {names[1]}"
     for limit in limits:
         if (p1 - limit) * (p0 - limit) < 0.0:
             stops.append((limit, -2, False))

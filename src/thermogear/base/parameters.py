@@ -43,6 +43,10 @@ class Parameter:
         """A value [SI], or an array of them, in the shown unit."""
         return self.factor * (value - self.zero)
 
+    def told(self, value: float) -> str:
+        """A value [SI] in a sentence: name = number and shown unit."""
+        return f"{self.name} = {self.show(value):.6g} {self.shown}".strip()
+
     def read(self, number: float) -> float:
         """A bare number in the shown unit as SI."""
         return number / self.factor + self.zero

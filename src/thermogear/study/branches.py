@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import FLIP, PITCHFORK, Bifurcation
-from thermogear.analysis.continuation import Branch, continuation, switch_branch
+from thermogear.analysis.continuation import GAP, Branch, continuation, switch_branch
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit
 from thermogear.base.errors import ConvergenceError, InputError
@@ -156,11 +156,14 @@ def summary_of(
         "from": begin,
         "to": to,
         "unit": varied.shown,
-        "branches": [_leg_summary(leg, varied.name) for leg in legs],
+        "branches": [_leg_summary(leg, varied) for leg in legs],
         "bifurcations": [_event(b, varied) for leg in legs for b in leg.branch.bifurcations],
         "interrupted": cut,
-        "notices": [],
-    }
+        "notices": [
+            f"the branch of period {leg.branch.period} was lost: what lies beyond is not "
+            "shown; begin on the other side" for leg in legs if leg.branch.ended.startswith(GAP)
+        ],
+    }  # fmt: skip
 
 
 def parameter_of(point: OnePoint, name: str) -> Parameter:
@@ -223,8 +226,12 @@ def _event(b: Bifurcation, parameter: Parameter) -> dict[str, Any]:
     }
 
 
-def _leg_summary(leg: Leg, parameter: str) -> dict[str, Any]:
+def _leg_summary(leg: Leg, parameter: Parameter) -> dict[str, Any]:
     branch = leg.branch
+    ended = branch.ended
+    if ended.startswith(GAP) and parameter.unit != "1":
+        # the walk itself speaks SI
+        ended = f"{GAP}: no further orbit found beyond {parameter.told(float(branch.values[-1]))}"
     return {
         "period": branch.period,
         "level": leg.level,
@@ -232,8 +239,8 @@ def _leg_summary(leg: Leg, parameter: str) -> dict[str, Any]:
         "from": float(branch.values[0]),
         "to": float(branch.values[-1]),
         "stable_points": int(branch.stable.sum()),
-        "ended": branch.ended,
-        "parameter": parameter,
+        "ended": ended,
+        "parameter": parameter.name,
     }
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import GRAZING, PITCHFORK, Bifurcation
 from thermogear.analysis.continuation import Branch
-from thermogear.analysis.event_curve import CARRIED, EventCurve, Sheet, event_curve
+from thermogear.analysis.event_curve import CARRIED, LOST, EventCurve, Sheet, event_curve
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
@@ -121,11 +121,16 @@ class Plane:
             f"{self.second.show(float(q)):.6g} {self.second.shown}".strip()
             for p, q in curve.values[list(curve.turns)]
         ]
+        ended = curve.ended
+        if ended == LOST:
+            p, q = map(float, curve.values[-1])
+            beyond = (first.told(p), self.second.told(q))
+            ended = f"{ended} beyond {' and '.join(beyond)}"
         return {
             "kind": curve.kind,
             "period": curve.period,
             "points": len(curve.values),
-            "ended": curve.ended,
+            "ended": ended,
             "asked": asked,
             "turns": turns,
         }

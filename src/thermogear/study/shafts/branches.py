@@ -127,7 +127,7 @@ def train_branch_results(
     varied = parameter_of(point, parameter)
     first = point.value(varied.name) if begin is None else begin
     if first == to:
-        raise InputError("--to", to, allowed=f"another value than that of --from ({first:.6g})")
+        raise InputError("--to", varied.told(to), allowed="another value than that of --from")
     require_depth(switch)
     axis = np.linspace(first, to, count)
     plane = None
@@ -140,7 +140,11 @@ def train_branch_results(
         plane = Plane(other, second[1], grid)
         models = plane.models
     progress("settling", 0, 1)
-    orbit, motion = train_orbit(models(first), start, period, transient=transient)
+    model = models(first)
+    asked = trains.family.coordinates
+    if asked is not None and asked > model.size:
+        raise InputError("--coordinates", asked, allowed=f"{model.size} at most: the whole train")
+    orbit, motion = train_orbit(model, start, period, transient=transient)
     progress("settling", 1, 1)
     legs, cut = walked(orbit, varied, models, begin=first, to=to, switch=switch, progress=progress)
     curves: list[EventCurve] = []
@@ -149,11 +153,16 @@ def train_branch_results(
         branches = [leg.branch for leg in legs]
         curves, notices, cut = plane.followed(branches, varied, (first, to), progress)
     summary = summary_of(point.title, varied, legs, (first, to), cut)
+    began = "Newton's method from the start itself"
+    if motion is not None:
+        began = f"{motion.name}: {motion.reason}"
+        if motion.period != orbit.period:
+            began += f"; the orbit of period {orbit.period} was asked for"
     summary |= {
         "train": {
             "coordinates": orbit.model.size if isinstance(orbit.model, GearedModel) else 0,
             "cycle": grid.family.cycle,
-            "began": "" if motion is None else f"{motion.name}: {motion.reason}",
+            "began": began,
             "values": count,
         }
     }

@@ -24,7 +24,7 @@ def plane_caption(summary: Summary) -> str:
     words = ["A motion that crosses a solid line changes there"]
     if any(not one["stable"] for curve in summary["curves"] for one in curve["asked"]):
         words.append("dotted: the orbit is unstable already, so that no motion meets it")
-    return "; ".join(words) + ". Dots: at the values asked for."
+    return "; ".join(words) + ". Marks: at the values asked for."
 
 
 def plane_tables(summary: Summary) -> list[Block]:

@@ -144,8 +144,10 @@ const marker = (c, p, m, x, y, shape, {open = false, edge = "", edgeWidth = 1} =
   c.beginPath();
   SHAPES[shape](c, m.size * p.pt / 2);
   if (!open) c.fill();
-  c.strokeStyle = edge ? colour(edge) : c.fillStyle;
-  c.lineWidth = edgeWidth * p.pt * (shape === "cross" || shape === "plus" ? 0.3 * m.size : 1);
+  // nothing but its strokes: an edge would be all of it
+  const bare = shape === "cross" || shape === "plus";
+  c.strokeStyle = edge && !bare ? colour(edge) : c.fillStyle;
+  c.lineWidth = p.pt * (bare ? 0.3 * m.size : edgeWidth);
   c.stroke();
   c.restore();
 };
