@@ -321,7 +321,7 @@ def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> lis
     if length <= LOOK_CLOSER or not _may_hide(before, a, b):
         return [b]
     stretch = Stretch(curve, a, b)
-    half = stretch.between(0.0, length)
+    half = stretch.between(low=0.0, high=length)
     middle = stretch.at(0.5 * length if half is None else half)
     return [
         *looked_closer(curve, b, a, middle),

@@ -441,7 +441,7 @@ class Stretch:
             self.points[step] = found
         return found
 
-    def between(self, low: float, high: float) -> float | None:
+    def between(self, *, low: float, high: float) -> float | None:
         """A step between two of them where Newton finds an orbit; None where it finds none.
 
         An engine misses contacts that are shorter than its steps; where it begins to see one its
@@ -469,7 +469,7 @@ class Stretch:
             below, high = known[place - 1], known[place]
             if high - below <= JUMP:
                 return high
-            if self.between(below, high) is None:
+            if self.between(low=below, high=high) is None:
                 self.at(0.5 * (below + high))  # raises what it says of that orbit
 
     def _near(self, step: float) -> tuple[Floats, Floats]:

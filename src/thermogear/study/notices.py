@@ -218,7 +218,7 @@ def _left_out(case: GearCase, here: xr.Dataset, viscosity: Floats) -> list[str]:
     return [f"{name} on {part:.0f} % of the path" for name, part in parts if part > 0.0]
 
 
-def up_and_down(count: int, held: int) -> str:
+def up_and_down(count: int, *, held: int) -> str:
     """That a run-up and a run-down differ on ``count`` stretches, on ``held`` of them to stay."""
     rate = "the difference comes from the rate of the run"
     words = f"up and down differ on {count} stretch{'es' * (count > 1)} of speed; "

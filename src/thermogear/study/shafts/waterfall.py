@@ -382,7 +382,7 @@ class WaterfallPlan:
             f"{100.0 * error:.2g} %",
         ]
         if rows:
-            told_all.append(up_and_down(len(rows), held))
+            told_all.append(up_and_down(len(rows), held=held))
         else:
             told_all.append(f"up and down agree between {low:.6g} and {high:.6g} rpm: no jump")
         return data.assign_attrs(
