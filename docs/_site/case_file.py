@@ -101,7 +101,8 @@ def case_file() -> dict[str, str]:
         "The commented examples of `thermogear example NAME` are the best start; "
         "this page lists every field, from the schema that `thermogear schema` prints. A field "
         "under `[gears.pinion]` is put in place on the command line by "
-        "`--set gears.pinion.teeth=30`.\n\n"
+        "`--set gears.pinion.teeth=30`; with nothing behind the sign, `--set gears.pinion.tip_diameter=`, "
+        "a field or a whole table of the file is left out, and its default acts.\n\n"
     )
     for name in [*first, *(one for one in tables if one not in first)]:
         text += _section(name, tables[name])
