@@ -114,7 +114,7 @@ def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
                 dial.fields[0], f"{value:g} {dial.unit}", why=dial.held,
                 fix="switch the heat balance off to turn it",
             )  # fmt: skip
-        text = f"{value!r} {dial.unit}".strip()
+        text = f"{_text(value)} {dial.unit}".strip()
         if name == "error":
             found.append((dial.fields[0], _harmonics(case, value)))
         elif name == "backlash" and not _given(case, "backlash.value"):
@@ -159,6 +159,11 @@ def balanced(case: GearCase, on: bool) -> Changes:
     )
     left = [(field, "") for field in GIVEN if _given(case, field)]
     return (*(one for one in left if one[0] not in dict(found)), *found)
+
+
+def _text(value: float) -> str:
+    """A number to the last bit, a whole one without its point."""
+    return repr(float(value)).removesuffix(".0")
 
 
 def _dial(
@@ -218,13 +223,13 @@ def _harmonics(case: GearCase, micrometres: float) -> str:
     own = next((one.amplitude for one in said if one.order == 1), 0.0)
     if own == 0.0:
         said = [one for one in said if one.order != 1]
-        rows = [{"order": 1, "amplitude": f"{micrometres!r} um"}]
+        rows = [{"order": 1, "amplitude": f"{_text(micrometres)} um"}]
         ratio = 1.0
     else:
         rows, ratio = [], 1e-6 * micrometres / own
     for one in said:
         exact = micrometres if one.order == 1 else 1e6 * one.amplitude * ratio
-        row: dict[str, Any] = {"order": one.order, "amplitude": f"{exact!r} um"}
+        row: dict[str, Any] = {"order": one.order, "amplitude": f"{_text(exact)} um"}
         if one.phase:
             row["phase"] = f"{one.phase!r} rad"
         rows.append(row)

@@ -64,7 +64,7 @@ def gap(case: GearCase, alive: Alive = keep_going) -> xr.Dataset | None:
     """Half backlash over the temperature of both gears, from drawn to past the jam.
 
     ``half_backlash`` (gear_temperature) [m], the others as ``temperatures.follow`` says; None where
-    the heat of the operating point did not settle.
+    the heat of the operating point did not settle. ``jam_temperature`` is that of the gears alone.
     """
     model = case.models[0]
     at = case.operating_of(model).temperatures
@@ -72,9 +72,8 @@ def gap(case: GearCase, alive: Alive = keep_going) -> xr.Dataset | None:
     if not np.isfinite(hot):
         return None
     points = GearFamily(case, ("gear_temperature",), alive=alive)
-    name = "proportional_jam_temperature" if case.follow == "proportional" else "jam_temperature"
-    here = GearFamily(case, (), alive=alive).quasi_static(np.empty((1, 0)), (name,))
-    jam = float(here[name][0])
+    here = GearFamily(case, (), alive=alive).quasi_static(np.empty((1, 0)), ("jam_temperature",))
+    jam = float(here["jam_temperature"][0])
     temperatures = stops(reference=case.stated.temperatures.reference, hot=hot, jam=jam)
     found = points.quasi_static(temperatures[:, None], ("half_backlash",))
     by = ("gear_temperature",)

@@ -57,7 +57,8 @@ class Client:
 
     @property
     def busy(self) -> bool:
-        return not self.closed and bool(self.wanted or self.exports or self.working)
+        waits = self.desk is None or self.wanted or self.exports
+        return not self.closed and bool(waits) or self.working is not None
 
 
 class Worker(threading.Thread):
@@ -100,7 +101,7 @@ class Worker(threading.Thread):
                         self._clients.remove(one)
                 for _ in range(len(self._clients)):
                     self._clients.rotate(-1)
-                    if self._clients[-1].busy or self._clients[-1].working:
+                    if self._clients[-1].busy:
                         return self._clients[-1]
                 self._there.wait()
             return None

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from thermogear.base.errors import InputError, short
 
-PARTS = ("mesh", "orbit", "gears", "gap", "run-up", "answers", "record", "shafts", "map")
+PARTS = ("mesh", "orbit", "gap", "gears", "run-up", "record", "answers", "shafts", "map")
 """The parts of the page, in the order in which they are made."""
 MOST_BYTES = 2**20
 """Of one message."""
