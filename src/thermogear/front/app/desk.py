@@ -64,7 +64,7 @@ class Desk:
             "fields": {one.path: one.given for one in form(case.data) if one.given},
             "computed": case.computed,
             "temperatures": temperatures(case),
-            "command": self.given.command(show.state),
+            "command": self.given.command(case),
             "warnings": told,
         }
 
@@ -82,8 +82,7 @@ class Desk:
         return "case.toml", head + written(case.data)
 
     def _command(self, export: Export) -> tuple[str, str]:
-        self.given.at(export.state)
-        return "command.txt", self.given.command(export.state) + "\n"
+        return "command.txt", self.given.command(self.given.at(export.state)) + "\n"
 
     def _report(self, export: Export) -> tuple[str, str]:
         from thermogear.study.run import run

@@ -34,11 +34,9 @@ class Given:
     def changes(self, state: State) -> tuple[tuple[str, str], ...]:
         """All that a state puts into the case file, in order, each field once."""
         found = _joined(self.case.overrides, state.changes)
-        case = self._case(found)
         if state.heat is not None:
-            found = _joined(found, balanced(case, state.heat))
-            case = self._case(found)
-        return _joined(found, turned(case, state.dials))
+            found = _joined(found, balanced(self._case(found), state.heat))
+        return _joined(found, turned(self._case(found), state.dials)) if state.dials else found
 
     def at(self, state: State) -> GearCase:
         """The case of a state; InputError where no file could hold it, or it is too large here."""
@@ -53,9 +51,9 @@ class Given:
         case = gear_case(case_of(data, self.case.text, changes, told=told))
         return _bounded(case)
 
-    def command(self, state: State) -> str:
-        """The command line that gives the same."""
-        said = [f"--set {shlex.quote(f'{path}={text}')}" for path, text in self.changes(state)]
+    def command(self, case: GearCase) -> str:
+        """The command line that gives what a ``case`` of a state gives."""
+        said = [f"--set {shlex.quote(f'{path}={text}')}" for path, text in case.overrides]
         return " ".join(["thermogear run", shlex.quote(self.name), *said, "-o results"])
 
 
