@@ -58,7 +58,7 @@ class Client:
     @property
     def busy(self) -> bool:
         waits = self.desk is None or self.wanted or self.exports
-        return not self.closed and bool(waits) or self.working is not None
+        return (not self.closed and bool(waits)) or self.working is not None
 
 
 class Worker(threading.Thread):

@@ -12,6 +12,7 @@ dark.addEventListener("change", () => {
 const set = {changes: new Map(), dials: new Map(), heat: null};
 let number_ = 0, asked = false, socket = null, ready = false, answered = false, slow = 0;
 let knobs = new Map(), fields = new Map(), started = 0;
+const finished = [];
 
 const state = () => ({changes: [...set.changes], dials: Object.fromEntries(set.dials), heat: set.heat});
 const parts = () => [...document.querySelectorAll(".part")]
@@ -37,6 +38,7 @@ const ask = () => {
     number_ += 1;
     started = performance.now();
     answered = false;
+    document.body.dataset.asked = String(number_);
     if (!send({kind: "show", number: number_, state: state(), speeds: range, parts: parts()})) return;
     tell("computing");
     by("stop").hidden = false;
@@ -350,7 +352,9 @@ const heard = (message) => {
     wait(1, 1);
     by("stop").hidden = true;
     tell(`done in ${((performance.now() - started) / 1000).toFixed(1)} s`);
+    finished.push(message.number);
     document.body.dataset.done = String(message.number);
+    document.body.dataset.ends = JSON.stringify(finished);
   }
 };
 
