@@ -25,7 +25,11 @@ def own(*changes: str) -> GearCase:
 
 def alike(one: Any, other: Any) -> None:
     """The same case, however its text is written."""
-    assert replace(one, text="", overrides=()) == replace(other, text="", overrides=())
+    if isinstance(one, GearCase):  # holds arrays, made of what was read
+        assert (one.file, one.title) == (other.file, other.title)
+        assert one.assumptions == other.assumptions
+    else:
+        assert replace(one, text="", overrides=()) == replace(other, text="", overrides=())
 
 
 def test_a_field_left_out_has_its_default() -> None:
