@@ -56,11 +56,11 @@ def test_a_reason_goes_with_what_is_left_out() -> None:
     text = OWN_PAIR + '[ours."dynamics.damping_ratio"]\nvalue = 0.05\nreason = "felt"\n'
     field = "dynamics.damping_ratio"
     reasons = [
-        {one.field: one.reason for one in gear_case(load_case(text, changes)).assumptions}[field]
+        {one.field: one for one in gear_case(load_case(text, changes)).assumptions}[field]
         for changes in ([], [f"{field}="])
     ]
-    assert reasons[0] == "felt"
-    assert reasons[1].startswith("not in the file; the default")
+    assert reasons[0].reason == "felt"
+    assert reasons[1].default
 
 
 def test_a_needed_field_left_out_is_refused_by_its_name() -> None:
@@ -101,7 +101,7 @@ def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert main(["check", str(file), "--set", "dynamics.damping="]) == 2
     said = capsys.readouterr().err
     assert "dynamics.damping: got nothing to leave out; [dynamics] of the file" in said
-    assert "did you mean 'damping_ratio'?" in said
+    assert "damping_ratio" in said
 
 
 @pytest.mark.parametrize("text", [*map(example_text, EXAMPLES), OWN_PAIR, TRAIN])
