@@ -71,7 +71,7 @@ def there(one: browser.Browser | None, capsys: pytest.CaptureFixture[str]) -> br
 
 
 def ready(one: browser.Browser, count: int = COUNT) -> None:
-    one.until("document.getElementById('count').value !== ''")
+    one.until("!!document.getElementById('count')?.value")
     put(one, "count", count)
     done(one)
 
@@ -113,7 +113,7 @@ def axe(one: browser.Browser) -> list[str]:
 BOXES = """(() => {
   const seen = [...document.querySelectorAll(
     ".bar > *, .knob, .part, .field, .panel, .legend button, #dials button, .range label")]
-    .filter((e) => e.getClientRects().length && e.getBoundingClientRect().width);
+    .filter((e) => e.checkVisibility() && e.getBoundingClientRect().width);
   const found = [];
   for (let i = 0; i < seen.length; i++) for (let j = i + 1; j < seen.length; j++) {
     const a = seen[i], b = seen[j];
@@ -258,7 +258,7 @@ def test_everything_by_keyboard_alone(page: browser.Browser) -> None:
 
 def test_a_click_on_the_run_up_shows_the_orbit_of_that_speed(page: browser.Browser) -> None:
     page.value(
-        "document.querySelector('[data-part=\"run-up\"] .u-over').scrollIntoView({block: 'center'})"
+        "document.querySelector('[data-part=\"run-up\"] .u-over').scrollIntoView({block: 'center', behavior: 'instant'})"
     )
     box = page.value(
         "(() => { const r = document.querySelector('[data-part=\"run-up\"] .u-over')"

@@ -14,11 +14,10 @@ from thermogear.base.plan import Alive
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.dials import dials
 from thermogear.front.app.given import Given
-from thermogear.front.app.wire import PARTS, Export, Show
+from thermogear.front.app.wire import PARTS, Export, Post, Show
 
 if TYPE_CHECKING:
     from thermogear.case.case import GearCase
-    from thermogear.front.app.jobs import Post
 
 
 class Desk:

@@ -149,9 +149,8 @@ const field = (said, host) => {
   input.value = plain(said.given);
   input.addEventListener("change", () => {
     const text = input.value.trim();
-    if (text === plain(made.given)) return;
     for (const [name, one] of knobs) if (one.said.fields.includes(said.path)) set.dials.delete(name);
-    if (text === "" && !said.given) set.changes.delete(said.path);
+    if (text === plain(said.given)) set.changes.delete(said.path);
     else set.changes.set(said.path, text);
     ask();
   });
