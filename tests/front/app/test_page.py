@@ -258,7 +258,8 @@ def test_everything_by_keyboard_alone(page: browser.Browser) -> None:
 
 def test_a_click_on_the_run_up_shows_the_orbit_of_that_speed(page: browser.Browser) -> None:
     page.value(
-        "document.querySelector('[data-part=\"run-up\"] .u-over').scrollIntoView({block: 'center', behavior: 'instant'})"
+        "document.querySelector('[data-part=\"run-up\"] .u-over')"
+        ".scrollIntoView({block: 'center', behavior: 'instant'})"
     )
     box = page.value(
         "(() => { const r = document.querySelector('[data-part=\"run-up\"] .u-over')"

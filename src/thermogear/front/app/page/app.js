@@ -126,7 +126,8 @@ const follow = (one, said) => {
     one.ranged = true;
   }
   if (document.activeElement !== one.range || said.held) put(one, said.value);
-  if (document.activeElement !== one.box || said.held) one.box.value = said.value;
+  if (document.activeElement !== one.box || said.held)
+    one.box.value = said.held ? Number(said.value.toPrecision(4)) : said.value;
 };
 
 // --- fields ------------------------------------------------------------------------------------
@@ -269,6 +270,7 @@ const part = (message) => {
     show(figure.querySelector(".canvas"), name, picture);
   });
   wait(message.done, message.total);
+  dispatchEvent(new CustomEvent("part", {detail: message}));
 };
 const now = (message) => {
   by("title").textContent = message.title;
