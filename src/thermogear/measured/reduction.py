@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import METHODS, Chain
+from thermogear.measured.changing import Changing, OrderSlices, order_lines, read_in_angle
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.lines import MeasuredLine, channel_lines, wanted_lines
+from thermogear.measured.lines import MeasuredLine, Wanted, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
@@ -54,6 +55,7 @@ class Measurement:
     lines: tuple[MeasuredLine, ...]
     notices: tuple[Notice, ...]
     start: int
+    slices: OrderSlices | None = None
 
     @property
     def settings(self) -> dict[str, str]:
@@ -86,15 +88,19 @@ def measure(
     chain: Chain | None = None,
     sensor_tolerance: float | None = None,
     pulses_per_turn: float | None = None,
+    tacho: Record | None = None,
+    orders: Sequence[float] = (),
 ) -> Measurement:
     """Lines of a record: mesh harmonics, sidebands, further meshes, with their uncertainty.
 
     ``record`` a Record or a file (``read_record``); ``channels`` those to reduce (default: all
     that vibrate); ``teeth`` and ``speed`` [rad/s] of the first shaft where they are known: they
     are checked against what the lines say; ``sensor_tolerance`` the sensor's relative standard
-    uncertainty; ``pulses_per_turn`` of the tacho channel, where there is one. Where the speed
-    wanders enough to smear the lines they are read in angle: by the tacho, else by the phase of
-    the mesh line. Without a rate the lines are given in orders and cycles per sample, without a
+    uncertainty; ``pulses_per_turn`` of the tacho channel, or of that of another record ``tacho``;
+    ``orders`` of the first shaft to read beside. A tacho, or a channel of speed, is always used:
+    lines are read in angle. Without one a speed that wanders is followed by the mesh line's phase,
+    one that changes by a line tracked through the spectrum. Where the speed changes by more than
+    3 % orders are read slice by slice over it (``slices``). Without a rate the lines are given in orders and cycles per sample, without a
     unit in the file's own numbers.
 
     Raises InputError for a record without a line or a channel without a signal.
@@ -111,10 +117,30 @@ def measure(
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
     start, table = _stretch(chosen, notices)
-    gearing = _gearing(table, notices, _expected(record, teeth, speed))
-    teeth = _teeth(gearing, teeth, notices)
+    expected = _expected(record, teeth, speed)
+    changing, said = read_in_angle(
+        record,
+        chosen,
+        table,
+        start,
+        teeth=teeth,
+        harmonics=harmonics,
+        sidebands=sidebands,
+        orders=orders,
+        pulses_per_turn=pulses_per_turn,
+        tacho=tacho,
+        sensor_tolerance=sensor_tolerance,
+    )
+    notices += said
     turns: MeshTurns | None = None
-    if gearing is not None:
+    if changing is not None:
+        gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
+    else:
+        gearing = _gearing(table, notices, expected)
+        teeth = _teeth(gearing, teeth, notices)
+    if changing is not None and changing.slices is not None:
+        return _of_slices(record, chosen, table, chain, changing, start, tuple(notices))
+    if gearing is not None and turns is None:
         turns = mesh_turns(record, table, gearing, teeth, harmonics, pulses_per_turn, start)
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
@@ -134,7 +160,12 @@ def measure(
             gearing,
             teeth,
             wanted,
-            wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
+            _with_orders(
+                wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
+                orders,
+                gearing,
+                teeth,
+            ),
             sensor_tolerance,
             turns,
         )
@@ -151,6 +182,42 @@ def measure(
         tuple(notices),
         start,
     )
+
+
+def _of_slices(
+    record: Record,
+    chosen: list[Channel],
+    table: Floats,
+    chain: Chain | None,
+    found: Changing,
+    start: int,
+    notices: tuple[Notice, ...],
+) -> Measurement:
+    """The measurement of a run whose speed changes: its lines are means of the slices."""
+    return Measurement(
+        record,
+        tuple(c.name for c in chosen),
+        int(table.shape[-1]),
+        chain or Chain(method="line"),
+        found.gearing,
+        found.teeth,
+        found.lines,
+        (*notices, *_untold(record, chosen, None)),
+        start,
+        found.slices,
+    )
+
+
+def _with_orders(
+    wanted: list[Wanted], orders: Sequence[float], gearing: Gearing | None, teeth: int | None
+) -> list[Wanted]:
+    """The lines with those at ``orders`` of the first shaft, which must be known for them."""
+    if not orders:
+        return wanted
+    if gearing is None or not teeth:
+        got = ", ".join(f"{o:g}" for o in orders)
+        raise InputError("orders", got, why="no shaft's speed is known", fix="--teeth or --tacho")
+    return wanted + order_lines(orders, gearing.mesh_frequency / teeth, wanted)
 
 
 def _untold(

@@ -1,0 +1,437 @@
+"""A record whose speed changes: gearing and lines in angle, and orders slice by slice over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.base.units import RPM
+from thermogear.measured.chain import Turning
+from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
+from thermogear.measured.order_map import OrderMap, order_map
+from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.resonances import Resonance, resonances_of
+from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
+from thermogear.measured.turns import MeshTurns
+from thermogear.measured.units import kind_of
+from thermogear.signals.interval import strong_lines
+from thermogear.signals.lines import line_spectrum
+from thermogear.signals.orders import resample_by_angle
+from thermogear.signals.slices import order_slices
+from thermogear.signals.tracking import samples_per_turn
+
+Floats = NDArray[np.float64]
+
+_NORMAL = 1.959964
+_MESHES = 16.0  # mesh cycles that stand for a turn where no shaft is known
+_NEIGHBOUR = 0.35  # orders: nearer than this a line beside is the line itself, changing
+_HIGHEST = 1.0 / 2.56
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrderSlices:
+    """Amplitudes of orders over speed, of a run whose speed changes.
+
+    ``channels``, ``names`` of the lines and their ``orders`` of the first shaft (of the mesh line
+    where ``of_mesh``); over steps ``time`` [s], ``speed`` [rad/s] of what ``orders`` count and
+    ``acceleration`` [rad/s^2] of it, ``frequency`` (order, step) [Hz]; ``reading`` (channel,
+    order, step) peak amplitude in the file's unit, ``half_width`` of its 95 % interval, ``phase``
+    [rad] against the angle, ``block`` the turns it is read over. ``si``: SI units in one of a
+    channel's, nan where unknown; ``kinds`` of quantity, "" where unknown.
+    """
+
+    channels: tuple[str, ...]
+    names: tuple[str, ...]
+    orders: Floats
+    of_mesh: bool
+    time: Floats
+    speed: Floats
+    acceleration: Floats
+    frequency: Floats
+    reading: Floats
+    half_width: Floats
+    phase: Floats
+    block: Floats
+    si: Floats
+    kinds: tuple[str, ...]
+    map: OrderMap
+    resonances: tuple[Resonance, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Changing:
+    """What was found in angle: ``slices`` and ``lines`` of a run whose speed changes; ``turns`` to
+    read lines of the whole record by where it is nearly steady."""
+
+    gearing: Gearing | None
+    teeth: int | None
+    notices: tuple[Notice, ...]
+    turns: MeshTurns | None = None
+    lines: tuple[MeasuredLine, ...] = ()
+    slices: OrderSlices | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Angle:
+    """The angle that orders count: ``turns`` of the first shaft, or of 16 mesh cycles."""
+
+    turns: Floats
+    first: int
+    noise: float
+    mesh: float | None
+    of_mesh: bool
+    gearing: Gearing | None
+    teeth: int | None
+
+
+def read_in_angle(
+    record: Record,
+    chosen: Sequence[Channel],
+    table: Floats,
+    start: int,
+    *,
+    teeth: int | None,
+    harmonics: int,
+    sidebands: int,
+    orders: Sequence[float],
+    pulses_per_turn: float | None,
+    tacho: Record | None,
+    sensor_tolerance: float | None,
+) -> tuple[Changing | None, list[Notice]]:
+    """The record in the angle that a tacho, a speed channel or a tracked line gives.
+
+    ``table`` (channel, sample) from sample ``start`` on, in the files' units. None, and what should
+    be known all the same, where neither is there and the speed is steady.
+    """
+    notices: list[Notice] = []
+    shaft = given_shaft(record, table.shape[-1], start, pulses_per_turn, tacho)
+    if shaft is not None and shaft.turns.size == 0:
+        notices += shaft.told
+        shaft = None
+    if shaft is not None and shaft.origin.startswith("speed"):
+        if shaft.span < VARIES:
+            text = f"{shaft.origin}: steady within {100 * (shaft.span - 1):.2g} %"
+            return None, [*notices, Notice("info", text)]
+        shaft = locked(shaft, table, teeth)
+    if shaft is None:
+        shaft = tracked_shaft(table)
+    if shaft is None:
+        return None, notices
+    notices += shaft.told
+    angle = _angle(shaft, table, teeth, notices)
+    if shaft.span < VARIES and angle.mesh is None:
+        return None, notices
+    if shaft.span < VARIES:
+        return _steady(shaft, angle, notices), notices
+    return _sliced(
+        record, chosen, table, shaft, angle, harmonics, sidebands, orders, sensor_tolerance, notices
+    ), notices
+
+
+def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]) -> _Angle:
+    """Mesh line, teeth and pulses per turn in the shaft's angle."""
+    turns, told = shaft.turns, []
+    inside = table[:, shaft.first : shaft.first + turns.size]
+    loudest = inside[np.argsort(-np.std(inside, axis=-1))[:2]]
+    per_turn = samples_per_turn(turns)
+    straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
+    near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
+    gearing = _found(straight, None if near is None else near / per_turn)
+    mesh = None if gearing is None else gearing.mesh_frequency * per_turn
+    if near is not None and gearing is None:
+        gearing = _found(straight, None)
+        mesh = None if gearing is None else gearing.mesh_frequency * per_turn
+    if mesh is None and teeth and not shaft.line:
+        mesh = float(teeth)
+    z = teeth or (gearing.teeth if gearing else None)
+    factor = 1.0
+    if shaft.line:
+        factor = (mesh or 1.0) / (z or _MESHES)
+    elif mesh is not None and not shaft.sure and z:
+        pulses = z / mesh
+        if abs(pulses - round(pulses)) < 0.02 * pulses and pulses > 0.5:
+            factor = 1.0 / round(pulses)
+            told.append(f"{round(pulses)} pulses per turn, by the mesh line of {z} teeth")
+        else:
+            told.append(f"pulses per turn are not stated: 1 is taken ({pulses:.4g} by the mesh line)")
+    elif not shaft.sure:
+        told.append("pulses per turn are not stated: 1 is taken (give --pulses)")
+    elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
+        factor = mesh / teeth
+        told.append(
+            f"the mesh line stands at order {mesh:.4g} of the tacho's shaft: the shaft of {teeth} "
+            f"teeth turns {factor:.5g} times as fast"
+        )
+    elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
+        z = round(mesh)
+        told.append(f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth")
+    notices += [Notice("important" if "taken" in t else "info", f"tacho: {t}") for t in told]
+    own = turns * factor
+    return _Angle(
+        turns=own,
+        first=shaft.first,
+        noise=shaft.noise * factor,
+        mesh=None if mesh is None else mesh / factor if not shaft.line else z or _MESHES,
+        of_mesh=shaft.line and not z,
+        gearing=gearing,
+        teeth=z,
+    )
+
+
+def _found(straight: list[Floats], near: float | None) -> Gearing | None:
+    try:
+        return find_gearing(straight, near)
+    except InputError:
+        return None
+
+
+def _steady(shaft: Shaft, angle: _Angle, notices: list[Notice]) -> Changing:
+    """The angle of a nearly steady shaft, for lines of the whole record."""
+    assert angle.mesh is not None
+    cycles = angle.mesh * angle.turns
+    mean = float((cycles[-1] - cycles[0]) / (cycles.size - 1))
+    turning = Turning(
+        cycles=cycles, dropped=angle.first, per_cycle=int(2 ** np.ceil(np.log2(1.0 / mean)))
+    )
+    gearing = angle.gearing or Gearing(
+        mesh_frequency=mean,
+        mesh_frequency_error=0.5 / cycles.size,
+        harmonics=(),
+        shafts=(),
+        meshes=(),
+        evidence=(f"the mesh line is put at {angle.teeth} times the tacho's shaft",),
+    )
+    turns = MeshTurns(
+        frequency=mean,
+        half_width=mean / cycles.size,
+        turning=turning,
+        said=f"lines are read in angle, by the {shaft.origin}",
+        phase_noise=2.0 * np.pi * angle.mesh * angle.noise,
+    )
+    return Changing(
+        gearing=replace(gearing, mesh_frequency=mean),
+        teeth=angle.teeth,
+        notices=tuple(notices),
+        turns=turns,
+    )
+
+
+def _sliced(
+    record: Record,
+    chosen: Sequence[Channel],
+    table: Floats,
+    shaft: Shaft,
+    angle: _Angle,
+    harmonics: int,
+    sidebands: int,
+    orders: Sequence[float],
+    sensor_tolerance: float | None,
+    notices: list[Notice],
+) -> Changing:
+    turns, rate = angle.turns, record.rate or 1.0
+    inside = table[:, angle.first : angle.first + turns.size]
+    per_turn = samples_per_turn(turns)
+    mean = float((turns[-1] - turns[0]) / (turns.size - 1))
+    gearing = None
+    if angle.mesh is not None and angle.gearing is not None:
+        gearing = replace(angle.gearing, mesh_frequency=angle.mesh * mean)
+    wanted = _wanted(gearing, angle, inside, per_turn, harmonics, sidebands, orders, mean)
+    places = np.array([w.position / mean for w in wanted])
+    read, maps = [], []
+    for values in inside:
+        straight = resample_by_angle(values, turns, samples_per_turn=per_turn)
+        spectrum = line_spectrum(straight, float(per_turn))
+        strong = [one.place * spectrum.bin_width for one in strong_lines(spectrum, 24)]
+        beside = [o for o in strong if np.min(np.abs(o - places)) > _NEIGHBOUR]
+        read.append(
+            order_slices(
+                straight,
+                samples_per_turn=per_turn,
+                first=float(np.ceil(turns[0])),
+                orders=list(places),
+                beside=_apart(beside),
+                angle_noise=angle.noise,
+            )
+        )
+        maps.append(straight)
+    steps = read[0].turns
+    sample = np.interp(steps, turns, np.arange(turns.size))
+    speed = _rates(turns, steps)  # turns per sample
+    frequency = places[:, None] * speed[None, :] * rate
+    seen = np.where(frequency < _HIGHEST * rate, 1.0, np.nan)[None]
+    unit = 1.0 if not angle.of_mesh else 1.0 / _MESHES
+    known = [c.unit is not None and not c.needs_scale for c in chosen]
+    shafts_speed = 2.0 * np.pi * rate * speed * (1.0 if not angle.of_mesh else _MESHES)
+    time = (sample + angle.first) / rate
+    slices = OrderSlices(
+        channels=tuple(c.name for c in chosen),
+        names=tuple(w.name for w in wanted),
+        orders=places * unit,
+        of_mesh=angle.of_mesh,
+        time=time,
+        speed=shafts_speed,
+        acceleration=np.gradient(shafts_speed, time) if time.size > 1 else np.zeros(1),
+        frequency=frequency,
+        reading=np.stack([s.amplitude for s in read]) * seen,
+        half_width=np.hypot(
+            np.stack([s.half_width for s in read]),
+            _NORMAL * (sensor_tolerance or 0.0) * np.stack([s.amplitude for s in read]),
+        )
+        * seen,
+        phase=np.stack([s.phase for s in read]) * seen,
+        block=np.stack([s.block for s in read]) * seen,
+        si=np.array([c.si_factor if k else np.nan for c, k in zip(chosen, known, strict=True)]),
+        kinds=tuple(
+            kind_of(c.unit) if k and c.unit else "" for c, k in zip(chosen, known, strict=True)
+        ),
+        map=order_map(maps, per_turn, turns, rate, unit, float(np.max(places))),
+    )
+    if record.rate is not None:
+        slices = replace(slices, resonances=resonances_of(slices))
+    low, high = shafts_speed.min(), shafts_speed.max()
+    what = "the mesh line" if angle.of_mesh else "the shaft"
+    span = (
+        f"from {low / RPM:.5g} to {high / RPM:.5g} rpm"
+        if record.rate is not None
+        else f"by a factor {high / low:.3g}"
+    )
+    text = (
+        f"the speed of {what} changes {span}: orders are read slice by slice; an amplitude of the "
+        "table of lines is the root mean square over the turns"
+    )
+    notices.append(Notice("important", text))
+    lines = _lines(slices, wanted, angle, mean, rate, record.rate is not None)
+    return Changing(
+        gearing=gearing,
+        teeth=angle.teeth,
+        notices=tuple(notices),
+        lines=lines,
+        slices=slices,
+    )
+
+
+def _wanted(
+    gearing: Gearing | None,
+    angle: _Angle,
+    inside: Floats,
+    per_turn: int,
+    harmonics: int,
+    sidebands: int,
+    orders: Sequence[float],
+    mean: float,
+) -> list[Wanted]:
+    """The lines to read, their positions in cycles per sample at the mean speed."""
+    found: list[Wanted] = []
+    if gearing is not None:
+        found = wanted_lines(gearing, inside[0], harmonics=harmonics, sidebands=sidebands)
+    elif angle.mesh is not None:
+        found = [
+            Wanted("mesh", f"mesh x {k}", position=k * angle.mesh * mean, half_width=0.0)
+            for k in range(1, harmonics + 1)
+        ]
+    if not found and not orders:
+        straight = resample_by_angle(inside[0], angle.turns, samples_per_turn=per_turn)
+        spectrum = line_spectrum(straight, float(per_turn))
+        for one in strong_lines(spectrum, 4 * harmonics):
+            place = one.place * spectrum.bin_width
+            if 0.4 < place < 0.2 * per_turn and all(
+                abs(place - w.position / mean) > _NEIGHBOUR for w in found
+            ):
+                found.append(
+                    Wanted("order", f"order {place:.4g}", position=place * mean, half_width=0.0)
+                )
+    if not angle.of_mesh:
+        found += order_lines(orders, mean, found)
+    if not found:
+        raise InputError("record", "no order", why="nothing stands out in angle", fix="--orders")
+    kept: list[Wanted] = []
+    for one in found:
+        far = all(abs(one.position - k.position) > 0.05 * mean for k in kept)
+        if far and one.position / mean < 0.43 * per_turn:
+            kept.append(one)
+    return kept
+
+
+def order_lines(
+    orders: Sequence[float], shaft: float, found: Sequence[Wanted] = ()
+) -> list[Wanted]:
+    """Asked ``orders`` of a shaft [cycles/sample] as lines, without those ``found`` already."""
+    return [
+        Wanted("order", f"order {o:g}", position=o * shaft, half_width=2e-4 * o * shaft)
+        for o in orders
+        if all(abs(o * shaft - w.position) > 1e-6 * shaft for w in found)
+    ]
+
+
+def _apart(beside: Sequence[float]) -> list[float]:
+    kept: list[float] = []
+    for one in beside:
+        if all(abs(one - k) > _NEIGHBOUR for k in kept):
+            kept.append(one)
+    return kept
+
+
+def _rates(turns: Floats, steps: Floats) -> Floats:
+    """Turns per sample at the steps: over a turn on each side, where there is one."""
+    grid = np.arange(turns.size)
+    low, high = np.maximum(steps - 1.0, turns[0]), np.minimum(steps + 1.0, turns[-1])
+    places = np.interp(low, turns, grid), np.interp(high, turns, grid)
+    return np.asarray((high - low) / (places[1] - places[0]))
+
+
+def _lines(
+    slices: OrderSlices,
+    wanted: Sequence[Wanted],
+    angle: _Angle,
+    mean: float,
+    rate: float,
+    in_hertz: bool,
+) -> tuple[MeasuredLine, ...]:
+    """The root mean square over the turns of every line of every channel."""
+    found = []
+    for c, channel in enumerate(slices.channels):
+        for k, want in enumerate(wanted):
+            a, h = slices.reading[c, k], slices.half_width[c, k]
+            good = np.isfinite(a)
+            if not good.any():
+                continue
+            size = float(np.sqrt(np.mean(a[good] ** 2)))
+            # neighbours share their samples and their bias: no root of their number
+            relative = float(np.sqrt(np.mean(h[good] ** 2))) / max(size, 1e-300)
+            omega = 2.0 * np.pi * slices.frequency[k]
+            own = _quantities(a * slices.si[c], omega, slices.kinds[c])
+            acc, disp = (float(np.sqrt(np.mean(q[good] ** 2))) for q in own)
+            found.append(
+                MeasuredLine(
+                    channel=channel,
+                    kind=want.kind,
+                    name=want.name,
+                    order=float(slices.orders[k]) if not angle.of_mesh else float("nan"),
+                    position=want.position,
+                    frequency=want.position * rate if in_hertz else float("nan"),
+                    reading=size,
+                    acceleration=acc,
+                    displacement=disp if in_hertz or slices.kinds[c] == "displacement" else np.nan,
+                    uncertainty=relative / _NORMAL,
+                    bin_offset=float("nan"),
+                    prominence=1.0 / max(relative, 1e-6),
+                    shaft_speed=float(np.mean(slices.speed))
+                    if in_hertz and not angle.of_mesh
+                    else float("nan"),
+                    half_width=relative,
+                )
+            )
+    return tuple(found)
+
+
+def _quantities(amplitude: Floats, omega: Floats, kind: str) -> tuple[Floats, Floats]:
+    """Acceleration and displacement of lines of a known kind of quantity, else nan."""
+    power = {"acceleration": 0, "velocity": 1, "displacement": 2}.get(kind)
+    if power is None:
+        return np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
+    return amplitude * omega**power, amplitude * omega ** (power - 2)

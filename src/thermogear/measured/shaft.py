@@ -1,0 +1,284 @@
+"""The angle of a shaft through a record: by tacho pulses, by a speed channel, by a line's phase."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.traps import is_tacho_name
+from thermogear.measured.units import kind_of
+from thermogear.signals.following import band_power
+from thermogear.signals.lines import line_spectrum
+from thermogear.signals.orders import resample_by_angle, tacho_times
+from thermogear.signals.tacho import numbered, pulse_turns, speed_turns
+from thermogear.signals.tracking import (
+    LINES,
+    Tracked,
+    paths,
+    samples_per_turn,
+    sharpness,
+    track,
+)
+
+Floats = NDArray[np.float64]
+
+VARIES = 1.03
+"""Highest over lowest speed from which a record is read slice by slice."""
+
+_SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
+_LEAST_SHARP = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaft:
+    """``turns`` of a shaft at samples ``first`` on of the stretch, with rms ``noise`` [turns].
+
+    ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
+    what; ``sure``: pulses per turn are known. ``told`` what should be known of it.
+    """
+
+    turns: Floats
+    first: int
+    noise: float
+    origin: str
+    line: bool = False
+    sure: bool = True
+    told: tuple[Notice, ...] = ()
+
+    @property
+    def span(self) -> float:
+        """Highest over lowest speed, of means over hundredths of the record."""
+        marks = np.linspace(0, self.turns.size - 1, min(101, self.turns.size // 2)).astype(int)
+        speeds = np.diff(self.turns[marks]) / np.diff(marks)
+        return float(speeds.max() / max(speeds.min(), 1e-300))
+
+
+def given_shaft(
+    record: Record,
+    samples: int,
+    start: int,
+    pulses_per_turn: float | None,
+    tacho: Record | None = None,
+) -> Shaft | None:
+    """The shaft's angle by what the record, or another ``tacho`` record, has for it.
+
+    First pulses (the tacho channel), then a channel of speed. What is there and cannot be used is
+    told: then ``turns`` is empty. None where there is nothing.
+    """
+    if record.rate is None:
+        return None
+    told: list[Notice] = []
+    for source, channel, speed in _sources(record, tacho):
+        if source.rate is None:
+            told.append(Notice("important", f"tacho {channel.name!r}: its file states no rate"))
+            continue
+        at = start / record.rate + (record.start - source.start if source is not record else 0.0)
+        try:
+            found = (
+                _by_speed(channel, source.rate, record.rate, samples, at)
+                if speed
+                else _by_pulses(channel, source.rate, record.rate, samples, at, pulses_per_turn)
+            )
+        except InputError as error:
+            told.append(Notice("important", f"tacho {channel.name!r} is not used: {error}"))
+            continue
+        if found.turns.size < 0.2 * samples:
+            share = 100.0 * found.turns.size / samples
+            text = f"tacho {channel.name!r} covers {share:.0f} % of the record: it is not used"
+            told.append(Notice("important", text))
+            continue
+        if source is not record:
+            text = f"tacho of {source.source}: both files are taken to start together"
+            if record.start or source.start:
+                text = f"tacho of {source.source}: placed by the start times of both files"
+            told.append(Notice("info", text))
+        return replace(found, told=(*told, *found.told, *_missing(found, samples)))
+    if not told:
+        return None
+    return Shaft(turns=np.zeros(0), first=0, noise=0.0, origin="", told=tuple(told))
+
+
+def _sources(record: Record, tacho: Record | None) -> list[tuple[Record, Channel, bool]]:
+    """(record, channel, whether it is a speed) of everything that may tell the angle."""
+    found: list[tuple[Record, Channel, bool]] = []
+    for one in (tacho, record):
+        if one is None:
+            continue
+        speeds = [c for c in one.channels if _is_speed(c)]
+        named = [one.channel(one.tacho)] if one.tacho is not None else []
+        if one is tacho and not named and not speeds:
+            named = [c for c in one.channels if is_tacho_name(c.name)] or [one.channels[0]]
+        found += [(one, c, _is_speed(c)) for c in named]
+        found += [(one, c, True) for c in speeds if c not in named]
+    return found
+
+
+def _is_speed(channel: Channel) -> bool:
+    return channel.unit is not None and kind_of(channel.unit) in ("speed", "frequency")
+
+
+def _missing(shaft: Shaft, samples: int) -> list[Notice]:
+    if shaft.turns.size >= 0.98 * samples:
+        return []
+    last = shaft.first + shaft.turns.size - 1
+    text = (
+        f"{shaft.origin}: samples {shaft.first} to {last} of {samples} have an angle, the others "
+        "are not read"
+    )
+    return [Notice("warning", text)]
+
+
+def _by_pulses(
+    channel: Channel,
+    own: float,
+    rate: float,
+    samples: int,
+    at: float,
+    pulses_per_turn: float | None,
+) -> Shaft:
+    values = channel.values()
+    good = np.isfinite(values)
+    times = tacho_times(np.where(good, values, np.nanmin(values)), own)
+    pulses = numbered(times)
+    turns = pulse_turns(pulses, pulses_per_turn or 1.0, rate=rate, samples=samples, start=at)
+    told = []
+    if pulses.lost or pulses.extra or pulses.aside:
+        parts = [f"{pulses.lost} lost", f"{pulses.extra} extra"]
+        if pulses.aside:
+            parts.append(f"{pulses.aside} outside the stretch that could be counted")
+        text = f"tacho {channel.name!r}: of {pulses.times.size} pulses counted " + ", ".join(parts)
+        told.append(Notice("info", text))
+    return Shaft(
+        turns=turns.turns,
+        first=turns.first,
+        noise=turns.noise,
+        origin=f"tacho {channel.name!r}",
+        sure=pulses_per_turn is not None,
+        told=tuple(told),
+    )
+
+
+def _by_speed(channel: Channel, own: float, rate: float, samples: int, at: float) -> Shaft:
+    values = channel.values()
+    if not np.all(np.isfinite(values)):
+        raise InputError("speed", "gaps", allowed="finite samples")
+    turns = speed_turns(
+        np.abs(values) * channel.si_factor,
+        rate=own,
+        samples=samples,
+        sample_rate=rate,
+        start=at,
+    )
+    origin = f"speed channel {channel.name!r}"
+    return Shaft(turns=turns.turns, first=turns.first, noise=turns.noise, origin=origin)
+
+
+def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
+    """The shaft of a speed channel, its angle corrected by the phase of the clearest line.
+
+    A speed is read with errors that add up over the turns. Where a line of a whole order (``teeth``
+    or what stands highest) becomes sharper by its own phase, that phase is the angle; its
+    mean rate stays the speed channel's unless ``teeth`` are known.
+    """
+    inside = table[:, shaft.first : shaft.first + shaft.turns.size]
+    rough = shaft.turns
+    orders = [float(teeth)] if teeth else _broad_orders(inside, rough)
+    best: tuple[float, Tracked] | None = None
+    for order in orders:
+        for channel in inside[: 2 if len(inside) > 1 else 1]:
+            found = track(channel, order * rough)
+            if found is not None and (best is None or found.sharp > best[1].sharp):
+                best = order, found
+    before = _sharp_by(inside[0], rough)
+    if best is None or best[1].sharp < _SHARPER * before:
+        text = (
+            f"{shaft.origin}: no line is sharper by its own phase; high orders are as sharp "
+            "as that speed"
+        )
+        return replace(shaft, told=(*shaft.told, Notice("warning", text)))
+    order, found = best
+    cycles = found.cycles
+    # cycles per turn: whole teeth, else so that the mean speed is the channel's
+    if teeth:
+        ratio = float(teeth)
+    else:
+        ratio = float(cycles[-1] / (rough[-1] - rough[0]))
+        if abs(ratio - round(ratio)) < 0.02 * ratio:
+            ratio = float(round(ratio))
+    off = cycles[-1] / ratio / (rough[-1] - rough[0]) - 1.0
+    text = (
+        f"{shaft.origin} reads {abs(off) * 100:.2g} % {'low' if off > 0 else 'high'} if the line at "
+        f"order {ratio:.6g} is whole; the angle is corrected by that line's phase: the {LINES} "
+        f"strongest lines hold {100 * found.sharp:.0f} % of the power, {100 * before:.0f} % before"
+    )
+    return replace(
+        shaft,
+        turns=cycles / ratio,
+        noise=found.noise / ratio,
+        told=(*shaft.told, Notice("info", text)),
+    )
+
+
+def _sharp_by(values: Floats, turns: Floats) -> float:
+    per_turn = samples_per_turn(turns)
+    return sharpness(resample_by_angle(values, turns, samples_per_turn=per_turn))
+
+
+def _broad_orders(table: Floats, turns: Floats) -> list[float]:
+    """Orders around which the power stands highest, a per cent wide: three at most."""
+    per_turn = samples_per_turn(turns)
+    spectrum = line_spectrum(
+        resample_by_angle(table[0], turns, samples_per_turn=per_turn), float(per_turn)
+    )
+    top = min(0.4 * per_turn, 400.0)
+    orders = np.arange(4.0, top, 1.0)
+    powers = np.array([band_power(spectrum, o, max(0.015 * o, 0.1)) for o in orders])
+    return [float(o) for o in orders[np.argsort(-powers)[:3]]]
+
+
+def tracked_shaft(table: Floats) -> Shaft | None:
+    """A line that runs through the spectrum as the angle, where it makes the spectrum sharp.
+
+    Paths of a line with harmonics are looked for in all channels together; each is followed by
+    its phase in the channel in which it is clearest, and the one that puts most power into few
+    lines is taken, if that is more than without it.
+    """
+    best: Tracked | None = None
+    loudest = table[np.argsort(-np.std(table, axis=-1))[:2]]
+    for path in paths(table):
+        if path.span < VARIES or path.height < 1.0:
+            continue
+        cycles = path.cycles(table.shape[-1])
+        for channel in loudest:
+            found = track(channel, cycles)
+            if found is None or found.span < VARIES:
+                continue
+            if found.sharp >= max(_SHARPER * found.blunt, _LEAST_SHARP) and (
+                best is None or found.sharp > best.sharp
+            ):
+                best = found
+        if best is not None:
+            break
+    if best is None:
+        return None
+    numbers = (
+        f"the {LINES} strongest lines hold {100 * best.sharp:.0f} % of the power in its angle, "
+        f"{100 * best.blunt:.0f} % in time"
+    )
+    told = Notice(
+        "important",
+        f"no tacho: the speed is tracked from a line that runs through the spectrum; {numbers}",
+    )
+    shaft = Shaft(
+        turns=best.cycles,
+        first=0,
+        noise=best.noise,
+        origin="the tracked line",
+        line=True,
+        told=(told,),
+    )
+    return shaft

@@ -1,0 +1,263 @@
+"""A shaft's angle from tacho pulses, lost and extra ones repaired, or from its speed over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import interpolate
+
+from thermogear.base.errors import InputError
+from thermogear.signals.spectra import finite_record
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_BACK = 4  # pulses among which the one before is looked for
+_MOST = 12  # whole periods between two pulses
+_STEP = 0.03  # standard deviation of the change of ln(period) from pulse to pulse
+_LOST, _EXTRA = 2.3, 3.5  # what a lost pulse and an extra one cost: -ln of their shares, 10 and 3 %
+_JUMP = 60.0  # what any change costs at most: a period that jumps ends the count
+_BROKEN = 12.0  # standard deviations of a change that no shaft makes
+_MOST_KNOTS = 4096
+_LEAST = 8
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pulses:
+    """Pulses with their numbers: ``times`` [s] of those kept and ``numbers`` counted from the first.
+
+    ``lost`` and ``extra``: how many were missing between them and how many were left aside;
+    ``aside``: pulses before and after a stretch over which they could not be counted.
+    """
+
+    times: Floats
+    numbers: Ints
+    lost: int
+    extra: int
+    aside: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turns:
+    """``turns`` of a shaft at samples ``first`` on; ``noise``: rms of what is wrong with them in a
+    few turns [turns]."""
+
+    turns: Floats
+    first: int
+    noise: float
+
+
+def numbered(times: ArrayLike) -> Pulses:
+    """The pulses that a shaft's turning makes, each with its number.
+
+    ``times`` [s], rising. Of all ways to leave pulses aside and to put whole numbers of periods k
+    between the others, the likeliest (Viterbi): minus log likelihood
+
+        sum 2.3 (k_i - 1) + 3.5 e_i + (ln(p_i/p_(i-1))/(0.03 m_i))^2/2,
+
+    e_i pulses left aside before pulse i, p_i = (t_i - t_(i-1))/k_i, m_i the mean of k_i and
+    k_(i-1): a lost pulse doubles an interval, an extra one splits it, and the speed changes
+    little from pulse to pulse. Then pulses that lie off the curve through their neighbours are
+    left aside as well. Up to 11 pulses in a row may be lost; where the period jumps all the same
+    the count ends, and the longest stretch is taken.
+
+    Raises InputError where fewer than 8 pulses are left.
+    Source: Viterbi 1967, IEEE Trans. Inf. Theory 13, 260-269.
+
+    >>> found = numbered([0.0, 0.1, 0.2, 0.25, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9])
+    >>> found.numbers, found.lost, found.extra
+    (array([0, 1, 2, 3, 5, 6, 7, 8, 9]), 1, 1)
+    """
+    edges = finite_record(times, "tacho")
+    if edges.size < _LEAST or np.any(np.diff(edges) <= 0.0):
+        got = f"{edges.size} pulses"
+        raise InputError("tacho", got, allowed=f">= {_LEAST} pulses in rising order")
+    places, steps = _likeliest(edges)
+    periods = np.diff(edges[places]) / steps
+    weight = 0.5 * (steps[1:] + steps[:-1])
+    broken = np.abs(np.diff(np.log(periods))) > _BROKEN * _STEP * weight
+    cuts = np.concatenate([[0], np.flatnonzero(broken) + 1, [places.size - 1]])
+    longest = int(np.argmax(np.diff(cuts)))
+    kept = slice(int(cuts[longest]), int(cuts[longest + 1]) + 1)
+    places = places[kept]
+    numbers = np.concatenate([[0], np.cumsum(steps[kept.start : kept.stop - 1])])
+    good = _on_the_curve(edges[places], numbers)
+    places, numbers = places[good], numbers[good]
+    if places.size < _LEAST:
+        raise InputError("tacho", f"{edges.size} pulses", why="they come at no steady distance")
+    inside = int(places[-1] - places[0]) + 1
+    return Pulses(
+        times=edges[places],
+        numbers=numbers - numbers[0],
+        lost=int(numbers[-1] - numbers[0]) + 1 - places.size,
+        extra=inside - places.size,
+        aside=edges.size - inside,
+    )
+
+
+def _likeliest(edges: Floats) -> tuple[Ints, Ints]:
+    """Places of the pulses counted, and the whole periods between one and the next."""
+    if np.all(np.abs(np.diff(np.log(np.diff(edges)))) < 3.0 * _STEP):  # nothing to repair
+        return np.arange(edges.size), np.ones(edges.size - 1, dtype=np.int64)
+    whole = np.arange(1, _MOST + 1, dtype=float)
+    count = edges.size
+    back = np.arange(1, _BACK + 1)
+    # states of pulse j: which pulse came before it and whole periods since: (back, whole)
+    own = _EXTRA * (back[:, None] - 1) + _LOST * (whole[None, :] - 1.0)
+    cost = np.full((count, _BACK, _MOST), np.inf)
+    origin = np.zeros((count, _BACK, _MOST), dtype=np.int16)
+    logs = np.zeros((count, _BACK, _MOST))
+    weight = 1.0 / (2.0 * (_STEP * 0.5 * (whole[:, None] + whole[None, :])) ** 2)
+    for j in range(1, count):
+        most = min(_BACK, j)
+        before = j - back[:most]
+        log = np.log((edges[j] - edges[before])[:, None] / whole[None, :])
+        logs[j, :most] = log
+        changes = (log[:, :, None, None] - logs[before][:, None]) ** 2 * weight[None, :, None, :]
+        total = cost[before][:, None] + np.minimum(changes, _JUMP)
+        flat = total.reshape(most, _MOST, -1)
+        best = np.argmin(flat, axis=-1)
+        least = np.take_along_axis(flat, best[..., None], axis=-1)[..., 0] + own[:most]
+        free = own[:most] + _EXTRA * before[:, None]  # the first pair: all before it are extra
+        cost[j, :most] = np.minimum(free, least)
+        origin[j, :most] = np.where(free < least, -1, best)
+    left = _EXTRA * np.arange(count - 1, -1, -1.0)
+    place, b, k = np.unravel_index(int(np.argmin(cost + left[:, None, None])), cost.shape)
+    places, steps = [int(place)], []
+    while True:
+        steps.append(int(k) + 1)
+        came = int(origin[place, b, k])
+        place = place - (b + 1)
+        places.append(int(place))
+        if came < 0:
+            break
+        b, k = divmod(came, _MOST)
+    return np.asarray(places[::-1], dtype=np.int64), np.asarray(steps[::-1], dtype=np.int64)
+
+
+def _on_the_curve(times: Floats, numbers: Ints) -> NDArray[np.bool_]:
+    """Which pulses lie on the cubic through the two before and the two after them."""
+    kept = np.arange(times.size)
+    while kept.size > _LEAST:
+        t, n = times[kept], numbers[kept].astype(float)
+        at = t[2:-2]
+        around = np.stack([t[:-4], t[1:-3], t[3:-1], t[4:]])
+        values = np.stack([n[:-4], n[1:-3], n[3:-1], n[4:]])
+        expected = np.zeros(at.size)
+        for one in range(4):
+            others = [x for x in range(4) if x != one]
+            share = np.prod([(at - around[o]) / (around[one] - around[o]) for o in others], axis=0)
+            expected += values[one] * share
+        off = np.abs(n[2:-2] - expected)
+        limit = max(0.05, 8.0 * float(np.median(off)))
+        # an outlier pulls its neighbours' curves by up to two thirds of what it is off itself
+        highest = off >= np.max([np.pad(off, 2)[s : s + off.size] for s in (0, 1, 3, 4)], axis=0)
+        bad = np.flatnonzero((off > limit) & highest)
+        if bad.size == 0:
+            break
+        kept = np.delete(kept, bad + 2)
+    found = np.zeros(times.size, dtype=np.bool_)
+    found[kept] = True
+    return found
+
+
+def pulse_turns(
+    pulses: Pulses, pulses_per_turn: float, *, rate: float, samples: int, start: float = 0.0
+) -> Turns:
+    """Turns of the shaft at samples of a record, 0 at the first pulse, from counted ``pulses``.
+
+    ``rate`` [samples/s] and ``samples`` of the record, whose first is at ``start`` [s] of the
+    pulses' time. A smoothing spline through (time, number/pulses per turn), its smoothness by
+    generalised cross-validation: what the edges' places scatter is taken away. Marks that are not
+    evenly spaced on the shaft, the same every turn, are moved to where they are. Samples before
+    the first and after the last pulse are left out: no angle is extrapolated.
+
+    >>> found = pulse_turns(numbered(np.arange(20) * 0.1), 2.0, rate=100.0, samples=150)
+    >>> found.first, found.turns[[0, 20, 100]].round(3)
+    (0, array([0., 1., 5.]))
+    """
+    if not pulses_per_turn > 0:
+        raise InputError("pulses_per_turn", pulses_per_turn, allowed="> 0")
+    times, numbers = pulses.times, pulses.numbers.astype(float)
+    number_of, left = _smooth(times, numbers)
+    marks = round(pulses_per_turn)
+    if 1 < marks == pulses_per_turn and times.size >= 8 * marks:
+        mark = pulses.numbers % marks
+        count = np.maximum(np.bincount(mark, minlength=marks), 1)
+        places = np.bincount(mark, weights=left, minlength=marks) / count
+        places -= places.mean()
+        if np.var(left - places[mark]) < 0.5 * np.var(left):
+            number_of, left = _smooth(times, numbers - places[mark])
+    at = start + np.arange(samples) / rate
+    inside = np.flatnonzero((at >= times[0]) & (at <= times[-1]))
+    if inside.size < 2:
+        raise InputError("tacho", "its pulses", why="none lie within the record's time")
+    grid = at[inside]
+    return Turns(
+        turns=np.asarray(number_of(grid) / pulses_per_turn),
+        first=int(inside[0]),
+        noise=float(np.std(left)) / pulses_per_turn / np.sqrt(3.0),
+    )
+
+
+def _smooth(times: Floats, numbers: Floats) -> tuple[interpolate.BSpline, Floats]:
+    """A smoothing spline of number over time, and what each pulse is off it [pulses].
+
+    More than 4096 pulses are averaged in groups first.
+    """
+    group = -(-times.size // _MOST_KNOTS)
+    x, y = times, numbers
+    if group > 1:
+        cuts = np.arange(0, times.size - group + 1, group)
+        x = np.add.reduceat(times, cuts)[:-1] / group
+        y = np.add.reduceat(numbers, cuts)[:-1] / group
+        x = np.concatenate([times[:1], x[1:], times[-1:]])
+        y = np.concatenate([numbers[:1], y[1:], numbers[-1:]])
+    # about a straight line, in units of the mean step: the solver likes numbers near 1
+    step = (x[-1] - x[0]) / (x.size - 1)
+    slope = (y[-1] - y[0]) / (x[-1] - x[0])
+    rest = y - y[0] - slope * (x - x[0])
+    try:
+        spline = interpolate.make_smoothing_spline((x - x[0]) / step, rest)
+    except (ValueError, np.linalg.LinAlgError):  # exactly straight
+        spline = interpolate.make_interp_spline((x - x[0]) / step, rest, k=3)
+
+    def number_of(at: Floats) -> Floats:
+        return np.asarray(y[0] + slope * (at - x[0]) + spline((at - x[0]) / step))
+
+    return number_of, numbers - number_of(times)  # type: ignore[return-value]
+
+
+def speed_turns(
+    speed: ArrayLike, *, rate: float, samples: int, sample_rate: float, start: float = 0.0
+) -> Turns:
+    """Turns of the shaft at samples of a record, 0 at the first, from its ``speed`` [turns/s].
+
+    ``rate`` [1/s] of the speed's samples, ``sample_rate`` [1/s] and ``samples`` of the record,
+    whose first is at ``start`` [s] of the speed's time. Noise is taken away by a Hann kernel of a
+    hundredth of the record, cut at its ends; then the speed is summed by trapezoids.
+    Raises InputError where the shaft stands still or turns back.
+
+    >>> found = speed_turns(np.full(100, 20.0), rate=100.0, samples=1000, sample_rate=1000.0)
+    >>> round(float(found.turns[-1]), 3)
+    19.78
+    """
+    values = finite_record(speed, "speed")
+    length = max(3, values.size // 100 // 2 * 2 + 1)
+    kernel = np.hanning(length + 2)[1:-1]
+    weight = np.convolve(np.ones(values.size), kernel, mode="same")
+    centre = np.arange(values.size, dtype=float)
+    smooth = np.convolve(values, kernel, mode="same") / weight
+    place = np.convolve(centre, kernel, mode="same") / weight  # a cut kernel looks elsewhere
+    smooth = np.interp(centre, place, smooth)
+    if np.any(smooth <= 0.0):
+        raise InputError("speed", f"{smooth.min():.4g} turns/s", allowed="> 0 in the whole record")
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (smooth[1:] + smooth[:-1]))]) / rate
+    at = (start + np.arange(samples) / sample_rate) * rate
+    inside = np.flatnonzero((at >= 0.0) & (at <= values.size - 1))
+    if inside.size < 2:
+        raise InputError("speed", "its samples", why="none lie within the record's time")
+    turned = interpolate.CubicSpline(centre, total)(at[inside])
+    return Turns(turns=np.asarray(turned - turned[0]), first=int(inside[0]), noise=0.0)
