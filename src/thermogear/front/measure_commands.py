@@ -13,6 +13,7 @@ from thermogear.base.units import RPM
 from thermogear.front import delivery
 
 if TYPE_CHECKING:
+    from thermogear.measured.record import Record
     from thermogear.measured.reduction import Measurement
     from thermogear.results.result import Result
 
@@ -30,8 +31,22 @@ def supplies(command: Any) -> Any:
         click.option(
             "--channel", "channels", multiple=True, help="Channel to use (name or number)."
         ),
-        click.option("--tacho", help="Tacho channel (name or number)."),
+        click.option(
+            "--tacho",
+            metavar="CHANNEL|FILE",
+            help="Channel of pulses or of speed (name or number), or a file that has it; of "
+            "several channels of a file FILE::CHANNEL.",
+        ),
         click.option("--pulses", type=float, help="Tacho pulses per turn."),
+        click.option(
+            "--orders",
+            type=float,
+            multiple=True,
+            metavar="ORDER",
+            help="Order of the first shaft to read too. May be repeated.",
+        ),
+        click.option("--harmonics", type=int, help="Mesh harmonics to read [3]."),
+        click.option("--sidebands", type=int, help="Sidebands on each side to read [2]."),
         click.option(
             "--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file."
         ),
@@ -74,15 +89,18 @@ def measured_by(file: str, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.reduction import measure as reduce
 
     speed, limit = options["speed"], options["limit"]
+    most = None if limit is None else bytes_of_gibibytes(limit)
+    named = options["tacho"]
+    other = None if named is None else tacho_file(named, options["decimal"], most)
     record = read_record(
         file,
         rate=options["rate"],
         unit=options["unit"],
         scale=options["scale"],
         channels=options["channels"],
-        tacho=options["tacho"],
+        tacho=None if other else named,
         decimal=options["decimal"],
-        limit=None if limit is None else bytes_of_gibibytes(limit),
+        limit=most,
     )
     return reduce(
         record,
@@ -91,7 +109,24 @@ def measured_by(file: str, options: dict[str, Any]) -> Measurement:
         chain=Chain(options["method"]),
         sensor_tolerance=options["sensor_tolerance"],
         pulses_per_turn=options["pulses"],
+        tacho=other,
+        orders=options["orders"],
+        harmonics=3 if options["harmonics"] is None else options["harmonics"],
+        sidebands=2 if options["sidebands"] is None else options["sidebands"],
     )
+
+
+def tacho_file(named: str, decimal: str | None, limit: int | None) -> Record | None:
+    """The record that ``--tacho FILE`` or ``FILE::CHANNEL`` names; None: a channel's name."""
+    from thermogear.measured.readers import read_record
+
+    place, sign, channel = named.rpartition("::")
+    file = Path(place if sign else named)
+    if not file.is_file():
+        if sign:
+            raise InputError("--tacho", repr(named), why=f"there is no file {place}")
+        return None
+    return read_record(file, tacho=channel if sign else None, decimal=decimal, limit=limit)
 
 
 @click.command()

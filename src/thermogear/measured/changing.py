@@ -334,6 +334,13 @@ def _wanted(
             Wanted("mesh", f"mesh x {k}", position=k * angle.mesh * mean, half_width=0.0)
             for k in range(1, harmonics + 1)
         ]
+    if found and angle.teeth and not any(w.kind == "sideband" for w in found):
+        for one in [w for w in found if w.kind == "mesh"]:
+            for n in range(1, sidebands + 1):
+                for sign, word in ((-1, "-"), (1, "+")):
+                    name = f"{one.name} {word} {n} shaft/{angle.teeth}"
+                    at = one.position + sign * n * mean
+                    found.append(Wanted("sideband", name, position=at, half_width=0.0))
     if not found and not orders:
         straight = resample_by_angle(inside[0], angle.turns, samples_per_turn=per_turn)
         spectrum = line_spectrum(straight, float(per_turn))
@@ -404,7 +411,7 @@ def _lines(
             # neighbours share their samples and their bias: no root of their number
             relative = float(np.sqrt(np.mean(h[good] ** 2))) / max(size, 1e-300)
             omega = 2.0 * np.pi * slices.frequency[k]
-            own = _quantities(a * slices.si[c], omega, slices.kinds[c])
+            own = quantities(a * slices.si[c], omega, slices.kinds[c])
             acc, disp = (float(np.sqrt(np.mean(q[good] ** 2))) for q in own)
             found.append(
                 MeasuredLine(
@@ -429,7 +436,7 @@ def _lines(
     return tuple(found)
 
 
-def _quantities(amplitude: Floats, omega: Floats, kind: str) -> tuple[Floats, Floats]:
+def quantities(amplitude: Floats, omega: Floats, kind: str) -> tuple[Floats, Floats]:
     """Acceleration and displacement of lines of a known kind of quantity, else nan."""
     power = {"acceleration": 0, "velocity": 1, "displacement": 2}.get(kind)
     if power is None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from thermogear.base.vocabulary import label
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.reduction import Measurement
+from thermogear.measured.slice_groups import slice_figures, slice_groups
 from thermogear.results.result import Notice, Result, now
 from thermogear.signals.spectra import amplitude_spectrum
 
@@ -45,6 +46,8 @@ def result_of(found: Measurement) -> Result:
     }
     if found.lines:
         groups["lines"] = _lines(found.lines)
+    if found.slices is not None:
+        groups |= slice_groups(found.slices)
     gearing = found.gearing
     return Result.of(
         "measured",
@@ -81,6 +84,7 @@ def figures(found: Measurement) -> dict[str, Any]:
         "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
         "evidence": list(gearing.evidence) if gearing else [],
         "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
+        "slices": None if found.slices is None else slice_figures(found.slices),
         "notices": [vars(notice) for notice in found.notices],
     }
 

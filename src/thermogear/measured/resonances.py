@@ -21,6 +21,8 @@ class _Slices(Protocol):
     @property
     def names(self) -> tuple[str, ...]: ...
     @property
+    def time(self) -> Floats: ...
+    @property
     def speed(self) -> Floats: ...
     @property
     def frequency(self) -> Floats: ...
@@ -67,7 +69,9 @@ def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
 
         1/a^2 = c_2 f^4 + c_1 f^2 + c_0,  f_n^4 = c_0/c_2,  2 zeta^2 = 1 + c_1/(2 f_n^2 c_2),
 
-    which holds where the excitation does not change with frequency there.
+    which holds where the excitation does not change with frequency there. A passage at f' [Hz/s]
+    moves a peak, and a frequency read from a phase, by up to about f'/(2 pi zeta f_n): that is in
+    the interval.
     """
     peaks: list[_Peak] = []
     for c in range(len(slices.channels)):
@@ -78,6 +82,7 @@ def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
                 slices.speed,
                 slices.reading[c, k],
                 slices.half_width[c, k],
+                np.gradient(slices.frequency[k], slices.time),
             )
     peaks.sort(key=lambda one: -one.height)
     found: list[Resonance] = []
@@ -126,8 +131,10 @@ def _of(kind: str, group: list[_Peak]) -> Resonance:
     )
 
 
-def _peaks(name: str, f: Floats, speed: Floats, a: Floats, half: Floats) -> list[_Peak]:
-    """Peaks of one order over its frequency."""
+def _peaks(
+    name: str, f: Floats, speed: Floats, a: Floats, half: Floats, rate: Floats
+) -> list[_Peak]:
+    """Peaks of one order over its frequency, which changes by ``rate`` [Hz/s]."""
     good = np.flatnonzero(np.isfinite(a) & np.isfinite(half))
     if good.size < 9:
         return []
@@ -139,7 +146,8 @@ def _peaks(name: str, f: Floats, speed: Floats, a: Floats, half: Floats) -> list
         higher = np.flatnonzero(y > y[top])
         left = higher[higher < top].max(initial=-1)
         right = higher[higher > top].min(initial=y.size)
-        valley = [part.min() for part in (y[left + 1 : top], y[top + 1 : right]) if part.size]
+        upper = y + h  # of a valley its upper end counts
+        valley = [part.min() for part in (upper[left + 1 : top], upper[top + 1 : right]) if part.size]
         if len(valley) < 2 or y[top] - h[top] < _ABOVE * max(valley):
             continue
         low = high = int(top)
@@ -150,11 +158,13 @@ def _peaks(name: str, f: Floats, speed: Floats, a: Floats, half: Floats) -> list
         place, error, damping = _shape(x[low : high + 1], y[low : high + 1], h[low : high + 1])
         if not x[max(low - 1, 0)] <= place <= x[min(high + 1, x.size - 1)]:
             place, error, damping = float(x[top]), float(x[high] - x[low]) / 4.0, float("nan")
+        half_band = damping * place if np.isfinite(damping) else float(x[high] - x[low]) / 2.0
+        swept = abs(float(np.interp(place, x, rate[order]))) / (2.0 * np.pi * max(half_band, 1e-9))
         found.append(
             _Peak(
                 name=name,
                 frequency=place,
-                error=error,
+                error=float(np.hypot(np.nan_to_num(error), swept / 1.96)),
                 damping=damping,
                 speed=float(np.interp(place, x, s)),
                 height=float(y[top] / max(valley)),

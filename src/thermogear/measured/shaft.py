@@ -31,6 +31,7 @@ VARIES = 1.03
 
 _SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
 _LEAST_SHARP = 0.05
+_AS_SHARP = 0.8  # of the sharpness before: then a line's own phase is as good an angle
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,8 +182,9 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     """The shaft of a speed channel, its angle corrected by the phase of the clearest line.
 
     A speed is read with errors that add up over the turns. Where a line of a whole order (``teeth``
-    or what stands highest) becomes sharper by its own phase, that phase is the angle; its
-    mean rate stays the speed channel's unless ``teeth`` are known.
+    or what stands highest) can be followed by its own phase, that phase is the angle, and
+    how far the speed channel reads off is told. A line within 2 % of a whole order is taken for
+    that order.
     """
     inside = table[:, shaft.first : shaft.first + shaft.turns.size]
     rough = shaft.turns
@@ -194,10 +196,10 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
             if found is not None and (best is None or found.sharp > best[1].sharp):
                 best = order, found
     before = _sharp_by(inside[0], rough)
-    if best is None or best[1].sharp < _SHARPER * before:
+    if best is None or best[1].sharp < _AS_SHARP * before:
         text = (
-            f"{shaft.origin}: no line is sharper by its own phase; high orders are as sharp "
-            "as that speed"
+            f"{shaft.origin}: no line's phase can be followed; high orders are as sharp as that "
+            "speed"
         )
         return replace(shaft, told=(*shaft.told, Notice("warning", text)))
     order, found = best

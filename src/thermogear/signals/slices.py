@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import signal
+from scipy import fft, signal
 
 from thermogear.base.errors import InputError
 from thermogear.signals.interval import student
@@ -27,6 +27,7 @@ _POWERS = 3
 _BIAS = 1.25  # the bias b goes with T^4: blocks of length 1.6 to 1 differ by b - b/6 or so
 _FAR = 3.5 + np.arange(30.0)  # lines beside an order at which its noise may be judged
 _JUDGED = 12
+_FREE = 3.0  # lines from every order that is fitted
 _RESAMPLED = 1e-3  # of an amplitude, that the resampling loses at 0.4 of its rate; below, as a spline
 _FINEST = 3.4  # samples per turn over the highest order
 
@@ -130,63 +131,70 @@ class _Block:
     """The fit over one length of block: everything that does not depend on the samples."""
 
     def __init__(self, turns: int, per_turn: int, wanted: Floats, others: Floats) -> None:
-        count = turns * per_turn + 1
-        theta = (np.arange(count) - turns * per_turn // 2) / per_turn
+        count = turns * per_turn
+        theta = (np.arange(count) - count // 2) / per_turn
         u = 2.0 * theta / turns
         weight = 0.5 + 0.5 * np.cos(np.pi * u)
         every = np.concatenate([wanted, others])
         # of low orders the images at negative ones reach in
-        images = -every[2.0 * every * turns < 24.0]
-        near = np.concatenate([every, images])
+        near = np.concatenate([every, -every[2.0 * every * turns < 24.0]])
         turn = np.exp(2j * np.pi * theta[:, None] * near[None, :])
         basis = np.concatenate([turn * (u**k)[:, None] for k in range(_POWERS)], axis=1)
-        gram = basis.conj().T @ (weight[:, None] * basis)
-        self._solve = np.linalg.pinv(gram, rcond=1e-10, hermitian=True) @ (
-            basis.conj().T * weight[None, :]
-        )
+        weighted = basis * weight[:, None]
+        self._inverse = np.linalg.pinv(basis.conj().T @ weighted, rcond=1e-10, hermitian=True)
+        self._project = np.concatenate([weighted.real.T, -weighted.imag.T])
+        own = np.arange(wanted.size)
+        rows = self._inverse[own]
+        square = np.real(np.einsum("ij,jk,ik->i", rows, weighted.conj().T @ weighted, rows.conj()))
+        self._gain = square * weight.sum() ** 2 / np.sum(weight**2)
         self._fit = np.concatenate([np.arange(every.size) + k * near.size for k in range(_POWERS)])
-        self._basis = basis[:, self._fit]
-        self._turns, self._per_turn, self._count = turns, per_turn, count
-        self._own = np.arange(wanted.size)
-        self._wanted = wanted
-        self._places, self._clear = self._beside(wanted, every)
-        look = np.exp(-2j * np.pi * theta[:, None] * self._places.reshape(1, -1))
-        self._look = look * (weight / weight.sum())[:, None]
-        gain = np.sum(np.abs(self._solve[self._own]) ** 2, axis=1)
-        self._gain = gain / float(np.sum((weight / weight.sum()) ** 2))
+        self._bins, self._clear = self._beside(turns, wanted, every, count)
+        # what the fitted lines and their conjugates show in those bins
+        flat = self._bins.ravel()
+        self._shown = fft.fft(weighted[:, self._fit], axis=0)[flat]
+        self._mirror = np.conj(fft.fft(weighted[:, self._fit], axis=0)[-flat])
+        self._weight, self._count, self._per_turn, self._own = weight, count, per_turn, own
 
-    def _beside(self, wanted: Floats, every: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """Orders beside each wanted one where noise is judged, and which of them are free."""
-        far = np.stack([-_FAR, _FAR], axis=1).ravel() / self._turns
-        places = wanted[:, None] + far[None, :]
-        gaps = np.min(np.abs(places[:, :, None] - every[None, None, :]), axis=-1)
-        clear = (gaps > 3.0 / self._turns) & (places > 1.0 / self._turns)
-        clear |= ~np.any(clear, axis=1)[:, None]
+    @staticmethod
+    def _beside(
+        turns: int, wanted: Floats, every: Floats, count: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Bins beside each wanted order where noise is judged, and which of them are free."""
+        far = np.stack([-_FAR, _FAR], axis=1).ravel()
+        places = np.rint(wanted[:, None] * turns + far[None, :]).astype(np.int64)
+        gaps = np.min(np.abs(places[:, :, None] - turns * every[None, None, :]), axis=-1)
+        inside = (places > 1) & (places < count // 2)
+        clear = (gaps >= _FREE) & inside
+        clear |= ~np.any(clear, axis=1)[:, None] & inside
         # the nearest of them
         nearest = np.argsort(~clear, axis=1, kind="stable")[:, :_JUDGED]
-        return np.take_along_axis(places, nearest, axis=1), np.take_along_axis(
-            clear, nearest, axis=1
-        )
+        places = np.clip(np.take_along_axis(places, nearest, axis=1), 0, count // 2)
+        return places, np.take_along_axis(clear, nearest, axis=1)
 
     def read(self, values: Floats, centres: NDArray[np.int64]) -> tuple[Complexes, Floats, Floats]:
         """Complex amplitude (order, step), variance of its size and degrees of freedom (order)."""
-        half = self._count // 2
-        starts = centres * self._per_turn - half
+        starts = centres * self._per_turn - self._count // 2
         inside = np.flatnonzero((starts >= 0) & (starts + self._count <= values.size))
-        shape = (self._wanted.size, centres.size)
+        shape = (self._own.size, centres.size)
         amplitude = np.full(shape, np.nan, dtype=complex)
         variance = np.full(shape, np.nan)
         views = np.lib.stride_tricks.sliding_window_view(values, self._count)
-        for part in np.array_split(inside, max(1, inside.size // 16)):
+        for part in np.array_split(inside, max(1, inside.size // 32)):
+            if part.size == 0:
+                continue
             blocks = views[starts[part]]
-            found = 2.0 * (self._solve @ blocks.T)
+            seen = self._project @ blocks.T
+            half = seen.shape[0] // 2
+            found = 2.0 * (self._inverse @ (seen[:half] + 1j * seen[half:]))
             own = found[self._fit]
-            left = blocks - np.real(self._basis @ own).T
-            power = np.abs(2.0 * (left @ self._look)) ** 2
-            power = power.reshape(part.size, self._wanted.size, -1)
-            noise = np.sum(power * self._clear, axis=-1) / np.sum(self._clear, axis=-1)
+            shown = fft.rfft(blocks * self._weight, axis=-1).T[self._bins.ravel()]
+            left = shown - 0.5 * (self._shown @ own + self._mirror @ own.conj())
+            power = np.abs(2.0 * left / self._weight.sum()) ** 2
+            power = power.reshape(*self._bins.shape, part.size)
+            noise = np.sum(power * self._clear[..., None], axis=1)
+            noise /= np.maximum(np.sum(self._clear, axis=1), 1)[:, None]
             amplitude[:, part] = found[self._own]
-            variance[:, part] = 0.5 * noise.T * self._gain[:, None]
+            variance[:, part] = 0.5 * noise * self._gain[:, None]
         variance = _three(variance)
         # Hann bins a line apart are correlated by 2/3: about one and a half real numbers each
         degrees = np.maximum(1.4 * np.sum(self._clear, axis=1), 2.0)

@@ -12,7 +12,7 @@ from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Block, Cell, Page, Pictures, Section, Table, Text
-from thermogear.views.pages import record_lines
+from thermogear.views.pages import record_lines, record_slices
 from thermogear.views.picture import Axis, Panel, Picture
 from thermogear.views.style import COLD, HOT, INK, WIDE
 from thermogear.views.typesetting import html_symbol, prose
@@ -28,7 +28,7 @@ KINDS = ("measured", "comparison")
 
 def page(result: Result) -> Page:
     """A measured record, or models against one."""
-    made = (_comparison, _record, _spectrum, _lines, _evidence, _settings)
+    made = (_comparison, _record, _spectrum, record_slices.section, _lines, _evidence, _settings)
     return Page(
         result,
         result.text("conclusion") or _summary(result),

@@ -21,7 +21,36 @@ def measured(result: Result) -> list[str]:
         told.append(f"shaft speed: {speed:.8g} rpm{around}")
     head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'+- Hz':>9}"
     told.append(f"{head} {'reading':>10} {'g':>9} {'um':>9} {'u_D %':>7} {'+- %':>7}")
-    return told + [_line(one) for one in found["lines"]]
+    told += [_line(one) for one in found["lines"]]
+    return told + slices(found.get("slices"))
+
+
+def slices(found: Mapping[str, Any] | None) -> list[str]:
+    """Greatest amplitude of every order of a run over speed, and resonances."""
+    if found is None:
+        return []
+    what = "the mesh line" if found["of_mesh"] else "the first shaft"
+    told = [f"orders of {what} over speed, {found['steps']} steps; the greatest amplitude of each:"]
+    for one in found["greatest"]:
+        told.append(
+            f"{one['channel'][:12]:12} {one['name'][:22]:22} order {one['order']:9.3f}: "
+            f"{one['reading']:.5g} +- {one['half_width']:.2g} at {one['speed'] / RPM:.5g} rpm, "
+            f"{one['frequency']:.5g} Hz"
+        )
+    return told + [resonance(one) for one in found["resonances"]]
+
+
+def resonance(one: Mapping[str, Any]) -> str:
+    """A peak of orders in a sentence."""
+    seen = ", ".join(one["seen"])
+    place = f"{one['frequency']:.5g} +- {one['half_width']:.2g} Hz"
+    damping = "" if one["damping"] is None else f", damping ratio {one['damping']:.3g}"
+    if one["kind"] == "resonance":
+        return f"resonance at {place}{damping}: {seen} peak there at different speeds"
+    if one["kind"] == "speed":
+        rpm = one["speed"] / RPM
+        return f"at {rpm:.5g} rpm {seen} peak together: the speed's doing, no resonance in hertz"
+    return f"{seen} alone peaks, at {place}: one order cannot tell a resonance from a speed"
 
 
 def _line(one: Mapping[str, Any]) -> str:
