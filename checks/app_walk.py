@@ -1,7 +1,7 @@
 """The app walked through by mouse and by keyboard: actions counted, moves timed, pictures taken.
 
-``python checks/app_walk.py`` (``make trial-app``) starts the app on the rig, answers three questions
-by mouse and one by keyboard alone in a real browser, times moves at the server beside the same
+``python checks/app_walk.py`` (``make trial-app``) starts the app on the rig, answers three
+questions by mouse and one by keyboard alone in a real browser, times moves beside the same
 answers by commands, and writes docs/trial_app.md with the pictures of docs/howto/app.md.
 """
 
@@ -23,8 +23,8 @@ sys.path += [
     str(ROOT / "tests" / "front" / "app"),
 ]
 
-import browser
-from served import Served, served
+import browser  # noqa: E402
+from served import Served, served  # noqa: E402
 
 DOCS = ROOT / "docs"
 PICTURES = DOCS / "pictures"
@@ -217,8 +217,10 @@ def after_closing(server: Served) -> float:
     with browser.opened(program) as other:
         other.go(server.address)
         other.until("!!document.getElementById('count')?.value")
-        other.value("document.getElementById('count').value = 1500;"
-                    "document.getElementById('count').dispatchEvent(new Event('change'))")  # fmt: skip
+        other.value(
+            "(() => { const e = document.getElementById('count'); e.value = 1500;"
+            "e.dispatchEvent(new Event('change')); })()"
+        )
         other.until(f"{STATE}.includes('run-up')")
         time.sleep(0.5)
         other.ask("Page.navigate", url="about:blank")
