@@ -45,6 +45,10 @@ SLOW = 0.5
 """A residual that falls less in a step asks for fresh derivatives."""
 LEAP = 1e-3
 """A zero through which g jumps by more is none."""
+WIDTH = 1e-4
+"""First step of a search along a line, a share of the parameter's range."""
+ANGLE, ROUND = 0.03, 10.0
+"""First step of one on a circle, and the angle that counts as one half backlash [rad]."""
 OUTSIDE = 1e-6
 """Beyond 1 by more, a multiplier other than the one that bifurcates makes the orbit unstable."""
 
@@ -58,6 +62,19 @@ class Located:
     tangent: Floats
     jacobian: Floats
     multipliers: Complexes
+
+
+@dataclass(frozen=True)
+class Path:
+    """A line or circle ``at`` value -> (p, q), searched from ``start``.
+
+    ``span`` of the value counts as a half backlash; ``first`` step, so scaled.
+    """
+
+    at: Callable[[float], tuple[float, float]]
+    start: float
+    span: float
+    first: float
 
 
 class Bordered:
@@ -114,8 +131,11 @@ class Bordered:
         value = scaled * self.whole
         curve = self.curve(float(value[-1]), float(value[-2]))
         gap, jacobian, _ = curve.residual(scaled[:-1])
+        return gap, self._scaled(jacobian)
+
+    def _scaled(self, jacobian: Floats) -> Floats:
         units = self.unit[:-1]
-        return gap, jacobian / units[:, None] * units
+        return np.asarray(jacobian / units[:, None] * units)
 
     def border(self, jacobian: Floats) -> None:
         """Take b and c from J, for the points that come."""
@@ -249,40 +269,57 @@ class Bordered:
             multipliers=self.orbit_multipliers(scaled, jacobian),
         )
 
-    def searched(
-        self, guess: Floats, *, held: int, direction: Floats, reach: float
-    ) -> Located | None:
-        """The point nearest ``guess`` where the parameter ``held`` (-1: q, -2: p) is as there.
+    def on_line(self, guess: Floats, *, held: int) -> Path:
+        """Through a point, on which its parameter ``held`` (-1: q, -2: p) stays."""
+        p, q = (guess * self.whole)[-2:].tolist()
+        if held == -1:
+            return Path(lambda value: (value, q), p, self.spans[0], WIDTH)
+        return Path(lambda value: (p, value), q, self.spans[1], WIDTH)
 
-        By bracketing g along the branch over the other parameter. Where a contact begins or ends
+    def on_circle(self, centre: Floats, step: Floats) -> Path | None:
+        """Around a point, from the end of a ``step``; None where the step moves no parameter."""
+        (p, q), (along, across) = centre[-2:].tolist(), step[-2:].tolist()
+        radius = float(np.hypot(along, across))
+        if radius < 0.05 * float(np.linalg.norm(step)):
+            return None
+        first, second = self.spans
+
+        def at(angle: float) -> tuple[float, float]:
+            return first * (p + radius * np.cos(angle)), second * (q + radius * np.sin(angle))
+
+        return Path(at, float(np.arctan2(across, along)), ROUND, ANGLE / ROUND)
+
+    def searched(
+        self, guess: Floats, path: Path, *, direction: Floats, farthest: float
+    ) -> Located | None:
+        """The point nearest ``guess`` on a ``path`` through the parameters.
+
+        By bracketing g along the branch of orbits over the path. Where a contact begins or ends
         multipliers run as the root of the distance from it, and where an engine begins to see a
         contact within its step they jump a little: no Newton's method follows g there. None
-        without such a point within ``reach``.
+        without such a point within ``farthest``, as the path is scaled.
         """
-        (p, q), free = (guess * self.whole)[-2:].tolist(), -3 - held
-        curve = self.curve(q, p)
-        if held == -2:
-            curve = self._over(lambda second: self.sheet(p, second), q, self.spans[1])
-            curve.unit = np.append(self.unit[:-1], self.spans[1])
+
+        def family(value: float) -> object:
+            return self.sheet(*path.at(value))
+
+        curve = self._over(family, path.start, path.span)
+        curve.unit = np.append(self.unit[:-1], path.span)
 
         def whole(point: Point) -> Floats:
-            scaled = guess.copy()
-            scaled[:-2], scaled[free] = point.scaled[:-1], point.scaled[-1]
-            return scaled
+            values = path.at(float(point.scaled[-1] * path.span))
+            return np.append(point.scaled[:-1], np.array(values) / self.whole[-2:])
 
-        found = zero_near(
-            curve,
-            lambda point: float(self.residual(whole(point))[0][-1]),
-            np.append(guess[:-2], guess[free]),
-            farthest=reach,
-        )
-        if found is None or not float(np.linalg.norm(whole(found) - guess)) <= reach:
+        def measured(point: Point) -> float:
+            gap, jacobian, _ = curve.residual(point.scaled)
+            return self.vectors(self._scaled(jacobian))[0] if np.isfinite(gap).all() else np.nan
+
+        start = np.append(guess[:-2], path.start / path.span)
+        found = zero_near(curve, measured, start, farthest=farthest, first=path.first)
+        if found is None or not abs(measured(found)) < LEAP:
             return None
         scaled = whole(found)
-        rest, jacobian = self.residual(scaled)
-        if not abs(rest[-1]) < LEAP:
-            return None
-        return self._located(scaled, jacobian, direction=direction)
+        return self._located(scaled, self.closing(scaled)[1], direction=direction)
 
     def orbit_multipliers(self, scaled: Floats, jacobian: Floats) -> Complexes:
         """Those of the whole orbit, also of a symmetric one."""

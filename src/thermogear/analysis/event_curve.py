@@ -25,6 +25,10 @@ LONGEST, FIRST, SHORTEST = 0.05, 0.01, 1e-6
 """Steps along the curve, scaled as :class:`~thermogear.analysis.curve.Curve` scales."""
 ALONG = 0.9
 """Cosine between the curve's directions at neighbouring points."""
+CORNER, AHEAD = 2.5e-3, -0.2
+"""The same within so short a step, where multipliers have a kink and the curve a corner."""
+SHORT, AROUND = 1e-5, 0.2
+"""The shortest step for a search on a circle, and how far it goes on that."""
 REACHED = "reached the end"
 LOST = "no further point"
 
@@ -144,6 +148,9 @@ def event_curve(
     guess = np.concatenate([bifurcation.state, [bifurcation.value, start]]) / walk.whole
     first = walk.correct(guess, normal=ahead, direction=ahead, reach=0.1)
     if first is None:
+        line = walk.on_line(guess, held=-1)
+        first = walk.searched(guess, line, direction=ahead, farthest=0.01)
+    if first is None:
         raise ConvergenceError(
             f"the {bifurcation.kind} at {names[0]} = {bifurcation.value!r} was not found again at "
             f"{names[1]} = {start!r}"
@@ -212,17 +219,20 @@ def _tried(walk: Bordered, here: Located, guess: Floats, step: float) -> Located
         there = None
     if there is not None and float(there.tangent @ here.tangent) > ALONG:
         return there
-    held = -1 if abs(here.tangent[-1]) >= abs(here.tangent[-2]) else -2
+    path = walk.on_circle(here.scaled, step * here.tangent)
+    if path is None or step < SHORT:
+        return None
     try:
-        there = walk.searched(guess, held=held, direction=here.tangent, reach=0.5 * step)
+        there = walk.searched(guess, path, direction=here.tangent, farthest=AROUND)
     except (InputError, ConvergenceError):
         return None
-    if there is None:
+    if there is None or not float(np.linalg.norm(there.scaled - here.scaled)) < 3.0 * step:
         return None
     chord = there.scaled - here.scaled
     chord = chord / np.linalg.norm(chord)
-    # derivatives are of little use here: on along the chord
-    return replace(there, tangent=chord) if float(chord @ here.tangent) > ALONG else None
+    # derivatives are of little use here: on along the chord, on a short step around a corner too
+    least = ALONG if step > CORNER else AHEAD
+    return replace(there, tangent=chord) if float(chord @ here.tangent) > least else None
 
 
 def _landed(
@@ -281,7 +291,8 @@ def _stopped(
             guess, normal=normal, matrix=here.matrix, direction=here.tangent, reach=reach
         )
         if point is None:
-            point = walk.searched(guess, held=place, direction=here.tangent, reach=reach)
+            path = walk.on_line(guess, held=place)
+            point = walk.searched(guess, path, direction=here.tangent, farthest=reach)
     except (InputError, ConvergenceError):
         return None
     return point

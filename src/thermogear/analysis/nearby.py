@@ -12,18 +12,23 @@ from thermogear.base.errors import ConvergenceError
 
 Floats = NDArray[np.float64]
 MOST_LOOKS = 30
-FIRST, SHORTEST = 1e-4, 1e-8
-"""Scaled steps along the branch."""
+SHORTEST = 1e-4
+"""Of the first step of a search: the shortest."""
 
 
 def zero_near(
-    curve: Curve, test: Callable[[Point], float], guess: Floats, *, farthest: float
+    curve: Curve,
+    test: Callable[[Point], float],
+    guess: Floats,
+    *,
+    farthest: float,
+    first: float = 1e-4,
 ) -> Point | None:
     """The nearest zero of ``test`` on the branch through the neighbourhood of ``guess`` (d + 1,).
 
     Near a grazing multipliers run as the root of the distance from it, which no Newton follows. A
     test function may jump through 0, too: then it is the point on one side. None without a zero
-    ``farthest`` (scaled) around.
+    ``farthest`` (scaled) around. The search begins with the step ``first``.
     """
     gap, jacobian, section = curve.residual(guess)
     units = curve.unit[:-1]
@@ -38,9 +43,9 @@ def zero_near(
     here = curve.correct(guess, normal=np.linalg.svd(flat)[2][-1], reach=farthest)
     if here is None:
         return None
-    ends, steps = {1.0: here, -1.0: here}, {1.0: FIRST, -1.0: FIRST}
+    ends, steps = {1.0: here, -1.0: here}, {1.0: first, -1.0: first}
     for _ in range(MOST_LOOKS):
-        for way in [w for w in ends if steps[w] > SHORTEST]:
+        for way in [w for w in ends if steps[w] > SHORTEST * first]:
             last, step = ends[way], way * steps[way]
             there = curve.correct(
                 last.scaled + step * last.tangent,

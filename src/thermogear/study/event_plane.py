@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 MOST_CURVES = 16
 STEPS = 1000
-SAME = 1e-6
+SAME = 1e-3
 """Of the range: a curve that comes back this near to another event ends at it."""
 
 
