@@ -48,12 +48,12 @@ def test_a_torus_of_a_train_is_followed_to_the_last_temperature(
     path = tmp_path / "light.toml"
     path.write_text(LIGHT)
     case = load_gears(str(path), ())
-    first, last = 60.0 + ZERO_CELSIUS, 62.5 + ZERO_CELSIUS
+    first, last, far = (degrees + ZERO_CELSIUS for degrees in (60.0, 62.5, 70.0))
     drawn = np.sort(np.random.default_rng(41).uniform(first, last, 2))
-    low, high = 3338.0 * RPM, 3345.0 * RPM
+    low, high = 3320.0 * RPM, 3345.0 * RPM
     trains = Trains.of(case, of_case(case), operating=None, coordinates=16)
     grid = trains.over(
-        ("pinion_speed", "gear_temperature"), (np.array([low, high]), np.array([first, last]))
+        ("pinion_speed", "gear_temperature"), (np.array([low, high]), np.array([first, far]))
     )
 
     def located(temperature: float) -> Branch:

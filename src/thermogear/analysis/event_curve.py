@@ -172,7 +172,8 @@ def event_curve(
             progress(len(points), float((points[-1].scaled * walk.whole)[-1]))
         walk.settle(there)
         if walk.kind == TORUS and abs(walk.mu.imag) < 1e-4:
-            ended = ended or f"the complex pair of multipliers became real ({walk.mu.real:+.3f})"
+            resonance = "1:1, beside a fold" if walk.mu.real > 0.0 else "1:2, beside a doubling"
+            ended = ended or f"the complex pair of multipliers became real: resonance {resonance}"
         if len(points) > most_points:
             ended = ended or f"{most_points} points"
         here = there
