@@ -145,11 +145,7 @@ def event_curve(
     d = bifurcation.state.size
     ahead = np.zeros(d + 2)
     ahead[-1] = float(np.sign(marks[-1] - start))
-    guess = np.concatenate([bifurcation.state, [bifurcation.value, start]]) / walk.whole
-    first = walk.correct(guess, normal=ahead, direction=ahead, reach=0.1)
-    if first is None:
-        line = walk.on_line(guess, held=-1)
-        first = walk.searched(guess, line, direction=ahead, farthest=0.01)
+    first = _first(walk, bifurcation, start, ahead)
     if first is None:
         raise ConvergenceError(
             f"the {bifurcation.kind} at {names[0]} = {bifurcation.value!r} was not found again at "
@@ -165,6 +161,10 @@ def event_curve(
             ended = LOST
             break
         found, ended = _landed(walk, here, there, marks, (low, high), start, names)
+        far = float(np.linalg.norm(there.scaled - here.scaled))
+        if ended == LOST and far > SHORT:
+            step, ended = 0.5 * far, ""
+            continue
         for point, mark in found:
             points.append(point)
             at_mark.append(mark)
@@ -189,6 +189,16 @@ def event_curve(
         asked=np.array(at_mark),
         ended=ended,
     )
+
+
+def _first(walk: Bordered, bifurcation: Bifurcation, start: float, ahead: Floats) -> Located | None:
+    """The bifurcation itself, at q = ``start``."""
+    guess = np.concatenate([bifurcation.state, [bifurcation.value, start]]) / walk.whole
+    first = walk.correct(guess, normal=ahead, direction=ahead, reach=0.1)
+    if first is not None:
+        return first
+    line = walk.on_line(guess, held=-1)
+    return walk.searched(guess, line, direction=ahead, farthest=0.01)
 
 
 def _step(walk: Bordered, here: Located, step: float) -> tuple[Located | None, float]:
