@@ -53,7 +53,7 @@ OUTSIDE = 1e-6
 """Beyond 1 by more, a multiplier other than the one that bifurcates makes the orbit unstable."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Located:
     """A converged point (d + 2,), its equations' matrix (d + 1, d + 2) and its tangent."""
 
@@ -64,7 +64,7 @@ class Located:
     multipliers: Complexes
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Path:
     """A line or circle ``at`` value -> (p, q), searched from ``start``.
 
@@ -116,7 +116,7 @@ class Bordered:
             mirrors=broken, symmetric=broken,
         )  # fmt: skip
 
-    def curve(self, second: float, value: float) -> Curve:
+    def curve(self, second: float, *, value: float) -> Curve:
         """The curve of orbits over p at one q, in the units of the first one."""
         found = self._curves.get(second)
         if found is None:
@@ -129,7 +129,7 @@ class Bordered:
     def closing(self, scaled: Floats) -> tuple[Floats, Floats]:
         """G (d,) and J (d, d), both scaled."""
         value = scaled * self.whole
-        curve = self.curve(float(value[-1]), float(value[-2]))
+        curve = self.curve(float(value[-1]), value=float(value[-2]))
         gap, jacobian, _ = curve.residual(scaled[:-1])
         return gap, self._scaled(jacobian)
 
@@ -169,7 +169,7 @@ class Bordered:
             return np.full(gap.size + 1, np.nan), jacobian
         return np.append(gap, self.vectors(jacobian)[0]), jacobian
 
-    def matrix(self, scaled: Floats, jacobian: Floats) -> Floats:
+    def matrix(self, scaled: Floats, *, jacobian: Floats) -> Floats:
         """d(G, g)/d(z, p, q), (d + 1, d + 2)."""
         d = len(jacobian)
         found = np.zeros((d + 1, d + 2))
@@ -234,7 +234,7 @@ class Bordered:
             if size <= self.closed or (stalled and best[0] < 0.1 * ROUNDING) or stalled > 2:
                 break
             if own is None or size > SLOW * last:
-                own = self.matrix(scaled, jacobian)
+                own = self.matrix(scaled, jacobian=jacobian)
             elif step.any():
                 own = own + np.outer(rest - before - own @ step, step) / (step @ step)
             own[:-1, :-2] = jacobian - np.eye(len(jacobian))
@@ -255,7 +255,7 @@ class Bordered:
         self, scaled: Floats, jacobian: Floats, *, direction: Floats | None
     ) -> Located | None:
         """The point with its derivatives; None where they are no numbers."""
-        own = self.matrix(scaled, jacobian)
+        own = self.matrix(scaled, jacobian=jacobian)
         if not np.all(np.isfinite(own)):
             return None
         tangent = np.linalg.svd(own)[2][-1]
@@ -266,17 +266,17 @@ class Bordered:
             matrix=own,
             tangent=tangent,
             jacobian=jacobian,
-            multipliers=self.orbit_multipliers(scaled, jacobian),
+            multipliers=self.orbit_multipliers(scaled, jacobian=jacobian),
         )
 
     def on_line(self, guess: Floats, *, held: int) -> Path:
         """Through a point, on which its parameter ``held`` (-1: q, -2: p) stays."""
         p, q = (guess * self.whole)[-2:].tolist()
         if held == -1:
-            return Path(lambda value: (value, q), p, self.spans[0], WIDTH)
-        return Path(lambda value: (p, value), q, self.spans[1], WIDTH)
+            return Path(at=lambda value: (value, q), start=p, span=self.spans[0], first=WIDTH)
+        return Path(at=lambda value: (p, value), start=q, span=self.spans[1], first=WIDTH)
 
-    def on_circle(self, centre: Floats, step: Floats) -> Path | None:
+    def on_circle(self, centre: Floats, *, step: Floats) -> Path | None:
         """Around a point, from the end of a ``step``; None where the step moves no parameter."""
         (p, q), (along, across) = centre[-2:].tolist(), step[-2:].tolist()
         radius = float(np.hypot(along, across))
@@ -287,7 +287,8 @@ class Bordered:
         def at(angle: float) -> tuple[float, float]:
             return first * (p + radius * np.cos(angle)), second * (q + radius * np.sin(angle))
 
-        return Path(at, float(np.arctan2(across, along)), ROUND, ANGLE / ROUND)
+        angle = float(np.arctan2(across, along))
+        return Path(at=at, start=angle, span=ROUND, first=ANGLE / ROUND)
 
     def searched(
         self, guess: Floats, path: Path, *, direction: Floats, farthest: float
@@ -321,12 +322,12 @@ class Bordered:
         scaled = whole(found)
         return self._located(scaled, self.closing(scaled)[1], direction=direction)
 
-    def orbit_multipliers(self, scaled: Floats, jacobian: Floats) -> Complexes:
+    def orbit_multipliers(self, scaled: Floats, *, jacobian: Floats) -> Complexes:
         """Those of the whole orbit, also of a symmetric one."""
         units = self.unit[:-1]
         mine = jacobian * units[:, None] / units
         value = scaled * self.whole
-        section = self.curve(float(value[-1]), float(value[-2])).map_at(float(value[-2]))
+        section = self.curve(float(value[-1]), value=float(value[-2])).map_at(float(value[-2]))
         period = self.bifurcation.period
         whole = mine @ mine if self.kind == PITCHFORK else mine
         return multipliers(whole, section.determinant(period))

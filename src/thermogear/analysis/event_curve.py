@@ -230,7 +230,7 @@ def _tried(walk: Bordered, here: Located, guess: Floats, step: float) -> Located
         there = None
     if there is not None and float(there.tangent @ here.tangent) > ALONG:
         return there
-    path = walk.on_circle(here.scaled, step * here.tangent)
+    path = walk.on_circle(here.scaled, step=step * here.tangent)
     if path is None or step < SHORT:
         return None
     try:
