@@ -188,7 +188,7 @@ LONGER = 8000
 """On a torus, and at most in chaos."""
 SLOWEST = 80_000
 """At most, beside an orbit: one that is neared slowly is followed until the start's distance has
-shrunk by 20 000, as its multiplier says."""
+shrunk by 1000, as its multiplier says."""
 LONGEST = 512
 CLOSES = 1e-4
 """Units of the map within which a motion has returned."""
@@ -239,7 +239,7 @@ def _closes(
     cycle, n = section.model.cycle, int(label["period"])
     lag = n * cycle
     decay = -np.log(label["multiplier"]) if label["orbit"] else 1e-3 * lag
-    periods = lag * int(np.ceil(np.clip(10.0 * lag / decay, LONG, SLOWEST) / lag) + 2)
+    periods = lag * int(np.ceil(np.clip(7.0 * lag / decay, LONG, SLOWEST) / lag) + 2)
     path = np.vstack([state, other.carry(state + 1e-3 * aside, periods)])
     gaps = section.distance(path[lag::lag], path[:-lag:lag])
     gap = [float(gaps[k]) for k in (len(gaps) // 2, -1)]

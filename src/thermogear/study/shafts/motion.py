@@ -165,7 +165,7 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
     cycle = max((one.train.model.cycle for one in flat if one.train is not None), default=1)
     own = orders_of_lines(teeth, shafts=cycle > 1)
     tori = [None if one.torus_sections is None else _torus(one) for one in flat]
-    turned = [torus_orders(one.frequency, one.curves) for one in tori if one is not None]
+    turned = [torus_orders(one.frequency, curves=one.curves) for one in tori if one is not None]
     orders = np.unique(np.round(np.concatenate([own, *turned]), 9))
     names = plan_of(case).bearing_names
     shown = SHOWN * SAMPLES
@@ -189,7 +189,7 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
         """Lines at the orders that this motion has, nan at those of others."""
         there = own
         if one.torus_sections is not None:
-            there = torus_orders(_torus(one).frequency, _torus(one).curves)
+            there = torus_orders(_torus(one).frequency, curves=_torus(one).curves)
         found = lines(values, orders=orders)
         found[~np.isin(orders, np.round(there, 9))] = np.nan
         return found

@@ -111,7 +111,7 @@ def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
     return np.array(sorted(one for one in {round(o, 9) for o in found} if one > 0.0))
 
 
-def torus_orders(second: float, curves: int = 1) -> Floats:
+def torus_orders(second: float, *, curves: int = 1) -> Floats:
     """Orders k/n + m nu of a motion with the second frequency nu, in mesh frequencies.
 
     n closed ``curves``; k/n up to the 12th harmonic, m up to two either way.
