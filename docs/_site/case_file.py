@@ -16,12 +16,6 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("\n", " ").replace("*", "\\*").replace("<", "&lt;")
 
 
-def _own(title: str | None, name: str) -> str:
-    """A title that is more than the field's name again."""
-    plain = (title or "").lower().replace(" ", "_")
-    return "" if plain == name else (title or "")
-
-
 def _number(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
@@ -55,14 +49,14 @@ def _kind(field: dict[str, Any]) -> str:
     return {"boolean": "`true` or `false`"}.get(str(field.get("type")), "any value")
 
 
-def _default(name: str, field: dict[str, Any], required: bool) -> str:
+def _default(field: dict[str, Any], required: bool) -> str:
     if required:
         return "**required**"
     about = field.get("description", "")
-    note = _own(field.get("title"), name) or ("" if about == field.get("$comment") else about)
+    note = field.get("x-left-out") or ("" if about == field.get("$comment") else about)
     default = field.get("default")
     shown = "" if default is None or default in ({}, [], "") else f"`{default!r}`".replace("'", '"')
-    said = "; ".join(part for part in (shown, _cell(note).removeprefix("left out: ")) if part)
+    said = "; ".join(part for part in (shown, _cell(note)) if part)
     return said or ("every default below" if "$ref" in field else "may be left out")
 
 
@@ -84,7 +78,7 @@ def _section(name: str, table: dict[str, Any]) -> str:
     text += "| field | what may stand there | if left out |\n|---|---|---|\n"
     for field, about_field in table.get("properties", {}).items():
         kind = _kind(about_field)
-        default = _default(field, about_field, field in required)
+        default = _default(about_field, field in required)
         text += f"| `{field}` | {kind} | {default} |\n"
     return text + "\n"
 
@@ -101,7 +95,9 @@ def case_file() -> dict[str, str]:
         "The commented examples of `thermogear example NAME` are the best start; "
         "this page lists every field, from the schema that `thermogear schema` prints. A field "
         "under `[gears.pinion]` is put in place on the command line by "
-        "`--set gears.pinion.teeth=30`.\n\n"
+        "`--set gears.pinion.teeth=30`; with nothing behind the sign, "
+        "`--set gears.pinion.tip_diameter=`, a field or a whole table of the file is left out, and "
+        "its default acts.\n\n"
     )
     for name in [*first, *(one for one in tables if one not in first)]:
         text += _section(name, tables[name])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import datetime
 import json
+import math
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from thermogear.base.errors import InputError, short
+from thermogear.base.errors import InputError, nearest, short
 
 NAMED = {"model.friction": "law"}
 """A name that may replace a table, and the field of the table that holds it."""
@@ -54,14 +56,23 @@ def pairs(overrides: Mapping[str, str] | Sequence[str]) -> tuple[tuple[str, str]
 def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> dict[str, Any]:
     """``data`` with ``changes`` put in; tables on the way are new, made where missing.
 
-    ``data`` itself stays as it is.
+    An empty text leaves out what ``data`` holds at its path, a field or a table; InputError where
+    ``data`` holds nothing there. ``data`` itself stays as it is.
+
+    >>> overridden({"oil": {"name": "M220"}}, (("oil.name", ""), ("grid.harmonics", "12")))
+    {'oil': {}, 'grid': {'harmonics': 12}}
     """
     made = dict(data)
     fresh: set[int] = set()
     for path, text in changes:
-        if not _KEY.fullmatch(path):
+        if not settable(path):
             raise InputError("--set", short(path), allowed="a dotted path: gears.pinion.teeth")
         *way, last = path.split(".")
+        left_out = not text.strip()
+        if left_out:
+            _require_held(data, path)
+            if _held(made, path)[0] < len(way) + 1:
+                continue  # an earlier change left out more
         table: Any = made
         for depth, key in enumerate(way):
             above, table = table, table.get(key, {})
@@ -77,8 +88,59 @@ def overridden(data: dict[str, Any], changes: tuple[tuple[str, str], ...]) -> di
                     "an unknown path",
                     why=f"{'.'.join(way[: depth + 1])} is a value, not a table",
                 )
-        table[last] = _value(text)
+        if left_out:
+            table.pop(last, None)
+        else:
+            table[last] = _value(text)
     return made
+
+
+def settable(path: str) -> bool:
+    """Whether an override can name ``path``: dotted keys of letters, digits, ``_`` and ``-``."""
+    return _KEY.fullmatch(path) is not None
+
+
+def _require_held(data: Mapping[str, Any], path: str) -> None:
+    """Refuse to leave out what the file does not hold."""
+    parts = path.split(".")
+    depth, inside = _held(data, path)
+    if depth < len(parts):
+        known = inside if isinstance(inside, Mapping) else ()
+        above = f"[{'.'.join(parts[:depth])}] of " if depth else ""
+        raise InputError(
+            path,
+            "nothing to leave out",
+            why=f"{above}the file does not hold {parts[depth]}",
+            fix=nearest(parts[depth], known) if known else f"write --set {path}=VALUE to put it in",
+        )
+
+
+def _held(data: Mapping[str, Any], path: str) -> tuple[int, Any]:
+    """How many keys of ``path`` lead somewhere in ``data``, and what is there."""
+    held: Any = data
+    parts = path.split(".")
+    for depth, key in enumerate(parts):
+        if isinstance(held, str) and (name := NAMED.get(".".join(parts[:depth]))):
+            held = {name: held}
+        if not isinstance(held, Mapping) or key not in held:
+            return depth, held
+        held = held[key]
+    return len(parts), held
+
+
+def told(path: str, text: str) -> str:
+    """An override in words: ``path = text``, or that it is left out."""
+    return f"{path} = {text}" if text.strip() else f"{path} left out"
+
+
+def given(value: Any) -> str:
+    """``value`` as a person writes it behind ``--set PATH=``: a text without quotes where it may.
+
+    >>> given("5 mm"), given("12"), given(12), given([{"order": 1}])
+    ('5 mm', '"12"', '12', '[{ order = 1 }]')
+    """
+    plain = isinstance(value, str) and value and value == value.strip() and _value(value) == value
+    return value if plain else literal(value)
 
 
 def _value(text: str) -> Any:
@@ -113,12 +175,49 @@ def heading(name: str) -> str:
 
 def literal(value: Any) -> str:
     """A text, number, truth, list or table as TOML, numbers to the last bit."""
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         inside = ", ".join(f"{quoted(key)} = {literal(one)}" for key, one in value.items())
         return f"{{ {inside} }}" if inside else "{}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(literal(one) for one in value)}]"
+    if isinstance(value, datetime.date | datetime.time):
+        return value.isoformat()
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def written(data: Mapping[str, Any]) -> str:
+    """Nested tables as a whole TOML text, numbers to the last bit; ``None`` is left out.
+
+    >>> print(written({"title": "mine", "gears": {"module": "3 mm", "pinion": {"teeth": 19}}}))
+    title = "mine"
+    <BLANKLINE>
+    [gears]
+    module = "3 mm"
+    <BLANKLINE>
+    [gears.pinion]
+    teeth = 19
+    <BLANKLINE>
+    """
+    return "\n".join(_lines(data, "")).removeprefix("\n") + "\n"
+
+
+def _lines(data: Mapping[str, Any], name: str) -> Iterator[str]:
+    """Plain values first, since a heading would take them, then tables and lists of tables."""
+    inner = {key: one for key, one in data.items() if isinstance(one, Mapping) or _of_tables(one)}
+    yield from (line(key, one) for key, one in data.items() if key not in inner and one is not None)
+    for key, one in inner.items():
+        path = f"{name}.{quoted(key)}" if name else quoted(key)
+        each, head = ([one], f"[{path}]") if isinstance(one, Mapping) else (one, f"[[{path}]]")
+        for table in each:
+            yield from ("", head, *_lines(table, path))
+
+
+def _of_tables(value: Any) -> bool:
+    """Whether ``value`` is a list of tables alone."""
+    several = isinstance(value, list | tuple) and len(value) > 0
+    return several and all(isinstance(one, Mapping) for one in value)
 
 
 def flat(text: str) -> str:

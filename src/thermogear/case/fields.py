@@ -20,7 +20,7 @@ from thermogear.base import bounds
 from thermogear.base.bounds import Bounds
 from thermogear.base.errors import InputError, nearest, short
 from thermogear.base.units import ZERO_CELSIUS
-from thermogear.case.units import KINDS, read_quantity, shown
+from thermogear.case.units import KINDS, number_in, read_quantity, shown
 
 MOST = 100_000
 """No list in a case file is longer than this."""
@@ -46,6 +46,10 @@ class Reader:
     def schema(self) -> dict[str, Any]:
         """The JSON schema of what may be written."""
         return {}
+
+    def facts(self) -> dict[str, Any]:
+        """What a form needs to know: keys of :mod:`thermogear.case.described`."""
+        return {"x-kind": "text"}
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -135,6 +139,21 @@ class Measure(Reader):
             "examples": [self.example.strip('"')],
         }
 
+    def facts(self) -> dict[str, Any]:
+        number, unit = self.example.strip('"').split(" ", 1)
+        low, high = (
+            None if end is None else number_in(read_quantity(end, self.kind), self.kind, unit)
+            for end in (self.low, self.high)
+        )
+        # a temperature's zero is a convention, its leading decade says nothing
+        step = 1.0 if self.kind == "temperature" else _step(number, KINDS[self.kind].example)
+        return {
+            "x-kind": self.kind,
+            "x-unit": unit,
+            **_range(low, high, step),
+            **_about(self.allowed, self.why),
+        }
+
 
 def measure(kind: str, allowed: Bounds, why: str | None = None, example: str = "") -> Measure:
     """The field of a quantity that has its bounds in Python too."""
@@ -210,6 +229,11 @@ class Number(Reader):
         limits = {"minimum": self.low, "maximum": self.high}
         return {"type": "number"} | {k: v for k, v in limits.items() if math.isfinite(v)}
 
+    def facts(self) -> dict[str, Any]:
+        low, high = (end if math.isfinite(end) else None for end in (self.low, self.high))
+        limits = _range(low, high, _step(self.example, "0.1"))
+        return {"x-kind": "number", **limits, **_about(self.allowed, self.why)}
+
 
 @dataclass(frozen=True, kw_only=True)
 class Count(Reader):
@@ -237,6 +261,10 @@ class Count(Reader):
     def schema(self) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.low, "maximum": self.high}
 
+    def facts(self) -> dict[str, Any]:
+        limits = {"x-minimum": self.low, "x-maximum": self.high, "x-step": 1}
+        return {"x-kind": "count", **limits, **_about(f"{self.low}..{self.high}, whole", self.why)}
+
 
 class Choice(Reader):
     """One of a few names; an unknown one is answered with the nearest."""
@@ -255,6 +283,9 @@ class Choice(Reader):
 
     def schema(self) -> dict[str, Any]:
         return {"type": "string", "enum": list(self.names)}
+
+    def facts(self) -> dict[str, Any]:
+        return {"x-kind": "choice", "x-choices": list(self.names)}
 
 
 class NameOrTable(Choice):
@@ -358,6 +389,13 @@ class Several(Reader):
         many = {"type": "array", "items": item, "minItems": self.least, "maxItems": self.most}
         return {"anyOf": [item, many]} if self.single else many
 
+    def facts(self) -> dict[str, Any]:
+        one = self.one.facts()
+        count = f"{self.least}..{self.most} values" if self.most < MOST else None
+        if self.least == self.most:
+            count = f"{self.least} values"
+        return {**one, "x-list": True, **_about(one.get("x-about"), count)}
+
 
 FOLLOW = {
     "proportional": "every excess over the reference scales with that of the gears' addenda",
@@ -382,3 +420,23 @@ class NumberOrTemperature(Reader):
 
     def schema(self) -> dict[str, Any]:
         return {"anyOf": [Number().schema(), BODY.schema()]}
+
+    def facts(self) -> dict[str, Any]:
+        return {"x-kind": "number or temperature"}
+
+
+def _range(low: float | None, high: float | None, step: float) -> dict[str, float]:
+    """Ends that there are, without the last digits of a conversion."""
+    ends = {"x-minimum": low, "x-maximum": high, "x-step": step}
+    return {key: float(f"{end:.12g}") for key, end in ends.items() if end is not None}
+
+
+def _about(*words: str | None) -> dict[str, str]:
+    said = "; ".join(one for one in words if one)
+    return {"x-about": said} if said else {}
+
+
+def _step(example: str, usual: str) -> float:
+    """A tenth of the leading decade of an example, or of ``usual`` where that is zero."""
+    number = abs(float(example.split(" ")[0])) or abs(float(usual.split(" ")[0]))
+    return float(f"1e{math.floor(math.log10(number)) - 1}")

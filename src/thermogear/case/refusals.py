@@ -7,6 +7,7 @@ import re
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 
 from thermogear.base.errors import InputError, InputErrors, nearest, short
 from thermogear.case.fields import Reader
@@ -117,11 +118,11 @@ def table_at(file: type[BaseModel], location: tuple[int | str, ...]) -> type[Bas
         if table is None or str(part) not in table.model_fields:
             return None
         annotation = table.model_fields[str(part)].annotation
-        table, waiting = _models_of(annotation)
+        table, waiting = models_of(annotation)
     return table
 
 
-def _models_of(annotation: Any) -> tuple[type[BaseModel] | None, type[BaseModel] | None]:
+def models_of(annotation: Any) -> tuple[type[BaseModel] | None, type[BaseModel] | None]:
     """(model, None) of a table, (None, model) of a dict or list of tables."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation, None
@@ -137,7 +138,11 @@ def reader_at(file: type[BaseModel], location: tuple[int | str, ...]) -> Reader 
     table = table_at(file, location[:-1])
     if table is None or str(location[-1]) not in table.model_fields:
         return None
-    field = table.model_fields[str(location[-1])]
+    return reader_of(table.model_fields[str(location[-1])])
+
+
+def reader_of(field: FieldInfo) -> Reader | None:
+    """What reads a field, or None of a table or a truth."""
     readers = [m for m in field.metadata if isinstance(m, Reader)]
     for inner in get_args(field.annotation):
         readers += [m for m in getattr(inner, "__metadata__", ()) if isinstance(m, Reader)]

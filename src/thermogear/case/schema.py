@@ -446,7 +446,10 @@ class GearFile(Table):
 
 
 def json_schema() -> dict[str, Any]:
-    """The JSON schema of a case file, either kind."""
+    """The JSON schema (2020-12) of a case file, either kind; what a form needs under ``x-`` keys.
+
+    The keys are those of :mod:`thermogear.case.described`.
+    """
     _, schema = models_json_schema(
         [(GearFile, "validation"), (DimensionlessFile, "validation")], title="thermogear case file"
     )
@@ -459,7 +462,7 @@ def json_schema() -> dict[str, Any]:
                 entry.pop("default", None)
     kinds = {"GearFile": "gear", "DimensionlessFile": "dimensionless"}
     for name, kind in kinds.items():
-        schema["$defs"][name]["properties"]["kind"]["enum"] = [kind]
+        schema["$defs"][name]["properties"]["kind"] |= {"enum": [kind], "x-choices": [kind]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **schema,

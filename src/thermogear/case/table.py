@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
 
 from thermogear.base import bounds
 from thermogear.base.errors import InputError
+from thermogear.case.described import described
 from thermogear.case.fields import BODY, Measure, measure
 
 Length = Annotated[float, measure("length", bounds.LENGTH)]
@@ -19,6 +21,16 @@ class Table(BaseModel):
     """A table of the file: unknown keys are refused, the values do not change any more."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        found = handler(core)
+        properties = handler.resolve_ref_schema(found)["properties"]
+        for name, keys in described(cls).items():
+            properties[name] |= keys
+        return found
 
 
 def one_of(table: Table, first: str, second: str, field: str = "") -> None:

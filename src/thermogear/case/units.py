@@ -284,8 +284,15 @@ def shown(value: float, kind_name: str, digits: int = 6, unit: str = "") -> str:
     >>> shown(0.004, "length")
     '4 mm'
     """
-    kind = KINDS[kind_name]
-    unit = unit if unit in _USUAL[kind_name] else kind.shown
+    unit = unit if unit in _USUAL[kind_name] else KINDS[kind_name].shown
+    return f"{number_in(value, kind_name, unit):.{digits}g} {unit}"
+
+
+def number_in(value: float, kind_name: str, unit: str) -> float:
+    """An SI ``value`` as a number of the usual ``unit`` (or degC).
+
+    >>> number_in(373.15, "temperature", "degC")
+    100.0
+    """
     told = value - ZERO_CELSIUS if unit == "degC" else value
-    told /= _USUAL[kind_name].get(unit, 1.0)
-    return f"{told:.{digits}g} {unit}"
+    return told / _USUAL[kind_name].get(unit, 1.0)

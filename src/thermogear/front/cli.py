@@ -19,6 +19,7 @@ from thermogear import __version__
 from thermogear.base.errors import InputError, InputErrors, ThermogearError, nearest
 from thermogear.base.parameters import long_name
 from thermogear.front import (
+    app_command,
     delivery,
     draw_command,
     gear_commands,
@@ -219,6 +220,7 @@ def _put(text: str, output: str | None) -> None:
 
 
 for _list in (
+    app_command,
     new_command,
     rexs_commands,
     draw_command,

@@ -25,7 +25,8 @@ overrides = click.option(
     "overrides",
     multiple=True,
     metavar="PATH=VALUE",
-    help="Put a value in place of the file's, as gears.pinion.teeth=30. May be repeated.",
+    help="Put a value in place of the file's, as gears.pinion.teeth=30; PATH= leaves it out. "
+    "May be repeated.",
 )
 
 

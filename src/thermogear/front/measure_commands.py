@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from thermogear.results.result import Result
 
 
-def _supplies(command: Any) -> Any:
+def supplies(command: Any) -> Any:
     """The options that supply what a file does not state."""
     for option in (
         click.option("--rate", type=float, metavar="HZ", help="Samples per second."),
@@ -67,7 +67,7 @@ def _require_gear(options: dict[str, Any]) -> None:
     require_teeth(options["teeth"])
 
 
-def _measured(file: str, options: dict[str, Any]) -> Measurement:
+def measured_by(file: str, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.chain import Chain
     from thermogear.measured.options import bytes_of_gibibytes
     from thermogear.measured.readers import read_record
@@ -96,7 +96,7 @@ def _measured(file: str, options: dict[str, Any]) -> Measurement:
 
 @click.command()
 @click.argument("file", metavar="FILE")
-@_supplies
+@supplies
 @delivery.as_json
 @delivery.output("Also write measured.nc and measured.html.", required=False)
 def measure(file: str, as_json: bool, output: str | None, **options: Any) -> None:
@@ -106,7 +106,7 @@ def measure(file: str, as_json: bool, output: str | None, **options: Any) -> Non
     def make(report: Progress) -> Result:
         from thermogear.measured.dataset import result_of
 
-        return result_of(_measured(file, options))
+        return result_of(measured_by(file, options))
 
     delivery.deliver(make, output, as_json=as_json)
 
@@ -114,7 +114,7 @@ def measure(file: str, as_json: bool, output: str | None, **options: Any) -> Non
 @click.command()
 @click.argument("case", metavar="CASE")
 @click.argument("measured", metavar="[FILE|TABLE]", required=False)
-@_supplies
+@supplies
 @click.option(
     "--tolerance",
     "tolerances",
@@ -176,7 +176,7 @@ def compare(
             known = dict(options)
             if at:
                 known = _expected(case, known)
-            against = _measured(measured, known)
+            against = measured_by(measured, known)
         found = study(
             case,
             against,

@@ -22,7 +22,7 @@ _overrides = click.option(
     "overrides",
     multiple=True,
     metavar="PATH=VALUE",
-    help="Put a value in place of the file's. May be repeated.",
+    help="Put a value in place of the file's; PATH= leaves it out. May be repeated.",
 )
 _json = click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
 _near = click.option(

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.enclosed import folded, with_digests
 from thermogear.base.errors import InputError
-from thermogear.base.toml import overridden, pairs, tables
+from thermogear.base.toml import overridden, tables, told
 from thermogear.base.units import RPM
 from thermogear.base.vocabulary import attributes, label, told_labels
 from thermogear.results.result import Notice, Result
@@ -101,8 +101,8 @@ class Stored:
     def table(self) -> dict[str, Any]:
         """The fields of its case file, what the command line put in their place included."""
         data = tables(f"case of {self.name}", str(self.texts.get("case", "")))
-        changes = {str(path): str(value) for path, value in self.read("overrides", [])}
-        return flat(with_digests(overridden(data, pairs(changes))))
+        changes = tuple((str(path), str(value)) for path, value in self.read("overrides", []))
+        return flat(with_digests(overridden(data, changes)))
 
     def read(self, name: str, absent: Any) -> Any:
         """A JSON attribute, ``absent`` where it is not stored."""
@@ -295,8 +295,8 @@ def _text(case: Stored) -> str:
     text = folded(str(case.texts.get("case", ""))).rstrip()
     if "# on the command line:" in text:
         return text
-    changes = case.read("overrides", [])
-    return text + "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)
+    changes = [told(str(path), str(one)) for path, one in case.read("overrides", [])]
+    return text + "".join(f"\n# on the command line: {change}" for change in changes)
 
 
 def _path_points(case: Stored) -> dict[str, float]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from thermogear.base.errors import InputError
+from thermogear.base.toml import literal, overridden, pairs
 from thermogear.case.allowed import gear_parameter
 from thermogear.case.base import Case
 from thermogear.case.case import GearCase, gear_case, load_case
@@ -42,9 +43,7 @@ class CaseRuns:
 
 def _stated(text: str, changes: Mapping[str, str], name: str) -> str:
     """A field as the case states it, as text."""
-    if name in changes:
-        return changes[name]
-    value: Any = tomllib.loads(text)
+    value: Any = overridden(tomllib.loads(text), pairs(changes))
     for part in name.split("."):
         if not isinstance(value, dict) or part not in value:
             raise InputError("tolerances", repr(name), why="the case states no such field")
@@ -73,16 +72,12 @@ def overrides_of(text: str, changes: Mapping[str, str], name: str, factor: float
         fields = gear_parameter(name, "tolerances").fields
         return {one: scaled(_stated(text, changes, one), factor) for one in fields}
     field = "transmission_error.harmonics"
-    if field in changes:
-        table: Any = tomllib.loads(f"harmonics = {changes[field]}")
-    else:
-        table = tomllib.loads(text).get("transmission_error", {})
+    table = overridden(tomllib.loads(text), pairs(changes)).get("transmission_error", {})
     rows = table.get("harmonics", [])
     if not rows:
         raise InputError("parameters", repr(name), why="the case states no transmission error")
     parts = []
     for row in rows:
         grown = {**row, "amplitude": scaled(str(row["amplitude"]), factor)}
-        pairs = (f"{k} = {v if not isinstance(v, str) else repr(v)}" for k, v in grown.items())
-        parts.append("{ " + ", ".join(pairs) + " }")
-    return {field: "[" + ", ".join(parts) + "]"}
+        parts.append(grown)
+    return {field: literal(parts)}

@@ -129,6 +129,15 @@ def orbit_results(
     progress("orbit", 0, 2)
     orbit, proof = orbit_of(point, period, transient=transient)
     progress("orbit", 1, 2)
+    result = told_orbit(point, orbit, proof, period)
+    progress("orbit", 2, 2)
+    return result
+
+
+def told_orbit(
+    point: OnePoint, orbit: Orbit, proof: Label | None, period: int | None = None
+) -> Result:
+    """The result of a closed ``orbit`` that is known; ``period``: of how many one has asked."""
     points, b = point.points, float(orbit.lanes.half_backlash[0])
     length, rate = float(points.length[0]), float(points.rate[0])
     hertz = float(points.mesh_frequency[0] / (2.0 * np.pi))
@@ -208,7 +217,6 @@ def orbit_results(
         "lines": lines,
         "notices": _orbit_notices(orbit, low, b, period),
     }
-    progress("orbit", 2, 2)
     return found("orbit", {"orbit": data}, summary)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from thermogear.base.display import celsius, number, span
 from thermogear.base.parameters import PARAMETERS
+from thermogear.base.toml import told
 from thermogear.base.units import RPM
 from thermogear.results.result import Result
 
@@ -82,7 +83,7 @@ def _fixed(result: Result) -> Iterator[str]:
     for name, value in model.items():
         if name in MODEL and isinstance(value, int | float):
             yield f"{MODEL[name]} {number(float(value), 4)}"
-    changes = [f"{path} = {value}" for path, value in result.values("overrides")]
+    changes = [told(str(path), str(text)) for path, text in result.values("overrides")]
     yield from changes[:MOST_CHANGES]
     if len(changes) > MOST_CHANGES:
         yield f"{len(changes) - MOST_CHANGES} more changes (see the case file)"
@@ -94,10 +95,10 @@ def _of_the_case(result: Result, data: xr.Dataset) -> Iterator[str]:
         given = tomllib.loads(result.text("case")).get("operating", {})
     except tomllib.TOMLDecodeError:
         return
-    told = {str(path) for path, _ in result.values("overrides")}
+    changed = {str(path) for path, _ in result.values("overrides")}
     for name in ("speed", "torque"):
         asked = name == "torque" and result.text("torque")
-        if f"pinion_{name}" in data.dims or f"operating.{name}" in told or asked:
+        if f"pinion_{name}" in data.dims or f"operating.{name}" in changed or asked:
             continue
         value = given.get(name)
         value = value[0] if isinstance(value, list) and value else value

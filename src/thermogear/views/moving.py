@@ -19,6 +19,7 @@ from markupsafe import Markup
 from thermogear.views.picture import Axis, Contours, Field, Hatch, Mark, Panel, Picture, Points
 
 SCRIPTS = ("uplot.js", "gears.js", "marks.js", "pictures.js")
+PAGE = "page.js"
 SHEETS = ("uplot.css", "pictures.css")
 DIGITS = 5
 """Significant digits of a place in a picture: a hundredth of a pixel and finer."""
@@ -221,12 +222,17 @@ def _read(name: str) -> str:
     return (files("thermogear.views") / "script" / name).read_text("utf-8").strip()
 
 
+def script_of(own: str) -> str:
+    """Plots, gears and pictures with a page's ``own`` script behind them, in one closed piece."""
+    licence = f"/*! uPlot 1.6.32\n{_read('uplot.LICENSE')}\n*/"
+    pieces = "\n".join((licence, *(_read(name) for name in SCRIPTS), own))
+    return f'(() => {{\n"use strict";\n{pieces}\n}})();'
+
+
 @cache
 def script() -> Markup:
-    """The text of the page's script: plots, gears and pictures in one closed piece."""
-    licence = f"/*! uPlot 1.6.32\n{_read('uplot.LICENSE')}\n*/"
-    pieces = "\n".join((licence, *(_read(name) for name in SCRIPTS)))
-    return Markup(f'//<![CDATA[\n(() => {{\n"use strict";\n{pieces}\n}})();\n//]]>')
+    """The text of the script of a report."""
+    return Markup(f"//<![CDATA[\n{script_of(_read(PAGE))}\n//]]>")
 
 
 @cache

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any, overload
 
 from markupsafe import Markup
@@ -331,6 +332,12 @@ def notice_lines(result: Result, most: int | None = None) -> list[str]:
     return [*(f"- {' '.join(one.text.split())}" for one in first), words]
 
 
+@cache
+def style() -> str:
+    """The style sheet that pages share."""
+    return (files("thermogear.views") / "templates" / "page.css").read_text("utf-8")
+
+
 def render(page: Page) -> str:
     """The whole page as text: it needs no other file and no network.
 
@@ -345,13 +352,12 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style, _, _ = environment.loader.get_source(environment, "page.css")  # type: ignore[union-attr]
     title = " ".join(page.result.title.split()) or "thermogear"
     parts = page.parts
     text = environment.get_template("report.html").render(
         title=title,
         who=who(page.result),
-        style=Markup(style) + sheet(),
+        style=Markup(style()) + sheet(),
         script=script() if any(page.pictures) else "",
         policy=policy(),
         summary=page.summary if isinstance(page.summary, Markup) else prose(page.summary),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from thermogear.base.enclosed import folded
+from thermogear.base.toml import told
 from thermogear.results.result import Result
 from thermogear.views import tables
 from thermogear.views.page import Code, Section, Text
@@ -51,8 +52,8 @@ def case_file(results: Result) -> Section:
     """The case as it was read, and below it what the command line put in its place."""
     text = folded(results.text("case")).rstrip()
     if "# on the command line:" not in text:
-        changes = results.values("overrides")
-        text += "".join(f"\n# on the command line: {path} = {value}" for path, value in changes)
+        changes = [told(str(path), str(one)) for path, one in results.values("overrides")]
+        text += "".join(f"\n# on the command line: {change}" for change in changes)
     return Section("case", "Case file", [Code(text)])
 
 

@@ -126,7 +126,7 @@ class Panel {
       series: [{}, {paths: () => null, points: {show: false}}],
       cursor: {drag: {x: true, y: true, uni: 24}, points: {show: false}, y: true, x: true},
       hooks: {
-        draw: [(u) => paint(u, said, this.figure.off)],
+        draw: [(u) => paint(u, this.said, this.figure.off)],
         setCursor: [(u) => this.point(u)],
         setScale: [(u, key) => {
           this.now[key] = [u.scales[key].min, u.scales[key].max];
@@ -185,6 +185,26 @@ class Panel {
       for (const key of ["x", "y"]) this.u.setScale(key, {min: this.home[key][0], max: this.home[key][1]});
     });
   }
+  // other marks on the same axes; who has zoomed stays where he is
+  show(said, home) {
+    const near = (key) => this.now && [0, 1].every((i) =>
+      Math.abs(this.now[key][i] - this.home[key][i]) <= 1e-9 * (this.home[key][1] - this.home[key][0]));
+    const free = {x: !this.now || near("x"), y: !this.now || near("y")};
+    Object.assign(this, {said, home, full: undefined});
+    if (!this.u) return;
+    if (said.equal) {
+      this.fit(this.u.width, this.u.height);
+      return;
+    }
+    this.u.batch(() => {
+      for (const key of ["x", "y"]) {
+        const [min, max] = free[key] ? home[key] : this.now[key];
+        this.now[key] = [min, max];
+        this.u.setScale(key, {min, max});
+      }
+    });
+    this.u.redraw();
+  }
   fit(width, height) {
     if (this.u && !this.said.equal) { this.u.setSize({width, height}); return; }
     this.u?.destroy();
@@ -233,11 +253,7 @@ class Figure {
     this.rows = said.panels.map((row, i) => row.map((one, j) => new Panel(
       this, one, this.grid, frames.map((frame) => frame[i][j]), row)));
     this.panels = this.rows.flat();
-    for (const key of ["x", "y"])
-      for (const one of this.panels) {
-        const beside = this.beside(one, key).map((other) => other.home[key]);
-        one.home[key] = [Math.min(...beside.map((e) => e[0])), Math.max(...beside.map((e) => e[1]))];
-      }
+    this.level(this.panels.map((one) => one.home)).forEach((home, i) => { this.panels[i].home = home; });
     for (const one of this.panels) this.scale(one);
     this.legend = element("div", this.live, {class: "legend"});
     this.entries();
@@ -245,6 +261,28 @@ class Figure {
     host.closest("figure").classList.add("moves");
     this.size();
     new ResizeObserver(() => this.size()).observe(this.live);
+  }
+  // the ends of every panel, one and the same where an axis is shared
+  level(homes) {
+    return this.panels.map((one) => Object.fromEntries(["x", "y"].map((key) => {
+      const beside = this.beside(one, key).map((other) => homes[this.panels.indexOf(other)][key]);
+      return [key, [Math.min(...beside.map((e) => e[0])), Math.max(...beside.map((e) => e[1]))]];
+    })));
+  }
+  // the same axes with other marks; false where the axes are others
+  show(said) {
+    const face = (one) => JSON.stringify([one.title, one.top, one.equal, ...["x", "y"].map((key) =>
+      ({...one[key], low: 0, high: 0}))]);
+    const faces = (rows) => JSON.stringify(rows.map((row) => row.map(face)));
+    if (this.said.dial || said.dial || faces(said.panels) !== faces(this.said.panels)) return false;
+    if (said.panels.flat().some((one) => one.marks.some((m) => m.kind === "field" && m.words))) return false;
+    this.said = said;
+    const news = said.panels.flat();
+    const homes = news.map((one) => ({x: ends(one.marks, "x", one.x), y: ends(one.marks, "y", one.y)}));
+    const level = this.level(homes);
+    this.quietly(() => this.panels.forEach((one, i) => one.show(news[i], level[i])));
+    this.entries();
+    return true;
   }
   // panels that share an axis with one
   beside(panel, key) {
@@ -362,7 +400,7 @@ class Figure {
   }
 }
 
-// --- the page ---------------------------------------------------------------------------------
+// --- a picture as it travels -------------------------------------------------------------------
 
 // arrays stand once in a picture: {"in": place}, those in equal steps as their ends
 const whole = (text) => {
@@ -376,34 +414,3 @@ const whole = (text) => {
   for (const frame of said.dial?.frames ?? []) frame.flat().forEach(marks);
   return said;
 };
-const start = (host) => {
-  if (host.dataset.gears) {
-    const live = element("div", null, {class: "live"});
-    host.before(live);
-    drawGears(live, JSON.parse(host.dataset.gears));
-    host.closest("figure").classList.add("moves", "turns");
-  } else figures.push(new Figure(host, whole(host.dataset.picture)));
-};
-const figures = [];
-const sight = new IntersectionObserver((seen) => {
-  for (const one of seen) if (one.isIntersecting) {
-    sight.unobserve(one.target);
-    start(one.target);
-  }
-}, {rootMargin: "400px"});
-for (const one of document.querySelectorAll("[data-picture],[data-gears]")) sight.observe(one);
-dark.addEventListener("change", () => {
-  found = {};
-  figures.forEach((one) => one.recolour());
-});
-const unfold = () => {
-  const target = document.getElementById(location.hash.slice(1));
-  if (!target) return;
-  for (let fold = target.closest("details"); fold; fold = fold.parentElement.closest("details"))
-    fold.open = true;
-  if (target.tagName === "DETAILS") target.open = true;
-  else for (const fold of target.querySelectorAll(":scope > details")) fold.open = true;
-  target.scrollIntoView();
-};
-addEventListener("hashchange", unfold);
-if (location.hash.length > 1) unfold();

@@ -1,0 +1,245 @@
+"""The few numbers of a gear case that one turns to understand it: where they stand, how far.
+
+A dial is one quantity of the first operating point with the fields of the case file that it means.
+Turning it is putting text into these fields, as ``--set`` does, so that a dialled case is a case
+like any other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.toml import literal
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.case.case import GearCase
+
+Changes = tuple[tuple[str, str], ...]
+"""Dotted fields of the file and what is put there; nothing: the field is left out."""
+
+GIVEN = (
+    "temperatures.pinion_addendum", "temperatures.wheel_addendum",
+    "temperatures.pinion_bore", "temperatures.pinion_bore_below_addendum",
+    "temperatures.wheel_bore", "temperatures.wheel_bore_below_addendum",
+    "temperatures.housing", "temperatures.housing_below_addendum",
+    "oil.temperature", "oil.temperature_below_addendum",
+)  # fmt: skip
+"""Fields that give a temperature which the heat balance could compute."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dial:
+    """A quantity one turns, in ``unit``: ``value`` now, from ``low`` to ``high`` by ``step``.
+
+    ``fields`` are those of the case file that it puts; ``held`` says why it cannot be turned now.
+    """
+
+    name: str
+    title: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    step: float
+    fields: tuple[str, ...]
+    held: str = ""
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """For a page."""
+        return {one: getattr(self, one) for one in self.__dataclass_fields__}
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What a dial is, before anything is computed of it."""
+
+    name: str
+    title: str
+    unit: str
+    fields: tuple[str, ...]
+    held: str = ""
+
+
+def _kinds(case: GearCase) -> dict[str, _Kind]:
+    held = "the heat balance computes it" if case.computed else ""
+    below = not case.computed and _given(case, "temperatures.housing_below_addendum")
+    housing = ("housing below the gears", "K") if below else ("housing temperature", "degC")
+    field = "temperatures.housing_below_addendum" if below else "temperatures.housing"
+    table = case.file.backlash
+    kind = f"{table.extent}, {table.direction}" if table.value is not None else "total, normal"
+    found = (
+        _Kind("speed", "pinion speed", "rpm", ("operating.speed",)),
+        _Kind("torque", "pinion torque", "N m", ("operating.torque",)),
+        _Kind("gears", "gear temperature", "degC", GIVEN[:2], held),
+        _Kind("housing", *housing, (field,), held),
+        _Kind("backlash", f"cold backlash ({kind})", "mm", ("backlash.value",)),
+        _Kind("damping", "damping ratio", "", ("dynamics.damping_ratio",)),
+        _Kind("error", "transmission error, first harmonic", "um",
+              ("transmission_error.harmonics",)),
+    )  # fmt: skip
+    return {one.name: one for one in found}
+
+
+def dials(case: GearCase) -> list[Dial]:
+    """The dials of the first operating point of ``case``, in the order of use.
+
+    Temperatures are those of the case's first model; of a case whose temperatures the heat balance
+    computes they are results, and ``held``.
+    """
+    at = case.operating_of(case.models[0])
+    gears, housing = (
+        float(np.ravel(one)[0]) - ZERO_CELSIUS
+        for one in (at.temperatures.pinion_addendum, at.temperatures.housing)
+    )
+    kinds = _kinds(case)
+    ends = _warm(housing)
+    if kinds["housing"].unit == "K":
+        rule = case.temperature_rule
+        housing = 0.0 if rule is None else float(np.ravel(rule.housing.value)[0])
+        ends = (-100.0, 200.0)
+    speed, torque = float(case.speeds[0]) / RPM, float(case.torques[0])
+    half, table = float(np.ravel(case.stated.half_backlash)[0]), case.file.backlash
+    backlash = 2e3 * half if table.value is None else 1e3 * table.value
+    zeta, error = case.damping_ratio, 1e6 * _first(case)
+    values = {
+        "speed": (speed, _wide(speed)),
+        "torque": (torque, _wide(torque)),
+        "gears": (gears, _warm(gears)),
+        "housing": (housing, ends),
+        "backlash": (backlash, (0.02 * backlash, 5.0 * backlash)),
+        "damping": (zeta, (0.0, max(0.3, 2.0 * zeta))),
+        "error": (error, (0.0, max(20.0, 4.0 * error))),
+    }
+    return [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
+
+
+def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
+    """What turning dials of ``case`` to ``values`` (in their units) puts into its file.
+
+    The error's other harmonics keep their ratio to the first; a pair without any gets a first one.
+    Raises InputError for an unknown dial, for one that is held, and for a number that is none.
+    """
+    known = _kinds(case)
+    found: list[tuple[str, str]] = []
+    for name, value in values.items():
+        if name not in known:
+            raise InputError("dial", repr(name), fix=nearest(name, known))
+        dial = known[name]
+        if not math.isfinite(value):
+            raise InputError(dial.fields[0], f"{value}", allowed="a finite number")
+        if dial.held:
+            raise InputError(
+                dial.fields[0], f"{value:g} {dial.unit}", why=dial.held,
+                fix="switch the heat balance off to turn it",
+            )  # fmt: skip
+        text = f"{_text(value)} {dial.unit}".strip()
+        if name == "error":
+            found.append((dial.fields[0], _harmonics(case, value)))
+        elif name == "backlash" and not _given(case, "backlash.value"):
+            said = {"value": text, "direction": "normal", "extent": "total"}
+            found.append(("backlash", literal(said)))
+        else:
+            found += [(field, text) for field in dial.fields]
+    return tuple(found)
+
+
+def balanced(case: GearCase, on: bool) -> Changes:
+    """What puts the temperatures of ``case`` into the heat balance's hands, or takes them out.
+
+    Taken out, the gears stay as hot as the balance has found them at the first operating point;
+    bores, housing and oil keep their distance in kelvins from the pinion's teeth.
+    """
+    if on == case.computed:
+        return ()
+    if on:
+        return tuple((field, "") for field in GIVEN if _given(case, field))
+    at = case.operating_of(case.models[0])
+    body = at.temperatures
+    first = {
+        name: float(np.ravel(getattr(body, name))[0])
+        for name in ("pinion_addendum", "wheel_addendum", "pinion_bore", "wheel_bore", "housing")
+    }
+    oil = float(np.ravel(at.oil_temperature)[0])
+    if not all(map(math.isfinite, (*first.values(), oil))):
+        raise InputError(
+            "temperatures", "a heat balance that does not settle",
+            fix="give temperatures in the case file",
+        )  # fmt: skip
+    tips = {n: round(first[n] - ZERO_CELSIUS, 2) for n in ("pinion_addendum", "wheel_addendum")}
+    found = [(f"temperatures.{name}", f"{value!r} degC") for name, value in tips.items()]
+    for name in ("pinion_bore", "wheel_bore", "housing"):
+        own = "wheel_addendum" if name == "wheel_bore" else "pinion_addendum"
+        found.append(
+            (f"temperatures.{name}_below_addendum", f"{round(first[own] - first[name], 2)!r} K")
+        )
+    found.append(
+        ("oil.temperature_below_addendum", f"{round(first['pinion_addendum'] - oil, 2)!r} K")
+    )
+    left = [(field, "") for field in GIVEN if _given(case, field)]
+    return (*(one for one in left if one[0] not in dict(found)), *found)
+
+
+def _text(value: float) -> str:
+    """A number to the last bit, a whole one without its point."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def _dial(kind: _Kind, value: float, ends: tuple[float, float]) -> Dial:
+    low, high = ends
+    step = 10.0 ** math.floor(math.log10(max(high - low, 1e-9) / 200.0))
+    low, high = step * math.floor(low / step), step * math.ceil(high / step)
+    return Dial(
+        name=kind.name, title=kind.title, unit=kind.unit, value=float(f"{value:.10g}"),
+        low=float(f"{low:.6g}"), high=float(f"{high:.6g}"), step=float(f"{step:.6g}"),
+        fields=kind.fields, held=kind.held,
+    )  # fmt: skip
+
+
+def _wide(value: float) -> tuple[float, float]:
+    return 0.05 * value, 5.0 * value
+
+
+def _warm(celsius: float) -> tuple[float, float]:
+    return (
+        (-20.0, 250.0) if math.isfinite(celsius) and -20.0 <= celsius <= 250.0 else (-40.0, 400.0)
+    )
+
+
+def _given(case: GearCase, field: str) -> bool:
+    """Whether the file itself says a field."""
+    table: Any = case.data
+    for part in field.split("."):
+        table = table.get(part) if isinstance(table, dict) else None
+    return table is not None
+
+
+def _first(case: GearCase) -> float:
+    """The amplitude [m] of the first harmonic of the kinematic error."""
+    harmonics = case.transmission_error.harmonics
+    return abs(harmonics[0]) if len(harmonics) else 0.0
+
+
+def _harmonics(case: GearCase, micrometres: float) -> str:
+    """The file's harmonics with the first at another amplitude, the others in proportion."""
+    table = case.file.transmission_error
+    said = [] if table is None else list(table.harmonics)
+    own = next((one.amplitude for one in said if one.order == 1), 0.0)
+    if own == 0.0:
+        said = [one for one in said if one.order != 1]
+        rows = [{"order": 1, "amplitude": f"{_text(micrometres)} um"}]
+        ratio = 1.0
+    else:
+        rows, ratio = [], 1e-6 * micrometres / own
+    for one in said:
+        exact = micrometres if one.order == 1 else 1e6 * one.amplitude * ratio
+        row: dict[str, Any] = {"order": one.order, "amplitude": f"{_text(exact)} um"}
+        if one.phase:
+            row["phase"] = f"{one.phase!r} rad"
+        rows.append(row)
+    return literal(rows)

@@ -1,0 +1,145 @@
+"""One open page's desk: from a state to everything that is shown of it, and to files."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermogear.base.errors import ValidityWarning
+from thermogear.base.plan import Alive
+from thermogear.base.units import RPM, ZERO_CELSIUS
+from thermogear.case.dials import dials
+from thermogear.front.app.given import Given
+from thermogear.front.app.wire import PARTS, Export, Post, Show
+
+if TYPE_CHECKING:
+    from thermogear.case.case import GearCase
+
+
+class Desk:
+    """Works for one page on what the command line gave; ``post`` tells the page."""
+
+    def __init__(self, given: Given, post: Post) -> None:
+        from thermogear.front.app.parts import Kept
+
+        self.given, self.post, self.kept = given, post, Kept()
+
+    def show(self, show: Show, alive: Alive) -> Generator[None, None, None]:
+        """Tell the page everything of a state, the quick parts first; a step each time."""
+        from thermogear.front.app.parts import Look, made
+
+        start = time.thread_time()
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always", ValidityWarning)
+            case = self.given.at(show.state)
+        told = list(dict.fromkeys(str(one.message) for one in said))
+        self.post("now", self._now(case, show, told))
+        look = Look(self.given, case, show, alive, self.kept)
+        for name in (one for one in PARTS if one in show.parts):
+            alive()
+            for part in made(look, name):
+                if part.name:
+                    spent = 1e3 * (time.thread_time() - start)
+                    self.post(f"part {part.name}", part.message(show.number, spent))
+                else:
+                    self.post("progress", {"kind": "progress", "number": show.number, "name": name,
+                                           "done": part.done, "total": part.total})  # fmt: skip
+                yield
+                alive()
+                start = time.thread_time()
+
+    def _now(self, case: GearCase, show: Show, told: list[str]) -> dict[str, object]:
+        from thermogear.case.form import form
+
+        return {
+            "kind": "now",
+            "number": show.number,
+            "title": case.title,
+            "dials": [one.row for one in dials(case)],
+            "fields": {one.path: one.given for one in form(case.data) if one.given},
+            "computed": case.computed,
+            "temperatures": temperatures(case),
+            "command": self.given.command(case),
+            "warnings": told,
+        }
+
+    def export(self, export: Export) -> dict[str, object]:
+        """The state as a file to keep."""
+        name, text = getattr(self, f"_{export.what}")(export)
+        return {"kind": "file", "number": export.number, "what": export.what, "name": name,
+                "text": text}  # fmt: skip
+
+    def _case(self, export: Export) -> tuple[str, str]:
+        from thermogear.base.toml import written
+
+        case = self.given.at(export.state)
+        head = f"# {case.title}: from `thermogear app {self.given.name}`, comments left out.\n\n"
+        return "case.toml", head + written(case.data)
+
+    def _command(self, export: Export) -> tuple[str, str]:
+        return "command.txt", self.given.command(self.given.at(export.state)) + "\n"
+
+    def _report(self, export: Export) -> tuple[str, str]:
+        from thermogear.study.run import run
+        from thermogear.thesis.errata import with_errata
+        from thermogear.views.page import render
+        from thermogear.views.write import page_of
+
+        def report(stage: str, done: int, total: int) -> None:
+            self.post("progress", {"kind": "progress", "number": export.number, "name": stage,
+                                   "done": done, "total": total})  # fmt: skip
+
+        case = self.given.at(export.state)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)
+            page = page_of(with_errata(run(case, progress=report), case))
+        return "report.html", render(page.showing("first", "All of them: thermogear run"))
+
+
+def temperatures(case: GearCase) -> list[list[str]]:
+    """What the bodies have at the first operating point, in degC."""
+    at = case.operating_of(case.models[0])
+    names = ("pinion_addendum", "wheel_addendum", "pinion_bore", "wheel_bore", "housing")
+    rows: list[tuple[str, Any]] = [
+        (name.replace("_addendum", " teeth").replace("_", " "), getattr(at.temperatures, name))
+        for name in names
+    ]
+    rows.append(("oil", at.oil_temperature))
+    return [
+        [words, f"{float(np.ravel(value)[0]) - ZERO_CELSIUS:.1f} °C".replace("-", "−")]
+        for words, value in rows
+    ]
+
+
+def hello(given: Given) -> dict[str, object]:
+    """What a page needs once: the fields of a case file, the range of speeds, the record."""
+    from thermogear.case.form import form
+
+    case = given.case
+    return {
+        "kind": "hello",
+        "name": given.name,
+        "form": [one.row for one in form(case.data)],
+        "speeds": speeds(case),
+        "shafts": case.train is not None,
+        "record": given.record_name,
+    }
+
+
+def speeds(case: GearCase) -> dict[str, float]:
+    """A range [rpm] that holds the pair's resonance and the case's own speeds."""
+    from thermogear.case.family import GearFamily
+
+    points = GearFamily(case, ())(np.empty((1, 0)))
+    rate = float(points.rate[0])
+    own = max(case.speeds) / RPM
+    natural = rate / case.pair.pinion.teeth / RPM
+    top = max(own, natural) if np.isfinite(natural) and natural > 0.0 else own
+    step = 10.0 ** np.floor(np.log10(top))
+    high = min(float(np.ceil(1.25 * top / step * 2.0) * step / 2.0), 500_000.0)
+    low = max(0.1, float(f"{min(high / 20.0, min(case.speeds) / RPM):.2g}"))
+    return {"low": low, "high": high, "count": 300}

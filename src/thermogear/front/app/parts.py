@@ -1,0 +1,381 @@
+"""The parts of the page, each made in slices from the case that the dials say."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError, ThermogearError
+from thermogear.base.plan import Alive, slices
+from thermogear.base.progress import asking
+from thermogear.base.units import RPM
+from thermogear.case.case import GearCase
+from thermogear.front.app.given import Given
+from thermogear.front.app.wire import Show
+from thermogear.study import live
+from thermogear.study.notices import contact_notices, difference_notices
+from thermogear.views.moving import moving
+from thermogear.views.picture import Picture
+from thermogear.views.plots import live as plot
+
+Floats = NDArray[np.float64]
+OF_ALL = " (in any state, up or down)"
+"""What notices of several states end with; a live run-up has one."""
+OFTEN = 0.25
+"""Seconds between two pictures of one that fills in."""
+MAP = (48, 24)
+"""Speeds and temperatures of the map."""
+TILE = 8
+COLDEST, HOTTEST = 20.0, 180.0
+"""Of the map [degC]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """What a part of the page shows: a picture, drawn gears, a table of rows, lines of words.
+
+    ``done`` of ``total`` where it fills in.
+    """
+
+    name: str
+    picture: Picture | None = None
+    gears: Any = None
+    lines: list[str] = field(default_factory=list)
+    rows: list[list[str]] = field(default_factory=list)
+    pictures: list[tuple[str, Picture]] = field(default_factory=list)
+    done: int = 1
+    total: int = 1
+
+    def message(self, number: int, milliseconds: float) -> dict[str, object]:
+        """As the page takes it."""
+        return {
+            "kind": "part",
+            "number": number,
+            "name": self.name,
+            "picture": "" if self.picture is None else moving(self.picture),
+            "pictures": [[words, moving(one)] for words, one in self.pictures],
+            "gears": "" if self.gears is None else json.dumps(self.gears),
+            "lines": self.lines,
+            "rows": self.rows,
+            "done": self.done,
+            "total": self.total,
+            "milliseconds": round(milliseconds, 1),
+        }
+
+
+@dataclass(eq=False)
+class Kept:
+    """What one page's parts remember, so that a dial makes anew only what hangs on it."""
+
+    keys: dict[str, object] = field(default_factory=dict)
+    runs: dict[str, live.LiveRunUp] = field(default_factory=dict)
+    motions: dict[str, live.Motion] = field(default_factory=dict)
+
+    def fresh(self, name: str, key: object) -> bool:
+        """Whether a part shows something else with this key than it does now."""
+        return self.keys.get(name) != key
+
+    def forget(self, name: str) -> None:
+        self.keys.pop(name, None)
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One state looked at: the ``case`` of it, and whether anybody still wants to see it."""
+
+    given: Given
+    case: GearCase
+    show: Show
+    alive: Alive
+    kept: Kept
+
+    @property
+    def speed(self) -> float:
+        return float(self.case.speeds[0])
+
+    @property
+    def speeds(self) -> Floats:
+        """Of the run-up [rad/s]."""
+        said = self.show.speeds
+        if said.low >= said.high:
+            raise InputError("speeds", f"{said.low:g}..{said.high:g} rpm", allowed="from < to")
+        return RPM * np.linspace(said.low, said.high, said.count)
+
+    def key(self, *beside: object) -> str:
+        """The case as one text, its speed left out where nothing else hangs on it."""
+        return json.dumps([self.case.data, *beside], sort_keys=True, default=str)
+
+
+def mesh(look: Look) -> Iterator[Part]:
+    data = live.mesh(look.case, look.alive)
+    yield Part(name="mesh", picture=plot.stiffness(data), lines=plot.told_mesh(data))
+
+
+def gap(look: Look) -> Iterator[Part]:
+    data = live.gap(look.case, look.alive)
+    if data is None:
+        yield Part(name="gap", lines=["the heat of the operating point did not settle"])
+        return
+    yield Part(name="gap", picture=plot.gap(data))
+
+
+def gears(look: Look) -> Iterator[Part]:
+    from thermogear.study.drawing import drawing
+    from thermogear.views.gears import gear_drawing
+
+    data = drawing(look.case, operating=1).data
+    yield Part(name="gears", gears=gear_drawing(data).to_json())
+
+
+def orbit(look: Look) -> Iterator[Part]:
+    look.kept.motions.clear()
+    yield _orbit(look, {"as the case starts": None})
+
+
+def _orbit(look: Look, starts: dict[str, tuple[float, float] | None]) -> Part:
+    kept = look.kept.motions
+    try:
+        for name, start in starts.items():
+            look.alive()
+            kept[name] = live.motion(live.point_of(look.case, start))
+    except ThermogearError as error:
+        if not kept:
+            return Part(name="orbit", lines=[str(error)])
+    lines: list[str] = []
+    shown = dict(kept)
+    for name, one in kept.items():
+        twin = next((n for n in lines_of(shown, name) if _same(shown[n], one)), None)
+        if twin is not None:
+            lines.append(f"{name}: the same motion as {twin}")
+            shown.pop(name)
+            continue
+        swing = 1e6 * float(np.ptp(one.data["displacement"].values))
+        lines.append(f"{name}: {one.words}; peak to peak {swing:.4g} µm")
+    first = kept.get("as the case starts")
+    rows = []
+    if first is not None and first.orbit is not None:
+        from thermogear.views.write import page_of
+
+        rows = [[line] for line in page_of(first.orbit).lines()]
+    picture = plot.orbits({name: one.data for name, one in shown.items()})
+    return Part(name="orbit", picture=picture, lines=lines, rows=rows)
+
+
+def lines_of(shown: dict[str, live.Motion], name: str) -> list[str]:
+    """The motions told before this one."""
+    names = list(shown)
+    return names[: names.index(name)]
+
+
+def _same(one: live.Motion, other: live.Motion) -> bool:
+    """Whether two closed orbits are one: the same section within a millionth of its size."""
+    if one.orbit is None or other.orbit is None:
+        return False
+    first, second = (m.data["section_displacement"].values for m in (one, other))
+    if first.size != second.size:
+        return False
+    size = float(np.max(np.abs(one.data["displacement"].values)))
+    # the same orbit may be entered a period later
+    return any(np.max(np.abs(np.roll(first, k) - second)) < 1e-6 * size for k in range(first.size))
+
+
+def run_up(look: Look) -> Iterator[Part]:
+    """Hot first, then undeformed; what hangs on nothing that was turned stays."""
+    speeds, kept = look.speeds, look.kept
+    last = 0.0
+    for state in ("hot", "undeformed"):
+        look.alive()
+        key = live.fingerprint(look.case, speeds, state)
+        if not key:
+            kept.runs.pop(state, None)
+            kept.forget(f"run-up {state}")
+            yield Part(name="run-up", lines=_jammed(look, state), picture=_runs(look))
+            continue
+        if kept.fresh(f"run-up {state}", key):
+            kept.forget(f"run-up {state}")
+            for one in live.run_ups(look.case, speeds, state, look.alive):
+                kept.runs[state] = one
+                now = time.monotonic()
+                if now - last > OFTEN or one.done == one.total:
+                    last = now
+                    yield _run_part(look, one, state)
+                else:
+                    yield Part(name="", done=one.done, total=one.total)
+            kept.keys[f"run-up {state}"] = key
+        yield _run_part(look, kept.runs[state], state)
+        inside = speeds[0] <= look.speed <= speeds[-1]
+        if inside and state == "hot" and "orbit" in look.show.parts:
+            yield _orbit(look, dict(live.ends_at(kept.runs["hot"], look.speed)))
+
+
+def _jammed(look: Look, state: str) -> list[str]:
+    try:
+        live.point_of(look.case)
+    except ThermogearError as error:
+        return [f"{state}: {error}"]
+    return [f"{state}: no motion at these speeds"]
+
+
+def _runs(look: Look) -> Picture | None:
+    data = {name: one.data for name, one in look.kept.runs.items()}
+    return plot.run_up(data, look.speed) if data else None
+
+
+def _run_part(look: Look, one: live.LiveRunUp, state: str) -> Part:
+    lines = []
+    for name, run in look.kept.runs.items():
+        if not run.preview:
+            found = [
+                *plot.jumps(run.data),
+                *contact_notices(run.data),
+                *difference_notices(run.data),
+            ]
+            lines += [f"{name}, {words.removesuffix(OF_ALL)}" for words in found]
+    if one.preview:
+        lines.append(f"{state}: a coarse look first")
+    return Part(name="run-up", picture=_runs(look), lines=lines, done=one.done, total=one.total)
+
+
+def answers(look: Look) -> Iterator[Part]:
+    key = look.key()
+    if not look.kept.fresh("answers", key):
+        return
+    from thermogear.study.answers.survey import answers as study
+    from thermogear.views.pages.answers import gravest
+
+    def report(stage: str, done: int, total: int) -> None:
+        look.alive()
+
+    look.kept.forget("answers")
+    found = study(look.case, progress=asking(look.alive, report)).answers
+    rows = [[one.question, one.verdict, one.sentence, one.limit] for one in gravest(found)]
+    yield Part(name="answers", rows=rows)
+    look.kept.keys["answers"] = key
+
+
+def record(look: Look) -> Iterator[Part]:
+    """The record's mesh lines over those of the motions shown."""
+    measured = look.given.record
+    motions = {n: m.data for n, m in look.kept.motions.items() if m.orbit is not None}
+    if measured is None or measured.teeth is None:
+        if measured is not None:
+            yield Part(name="record", lines=["the record tells no tooth number: give --teeth"])
+        return
+    rows = [one for one in measured.lines if one.kind == "mesh" and np.isfinite(one.displacement)]
+    if not rows or not motions:
+        words = "no displacement can be read from it" if not rows else "no closed orbit to compare"
+        yield Part(name="record", lines=[f"{look.given.record_name}: {words}"])
+        return
+    order = np.array([one.order / measured.teeth for one in rows])
+    size = np.array([one.displacement for one in rows])
+    half = np.array([1.96 * one.uncertainty * one.displacement for one in rows])
+    lines = [
+        f"{one.channel}, {one.name}: {1e6 * one.displacement:.4g} µm ± "
+        f"{196.0 * one.uncertainty:.2g} %"
+        for one in rows
+    ]
+    yield Part(name="record", picture=plot.measured_orders(motions, order, size, half), lines=lines)
+
+
+def shafts(look: Look) -> Iterator[Part]:
+    """Loads, lift-off and critical speeds of a case with shafts."""
+    if look.case.train is None:
+        return
+    key = look.key()
+    if not look.kept.fresh("shafts", key):
+        return
+    from thermogear.study.shafts.campbell import campbell
+    from thermogear.study.shafts.statics import statics
+    from thermogear.views.write import page_of
+
+    def report(stage: str, done: int, total: int) -> None:
+        look.alive()
+
+    look.kept.forget("shafts")
+    pictures: list[tuple[str, Picture]] = []
+    rows: list[list[str]] = []
+    for place, study in enumerate((statics, campbell)):
+        page = page_of(study(look.case, progress=asking(look.alive, report)))
+        rows += [[line] for line in page.lines()]
+        for one in page.pictures:
+            if moving(one.picture):
+                pictures.append((one.heading, one.picture))
+        yield Part(name="shafts", rows=rows, pictures=pictures, done=place + 1, total=2)
+    look.kept.keys["shafts"] = key
+
+
+def parameter_map(look: Look) -> Iterator[Part]:
+    """The regime over speed and gear temperature, coarsely first."""
+    from thermogear.study.diagrams import case_map
+
+    speeds = look.speeds
+    axes = {
+        "pinion_speed": np.linspace(speeds[0], speeds[-1], MAP[0]),
+        "gear_temperature": np.linspace(COLDEST, HOTTEST, MAP[1]) + 273.15,
+    }
+    slow = replace(look.case, speeds=(float(speeds[0]),))
+    data = {k: v for k, v in look.case.data.items() if k != "operating"}
+    key = json.dumps([data, slow.torques, *(a.tolist() for a in axes.values())], default=str)
+    if not look.kept.fresh("map", key):
+        return
+    look.kept.forget("map")
+    plan = replace(case_map(look.case, axes), tile=TILE)
+    arrays = {n: np.zeros(MAP, np.int32) for n in ("label", "period")}
+    known = np.zeros(MAP, bool)
+    total, done, last = MAP[0] * MAP[1], 0, 0.0
+    for one in slices(plan, coarse=4, threads=1, alive=look.alive):
+        i, j = one.where["pinion_speed"], one.where["gear_temperature"]
+        for name, values in arrays.items():
+            values[np.ix_(i, j)] = one.arrays[name]
+        known[np.ix_(i, j)] = True
+        done += 0 if one.preview else i.size * j.size
+        now = time.monotonic()
+        if now - last > OFTEN or done == total:
+            last = now
+            yield Part(
+                name="map", picture=_map_picture(axes, arrays, known), done=done, total=total
+            )
+        else:
+            yield Part(name="", done=done, total=total)
+    look.kept.keys["map"] = key
+
+
+def _map_picture(
+    axes: dict[str, Floats], arrays: dict[str, NDArray[Any]], known: NDArray[np.bool_]
+) -> Picture:
+    import xarray as xr
+
+    units = {"pinion_speed": "rad/s", "gear_temperature": "K"}
+    data = xr.Dataset(
+        {name: (tuple(axes), values) for name, values in arrays.items()},
+        {name: ((name,), values, {"units": units[name]}) for name, values in axes.items()},
+    )
+    return plot.regimes(data, known)
+
+
+MAKERS: dict[str, Callable[[Look], Iterator[Part]]] = {
+    "mesh": mesh,
+    "orbit": orbit,
+    "gears": gears,
+    "gap": gap,
+    "run-up": run_up,
+    "answers": answers,
+    "record": record,
+    "shafts": shafts,
+    "map": parameter_map,
+}
+
+
+def made(look: Look, name: str) -> Iterator[Part]:
+    """A part in slices; what it refuses is a line of its own and ends no other part."""
+    try:
+        yield from MAKERS[name](look)
+    except ThermogearError as error:
+        look.kept.forget(name)
+        yield Part(name=name, lines=[str(error)])

@@ -1,0 +1,242 @@
+"""Pictures that answer a dial: stiffness, backlash, run-up and orbit of one operating point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.display import CELSIUS, number
+from thermogear.base.units import RPM
+from thermogear.base.vocabulary import STATUS
+from thermogear.views.picture import Axis, Panel, Picture
+from thermogear.views.plots.curves import axis_of
+from thermogear.views.plots.motion import HALF_ORDERS, HIGHEST_ORDER
+from thermogear.views.plots.one_motion import edges_in_sight
+from thermogear.views.plots.orbits import thinned
+from thermogear.views.plots.parameters import axis_words
+from thermogear.views.plots.parameters import shown as by_unit
+from thermogear.views.plots.spectrum import draw_lines, floor_of, over_orders
+from thermogear.views.plots.sweeps import CLASSES, classes_of, edges
+from thermogear.views.style import COLD, FAINT, HOT, INK, OKABE_ITO, QUIET, STATES, names_of
+from thermogear.views.typesetting import FAR, axis_label, plain, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+DASHED = (3, 2)
+STARTS = {"as the case starts": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}
+"""Where a motion comes from, and its colour."""
+
+
+def stiffness(data: xr.Dataset) -> Picture:
+    """Mesh stiffness over a mesh period, undeformed and hot, with its means."""
+    panel = Panel(
+        axis_of("mesh_phase", "mesh phase", low=0.0, high=1.0), axis_of("mesh_stiffness", low=0.0)
+    )
+    x = shown(data, "mesh_phase")
+    for place, state in enumerate(names_of(data, "state")):
+        colour, one = STATES.get(state, INK), data.isel(state=place)
+        panel.curve(x, shown(one, "mesh_stiffness"), colour=colour, label=plain(state))
+        mean = float(shown(one, "mean_stiffness"))
+        panel.line(y=mean, colour=colour, width=1.0, dash=(2, 2), label=plain(f"{state}, mean"))
+    return Picture([[panel]], size=(4.9, 3.0))
+
+
+def gap(data: xr.Dataset) -> Picture:
+    """Half backlash over the gears' temperature, where the gears are, and the way to the jam."""
+    panel = Panel(axis_of("gear_temperature"), axis_of("half_backlash", "half backlash"))
+    x, values = shown(data, "gear_temperature"), shown(data, "half_backlash")
+    panel.curve(x, values, colour=HOT, label="both gears")
+    hot = float(CELSIUS(data.attrs["hot_temperature"]))
+    here = float(np.interp(hot, x, values))
+    jam = float(CELSIUS(data.attrs["jam_temperature"]))
+    if np.isfinite(jam) and jam < FAR:
+        panel.curve([hot, jam], [here, 0.0], colour=INK, width=1.1, dash=(1, 2),
+                    label="gears alone hotter")  # fmt: skip
+        panel.points([jam], [0.0], marker="cross", colour=INK, size=7)
+        panel.text(jam, 0.0, f"jams at {jam:.0f} °C", offset=(-9, -5), across="right", up="top")
+    panel.points([hot], [here], colour=HOT, size=8.0, edge="white", label="here")
+    panel.line(y=0.0, colour=INK, width=0.9)
+    low, high = panel.extent("y")
+    panel.y.low, panel.y.high = min(low, -0.16 * abs(high)), high
+    panel.span(y=(panel.y.low, 0.0), colour=FAINT, opacity=0.5)
+    return Picture([[panel]], size=(4.9, 3.0))
+
+
+def run_up(states: Mapping[str, xr.Dataset], speed: float) -> Picture:
+    """Transmission error over speed, up and down, by state; below the section of the hot pair.
+
+    ``states``: what :class:`~thermogear.study.live.LiveRunUp` holds of each. ``speed`` [rad/s] is
+    that of the orbit shown. Crosses: where a run leaves its motion.
+    """
+    above = Panel(Axis(), Axis("transmission error, p-p [µm]"))
+    below = Panel(Axis("pinion speed [rpm]"), Axis("section x at phase 0 [µm]"))
+    ways = (("up", ()), ("down", DASHED))
+    for name, data in states.items():
+        colour = STATES.get(name, INK)
+        n = data["pinion_speed"].values / RPM
+        error = 1e6 * data["dte_peak_to_peak"].values[0]
+        for way, (words, dash) in enumerate(ways):
+            known = np.isfinite(error[way])
+            kept = known if data.attrs.get("preview") else np.ones(n.size, bool)
+            above.curve(n[kept], error[way][kept], colour=colour, dash=dash, width=1.3,
+                        label=f"{name}, {words}")  # fmt: skip
+        leaps = data["leap_fold"].values[0]
+        size = 1e6 * data["leap_before"].values[0]
+        there = np.isfinite(leaps)
+        if there.any():
+            above.points(leaps[there] / RPM, size[there], marker="cross", colour=colour, size=7,
+                         label=f"{name}, jump")  # fmt: skip
+    if "hot" in states:
+        _section(below, states["hot"])
+    for panel in (above, below):
+        panel.line(x=speed / RPM, colour=QUIET, width=1.2, dash=(1, 2), label="the orbit's speed")
+    return Picture([[above], [below]], size=(10.0, 5.2), share_x="column", heights=(3, 2), legend=5)
+
+
+def _section(panel: Panel, data: xr.Dataset) -> None:
+    """Sections of the hot run over speed, blue up and red down."""
+    n = data["pinion_speed"].values / RPM
+    scale = float(data.attrs.get("length", 1.0)) * 1e6
+    for way, (words, colour) in enumerate((("section, up", COLD), ("section, down", HOT))):
+        x = scale * data["section_x"].values[0, way]
+        places = np.broadcast_to(n[:, None], x.shape)
+        known = np.isfinite(x)
+        if not known.any():
+            continue
+        at, up = thinned(
+            x=places[known], y=x[known], scale=(float(np.ptp(n)), float(np.ptp(x[known])))
+        )
+        panel.points(at, up, colour=colour, marker="dot", edge_width=0.0, size=1.8, label=words)
+
+
+def jumps(data: xr.Dataset) -> list[str]:
+    """The jumps of a run-up so far, in words: from where to where, at which speed."""
+    found = []
+    for way, words in enumerate(("up", "down")):
+        fold = data["leap_fold"].values[0, way]
+        for place, k in np.argwhere(np.isfinite(fold)):
+            before, after = (
+                1e6 * float(data[f"leap_{n}"].values[0, way, place, k]) for n in ("before", "after")
+            )
+            kind = (
+                "at a fold"
+                if data["leap_kind"].values[0, way, place, k] == 0
+                else ("at a subcritical period doubling")
+            )
+            found.append(
+                f"running {words}: {fold[place, k] / RPM:.1f} rpm, {kind}: "
+                f"{number(before)} to {number(after)} µm peak to peak"
+            )
+    return found
+
+
+def orbits(found: Mapping[str, xr.Dataset]) -> Picture:
+    """Phase plane with section, time history and spectrum of motions by where they come from."""
+    x, v = "displacement x [µm]", axis_label("velocity")
+    phase = Panel(Axis(x), Axis(v), "Phase plane, section at phase 0")
+    history = Panel(Axis(axis_label("time")), Axis(x), "Time history")
+    spectra = {name: one for name, one in found.items() if "line_amplitude" in one}
+    for name, data in found.items():
+        colour = STARTS.get(name, INK)
+        t, at, speed = (shown(data, n) for n in ("time", "displacement", "velocity"))
+        if "order" in data:  # a closed orbit
+            t = np.append(t, t[-1] + (t[1] - t[0]))
+            at, speed = np.append(at, at[0]), np.append(speed, speed[0])
+        phase.curve(at, speed, colour=colour, width=1.2, label=name)
+        history.curve(t, at, colour=colour, width=1.2)
+        phase.points(
+            *thinned(
+                x=shown(data, "section_displacement"), y=shown(data, "section_velocity"),
+                scale=(float(np.ptp(at)), float(np.ptp(speed))),
+            ),
+            colour=colour, size=5.0, edge="white",
+        )  # fmt: skip
+    for edge in edges_in_sight(next(iter(found.values()))):
+        phase.line(x=1e6 * edge, colour=QUIET, width=1.0, dash=(4, 2), label="edge of the gap")
+        history.line(y=1e6 * edge, colour=QUIET, width=1.0, dash=(4, 2))
+    panels = [phase, history]
+    if spectra:
+        panels.append(_spectra(spectra))
+    return Picture([panels], size=(11.4, 3.4), between=0.9, legend=4)
+
+
+def _spectra(found: Mapping[str, xr.Dataset]) -> Panel:
+    ends = [
+        floor_of(
+            1e6 * one["line_amplitude"].values, order=one["order"].values, highest=HIGHEST_ORDER
+        )
+        for one in found.values()
+    ]
+    panel = over_orders(
+        HALF_ORDERS, axis_label("line_amplitude", "amplitude of displacement"),
+        floor=min(low for low, _ in ends), top=max(high for _, high in ends), highest=HIGHEST_ORDER,
+    )  # fmt: skip
+    panel.title = "Spectrum"
+    for name, one in found.items():
+        draw_lines(
+            panel, order=one["order"].values, amplitude=1e6 * one["line_amplitude"].values,
+            colour=STARTS.get(name, INK), label="",
+        )  # fmt: skip
+    return panel
+
+
+def told_mesh(data: xr.Dataset) -> list[str]:
+    """Stiffness, half backlash and jam in words."""
+    found = []
+    for place, state in enumerate(names_of(data, "state")):
+        one = data.isel(state=place)
+        status = STATUS[int(one["status"])]
+        if status == "not_converged":
+            found.append(f"{state}: heat or loaded contact did not settle")
+            continue
+        stiff = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']), 4)}·10⁸ N/m"
+        left = 1e6 * float(one["half_backlash"])
+        words = f"{state}: {stiff}; half backlash {number(left, 4)} µm"
+        taken = 1e6 * float(data["half_backlash"].values[0]) - left
+        if place and np.isfinite(taken):
+            needed = number(2.0 * max(taken, 0.0), 4)
+            words += f"; heat takes {number(taken, 4)} µm, so that {needed} µm of total backlash"
+            words += " is needed"
+        found.append(words + ("; jammed" if status == "jammed" else ""))
+    jam = float(CELSIUS(data["jam_temperature"].values[-1]))
+    if np.isfinite(jam) and jam < FAR:
+        found.append(f"jams with the gears at {jam:.1f} °C, the other bodies as they are")
+    return found
+
+
+def measured_orders(
+    computed: Mapping[str, xr.Dataset], order: Floats, amplitude: Floats, half: Floats
+) -> Picture:
+    """Lines of a record over computed ones: ``amplitude`` [m] with its 95 % ``half`` width."""
+    panel = _spectra(computed)
+    panel.title = ""
+    known = np.isfinite(amplitude) & (amplitude > 0.0) & (order > 0.0)
+    if known.any():
+        at = 1e6 * amplitude[known]
+        panel.y.low = min(panel.y.low or at.min(), 0.5 * float(at.min()))
+        panel.y.high = max(panel.y.high or at.max(), 2.0 * float(at.max()))
+        room = np.nan_to_num(1e6 * half[known])
+        for q, middle, wide in zip(order[known], at, room, strict=True):
+            low = max(middle - wide, 1e-3 * middle)
+            panel.curve([q, q], [low, middle + wide], colour=HOT, width=2.4)
+        panel.points(order[known], at, colour=HOT, marker="diamond", size=7, open=True,
+                     label="measured, 95 % interval")  # fmt: skip
+    return Picture([[panel]], size=(10.0, 3.4), legend=4)
+
+
+def regimes(data: xr.Dataset, known: NDArray[np.bool_]) -> Picture:
+    """A map over two parameters as far as it is ``known``; white is not there yet."""
+    one, two = (str(name) for name in data["label"].dims[:2])
+    borders = edges(by_unit(one, data[one].values)), edges(by_unit(two, data[two].values))
+    x, y = (Axis(axis_words(name, str(data[name].attrs.get("units", "1")))) for name in (one, two))
+    panel = Panel(x, y)
+    names, colours = zip(*CLASSES, strict=True)
+    values = np.where(known, classes_of(data), np.nan)
+    panel.field(*borders, values.T, colours=colours, classes=names)
+    return Picture([[panel]], size=(10.0, 4.2), legend=6)

@@ -1,0 +1,101 @@
+"""Dotted overrides put into tables and taken out of them; whole tables written as TOML."""
+
+from __future__ import annotations
+
+import datetime
+import tomllib
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from thermogear import InputError
+from thermogear.base import toml
+from thermogear.base.toml import overridden, written
+from thermogear.case.examples import EXAMPLES, example_text
+
+_PLAIN = st.one_of(
+    st.text(max_size=8),
+    st.integers(-(2**62), 2**62),
+    st.floats(allow_nan=False),
+    st.booleans(),
+    st.dates(),
+    st.times(),
+    st.datetimes(timezones=st.just(datetime.UTC)),
+)
+_KEYS = st.text(max_size=5)
+_TABLES = st.recursive(
+    st.dictionaries(_KEYS, _PLAIN, max_size=3),
+    lambda one: st.dictionaries(
+        _KEYS, st.one_of(_PLAIN, one, st.lists(st.one_of(_PLAIN, one), max_size=3)), max_size=3
+    ),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(_TABLES)
+def test_what_is_written_reads_back_the_same(data: dict[str, Any]) -> None:
+    assert tomllib.loads(written(data)) == data
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(_PLAIN)
+def test_a_value_behind_set_reads_back_the_same(value: object) -> None:
+    assert overridden({}, (("a.b", toml.given(value)),)) == {"a": {"b": value}}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_reads_back_the_same(name: str) -> None:
+    data = tomllib.loads(example_text(name))
+    assert tomllib.loads(written(data)) == data
+
+
+def test_lists_of_tables_stand_under_double_headings() -> None:
+    text = written({"a": [{"b": 0.1, "c": [{"d": "x"}]}, {}], "empty": {}, "none": None, "l": []})
+    assert text == 'l = []\n\n[[a]]\nb = 0.1\n\n[[a.c]]\nd = "x"\n\n[[a]]\n\n[empty]\n'
+
+
+def test_nothing_behind_the_sign_leaves_a_field_out() -> None:
+    data = {"a": {"b": 1, "c": {"d": 2}}, "e": 3}
+    assert overridden(data, (("a.b", ""), ("e", " "))) == {"a": {"c": {"d": 2}}}
+    assert overridden(data, (("a.c", ""),)) == {"a": {"b": 1}, "e": 3}
+    assert overridden(data, (("a", ""), ("a.c.d", ""))) == {"e": 3}
+    assert overridden(data, (("a", ""), ("a.c.d", "5"))) == {"a": {"c": {"d": 5}}, "e": 3}
+    assert overridden(data, (("a.b", "7"), ("a.b", ""))) == {"a": {"c": {"d": 2}}, "e": 3}
+    assert data == {"a": {"b": 1, "c": {"d": 2}}, "e": 3}
+
+
+def test_an_earlier_change_left_out_more() -> None:
+    """The rest of the path is looked for in its own table, never in one above."""
+    data = {"title": "x", "a": {"title": "y"}}
+    assert overridden(data, (("a", ""), ("a.title", ""))) == {"title": "x"}
+
+
+def test_a_name_in_place_of_a_table_is_its_field() -> None:
+    assert overridden({"model": {"friction": "xu"}}, (("model.friction.law", ""),)) == {
+        "model": {"friction": {}}
+    }
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("a.bc", "a.bc: got nothing to leave out; [a] of the file does not hold bc; did you mean"),
+        ("x", "x: got nothing to leave out; the file does not hold x; known: a, e"),
+        ("a.b.c", "a.b.c: got nothing to leave out; [a.b] of the file does not hold c; write"),
+    ],
+)
+def test_what_the_file_does_not_hold_is_refused(path: str, words: str) -> None:
+    data = {"a": {"bcd": 1, "b": 2}, "e": 3}
+    with pytest.raises(InputError) as error:
+        overridden(data, ((path, ""),))
+    assert str(error.value).startswith(words)
+    assert "\n" not in str(error.value)
+    assert data == {"a": {"bcd": 1, "b": 2}, "e": 3}
+
+
+def test_what_only_an_override_put_in_is_not_in_the_file() -> None:
+    with pytest.raises(InputError, match="nothing to leave out"):
+        overridden({"a": {}}, (("a.b", "1"), ("a.b", "")))
