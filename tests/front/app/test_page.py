@@ -358,8 +358,7 @@ def test_a_server_that_ends_is_told_and_one_that_comes_back_is_used(
     port = first.host.rpartition(":")[2]
     code_ = (
         "import sys, thermogear.front.app.guard as g; g.new_token = lambda: "
-        f"{first.token!r}; from thermogear.case.case import load_case
-from thermogear.front.cli import main; sys.exit(main(sys.argv[1:]))"
+        f"{first.token!r}; from thermogear.front.cli import main; sys.exit(main(sys.argv[1:]))"
     )
     with served("rig", "--set", SPEED, "--port", port, code=code_):
         one.until("document.body.dataset.done === document.body.dataset.asked && "
