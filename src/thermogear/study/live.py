@@ -47,7 +47,11 @@ def mesh(case: GearCase, alive: Alive = keep_going) -> xr.Dataset:
     """
     found: list[dict[str, NDArray[Any]]] = []
     for state in STATES:
-        found.append(GearFamily(case, (), "", ThermalState.of(state), alive).quasi_static(np.empty((1, 0)), MESH))
+        found.append(
+            GearFamily(case, (), "", ThermalState.of(state), alive).quasi_static(
+                np.empty((1, 0)), MESH
+            )
+        )
     variables: dict[str, Any] = {
         name: (
             ("state", "mesh_phase")[: found[0][name].ndim],
