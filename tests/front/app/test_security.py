@@ -105,7 +105,9 @@ def _free() -> int:
 
 
 def test_the_sources_have_no_way_to_run_what_comes() -> None:
-    forbidden = re.compile(r"\b(pickle|eval|exec|marshal|shelve|subprocess|os\.system|__import__)\b")
+    forbidden = re.compile(
+        r"\b(pickle|eval|exec|marshal|shelve|subprocess|os\.system|__import__)\b"
+    )
     for path in (*PACKAGE.rglob("*.py"), PACKAGE.parent / "app_command.py"):
         assert not forbidden.search(path.read_text("utf-8")), path.name
 

@@ -51,15 +51,15 @@ class Given:
 
     def _changes(self, state: State) -> Changes:
         found = _joined(self.case.overrides, state.changes)
-        case = self._case(found)
         if state.heat is not None:
-            found = _joined(found, balanced(case, state.heat))
-            case = self._case(found)
-        return _joined(found, turned(case, state.dials))
+            found = _joined(found, balanced(self._case(found), state.heat))
+        if state.dials:
+            found = _joined(found, turned(self._case(found), state.dials))
+        return found
 
-    def at(self, state: State) -> GearCase:
-        """The case of a state; InputError where no file could hold it, or it is too large here."""
-        return self._case(self.changes(state), told=True)
+    def at(self, changes: Changes) -> GearCase:
+        """The case with these; InputError where no file could hold it, or it is too large here."""
+        return self._case(changes, told=True)
 
     def _holds(self, path: str) -> bool:
         """Whether the file itself has a field, so that leaving it out says something."""
@@ -95,9 +95,9 @@ class Given:
                 )
         return case
 
-    def command(self, state: State) -> str:
-        """The command line that gives the same."""
-        said = [f"--set {shlex.quote(f'{path}={text}')}" for path, text in self.changes(state)]
+    def command(self, changes: Changes) -> str:
+        """The command line that gives the case with these."""
+        said = [f"--set {shlex.quote(f'{path}={text}')}" for path, text in changes]
         return " ".join(["thermogear run", shlex.quote(self.name), *said, "-o results"])
 
 

@@ -128,9 +128,7 @@ class Worker(threading.Thread):
     def _next(self) -> Client | None:
         with self._there:
             while not self._ending:
-                for one in list(self._clients):
-                    if one.closed and one.working is None:
-                        self._clients.remove(one)
+                self._clients = deque(c for c in self._clients if not c.closed or c.working)
                 for _ in range(len(self._clients)):
                     self._clients.rotate(-1)
                     if self._clients[-1].busy:
