@@ -7,6 +7,7 @@ import threading
 import time
 import weakref
 from collections.abc import Callable, Generator, Iterator
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -147,7 +148,7 @@ def test_two_pages_in_turn(worker: jobs.Worker) -> None:
     steps = [number for number, _ in log if number in (1, 2)]
     first = steps.index(steps[0] ^ 3)  # where the other has begun
     both = steps[first : first + 60]
-    assert all(a != b for a, b in zip(both, both[1:], strict=False))
+    assert all(a != b for a, b in pairwise(both))
 
 
 def test_a_fault_is_told_in_one_line_and_the_work_goes_on(
@@ -211,8 +212,8 @@ def test_nothing_is_kept_of_a_closed_page(worker: jobs.Worker, busy: bool) -> No
     gate = threading.Event()
     page = Page(worker, gate=gate)
     page.want(1)
-    until(lambda: ("begun", 1) in page.log)
     log = page.log
+    until(lambda: ("begun", 1) in log)
     if not busy:
         gate.set()
         page.wait_for("done", 1)
