@@ -75,6 +75,8 @@ def given(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mo
 
 @pytest.mark.parametrize("words", STATES)
 def test_command_and_saved_file_give_the_same_case(given: Given, words: str) -> None:
+    if given.name != "rig" and "heat" in STATES[words]:
+        pytest.skip("a heat balance is the same for every file, and long")
     state = State(**STATES[words])
     changes = given.changes(state)
     case = given.at(changes)

@@ -250,18 +250,22 @@ def bound(port: int | None, usual: int) -> socket.socket:
     raise InputError("--port", usual, why="no port is free on this machine")
 
 
-def serve(given: Given, listening: socket.socket, token: str, *, browser: bool) -> None:
-    """Serve until Ctrl+C."""
-    app = App(given, token)
-    address = f"http://{ADDRESS}:{listening.getsockname()[1]}/?token={token}"
+def server_of(app: App) -> uvicorn.Server:
+    """What serves ``app``; its limits are those of one person's page."""
     config = uvicorn.Config(
         app.asgi(), log_level="error", access_log=False, http="h11", ws="websockets-sansio",
         ws_max_size=MOST_BYTES, ws_ping_interval=20.0, server_header=False, date_header=False,
         timeout_graceful_shutdown=1, limit_concurrency=4 * MOST_CLIENTS, lifespan="on",
     )  # fmt: skip
-    server = uvicorn.Server(config)
+    return uvicorn.Server(config)
+
+
+def serve(given: Given, listening: socket.socket, token: str, *, browser: bool) -> None:
+    """Serve until Ctrl+C."""
+    app = App(given, token)
+    server = server_of(app)
     if browser:
-        webbrowser.open(address)
+        webbrowser.open(f"http://{ADDRESS}:{listening.getsockname()[1]}/?token={token}")
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(server.serve(sockets=[listening]))
     app.worker.end()
