@@ -25,7 +25,11 @@ def own(*changes: str) -> GearCase:
 
 def alike(one: Any, other: Any) -> None:
     """The same case, however its text is written."""
-    assert replace(one, text="", overrides=()) == replace(other, text="", overrides=())
+    if isinstance(one, GearCase):  # holds arrays, made of what was read
+        assert (one.file, one.title) == (other.file, other.title)
+        assert one.assumptions == other.assumptions
+    else:
+        assert replace(one, text="", overrides=()) == replace(other, text="", overrides=())
 
 
 def test_a_field_left_out_has_its_default() -> None:
@@ -52,11 +56,11 @@ def test_a_reason_goes_with_what_is_left_out() -> None:
     text = OWN_PAIR + '[ours."dynamics.damping_ratio"]\nvalue = 0.05\nreason = "felt"\n'
     field = "dynamics.damping_ratio"
     reasons = [
-        {one.field: one.reason for one in gear_case(load_case(text, changes)).assumptions}[field]
+        {one.field: one for one in gear_case(load_case(text, changes)).assumptions}[field]
         for changes in ([], [f"{field}="])
     ]
-    assert reasons[0] == "felt"
-    assert reasons[1].startswith("not in the file; the default")
+    assert reasons[0].reason == "felt"
+    assert reasons[1].default
 
 
 def test_a_needed_field_left_out_is_refused_by_its_name() -> None:
@@ -97,7 +101,7 @@ def test_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert main(["check", str(file), "--set", "dynamics.damping="]) == 2
     said = capsys.readouterr().err
     assert "dynamics.damping: got nothing to leave out; [dynamics] of the file" in said
-    assert "did you mean 'damping_ratio'?" in said
+    assert "damping_ratio" in said
 
 
 @pytest.mark.parametrize("text", [*map(example_text, EXAMPLES), OWN_PAIR, TRAIN])

@@ -207,6 +207,56 @@ class Browser:
         sight.seconds = time.perf_counter() - start
         return sight
 
+    def go(self, address: str, width: int = 1400, height: int = 900) -> None:
+        """Open an address and wait until it is loaded."""
+        self._events.clear()
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                 deviceScaleFactor=1.0, mobile=width < 600)  # fmt: skip
+        self.ask("Page.navigate", url=address)
+        self._wait("Page.loadEventFired")
+
+    def until(self, script: str, seconds: float = 60.0) -> float:
+        """Wait until ``script`` is true; the seconds it took. A page's policy forbids predicates
+        as texts, so it is asked again and again."""
+        start = time.perf_counter()
+        while not self.value(script):
+            if time.perf_counter() - start > seconds:
+                raise TimeoutError(f"{script} is not true after {seconds:g} s")
+            time.sleep(0.03)
+        return time.perf_counter() - start
+
+    def press(self, key: str, times: int = 1) -> None:
+        """Press a key of the keyboard: "Tab", "Enter", "ArrowRight", " " or a character."""
+        code = {"Tab": 9, "Enter": 13, " ": 32, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39,
+                "ArrowDown": 40, "Escape": 27}.get(key, ord(key[0].upper()))  # fmt: skip
+        text = {"Enter": "\r", "Tab": "", " ": " "}.get(key, key if len(key) == 1 else "")
+        for _ in range(times):
+            said = {"key": key, "windowsVirtualKeyCode": code, "code": key}
+            self.ask("Input.dispatchKeyEvent", type="keyDown", text=text, **said)
+            self.ask("Input.dispatchKeyEvent", type="keyUp", **said)
+
+    def write(self, words: str) -> None:
+        """Write text into what has the focus, in place of what is selected."""
+        self.ask("Input.insertText", text=words)
+
+    def click(self, x: float, y: float) -> None:
+        """Press and let go the mouse at a place of the window [CSS px]."""
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    @property
+    def errors(self) -> list[str]:
+        """What went wrong on the page since it was opened."""
+        return list(_errors(self._events))
+
+    def shot(self, path: Path, width: int, height: int | None = None) -> Path:
+        """The page as a picture."""
+        tall = height or int(self.value("document.documentElement.scrollHeight"))
+        clip = {"x": 0, "y": 0, "width": width, "height": min(tall, 8000), "scale": 1}
+        shot = self.ask("Page.captureScreenshot", clip=clip, captureBeyondViewport=True)
+        path.write_bytes(base64.b64decode(shot["data"]))
+        return path
+
     def settle(self) -> None:
         """Scroll through the page with every fold open, so that all its pictures move."""
         self.value(SETTLE)

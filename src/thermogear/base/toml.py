@@ -116,7 +116,7 @@ def _require_held(data: Mapping[str, Any], path: str) -> None:
 
 
 def _held(data: Mapping[str, Any], path: str) -> tuple[int, Any]:
-    """How many keys of ``path`` lead somewhere in ``data``, and what stands there."""
+    """How many keys of ``path`` lead somewhere in ``data``, and what is there."""
     held: Any = data
     parts = path.split(".")
     for depth, key in enumerate(parts):

@@ -56,6 +56,37 @@ class Dial:
         return found | {"value": self.value if math.isfinite(self.value) else None}
 
 
+@dataclass(frozen=True)
+class _Kind:
+    """What a dial is, before anything is computed of it."""
+
+    name: str
+    title: str
+    unit: str
+    fields: tuple[str, ...]
+    held: str = ""
+
+
+def _kinds(case: GearCase) -> dict[str, _Kind]:
+    held = "the heat balance computes it" if case.computed else ""
+    below = not case.computed and _given(case, "temperatures.housing_below_addendum")
+    housing = ("housing below the gears", "K") if below else ("housing temperature", "degC")
+    field = "temperatures.housing_below_addendum" if below else "temperatures.housing"
+    table = case.file.backlash
+    kind = f"{table.extent}, {table.direction}" if table.value is not None else "total, normal"
+    found = (
+        _Kind("speed", "pinion speed", "rpm", ("operating.speed",)),
+        _Kind("torque", "pinion torque", "N m", ("operating.torque",)),
+        _Kind("gears", "gear temperature", "degC", GIVEN[:2], held),
+        _Kind("housing", *housing, (field,), held),
+        _Kind("backlash", f"cold backlash ({kind})", "mm", ("backlash.value",)),
+        _Kind("damping", "damping ratio", "", ("dynamics.damping_ratio",)),
+        _Kind("error", "transmission error, first harmonic", "um",
+              ("transmission_error.harmonics",)),
+    )  # fmt: skip
+    return {one.name: one for one in found}
+
+
 def dials(case: GearCase) -> list[Dial]:
     """The dials of the first operating point of ``case``, in the order of use.
 
@@ -63,37 +94,30 @@ def dials(case: GearCase) -> list[Dial]:
     computes they are results, and ``held``.
     """
     at = case.operating_of(case.models[0])
-    tips = at.temperatures
-    speed, torque = float(case.speeds[0]) / RPM, float(case.torques[0])
-    gears = float(np.ravel(tips.pinion_addendum)[0]) - ZERO_CELSIUS
-    held = "the heat balance computes it" if case.computed else ""
-    found = [
-        _dial("speed", "pinion speed", "rpm", speed, _wide(speed), ("operating.speed",)),
-        _dial("torque", "pinion torque", "N m", torque, _wide(torque), ("operating.torque",)),
-        _dial("gears", "gear temperature", "degC", gears, _warm(gears), GIVEN[:2], held),
-    ]
-    if _given(case, "temperatures.housing_below_addendum") and not case.computed:
+    gears, housing = (
+        float(np.ravel(one)[0]) - ZERO_CELSIUS
+        for one in (at.temperatures.pinion_addendum, at.temperatures.housing)
+    )
+    kinds = _kinds(case)
+    ends = _warm(housing)
+    if kinds["housing"].unit == "K":
         rule = case.temperature_rule
-        below = 0.0 if rule is None else float(np.ravel(rule.housing.value)[0])
-        name, field = "housing below the gears", "temperatures.housing_below_addendum"
-        found.append(_dial("housing", name, "K", below, (-100.0, 200.0), (field,)))
-    else:
-        housing = float(np.ravel(tips.housing)[0]) - ZERO_CELSIUS
-        field = "temperatures.housing"
-        found.append(
-            _dial("housing", "housing temperature", "degC", housing, _warm(housing), (field,), held)
-        )
-    value, words = _backlash(case)
-    zeta = case.damping_ratio
-    error = 1e6 * _first(case)
-    return [
-        *found,
-        _dial("backlash", words, "mm", value, (0.02 * value, 5.0 * value), ("backlash.value",)),
-        _dial("damping", "damping ratio", "", zeta, (0.0, max(0.3, 2.0 * zeta)),
-              ("dynamics.damping_ratio",)),
-        _dial("error", "transmission error, first harmonic", "um", error,
-              (0.0, max(20.0, 4.0 * error)), ("transmission_error.harmonics",)),
-    ]  # fmt: skip
+        housing = 0.0 if rule is None else float(np.ravel(rule.housing.value)[0])
+        ends = (-100.0, 200.0)
+    speed, torque = float(case.speeds[0]) / RPM, float(case.torques[0])
+    half, table = float(np.ravel(case.stated.half_backlash)[0]), case.file.backlash
+    backlash = 2e3 * half if table.value is None else 1e3 * table.value
+    zeta, error = case.damping_ratio, 1e6 * _first(case)
+    values = {
+        "speed": (speed, _wide(speed)),
+        "torque": (torque, _wide(torque)),
+        "gears": (gears, _warm(gears)),
+        "housing": (housing, ends),
+        "backlash": (backlash, (0.02 * backlash, 5.0 * backlash)),
+        "damping": (zeta, (0.0, max(0.3, 2.0 * zeta))),
+        "error": (error, (0.0, max(20.0, 4.0 * error))),
+    }
+    return [_dial(kinds[name], value, ends) for name, (value, ends) in values.items()]
 
 
 def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
@@ -102,7 +126,7 @@ def turned(case: GearCase, values: Mapping[str, float]) -> Changes:
     The error's other harmonics keep their ratio to the first; a pair without any gets a first one.
     Raises InputError for an unknown dial, for one that is held, and for a number that is none.
     """
-    known = {one.name: one for one in dials(case)}
+    known = _kinds(case)
     found: list[tuple[str, str]] = []
     for name, value in values.items():
         if name not in known:
@@ -167,21 +191,14 @@ def _text(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
-def _dial(
-    name: str,
-    title: str,
-    unit: str,
-    value: float,
-    ends: tuple[float, float],
-    fields: tuple[str, ...],
-    held: str = "",
-) -> Dial:
+def _dial(kind: _Kind, value: float, ends: tuple[float, float]) -> Dial:
     low, high = ends
     step = 10.0 ** math.floor(math.log10(max(high - low, 1e-9) / 200.0))
     low, high = step * math.floor(low / step), step * math.ceil(high / step)
     return Dial(
-        name=name, title=title, unit=unit, value=float(f"{value:.10g}"), low=float(f"{low:.6g}"),
-        high=float(f"{high:.6g}"), step=float(f"{step:.6g}"), fields=fields, held=held,
+        name=kind.name, title=kind.title, unit=kind.unit, value=float(f"{value:.10g}"),
+        low=float(f"{low:.6g}"), high=float(f"{high:.6g}"), step=float(f"{step:.6g}"),
+        fields=kind.fields, held=kind.held,
     )  # fmt: skip
 
 
@@ -201,14 +218,6 @@ def _given(case: GearCase, field: str) -> bool:
     for part in field.split("."):
         table = table.get(part) if isinstance(table, dict) else None
     return table is not None
-
-
-def _backlash(case: GearCase) -> tuple[float, str]:
-    """The backlash [mm] as the file gives it, in words; of a file without one the whole one."""
-    table = case.file.backlash
-    if table.value is not None:
-        return 1e3 * table.value, f"cold backlash ({table.extent}, {table.direction})"
-    return 2e3 * float(np.ravel(case.stated.half_backlash)[0]), "cold backlash (total, normal)"
 
 
 def _first(case: GearCase) -> float:

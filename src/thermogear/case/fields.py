@@ -142,7 +142,7 @@ class Measure(Reader):
     def facts(self) -> dict[str, Any]:
         number, unit = self.example.strip('"').split(" ", 1)
         low, high = (
-            end and number_in(read_quantity(end, self.kind), self.kind, unit)
+            None if end is None else number_in(read_quantity(end, self.kind), self.kind, unit)
             for end in (self.low, self.high)
         )
         # a temperature's zero is a convention, its leading decade says nothing

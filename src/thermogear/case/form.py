@@ -18,7 +18,7 @@ _BESIDE = ("files", "ours")
 
 @dataclass(frozen=True, kw_only=True)
 class Entry:
-    """One field: ``path`` as ``--set`` takes it, ``given`` what stands behind ``PATH=``.
+    """One field: ``path`` as ``--set`` takes it, ``given`` the text behind ``PATH=``.
 
     ``given`` is empty where the file does not give the field; ``left_out`` says what holds then
     ("needed": the case is refused; "with its table": only
@@ -69,7 +69,7 @@ def form(data: Mapping[str, Any]) -> list[Entry]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Place:
-    """Where a table stands: its name in the schema, its path, what is said of leaving it out.
+    """Where a table is: its name in the schema, its path, what is said of leaving it out.
 
     ``there``: whether the case has it, so that its needed fields are needed.
     """

@@ -78,9 +78,8 @@ def test_command_and_saved_file_give_the_same_case(given: Given, words: str) -> 
     if given.name != "rig" and "heat" in STATES[words]:
         pytest.skip("a heat balance is the same for every file, and long")
     state = State(**STATES[words])
-    changes = given.changes(state)
-    case = given.at(changes)
-    assert same(read(given.command(changes)), case)
+    case = given.at(state)
+    assert same(read(given.command(case)), case)
     if words == "nothing turned":
         assert case is given.case
     if "speed" in state.dials:
@@ -91,26 +90,25 @@ def test_command_and_saved_file_give_the_same_case(given: Given, words: str) -> 
     Path(str(told["name"])).write_text(str(told["text"]), "utf-8")
     assert same(gear_case(load_case(Path(str(told["name"])))), case)
     command = desk.export(export.model_copy(update={"what": "command"}), lambda: None)
-    assert command["text"] == given.command(changes) + "\n"
+    assert command["text"] == given.command(case) + "\n"
 
 
 def test_what_only_the_page_put_in_can_be_left_out_again() -> None:
     """The command names no field to leave out that the file does not hold."""
     given = Given("rig", gear_case(load_case("rig", ["dynamics.damping_ratio=0.05"])))
-    none = given.changes(State(changes=(("model.bore", ""), ("dynamics.damping_ratio", "0.05"))))
-    assert none == given.case.overrides
+    none = State(changes=(("model.bore", ""), ("dynamics.damping_ratio", "0.05")))
+    assert given.at(none).overrides == given.case.overrides
     own = State(changes=(("temperatures.housing", "60 degC"), (BELOW[2], "")), heat=True)
-    changes = given.changes(own)
-    assert ("temperatures.housing", "") not in changes
-    case = given.at(changes)
+    case = given.at(own)
+    assert ("temperatures.housing", "") not in case.overrides
     assert case.computed
-    assert same(read(given.command(changes)), case)
+    assert same(read(given.command(case)), case)
 
 
 def test_what_the_command_line_left_out_can_be_put_back() -> None:
     given = Given("rig", gear_case(load_case("rig", ["draw="])))
     assert "draw" not in given.case.data
-    back = given.at(given.changes(State(changes=(("draw.pictures", '["path"]'),))))
+    back = given.at(State(changes=(("draw.pictures", '["path"]'),)))
     assert back.data["draw"] == {"pictures": ["path"]}
 
 
@@ -127,19 +125,17 @@ def test_more_work_than_an_app_may_do_is_refused(path: str) -> None:
     if path == "simulation.periods":
         more.append(("simulation.samples", "8"))
     with pytest.raises(InputError) as caught:
-        given.at(tuple(more))
+        given.at(State(changes=tuple(more)))
     assert caught.value.field in dict(more)
     assert f"..{most} in the app" in str(caught.value)
     own = Given("rig", gear_case(load_case("rig", [f"{p}={t}" for p, t in more])))
-    assert own.at(own.changes(State(dials={"speed": 3000.0}))).speeds[0] == pytest.approx(
-        100.0 * np.pi
-    )
+    assert own.at(State(dials={"speed": 3000.0})).speeds[0] == pytest.approx(100.0 * np.pi)
 
 
 def test_memory_beyond_reason_is_refused() -> None:
     given = Given("rig", gear_case(load_case("rig")))
     with pytest.raises(InputError, match="GiB in the app"):
-        given.at((("simulation.periods", "65536"), ("simulation.samples", "4096")))
+        given.at(State(changes=(("simulation.periods", "65536"), ("simulation.samples", "4096"))))
 
 
 def test_a_page_opens_no_files(tmp_path: Path) -> None:
@@ -148,7 +144,7 @@ def test_a_page_opens_no_files(tmp_path: Path) -> None:
     given = Given("rig", gear_case(load_case("rig")))
     for text in (str(there), f'["{there}"]', "/dev/zero", "../chart.csv"):
         with pytest.raises(InputError) as caught:
-            given.at((("flanks.pinion", text),))
+            given.at(State(changes=(("flanks.pinion", text),)))
         assert caught.value.field == "flanks.pinion"
         assert "a page opens no files" in str(caught.value)
         assert "secret" not in str(caught.value)

@@ -15,11 +15,10 @@ from thermogear.base.progress import asking
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.dials import dials
 from thermogear.front.app.given import Given
-from thermogear.front.app.wire import PARTS, Export, Show
+from thermogear.front.app.wire import PARTS, Export, Post, Show
 
 if TYPE_CHECKING:
     from thermogear.case.case import GearCase
-    from thermogear.front.app.jobs import Post
 
 
 class Desk:
@@ -37,10 +36,9 @@ class Desk:
         start = time.thread_time()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", ValidityWarning)
-            changes = self.given.changes(show.state)
-            case = self.given.at(changes)
+            case = self.given.at(show.state)
         told = list(dict.fromkeys(str(one.message) for one in said))
-        self.post("now", self._now(case, show, self.given.command(changes), told))
+        self.post("now", self._now(case, show, told))
         look = Look(self.given, case, show, alive, self.kept)
         for name in (one for one in PARTS if one in show.parts):
             alive()
@@ -55,7 +53,7 @@ class Desk:
                 alive()
                 start = time.thread_time()
 
-    def _now(self, case: GearCase, show: Show, command: str, told: list[str]) -> dict[str, object]:
+    def _now(self, case: GearCase, show: Show, told: list[str]) -> dict[str, object]:
         from thermogear.case.form import form
 
         return {
@@ -66,7 +64,7 @@ class Desk:
             "fields": {one.path: one.given for one in form(case.data) if one.given},
             "computed": case.computed,
             "temperatures": temperatures(case),
-            "command": command,
+            "command": self.given.command(case),
             "warnings": told,
         }
 
@@ -79,14 +77,12 @@ class Desk:
     def _case(self, export: Export, _: Alive) -> tuple[str, str]:
         from thermogear.base.toml import written
 
-        case = self.given.at(self.given.changes(export.state))
+        case = self.given.at(export.state)
         head = f"# {case.title}: from `thermogear app {self.given.name}`, comments left out.\n\n"
         return "case.toml", head + written(case.data)
 
     def _command(self, export: Export, _: Alive) -> tuple[str, str]:
-        changes = self.given.changes(export.state)
-        self.given.at(changes)
-        return "command.txt", self.given.command(changes) + "\n"
+        return "command.txt", self.given.command(self.given.at(export.state)) + "\n"
 
     def _report(self, export: Export, alive: Alive) -> tuple[str, str]:
         from thermogear.study.run import run
@@ -98,7 +94,7 @@ class Desk:
             self.post("progress", {"kind": "progress", "number": export.number, "name": stage,
                                    "done": done, "total": total})  # fmt: skip
 
-        case = self.given.at(self.given.changes(export.state))
+        case = self.given.at(export.state)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)
             page = page_of(with_errata(run(case, progress=asking(alive, report)), case))

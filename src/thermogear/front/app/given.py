@@ -47,9 +47,6 @@ class Given:
 
     def changes(self, state: State) -> Changes:
         """All that a state puts into the case file, in order, each field once."""
-        return tuple(one for one in self._changes(state) if one[1].strip() or self._holds(one[0]))
-
-    def _changes(self, state: State) -> Changes:
         found = _joined(self.case.overrides, state.changes)
         if state.heat is not None:
             found = _joined(found, balanced(self._case(found), state.heat))
@@ -57,9 +54,9 @@ class Given:
             found = _joined(found, turned(self._case(found), state.dials))
         return found
 
-    def at(self, changes: Changes) -> GearCase:
-        """The case with these; InputError where no file could hold it, or it is too large here."""
-        return self._case(changes, told=True)
+    def at(self, state: State) -> GearCase:
+        """The case of a state; InputError where no file could hold it, or it is too large here."""
+        return self._case(self.changes(state), told=True)
 
     def _holds(self, path: str) -> bool:
         """Whether the file itself has a field, so that leaving it out says something."""
@@ -95,9 +92,9 @@ class Given:
                 )
         return case
 
-    def command(self, changes: Changes) -> str:
-        """The command line that gives the case with these."""
-        said = [f"--set {shlex.quote(f'{path}={text}')}" for path, text in changes]
+    def command(self, case: GearCase) -> str:
+        """The command line that gives what a ``case`` of a state gives."""
+        said = [f"--set {shlex.quote(f'{path}={text}')}" for path, text in case.overrides]
         return " ".join(["thermogear run", shlex.quote(self.name), *said, "-o results"])
 
 

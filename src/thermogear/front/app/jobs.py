@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, TypeVar
 
 from thermogear.base.errors import InputErrors, ThermogearError, ValidityWarning
 from thermogear.base.plan import Stopped
-from thermogear.front.app.wire import Export, Show
+from thermogear.front.app.wire import Export, Post, Show
 from thermogear.front.lines import one_line, say
 
 if TYPE_CHECKING:
     from thermogear.front.app.desk import Desk
 
-Post = Callable[[str, dict[str, object]], None]
-"""Called with the name under which a newer message takes the place of one not yet sent."""
 MOST_EXPORTS = 4
 ANY = -1
 """Number of an answer to no message of its own."""

@@ -19,11 +19,14 @@ from thermogear.case.case import GearCase
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import Show
 from thermogear.study import live
+from thermogear.study.notices import contact_notices, difference_notices
 from thermogear.views.moving import moving
 from thermogear.views.picture import Picture
 from thermogear.views.plots import live as plot
 
 Floats = NDArray[np.float64]
+OF_ALL = " (in any state, up or down)"
+"""What notices of several states end with; a live run-up has one."""
 OFTEN = 0.25
 """Seconds between two pictures of one that fills in."""
 MAP = (48, 24)
@@ -226,11 +229,14 @@ def _run_part(look: Look, one: live.LiveRunUp, state: str) -> Part:
     lines = []
     for name, run in look.kept.runs.items():
         if not run.preview:
-            lines += [f"{name}, {words}" for words in plot.jumps(run.data)]
+            found = [
+                *plot.jumps(run.data),
+                *contact_notices(run.data),
+                *difference_notices(run.data),
+            ]
+            lines += [f"{name}, {words.removesuffix(OF_ALL)}" for words in found]
     if one.preview:
         lines.append(f"{state}: a coarse look first")
-    if not lines and one.done == one.total:
-        lines = ["nothing jumps in this range"]
     return Part(name="run-up", picture=_runs(look), lines=lines, done=one.done, total=one.total)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
@@ -11,6 +12,8 @@ from thermogear.front.lines import one_line
 
 PARTS = ("mesh", "orbit", "gap", "gears", "run-up", "record", "answers", "shafts", "map")
 """The parts of the page, in the order in which they are made."""
+Post = Callable[[str, dict[str, object]], None]
+"""Tells a page a message, under the name by which a newer one takes the place of one unsent."""
 MOST_BYTES = 2**20
 """Of one message."""
 MOST_SPEEDS = 2000

@@ -196,8 +196,14 @@ def told_mesh(data: xr.Dataset) -> list[str]:
             found.append(f"{state}: heat or loaded contact did not settle")
             continue
         stiff = f"mean stiffness {number(1e-8 * float(one['mean_stiffness']), 4)}·10⁸ N/m"
-        left = f"half backlash {number(1e6 * float(one['half_backlash']), 4)} µm"
-        found.append(f"{state}: {stiff}; {left}" + ("; jammed" if status == "jammed" else ""))
+        left = 1e6 * float(one["half_backlash"])
+        words = f"{state}: {stiff}; half backlash {number(left, 4)} µm"
+        taken = 1e6 * float(data["half_backlash"].values[0]) - left
+        if place and np.isfinite(taken):
+            needed = number(2.0 * max(taken, 0.0), 4)
+            words += f"; heat takes {number(taken, 4)} µm, so that {needed} µm of total backlash"
+            words += " is needed"
+        found.append(words + ("; jammed" if status == "jammed" else ""))
     jam = float(CELSIUS(data["jam_temperature"].values[-1]))
     if np.isfinite(jam) and jam < FAR:
         found.append(f"jams with the gears at {jam:.1f} °C, the other bodies as they are")

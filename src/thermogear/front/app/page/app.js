@@ -12,6 +12,7 @@ dark.addEventListener("change", () => {
 const set = {changes: new Map(), dials: new Map(), heat: null};
 let number_ = 0, asked = false, socket = null, ready = false, answered = false, slow = 0;
 let knobs = new Map(), fields = new Map(), started = 0;
+const finished = [];
 
 const state = () => ({changes: [...set.changes], dials: Object.fromEntries(set.dials), heat: set.heat});
 const parts = () => [...document.querySelectorAll(".part")]
@@ -37,6 +38,7 @@ const ask = () => {
     number_ += 1;
     started = performance.now();
     answered = false;
+    document.body.dataset.asked = String(number_);
     if (!send({kind: "show", number: number_, state: state(), speeds: range, parts: parts()})) return;
     tell("computing");
     by("stop").hidden = false;
@@ -124,7 +126,8 @@ const follow = (one, said) => {
     one.ranged = true;
   }
   if (document.activeElement !== one.range || said.held) put(one, said.value);
-  if (document.activeElement !== one.box || said.held) one.box.value = said.value;
+  if (document.activeElement !== one.box || said.held)
+    one.box.value = said.held ? Number(said.value.toPrecision(4)) : said.value;
 };
 
 // --- fields ------------------------------------------------------------------------------------
@@ -147,9 +150,8 @@ const field = (said, host) => {
   input.value = plain(said.given);
   input.addEventListener("change", () => {
     const text = input.value.trim();
-    if (text === plain(made.given)) return;
     for (const [name, one] of knobs) if (one.said.fields.includes(said.path)) set.dials.delete(name);
-    if (text === "" && !said.given) set.changes.delete(said.path);
+    if (text === plain(said.given)) set.changes.delete(said.path);
     else set.changes.set(said.path, text);
     ask();
   });
@@ -268,6 +270,7 @@ const part = (message) => {
     show(figure.querySelector(".canvas"), name, picture);
   });
   wait(message.done, message.total);
+  dispatchEvent(new CustomEvent("part", {detail: message}));
 };
 const now = (message) => {
   by("title").textContent = message.title;
@@ -350,7 +353,9 @@ const heard = (message) => {
     wait(1, 1);
     by("stop").hidden = true;
     tell(`done in ${((performance.now() - started) / 1000).toFixed(1)} s`);
+    finished.push(message.number);
     document.body.dataset.done = String(message.number);
+    document.body.dataset.ends = JSON.stringify(finished);
   }
 };
 
