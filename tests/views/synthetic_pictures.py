@@ -482,13 +482,14 @@ def of_dials() -> dict[str, Picture]:
          "gear_temperature": ("gear_temperature", np.array([293.0, 350.0, 400.0]),
                               {"units": "K"})},
     )  # fmt: skip
-    lines = np.array([1.0, 2.0]), np.array([4e-6, 1e-6]), np.array([1e-6, np.nan])
+    lines = {"order": np.array([1.0, 2.0]), "amplitude": np.array([4e-6, 1e-6]),
+             "half": np.array([1e-6, np.nan])}  # fmt: skip
     return {
         "dial-stiffness": live.stiffness(mesh),
         "dial-gap": live.gap(gap),
         "dial-run-up": live.run_up({"hot": ran, "undeformed": ran}, 300.0),
         "dial-orbits": live.orbits(motions),
-        "dial-record": live.measured_orders(motions, *lines),
+        "dial-record": live.measured_orders(motions, **lines),
         "dial-regimes": live.regimes(grid, np.arange(12).reshape(4, 3) > 2),
     }
 

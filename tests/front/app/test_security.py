@@ -90,8 +90,8 @@ def test_every_answer_has_the_headers_of_safety(app: Any) -> None:
 
 
 def test_a_second_start_takes_another_port() -> None:
-    first = server.bound(None, server_port := _free())
-    second = server.bound(None, server_port)
+    first = server.bound(None, usual=(server_port := _free()))
+    second = server.bound(None, usual=server_port)
     with first, second:
         names = {one.getsockname() for one in (first, second)}
         assert len(names) == 2
@@ -100,7 +100,7 @@ def test_a_second_start_takes_another_port() -> None:
 
 
 def _free() -> int:
-    with server.bound(None, 0) as one:
+    with server.bound(None, usual=0) as one:
         return int(one.getsockname()[1])
 
 

@@ -121,7 +121,7 @@ class Here:
     """The server in a thread of this process, whose kernels are there."""
 
     def __init__(self) -> None:
-        self.token, listening = guard.new_token(), server.bound(None, 0)
+        self.token, listening = guard.new_token(), server.bound(None, usual=0)
         self.host = f"127.0.0.1:{listening.getsockname()[1]}"
         self.app = server.App(Given("rig", rig("grid.mesh_positions=64")), self.token)
         self.server = server.server_of(self.app)

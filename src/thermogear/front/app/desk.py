@@ -45,7 +45,7 @@ class Desk:
             for part in made(look, name):
                 if part.name:
                     spent = 1e3 * (time.thread_time() - start)
-                    self.post(f"part {part.name}", part.message(show.number, spent))
+                    self.post(f"part {part.name}", part.message(show.number, milliseconds=spent))
                 else:
                     self.post("progress", {"kind": "progress", "number": show.number, "name": name,
                                            "done": part.done, "total": part.total})  # fmt: skip

@@ -52,7 +52,7 @@ class Part:
     done: int = 1
     total: int = 1
 
-    def message(self, number: int, milliseconds: float) -> dict[str, object]:
+    def message(self, number: int, *, milliseconds: float) -> dict[str, object]:
         """As the page takes it."""
         return {
             "kind": "part",
@@ -278,7 +278,11 @@ def record(look: Look) -> Iterator[Part]:
         f"{196.0 * one.uncertainty:.2g} %"
         for one in rows
     ]
-    yield Part(name="record", picture=plot.measured_orders(motions, order, size, half), lines=lines)
+    yield Part(
+        name="record",
+        picture=plot.measured_orders(motions, order=order, amplitude=size, half=half),
+        lines=lines,
+    )
 
 
 def shafts(look: Look) -> Iterator[Part]:

@@ -231,7 +231,7 @@ def _schema() -> str:
 # --- serving ------------------------------------------------------------------------------------
 
 
-def bound(port: int | None, usual: int) -> socket.socket:
+def bound(port: int | None, *, usual: int) -> socket.socket:
     """A listening socket of this machine alone: at ``port``, or at the usual or any free one."""
     for wanted in (usual, 0) if port is None else (port,):
         one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)

@@ -211,7 +211,7 @@ def told_mesh(data: xr.Dataset) -> list[str]:
 
 
 def measured_orders(
-    computed: Mapping[str, xr.Dataset], order: Floats, amplitude: Floats, half: Floats
+    computed: Mapping[str, xr.Dataset], *, order: Floats, amplitude: Floats, half: Floats
 ) -> Picture:
     """Lines of a record over computed ones: ``amplitude`` [m] with its 95 % ``half`` width."""
     panel = _spectra(computed)
