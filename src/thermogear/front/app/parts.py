@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.errors import InputError, ThermogearError
+from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
 from thermogear.base.progress import asking
 from thermogear.base.units import RPM
@@ -103,8 +103,6 @@ class Look:
     def speeds(self) -> Floats:
         """Of the run-up [rad/s]."""
         said = self.show.speeds
-        if said.low >= said.high:
-            raise InputError("speeds", f"{said.low:g}..{said.high:g} rpm", allowed="from < to")
         return RPM * np.linspace(said.low, said.high, said.count)
 
     def key(self, *beside: object) -> str:

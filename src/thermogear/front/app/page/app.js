@@ -127,7 +127,8 @@ const follow = (one, said) => {
   }
   if (document.activeElement !== one.range || said.held) put(one, said.value);
   if (document.activeElement !== one.box || said.held)
-    one.box.value = said.held ? Number(said.value.toPrecision(4)) : said.value;
+    one.box.value = said.value === null ? ""
+      : said.held ? Number(said.value.toPrecision(4)) : said.value;
 };
 
 // --- fields ------------------------------------------------------------------------------------
