@@ -121,9 +121,11 @@ def relief(walk: Walk) -> str:
     walk.press("#pin", "Pin")
     walk.press("#every > summary", "Every field")
     for gear in ("pinion", "wheel"):
-        amount = f"[id='field-gears.{gear}.tip_relief.amount']"
-        walk.press(f"#fields details:has({amount}) > summary", f"gears, {gear}, tip relief")
-        walk.write(amount, "4 um", f"{gear}'s amount")
+        field = f"[id='field-gears.{gear}.tip_relief.%s']"
+        group = f"#fields details:has({field % 'amount'}) > summary"
+        walk.press(group, f"gears, {gear}, tip relief")
+        walk.write(field % "amount", "4 um", f"{gear}'s amount")
+        walk.write(field % "length", "3 mm", f"{gear}'s length")
     walk.done()
     walk.shot("relief", "[data-part='run-up']")
     return f"{before} without, {error(walk)} with 4 µm at both tips"

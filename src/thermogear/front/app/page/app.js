@@ -336,6 +336,7 @@ const heard = (message) => {
   if (kind === "refused") {
     if (message.number !== -1 && message.number !== number_) return;
     answered = true;
+    if (message.number === number_) document.body.dataset.done = String(number_);
     wait(1, 1);
     by("stop").hidden = true;
     tell(message.rows.map((one) => one.words).join(" · "), true);
