@@ -70,7 +70,7 @@ def mesh_turns(
             turning=turning,
             said=f"lines are read in angle, by the tacho {record.tacho!r}",
         )
-    values, spectrum = _clearest(table, gearing.mesh_frequency)
+    values, spectrum = clearest(table, gearing.mesh_frequency)
     line = line_in(spectrum, near=gearing.mesh_frequency, half_width=_reach(spectrum, gearing))
     beside = sides_of(gearing, teeth, 1, line.frequency)
     strong = strong_lines(spectrum)
@@ -106,7 +106,7 @@ def _reach(spectrum: LineSpectrum, gearing: Gearing) -> float:
     return max(3.0 * spectrum.bin_width, 2e-4 * gearing.mesh_frequency)
 
 
-def _clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
+def clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
     """The channel in which the mesh line stands highest over all else, and its spectrum."""
     spectra = [line_spectrum(values, 1.0) for values in table]
     place = int(np.rint(mesh * table.shape[-1]))
