@@ -108,7 +108,7 @@ def test_a_doubtful_rate_withholds_hertz() -> None:
     line = measured(channel(), rate=10.0 * RATE).lines[0]
     assert np.isnan([line.frequency, line.shaft_speed, line.displacement]).all()
     assert line.reading == pytest.approx(1.0, abs=0.02)
-    assert "ten times too high" in line.withheld
+    assert line.withheld
     given = Record((Channel("a", channel(), "m/s^2"),), "made", 10.0 * RATE, "header")
     right = measure(given.supplied(rate=RATE), teeth=TEETH, speed=SPEED, sidebands=0)
     assert right.lines[0].frequency == pytest.approx(MESH, rel=1e-4)

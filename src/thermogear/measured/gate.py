@@ -80,7 +80,7 @@ class Passed:
     extra: dict[str, float] = field(default_factory=dict)
     withheld: dict[str, str] = field(default_factory=dict)
 
-    def cut(self, first: int, stop: int) -> None:
+    def cut(self, first: int, *, stop: int) -> None:
         """Keep samples ``first``..``stop`` of the table alone."""
         self.start += first
         self.table = self.table[:, first:stop]
@@ -123,7 +123,7 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
         whole = _Channel(through, place, channel, own)
         whole.repair((first, stop) if cut else None)
     if cut:
-        through.cut(first, stop)
+        through.cut(first, stop=stop)
     if through.table.shape[-1] < _SHORTEST:
         size = through.table.shape[-1]
         raise InputError("record", f"{size} samples without a gap", allowed=f">= {_SHORTEST}")
@@ -146,7 +146,7 @@ def _lost(own: Sequence[Damage], size: int) -> Mask:
 
 
 def _in_blocks(one: Damage) -> bool:
-    """Whether held samples stand in long runs rather than alone throughout."""
+    """Whether held samples are in long runs rather than alone throughout."""
     runs = int(np.count_nonzero(np.diff(one.samples.astype(np.int8)) == 1)) + 1
     return one.count > 4 * runs
 

@@ -238,4 +238,4 @@ def _sides(gearing: Gearing | None, teeth: int | None, want: Wanted) -> tuple[fl
     if gearing is None:
         return ()
     rank = max(1, int(np.rint(want.position / gearing.mesh_frequency)))
-    return sides_of(gearing, teeth, rank, gearing.mesh_frequency)
+    return sides_of(gearing, teeth=teeth, rank=rank, mesh=gearing.mesh_frequency)

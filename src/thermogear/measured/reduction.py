@@ -145,7 +145,15 @@ def measure(
     turns: MeshTurns | None = None
     doubt = record.rate_doubt
     if gearing is not None:
-        turns = mesh_turns(record, table, gearing, teeth, harmonics, pulses_per_turn, start)
+        turns = mesh_turns(
+            record,
+            table,
+            gearing,
+            teeth=teeth,
+            harmonics=harmonics,
+            pulses_per_turn=pulses_per_turn,
+            start=start,
+        )
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
@@ -254,7 +262,7 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
         return False
     values = clearest(through.table, gearing.mesh_frequency)[0]
     piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
-    jumps = phase_jumps(values, gearing.mesh_frequency, piece)
+    jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
     if not jumps:
         return False
     around = int(np.ceil(piece / gearing.mesh_frequency))  # a jump is placed so well
@@ -274,7 +282,7 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
             effect="none on that stretch",
         )
     )
-    through.cut(first, stop)
+    through.cut(first, stop=stop)
     return True
 
 
@@ -341,7 +349,7 @@ def _check_rate(
 ) -> str:
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
-    A rate given that contradicts the file's stands where teeth and speed confirm it.
+    A rate given that contradicts the file's is kept where teeth and speed confirm it.
     """
     if teeth is None:
         return record.rate_doubt

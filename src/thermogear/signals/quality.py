@@ -27,7 +27,7 @@ _JUMP = 0.06  # cycles
 
 @dataclass(frozen=True, kw_only=True)
 class Damage:
-    """``kind`` of damage, ``samples`` where it is, ``value`` that stands there where it is one."""
+    """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one."""
 
     kind: str
     samples: Mask
@@ -199,11 +199,11 @@ def _spikes(x: Floats, free: Mask) -> list[Damage]:
     return [Damage(kind="spikes", samples=where)] if where.any() else []
 
 
-def phase_jumps(x: Floats, frequency: float, cycles: float = 24.0) -> list[int]:
+def phase_jumps(x: Floats, frequency: float, *, cycles: float = 24.0) -> list[int]:
     """Samples at which the line of ``frequency`` [cycles/sample] jumps in phase: samples lost.
 
     The phase of pieces of ``cycles``, each half over the next, less its smooth course: a jump
-    stands between two that are each steady, and is far larger than their scatter. Fewer than 16
+    is between two that are each steady, and is far larger than their scatter. Fewer than 16
     pieces tell nothing. Of a mesh line take three turns of the shaft, so that its sidebands do not
     turn the phase.
 
