@@ -26,9 +26,8 @@ _LONGEST = 1 << 20
 def result_of(found: Measurement) -> Result:
     """Groups ``record`` (an excerpt), ``spectrum`` (its peaks), ``lines``; settings, gearing and
     notices as texts. Rates and units that are unknown stay empty."""
-    stop = found.start + min(found.samples, _LONGEST)
     channels = [found.record.channel(name) for name in found.channels]
-    table = np.stack([c.values(found.start, stop=stop) for c in channels])
+    table = found.values[:, :_LONGEST]
     spectrum = amplitude_spectrum(table - table.mean(axis=-1, keepdims=True), 1.0, "hann")
     place, peaks = _peaks(spectrum.frequencies, spectrum.amplitudes)
     excerpt = min(_DRAWN, table.shape[-1])
@@ -54,6 +53,7 @@ def result_of(found: Measurement) -> Result:
         created=now(),
         settings=found.settings,
         evidence=list(gearing.evidence) if gearing else [],
+        findings=[one.text for one in found.findings],
         rate="" if found.record.rate is None else repr(found.record.rate),
         unit=channels[0].unit or "",
         teeth="" if found.teeth is None else str(found.teeth),
@@ -75,9 +75,12 @@ def figures(found: Measurement) -> dict[str, Any]:
         "settings": found.settings,
         "teeth": found.teeth,
         "mesh_position": gearing.mesh_frequency if gearing else None,
+        "shaft_speed": plain(found.lines[0].shaft_speed) if found.lines else None,
+        "shaft_speed_half_width": plain(found.lines[0].speed_half_width) if found.lines else None,
         "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
         "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
         "evidence": list(gearing.evidence) if gearing else [],
+        "findings": [{**vars(one), "text": one.text} for one in found.findings],
         "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
         "notices": [vars(notice) for notice in found.notices],
     }
@@ -92,9 +95,13 @@ def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:
         "line_acceleration": "acceleration",
         "line_displacement": "displacement",
         "line_uncertainty": "uncertainty",
+        "line_half_width": "half_width",
+        "line_position_half_width": "position_half_width",
+        "line_frequency_half_width": "frequency_half_width",
         "line_bin_offset": "bin_offset",
         "line_prominence": "prominence",
         "implied_shaft_speed": "shaft_speed",
+        "implied_shaft_speed_half_width": "speed_half_width",
     }
     values = {
         stored: (("line",), np.array([getattr(line, own) for line in lines], dtype=float))
@@ -104,6 +111,7 @@ def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:
         channel=("line", [line.channel for line in lines]),
         kind=("line", [line.kind for line in lines]),
         name=("line", [line.name for line in lines]),
+        withheld=("line", [line.withheld for line in lines]),
     )
 
 

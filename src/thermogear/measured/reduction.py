@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +12,15 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
-from thermogear.measured.chain import METHODS, Chain, Turning
-from thermogear.measured.gearing import Gearing, find_gearing, mesh_angle
-from thermogear.measured.lines import MeasuredLine, channel_lines, wanted_lines
+from thermogear.measured.chain import METHODS, Chain
+from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
+from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.lines import Doubts, MeasuredLine, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
-from thermogear.signals.orders import tacho_angle, tacho_times
+from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.signals.quality import phase_jumps
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
@@ -25,7 +28,7 @@ Floats = NDArray[np.float64]
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
-_STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
+_JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
 
 _FACTORS = {
     10.0: "ten times too high",
@@ -45,7 +48,11 @@ _FACTORS = {
 
 @dataclass(frozen=True)
 class Measurement:
-    """A record reduced: lines, gearing with evidence, settings and notices."""
+    """A record reduced: lines, gearing with evidence, settings and notices.
+
+    ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
+    what the lines were read from, in the file's unit.
+    """
 
     record: Record
     channels: tuple[str, ...]
@@ -56,6 +63,13 @@ class Measurement:
     lines: tuple[MeasuredLine, ...]
     notices: tuple[Notice, ...]
     start: int
+    findings: tuple[Finding, ...] = ()
+    values: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+
+    @property
+    def damage(self) -> tuple[tuple[str, str], ...]:
+        """Level and text of every finding."""
+        return tuple((one.notice.level, one.notice.text) for one in self.findings)
 
     @property
     def settings(self) -> dict[str, str]:
@@ -99,10 +113,15 @@ def measure(
     the mesh line. Without a rate the lines are given in orders and cycles per sample, without a
     unit in the file's own numbers.
 
-    Raises InputError for a record without a line or a channel without a signal.
+    Before any number the record passes the gate (:mod:`~thermogear.measured.gate`): damage is in
+    ``findings``, and the uncertainty holds it or the number is withheld.
+
+    Raises InputError for a record without a line, a channel without a signal, a rate so low that
+    it may be a shaft's.
     """
     if not isinstance(record, Record):
         record = read_record(record)
+    require_sampling_rate(record)
     if harmonics < 1 or sidebands < 0:
         raise InputError("harmonics, sidebands", f"{harmonics}, {sidebands}", allowed=">= 1, >= 0")
     if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
@@ -112,17 +131,45 @@ def measure(
     require_teeth(teeth)
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
-    start, table = _stretch(chosen, notices)
-    gearing = _gearing(table, notices, _expected(record, teeth, speed))
+    through = passed(chosen, LONGEST)
+    if len(chosen[0]) > LONGEST:
+        notices.append(
+            Notice("info", f"the first {LONGEST} of {len(chosen[0])} samples are reduced to lines")
+        )
+    expected = _expected(record, teeth, speed)
+    gearing = _gearing(through.table, notices, expected)
+    if _whole_turns(through, gearing, teeth):
+        gearing = _gearing(through.table, [], expected)
+    chosen, start, table = through.channels, through.start, through.table
     teeth = _teeth(gearing, teeth, notices)
-    turning = _turning(record, chosen, table, gearing, teeth, harmonics, pulses_per_turn, start)
-    if gearing is not None and turning is not None:
-        # in the resampled record the lines stand at multiples of this mean and nowhere else
-        gearing = replace(gearing, mesh_frequency=turning[0].mean)
+    turns: MeshTurns | None = None
+    doubt = record.rate_doubt
     if gearing is not None:
-        _check_rate(record, gearing, teeth, speed, notices)
-    if turning is not None:
-        notices.append(Notice("info", turning[1]))
+        turns = mesh_turns(
+            record,
+            table,
+            gearing,
+            teeth=teeth,
+            harmonics=harmonics,
+            pulses_per_turn=pulses_per_turn,
+            start=start,
+        )
+        # in a resampled record the lines stand at multiples of this mean and nowhere else
+        gearing = replace(gearing, mesh_frequency=turns.frequency)
+    if gearing is not None:
+        doubt = _check_rate(record, gearing, teeth, speed, notices)
+    if doubt:
+        through.findings.append(
+            Finding(
+                kind=f"the rate is doubtful: {doubt}",
+                done="frequencies, speed and displacements are withheld",
+                effect="they would be wrong by the rate's factor; orders and accelerations stand",
+                withholds=True,
+            )
+        )
+    notices += [one.notice for one in through.findings]
+    if turns is not None and turns.said:
+        notices.append(Notice("info", turns.said))
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
@@ -137,7 +184,12 @@ def measure(
             wanted,
             wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
             sensor_tolerance,
-            turning[0] if turning else None,
+            turns,
+            Doubts(
+                extra=through.extra.get(channel.name, 0.0),
+                withheld=through.withheld.get(channel.name, ""),
+                rate=doubt,
+            ),
         )
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
@@ -151,6 +203,8 @@ def measure(
         tuple(lines),
         tuple(notices),
         start,
+        tuple(through.findings),
+        table,
     )
 
 
@@ -202,30 +256,34 @@ def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]
     return alive
 
 
-def _stretch(channels: list[Channel], notices: list[Notice]) -> tuple[int, Floats]:
-    """The longest stretch in which no channel has a gap, at most LONGEST samples of it."""
-    count = len(channels[0])
-    table = np.stack([c.values(0, stop=min(count, LONGEST)) for c in channels])
-    start = 0
-    bad = np.flatnonzero(~np.all(np.isfinite(table), axis=0))
-    if bad.size:
-        edges = np.concatenate([[-1], bad, [table.shape[-1]]])
-        longest = int(np.argmax(np.diff(edges)))
-        start, stop = int(edges[longest]) + 1, int(edges[longest + 1])
-        table = table[:, start:stop]
-        notices.append(
-            Notice(
-                "warning",
-                f"gaps: only the longest whole stretch is used, samples {start}..{stop - 1}",
-            )
+def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) -> bool:
+    """Cut to the longest stretch between jumps of the mesh line's phase; whether there were any."""
+    if gearing is None:
+        return False
+    values = clearest(through.table, gearing.mesh_frequency)[0]
+    piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
+    jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
+    if not jumps:
+        return False
+    around = int(np.ceil(piece / gearing.mesh_frequency))  # a jump is placed so well
+    edges = [-around, *jumps, values.size + around]
+    first, stop = max(
+        ((a + around, b - around) for a, b in pairwise(edges)), key=lambda pair: pair[1] - pair[0]
+    )
+    least = max(256, int(np.ceil(20.0 / gearing.mesh_frequency)))
+    if stop - first < least:
+        return False
+    places = ", ".join(str(through.start + at) for at in jumps[:5])
+    through.findings.append(
+        Finding(
+            kind=f"the mesh line's phase jumps near sample {places}: samples are lost there",
+            done=f"only the longest stretch between is used, samples {through.start + first}.."
+            f"{through.start + stop - 1}",
+            effect="none on that stretch",
         )
-    if count > LONGEST:
-        notices.append(
-            Notice("info", f"the first {LONGEST} of {count} samples are reduced to lines")
-        )
-    if table.shape[-1] < 256:
-        raise InputError("record", f"{table.shape[-1]} samples without a gap", allowed=">= 256")
-    return start, table
+    )
+    through.cut(first, stop=stop)
+    return True
 
 
 def require_teeth(teeth: int | None) -> None:
@@ -288,9 +346,13 @@ def _check_rate(
     teeth: int | None,
     speed: float | None,
     notices: list[Notice],
-) -> None:
+) -> str:
+    """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
+
+    A rate given that contradicts the file's is kept where teeth and speed confirm it.
+    """
     if teeth is None:
-        return
+        return record.rate_doubt
     turns = gearing.mesh_frequency / teeth  # turns per sample
     if record.rate is None:
         if speed is not None:
@@ -301,7 +363,7 @@ def _check_rate(
                     f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
                 )
             )
-        return
+        return ""
     implied = turns * record.rate
     notices.append(
         Notice(
@@ -315,10 +377,10 @@ def _check_rate(
             Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
         )
     if speed is None:
-        return
+        return record.rate_doubt
     ratio = implied / (speed / (2 * np.pi))
     if abs(ratio - 1.0) <= 0.1:
-        return
+        return ""
     named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
     what = (
         f"the rate looks {_FACTORS[named]}"
@@ -333,39 +395,4 @@ def _check_rate(
             f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
         )
     )
-
-
-def _turning(
-    record: Record,
-    chosen: list[Channel],
-    table: Floats,
-    gearing: Gearing | None,
-    teeth: int | None,
-    harmonics: int,
-    pulses_per_turn: float | None,
-    start: int,
-) -> tuple[Turning, str] | None:
-    """The angle to read lines in and how it was found; None where a steady speed will do."""
-    if gearing is None:
-        return None
-    per_cycle = int(2 ** np.ceil(np.log2(1.0 / gearing.mesh_frequency)))
-    if record.tacho is not None and pulses_per_turn and teeth and record.rate is not None:
-        pulses = record.channel(record.tacho).values(start, stop=start + table.shape[-1])
-        times = tacho_times(pulses, record.rate)
-        angle = teeth * tacho_angle(
-            times, pulses_per_turn, np.arange(table.shape[-1]) / record.rate
-        )
-        inside = np.flatnonzero(np.isfinite(angle))
-        turning = Turning(cycles=angle[inside], dropped=int(inside[0]), per_cycle=per_cycle)
-        return turning, f"lines are read in angle, by the tacho {record.tacho!r}"
-    found = mesh_angle(list(table), gearing.mesh_frequency)
-    if found is None:
-        return None
-    cycles, dropped, wander = found
-    if wander * harmonics <= _STEADY or cycles.size < 0.5 * table.shape[-1]:
-        return None
-    return (
-        Turning(cycles=cycles, dropped=dropped, per_cycle=per_cycle),
-        f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by that "
-        "phase",
-    )
+    return what
