@@ -84,7 +84,9 @@ def read(run: Run, kind: str, random: np.random.Generator) -> Measurement:
     """The run read as a record of one kind."""
     a = Channel("a", run.values, "g")
     if kind == KINDS[0]:
-        record = Record((a, Channel("tacho", pulses(run, random), "V")), "made", RATE, "made", tacho="tacho")
+        record = Record(
+            (a, Channel("tacho", pulses(run, random), "V")), "made", RATE, "made", tacho="tacho"
+        )
         return measure(record, teeth=TEETH, pulses_per_turn=1.0, orders=[1.0])
     if kind == KINDS[1]:
         return measure(Record((a,), "made", RATE, "made"), teeth=TEETH, orders=[1.0])

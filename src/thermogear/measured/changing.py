@@ -1,4 +1,4 @@
-"""A record whose speed changes: gearing and lines in angle, and orders slice by slice over speed."""
+"""A record whose speed changes: gearing and lines in angle, orders slice by slice over speed."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
+from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
-from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.record import Notice, Record
 from thermogear.measured.resonances import Resonance, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
@@ -91,9 +92,7 @@ class _Angle:
 
 def read_in_angle(
     record: Record,
-    chosen: Sequence[Channel],
-    table: Floats,
-    start: int,
+    through: Passed,
     *,
     teeth: int | None,
     harmonics: int,
@@ -105,11 +104,12 @@ def read_in_angle(
 ) -> tuple[Changing | None, list[Notice]]:
     """The record in the angle that a tacho, a speed channel or a tracked line gives.
 
-    ``table`` (channel, sample) from sample ``start`` on, in the files' units. None, and what should
+    ``through``: the channels as they came through the gate. None, and what should
     be known all the same, where neither is there and the speed is steady.
     """
     notices: list[Notice] = []
-    shaft = given_shaft(record, table.shape[-1], start, pulses_per_turn, tacho)
+    table = through.table
+    shaft = given_shaft(record, table.shape[-1], through.start, pulses_per_turn, tacho)
     if shaft is not None and shaft.turns.size == 0:
         notices += shaft.told
         shaft = None
@@ -129,7 +129,7 @@ def read_in_angle(
     if shaft.span < VARIES:
         return _steady(shaft, angle, notices), notices
     return _sliced(
-        record, chosen, table, shaft, angle, harmonics, sidebands, orders, sensor_tolerance, notices
+        record, through, shaft, angle, harmonics, sidebands, orders, sensor_tolerance, notices
     ), notices
 
 
@@ -158,7 +158,9 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
             factor = 1.0 / round(pulses)
             told.append(f"{round(pulses)} pulses per turn, by the mesh line of {z} teeth")
         else:
-            told.append(f"pulses per turn are not stated: 1 is taken ({pulses:.4g} by the mesh line)")
+            told.append(
+                f"pulses per turn are not stated: 1 is taken ({pulses:.4g} by the mesh line)"
+            )
     elif not shaft.sure:
         told.append("pulses per turn are not stated: 1 is taken (give --pulses)")
     elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
@@ -223,8 +225,7 @@ def _steady(shaft: Shaft, angle: _Angle, notices: list[Notice]) -> Changing:
 
 def _sliced(
     record: Record,
-    chosen: Sequence[Channel],
-    table: Floats,
+    through: Passed,
     shaft: Shaft,
     angle: _Angle,
     harmonics: int,
@@ -234,7 +235,8 @@ def _sliced(
     notices: list[Notice],
 ) -> Changing:
     turns, rate = angle.turns, record.rate or 1.0
-    inside = table[:, angle.first : angle.first + turns.size]
+    chosen = through.channels
+    inside = through.table[:, angle.first : angle.first + turns.size]
     per_turn = samples_per_turn(turns)
     mean = float((turns[-1] - turns[0]) / (turns.size - 1))
     gearing = None
@@ -264,6 +266,10 @@ def _sliced(
     speed = _rates(turns, steps)  # turns per sample
     frequency = places[:, None] * speed[None, :] * rate
     seen = np.where(frequency < _HIGHEST * rate, 1.0, np.nan)[None]
+    kept = np.array([np.nan if c.name in through.withheld else 1.0 for c in chosen])
+    seen = seen * kept[:, None, None]
+    damage = np.array([through.extra.get(c.name, 0.0) for c in chosen])[:, None, None]
+    amplitude = np.stack([s.amplitude for s in read])
     unit = 1.0 if not angle.of_mesh else 1.0 / _MESHES
     known = [c.unit is not None and not c.needs_scale for c in chosen]
     shafts_speed = 2.0 * np.pi * rate * speed * (1.0 if not angle.of_mesh else _MESHES)
@@ -277,10 +283,13 @@ def _sliced(
         speed=shafts_speed,
         acceleration=np.gradient(shafts_speed, time) if time.size > 1 else np.zeros(1),
         frequency=frequency,
-        reading=np.stack([s.amplitude for s in read]) * seen,
-        half_width=np.hypot(
-            np.stack([s.half_width for s in read]),
-            _NORMAL * (sensor_tolerance or 0.0) * np.stack([s.amplitude for s in read]),
+        reading=amplitude * seen,
+        half_width=(
+            np.hypot(
+                np.stack([s.half_width for s in read]),
+                _NORMAL * (sensor_tolerance or 0.0) * amplitude,
+            )
+            + damage * amplitude
         )
         * seen,
         phase=np.stack([s.phase for s in read]) * seen,
@@ -334,24 +343,10 @@ def _wanted(
             Wanted("mesh", f"mesh x {k}", position=k * angle.mesh * mean, half_width=0.0)
             for k in range(1, harmonics + 1)
         ]
-    if found and angle.teeth and not any(w.kind == "sideband" for w in found):
-        for one in [w for w in found if w.kind == "mesh"]:
-            for n in range(1, sidebands + 1):
-                for sign, word in ((-1, "-"), (1, "+")):
-                    name = f"{one.name} {word} {n} shaft/{angle.teeth}"
-                    at = one.position + sign * n * mean
-                    found.append(Wanted("sideband", name, position=at, half_width=0.0))
+    if angle.teeth and not any(w.kind == "sideband" for w in found):
+        found += _sidebands(found, angle.teeth, sidebands, mean)
     if not found and not orders:
-        straight = resample_by_angle(inside[0], angle.turns, samples_per_turn=per_turn)
-        spectrum = line_spectrum(straight, float(per_turn))
-        for one in strong_lines(spectrum, 4 * harmonics):
-            place = one.place * spectrum.bin_width
-            if 0.4 < place < 0.2 * per_turn and all(
-                abs(place - w.position / mean) > _NEIGHBOUR for w in found
-            ):
-                found.append(
-                    Wanted("order", f"order {place:.4g}", position=place * mean, half_width=0.0)
-                )
+        found = _strongest(inside[0], angle, per_turn, 4 * harmonics, mean)
     if not angle.of_mesh:
         found += order_lines(orders, mean, found)
     if not found:
@@ -362,6 +357,38 @@ def _wanted(
         if far and one.position / mean < 0.43 * per_turn:
             kept.append(one)
     return kept
+
+
+def _sidebands(meshes: Sequence[Wanted], teeth: int, count: int, shaft: float) -> list[Wanted]:
+    """Sidebands of mesh lines at whole turns of the first ``shaft`` [cycles/sample]."""
+    return [
+        Wanted(
+            "sideband",
+            f"{one.name} {'+' if sign > 0 else '-'} {n} shaft/{teeth}",
+            position=one.position + sign * n * shaft,
+            half_width=0.0,
+        )
+        for one in meshes
+        if one.kind == "mesh"
+        for n in range(1, count + 1)
+        for sign in (-1, 1)
+    ]
+
+
+def _strongest(
+    values: Floats, angle: _Angle, per_turn: int, most: int, mean: float
+) -> list[Wanted]:
+    """The strongest orders, where no mesh line is known."""
+    straight = resample_by_angle(values, angle.turns, samples_per_turn=per_turn)
+    spectrum = line_spectrum(straight, float(per_turn))
+    found: list[Wanted] = []
+    for one in strong_lines(spectrum, most):
+        place = one.place * spectrum.bin_width
+        apart = all(abs(place - w.position / mean) > _NEIGHBOUR for w in found)
+        if 0.4 < place < 0.2 * per_turn and apart:
+            name = f"order {place:.4g}"
+            found.append(Wanted("order", name, position=place * mean, half_width=0.0))
+    return found
 
 
 def order_lines(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,18 +14,26 @@ from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import Changing, OrderSlices, order_lines, read_in_angle
+from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.lines import MeasuredLine, Wanted, channel_lines, wanted_lines
+from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
-from thermogear.measured.turns import MeshTurns, mesh_turns
+from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.signals.quality import phase_jumps
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
+
+_JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
+
+_MOST = 64
+"""Harmonics, sidebands and orders that may be asked for."""
+_HIGHEST_ORDER = 10_000.0
 
 _FACTORS = {
     10.0: "ten times too high",
@@ -44,7 +53,11 @@ _FACTORS = {
 
 @dataclass(frozen=True)
 class Measurement:
-    """A record reduced: lines, gearing with evidence, settings and notices."""
+    """A record reduced: lines, gearing with evidence, settings and notices.
+
+    ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
+    what the lines were read from, in the file's unit.
+    """
 
     record: Record
     channels: tuple[str, ...]
@@ -55,7 +68,14 @@ class Measurement:
     lines: tuple[MeasuredLine, ...]
     notices: tuple[Notice, ...]
     start: int
+    findings: tuple[Finding, ...] = ()
+    values: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slices: OrderSlices | None = None
+
+    @property
+    def damage(self) -> tuple[tuple[str, str], ...]:
+        """Level and text of every finding."""
+        return tuple((one.notice.level, one.notice.text) for one in self.findings)
 
     @property
     def settings(self) -> dict[str, str]:
@@ -100,29 +120,31 @@ def measure(
     ``orders`` of the first shaft to read beside. A tacho, or a channel of speed, is always used:
     lines are read in angle. Without one a speed that wanders is followed by the mesh line's phase,
     one that changes by a line tracked through the spectrum. Where the speed changes by more than
-    3 % orders are read slice by slice over it (``slices``). Without a rate the lines are given in orders and cycles per sample, without a
-    unit in the file's own numbers.
+    3 % orders are read slice by slice over it (``slices``). Without a rate the lines are given in
+    orders and cycles per sample, without a unit in the file's own numbers.
 
-    Raises InputError for a record without a line or a channel without a signal.
+    Before any number the record passes the gate (:mod:`~thermogear.measured.gate`): damage is in
+    ``findings``, and the uncertainty holds it or the number is withheld.
+
+    Raises InputError for a record without a line, a channel without a signal, a rate so low that
+    it may be a shaft's.
     """
     if not isinstance(record, Record):
         record = read_record(record)
-    if harmonics < 1 or sidebands < 0:
-        raise InputError("harmonics, sidebands", f"{harmonics}, {sidebands}", allowed=">= 1, >= 0")
-    if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
-        raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
-    if pulses_per_turn is not None:
-        PULSES.require("pulses_per_turn", pulses_per_turn)
+    require_sampling_rate(record)
+    _require(harmonics, sidebands, orders, sensor_tolerance, pulses_per_turn)
     require_teeth(teeth)
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
-    start, table = _stretch(chosen, notices)
+    through = passed(chosen, LONGEST)
+    if len(chosen[0]) > LONGEST:
+        notices.append(
+            Notice("info", f"the first {LONGEST} of {len(chosen[0])} samples are reduced to lines")
+        )
     expected = _expected(record, teeth, speed)
     changing, said = read_in_angle(
         record,
-        chosen,
-        table,
-        start,
+        through,
         teeth=teeth,
         harmonics=harmonics,
         sidebands=sidebands,
@@ -136,16 +158,36 @@ def measure(
     if changing is not None:
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
-        gearing = _gearing(table, notices, expected)
-        teeth = _teeth(gearing, teeth, notices)
+        gearing = _gearing(through.table, notices, expected)
     if changing is not None and changing.slices is not None:
-        return _of_slices(record, chosen, table, chain, changing, start, tuple(notices))
+        return _of_slices(record, through, chain, changing, tuple(notices))
+    if changing is None and _whole_turns(through, gearing, teeth):
+        gearing = _gearing(through.table, [], expected)
+    chosen, start, table = through.channels, through.start, through.table
+    if changing is None:
+        teeth = _teeth(gearing, teeth, notices)
+    doubt = record.rate_doubt
     if gearing is not None and turns is None:
-        turns = mesh_turns(record, table, gearing, teeth, harmonics, pulses_per_turn, start)
+        turns = mesh_turns(
+            table,
+            gearing,
+            teeth=teeth,
+            harmonics=harmonics,
+        )
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
-        _check_rate(record, gearing, teeth, speed, notices)
+        doubt = _check_rate(record, gearing, teeth, speed, notices)
+    if doubt:
+        through.findings.append(
+            Finding(
+                kind=f"the rate is doubtful: {doubt}",
+                done="frequencies, speed and displacements are withheld",
+                effect="they would be wrong by the rate's factor; orders and accelerations stand",
+                withholds=True,
+            )
+        )
+    notices += [one.notice for one in through.findings]
     if turns is not None and turns.said:
         notices.append(Notice("info", turns.said))
     rate = record.rate or 1.0
@@ -168,6 +210,11 @@ def measure(
             ),
             sensor_tolerance,
             turns,
+            Doubts(
+                extra=through.extra.get(channel.name, 0.0),
+                withheld=through.withheld.get(channel.name, ""),
+                rate=doubt,
+            ),
         )
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
@@ -181,29 +228,52 @@ def measure(
         tuple(lines),
         tuple(notices),
         start,
+        tuple(through.findings),
+        table,
     )
+
+
+def _require(
+    harmonics: int,
+    sidebands: int,
+    orders: Sequence[float],
+    sensor_tolerance: float | None,
+    pulses_per_turn: float | None,
+) -> None:
+    """Refuse numbers that ask for nothing, or for more than a record can hold."""
+    if not (1 <= harmonics <= _MOST and 0 <= sidebands <= _MOST):
+        got = f"{harmonics}, {sidebands}"
+        raise InputError("harmonics, sidebands", got, allowed=f"1..{_MOST}, 0..{_MOST}")
+    wrong = [o for o in orders if not 0.0 < o <= _HIGHEST_ORDER]
+    if wrong or len(orders) > _MOST:
+        got = f"{wrong[0]:g}" if wrong else f"{len(orders)} of them"
+        raise InputError("orders", got, allowed=f"> 0 .. {_HIGHEST_ORDER:g}, at most {_MOST}")
+    if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
+        raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
+    if pulses_per_turn is not None:
+        PULSES.require("pulses_per_turn", pulses_per_turn)
 
 
 def _of_slices(
     record: Record,
-    chosen: list[Channel],
-    table: Floats,
+    through: Passed,
     chain: Chain | None,
     found: Changing,
-    start: int,
     notices: tuple[Notice, ...],
 ) -> Measurement:
     """The measurement of a run whose speed changes: its lines are means of the slices."""
     return Measurement(
         record,
-        tuple(c.name for c in chosen),
-        int(table.shape[-1]),
+        tuple(c.name for c in through.channels),
+        int(through.table.shape[-1]),
         chain or Chain(method="line"),
         found.gearing,
         found.teeth,
         found.lines,
-        (*notices, *_untold(record, chosen, None)),
-        start,
+        (*notices, *_untold(record, through.channels, None)),
+        through.start,
+        tuple(through.findings),
+        through.table,
         found.slices,
     )
 
@@ -268,30 +338,34 @@ def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]
     return alive
 
 
-def _stretch(channels: list[Channel], notices: list[Notice]) -> tuple[int, Floats]:
-    """The longest stretch in which no channel has a gap, at most LONGEST samples of it."""
-    count = len(channels[0])
-    table = np.stack([c.values(0, stop=min(count, LONGEST)) for c in channels])
-    start = 0
-    bad = np.flatnonzero(~np.all(np.isfinite(table), axis=0))
-    if bad.size:
-        edges = np.concatenate([[-1], bad, [table.shape[-1]]])
-        longest = int(np.argmax(np.diff(edges)))
-        start, stop = int(edges[longest]) + 1, int(edges[longest + 1])
-        table = table[:, start:stop]
-        notices.append(
-            Notice(
-                "warning",
-                f"gaps: only the longest whole stretch is used, samples {start}..{stop - 1}",
-            )
+def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) -> bool:
+    """Cut to the longest stretch between jumps of the mesh line's phase; whether there were any."""
+    if gearing is None:
+        return False
+    values = clearest(through.table, gearing.mesh_frequency)[0]
+    piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
+    jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
+    if not jumps:
+        return False
+    around = int(np.ceil(piece / gearing.mesh_frequency))  # a jump is placed so well
+    edges = [-around, *jumps, values.size + around]
+    first, stop = max(
+        ((a + around, b - around) for a, b in pairwise(edges)), key=lambda pair: pair[1] - pair[0]
+    )
+    least = max(256, int(np.ceil(20.0 / gearing.mesh_frequency)))
+    if stop - first < least:
+        return False
+    places = ", ".join(str(through.start + at) for at in jumps[:5])
+    through.findings.append(
+        Finding(
+            kind=f"the mesh line's phase jumps near sample {places}: samples are lost there",
+            done=f"only the longest stretch between is used, samples {through.start + first}.."
+            f"{through.start + stop - 1}",
+            effect="none on that stretch",
         )
-    if count > LONGEST:
-        notices.append(
-            Notice("info", f"the first {LONGEST} of {count} samples are reduced to lines")
-        )
-    if table.shape[-1] < 256:
-        raise InputError("record", f"{table.shape[-1]} samples without a gap", allowed=">= 256")
-    return start, table
+    )
+    through.cut(first, stop=stop)
+    return True
 
 
 def require_teeth(teeth: int | None) -> None:
@@ -354,9 +428,13 @@ def _check_rate(
     teeth: int | None,
     speed: float | None,
     notices: list[Notice],
-) -> None:
+) -> str:
+    """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
+
+    A rate given that contradicts the file's is kept where teeth and speed confirm it.
+    """
     if teeth is None:
-        return
+        return record.rate_doubt
     turns = gearing.mesh_frequency / teeth  # turns per sample
     if record.rate is None:
         if speed is not None:
@@ -367,7 +445,7 @@ def _check_rate(
                     f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
                 )
             )
-        return
+        return ""
     implied = turns * record.rate
     notices.append(
         Notice(
@@ -381,10 +459,10 @@ def _check_rate(
             Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
         )
     if speed is None:
-        return
+        return record.rate_doubt
     ratio = implied / (speed / (2 * np.pi))
     if abs(ratio - 1.0) <= 0.1:
-        return
+        return ""
     named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
     what = (
         f"the rate looks {_FACTORS[named]}"
@@ -399,3 +477,4 @@ def _check_rate(
             f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
         )
     )
+    return what

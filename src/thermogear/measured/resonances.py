@@ -1,4 +1,4 @@
-"""Resonances in hertz told from orders: peaks of several orders at one frequency, or at one speed."""
+"""Resonances in hertz told from orders: peaks of several orders at one frequency or speed."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ class Resonance:
     """A place where orders peak.
 
     ``kind``: "resonance" where two orders or more peak at one ``frequency`` [Hz] at different
-    speeds; "speed" where they peak at one ``speed`` [rad/s] and not at one frequency; "one order"
-    where a single order peaks, which cannot tell. ``half_width`` [Hz] of the 95 % interval, with the
-    scatter between orders; ``damping`` ratio (nan where no shape could be fitted); ``seen``: names of
-    the orders.
+    speeds; "speed" where they peak at one ``speed`` [rad/s] and not at one frequency; "one
+    order" where a single order peaks, which cannot tell. ``half_width`` [Hz] of the 95 % interval,
+    with the scatter between orders; ``damping`` ratio (nan where no shape could be fitted);
+    ``seen``: names of the orders.
     """
 
     kind: str
@@ -108,7 +108,7 @@ def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
 
 
 def _told_apart(group: list[_Peak], kind: str) -> bool:
-    """Whether orders differ enough: at one frequency their speeds, at one speed their frequencies."""
+    """Whether orders differ enough: in speed at one frequency, in frequency at one speed."""
     other = "speed" if kind == "resonance" else "frequency"
     values = [getattr(p, other) for p in group]
     return len({p.name for p in group}) > 1 and max(values) > (1.0 + 3.0 * _SAME) * min(values)
@@ -147,7 +147,9 @@ def _peaks(
         left = higher[higher < top].max(initial=-1)
         right = higher[higher > top].min(initial=y.size)
         upper = y + h  # of a valley its upper end counts
-        valley = [part.min() for part in (upper[left + 1 : top], upper[top + 1 : right]) if part.size]
+        valley = [
+            part.min() for part in (upper[left + 1 : top], upper[top + 1 : right]) if part.size
+        ]
         if len(valley) < 2 or y[top] - h[top] < _ABOVE * max(valley):
             continue
         low = high = int(top)

@@ -213,8 +213,8 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
             ratio = float(round(ratio))
     off = cycles[-1] / ratio / (rough[-1] - rough[0]) - 1.0
     text = (
-        f"{shaft.origin} reads {abs(off) * 100:.2g} % {'low' if off > 0 else 'high'} if the line at "
-        f"order {ratio:.6g} is whole; the angle is corrected by that line's phase: the {LINES} "
+        f"{shaft.origin} reads {abs(off) * 100:.2g} % {'low' if off > 0 else 'high'} if the line "
+        f"at order {ratio:.6g} is whole; the angle is corrected by that line's phase: the {LINES} "
         f"strongest lines hold {100 * found.sharp:.0f} % of the power, {100 * before:.0f} % before"
     )
     return replace(
@@ -275,7 +275,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
         "important",
         f"no tacho: the speed is tracked from a line that runs through the spectrum; {numbers}",
     )
-    shaft = Shaft(
+    return Shaft(
         turns=best.cycles,
         first=0,
         noise=best.noise,
@@ -283,4 +283,3 @@ def tracked_shaft(table: Floats) -> Shaft | None:
         line=True,
         told=(told,),
     )
-    return shaft

@@ -73,7 +73,7 @@ def slice_groups(found: OrderSlices) -> dict[str, xr.Dataset]:
 
 
 def slice_figures(found: OrderSlices) -> dict[str, Any]:
-    """The slices in plain figures: range of speed, greatest amplitude of every order, resonances."""
+    """In plain figures: range of speed, greatest amplitude of every order, resonances."""
 
     def plain(value: float) -> float | None:
         return float(value) if math.isfinite(value) else None

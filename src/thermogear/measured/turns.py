@@ -9,18 +9,15 @@ from numpy.typing import NDArray
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.record import Record
 from thermogear.signals.following import WIDTHS, Followed, band_power, best_followed
 from thermogear.signals.interval import Reading, read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
-from thermogear.signals.orders import tacho_angle, tacho_times
 
 Floats = NDArray[np.float64]
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
-_EDGE = 0.5  # samples by which a tacho's edge may be placed wrongly
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,38 +38,22 @@ class MeshTurns:
 
 
 def mesh_turns(
-    record: Record,
     table: Floats,
     gearing: Gearing,
+    *,
     teeth: int | None,
     harmonics: int,
-    pulses_per_turn: float | None,
-    start: int,
 ) -> MeshTurns:
-    """The mesh line's mean frequency: by the tacho, as a steady line, or followed by its phase.
+    """The mesh line's mean frequency: as a steady line, or followed by its phase.
 
-    ``table`` (channel, sample) from sample ``start`` of ``record`` on. A steady line is taken for
+    ``table`` (channel, sample). A steady line is taken for
     one where its phase, noise taken away, wanders by less than a fiftieth of a turn at the
     highest of ``harmonics``, and where it explains the power near it.
     """
     per_cycle = int(2 ** np.ceil(np.log2(1.0 / gearing.mesh_frequency)))
-    if record.tacho is not None and pulses_per_turn and teeth and record.rate is not None:
-        pulses = record.channel(record.tacho).values(start, stop=start + table.shape[-1])
-        times = tacho_times(pulses, record.rate)
-        angle = teeth * tacho_angle(
-            times, pulses_per_turn, np.arange(table.shape[-1]) / record.rate
-        )
-        inside = np.flatnonzero(np.isfinite(angle))
-        turning = Turning(cycles=angle[inside], dropped=int(inside[0]), per_cycle=per_cycle)
-        return MeshTurns(
-            frequency=turning.mean,
-            half_width=turning.mean * 2.0 * _EDGE / inside.size,
-            turning=turning,
-            said=f"lines are read in angle, by the tacho {record.tacho!r}",
-        )
-    values, spectrum = _clearest(table, gearing.mesh_frequency)
+    values, spectrum = clearest(table, gearing.mesh_frequency)
     line = line_in(spectrum, near=gearing.mesh_frequency, half_width=_reach(spectrum, gearing))
-    beside = sides_of(gearing, teeth, 1, line.frequency)
+    beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
     strong = strong_lines(spectrum)
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
     if _wanders(spectrum, reading, line.frequency, harmonics):
@@ -86,7 +67,7 @@ def mesh_turns(
         other = read_line(
             spectrum,
             rank * reading.frequency,
-            beside=sides_of(gearing, teeth, rank, reading.frequency),
+            beside=sides_of(gearing, teeth=teeth, rank=rank, mesh=reading.frequency),
             strong=strong,
         )
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
@@ -94,7 +75,7 @@ def mesh_turns(
     return MeshTurns(frequency=best[0], half_width=best[1])
 
 
-def sides_of(gearing: Gearing, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
+def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
     """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
     known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
     return tuple(
@@ -106,8 +87,8 @@ def _reach(spectrum: LineSpectrum, gearing: Gearing) -> float:
     return max(3.0 * spectrum.bin_width, 2e-4 * gearing.mesh_frequency)
 
 
-def _clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
-    """The channel in which the mesh line stands highest over all else, and its spectrum."""
+def clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
+    """The channel in which the mesh line is highest over all else, and its spectrum."""
     spectra = [line_spectrum(values, 1.0) for values in table]
     place = int(np.rint(mesh * table.shape[-1]))
     heights = [

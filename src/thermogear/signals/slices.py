@@ -1,4 +1,4 @@
-"""Order slices: the amplitude of an order turn by turn, with an interval, from a record in angle."""
+"""Order slices: amplitudes of orders turn by turn, with intervals, from a record in angle."""
 
 from __future__ import annotations
 
@@ -28,15 +28,17 @@ _BIAS = 1.25  # the bias b goes with T^4: blocks of length 1.6 to 1 differ by b 
 _FAR = 3.5 + np.arange(30.0)  # lines beside an order at which its noise may be judged
 _JUDGED = 12
 _FREE = 3.0  # lines from every order that is fitted
-_RESAMPLED = 1e-3  # of an amplitude, that the resampling loses at 0.4 of its rate; below, as a spline
+_RESAMPLED = (
+    1e-3  # of an amplitude, that the resampling loses at 0.4 of its rate; below, as a spline
+)
 _FINEST = 3.4  # samples per turn over the highest order
 
 
 @dataclass(frozen=True, kw_only=True)
 class Slices:
     """``amplitude`` (order, step), peak, with the ``half_width`` of its 95 % interval, both in the
-    record's unit, and ``phase`` [rad] against the angle; ``turns`` (step) at which they are read and
-    ``block`` (order, step) the turns they are read over. nan where no block reaches."""
+    record's unit, and ``phase`` [rad] against the angle; ``turns`` (step) at which they are read
+    and ``block`` (order, step) the turns they are read over. nan where no block reaches."""
 
     orders: Floats
     turns: Floats
@@ -107,7 +109,15 @@ def order_slices(
     if centres.size == 0:
         centres = np.array([whole // 2])
     read = [_Block(block, per_turn, wanted, others).read(values, centres) for block in blocks]
-    return _chosen(read, blocks, wanted, centres + first, step, angle_noise, samples_per_turn)
+    return _chosen(
+        read,
+        blocks,
+        wanted,
+        np.asarray(centres + first, dtype=np.float64),
+        step,
+        angle_noise,
+        samples_per_turn,
+    )
 
 
 def _others(beside: Floats, wanted: Floats, top: float) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +27,7 @@ _LEAST = 8
 
 @dataclass(frozen=True, kw_only=True)
 class Pulses:
-    """Pulses with their numbers: ``times`` [s] of those kept and ``numbers`` counted from the first.
+    """Pulses with their numbers: ``times`` [s] of those kept, ``numbers`` from the first on.
 
     ``lost`` and ``extra``: how many were missing between them and how many were left aside;
     ``aside``: pulses before and after a stretch over which they could not be counted.
@@ -124,7 +125,8 @@ def _likeliest(edges: Floats) -> tuple[Ints, Ints]:
         cost[j, :most] = np.minimum(free, least)
         origin[j, :most] = np.where(free < least, -1, best)
     left = _EXTRA * np.arange(count - 1, -1, -1.0)
-    place, b, k = np.unravel_index(int(np.argmin(cost + left[:, None, None])), cost.shape)
+    last = int(np.argmin(cost + left[:, None, None]))
+    place, b, k = (int(one) for one in np.unravel_index(last, cost.shape))
     places, steps = [int(place)], []
     while True:
         steps.append(int(k) + 1)
@@ -202,7 +204,7 @@ def pulse_turns(
     )
 
 
-def _smooth(times: Floats, numbers: Floats) -> tuple[interpolate.BSpline, Floats]:
+def _smooth(times: Floats, numbers: Floats) -> tuple[Callable[[Floats], Floats], Floats]:
     """A smoothing spline of number over time, and what each pulse is off it [pulses].
 
     More than 4096 pulses are averaged in groups first.
@@ -227,7 +229,7 @@ def _smooth(times: Floats, numbers: Floats) -> tuple[interpolate.BSpline, Floats
     def number_of(at: Floats) -> Floats:
         return np.asarray(y[0] + slope * (at - x[0]) + spline((at - x[0]) / step))
 
-    return number_of, numbers - number_of(times)  # type: ignore[return-value]
+    return number_of, numbers - number_of(times)
 
 
 def speed_turns(

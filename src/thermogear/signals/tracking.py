@@ -59,9 +59,9 @@ class Path:
 
 @dataclass(frozen=True, kw_only=True)
 class Tracked:
-    """``cycles`` of a line at each sample, 0 at the first; ``noise``: rms of what is wrong with them
-    [cycles]; ``sharp`` and ``blunt``: share of the power that the ``LINES`` strongest lines hold
-    in angle and in time; ``span``: highest over lowest frequency."""
+    """``cycles`` of a line at each sample, 0 at the first; ``noise``: rms of what is wrong with
+    them [cycles]; ``sharp`` and ``blunt``: share of the power that the ``LINES`` strongest lines
+    hold in angle and in time; ``span``: highest over lowest frequency."""
 
     cycles: Floats
     noise: float
