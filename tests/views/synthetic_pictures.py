@@ -21,9 +21,11 @@ from thermogear.views.plots import (
     loaded,
     lost_contact,
     one_motion,
+    records,
     relief,
     rig_trains,
     shafts,
+    slices,
     speeds,
     sweeps,
     thermal_map,
@@ -40,7 +42,7 @@ SIZES = {
     "event": 1, "load": 3, "speed": 4, "part": 2, "operating": 2, "law": 2, "path_position": 9,
     "regime_name": 3, "temperature": 2, "mesh_phase": 8, "pair": 2, "temperature_difference": 3,
     "pair_kind": 2, "speeds": 4, "torques": 3, "node": 2, "time": 12, "piece": 2, "sensor": 2,
-    "channel": 1, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2, "entry": 2,
+    "channel": 1, "map_column": 5, "slice": 3, "step": 6, "record": 4, "line": 3, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2, "entry": 2,
     "output": 2, "input": 3, "gear_temperature": 6, "gears.pinion.face_width": 3, "bearing": 2,
     "pinion_position": 12, "wheel_position": 12, "mode": 5, "stiffness_level": 3, "line": 3,
     "source": 3, "response_speed": 12,
@@ -225,6 +227,29 @@ def of_surveys() -> dict[str, Picture]:
         "thermal-line": thermal_map.thermal_map(closed_loop().isel(torques=[0])),
         "thermal-map-bare": thermal_map.thermal_map(closed_loop(np.nan)),
         **of_warm_up(),
+        **of_records(),
+    }
+
+
+def of_records() -> dict[str, Picture]:
+    """Orders of a run-up, and lines from record to record."""
+    shown = made("row map_column", "map_reading").assign(
+        map_order=rising("map_column"), map_speed=rising("row", low=100.0, high=300.0)
+    )  # fmt: skip
+    found = xr.Dataset({"resonance_frequency": ("resonance", np.array([30.0]))}).assign_coords(
+        kind=("resonance", ["resonance"])
+    )
+    run = made("channel slice step", "slice_reading", "slice_reading_half_width").assign(
+        slice_speed=rising("step", low=100.0, high=300.0)
+    )
+    run = run.assign_coords(name=("slice", [f"order {k}" for k in range(run.sizes["slice"])]))
+    several = made("record line", "record_line_change", "record_line_change_half_width")
+    names = [f"line {k}" for k in range(several.sizes["line"])]
+    several = several.assign_coords(name=("line", names), channel=("line", ["a"] * len(names)))
+    return {
+        "order-map": slices.order_map(shown, found, "g", "the first shaft"),
+        "order-slices": slices.over_speed(run, 0, "g"),
+        "records": records.course(several),
     }
 
 

@@ -130,18 +130,42 @@ def tacho_file(named: str, decimal: str | None, limit: int | None) -> Record | N
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("files", metavar="FILE|DIR...", nargs=-1, required=True)
 @supplies
+@click.option(
+    "--baseline",
+    metavar="first|last|FILE",
+    help="Of several records the one that the others are compared with [first].",
+)
 @delivery.as_json
-@delivery.output("Also write measured.nc and measured.html.", required=False)
-def measure(file: str, as_json: bool, output: str | None, **options: Any) -> None:
-    """Read a record and print its lines: order, frequency, amplitude, uncertainty."""
+@delivery.output("Also write measured.nc (of several: records.nc) and its page.", required=False)
+def measure(
+    files: tuple[str, ...],
+    baseline: str | None,
+    as_json: bool,
+    output: str | None,
+    **options: Any,
+) -> None:
+    """Read a record and print its lines: order, frequency, amplitude, uncertainty.
+
+    Of several files, or of those in a directory, what changed against a baseline beyond its
+    uncertainty, and trends.
+    """
     _require_gear(options)
+    one = len(files) == 1 and not Path(files[0]).is_dir()
+    if one and baseline is not None:
+        raise InputError("--baseline", baseline, why="there is one record", fix="name several")
 
     def make(report: Progress) -> Result:
         from thermogear.measured.dataset import result_of
+        from thermogear.measured.several import files_of, result_of_several, several
 
-        return result_of(measured_by(file, options))
+        if one:
+            return result_of(measured_by(files[0], options))
+        found = several(
+            files_of(files), lambda path: measured_by(str(path), options), baseline or "first"
+        )
+        return result_of_several(found)
 
     delivery.deliver(make, output, as_json=as_json)
 

@@ -15,7 +15,7 @@ from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
-from thermogear.measured.record import Notice, Record
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.resonances import Resonance, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
@@ -400,6 +400,16 @@ def order_lines(
         for o in orders
         if all(abs(o * shaft - w.position) > 1e-6 * shaft for w in found)
     ]
+
+
+def of_velocity(line: MeasuredLine, channel: Channel) -> MeasuredLine:
+    """A line of a velocity with its acceleration and displacement; any other line as it is."""
+    known = channel.unit is not None and not channel.needs_scale
+    if not known or channel.unit is None or kind_of(channel.unit) != "velocity":
+        return line
+    omega = 2.0 * np.pi * line.frequency
+    speed = line.reading * channel.si_factor
+    return replace(line, acceleration=speed * omega, displacement=speed / omega)
 
 
 def _apart(beside: Sequence[float]) -> list[float]:

@@ -23,6 +23,8 @@ from thermogear.results.result import Notice, Result, now
 
 _IMPLAUSIBLE_G = 50.0
 _DEEPEST_SUBHARMONIC = 16
+FAR = 1.0
+"""Relative error beyond which no model is called better than another."""
 UNCERTAINTIES = ("u_num", "u_input", "u_data", "u_val")
 
 
@@ -103,11 +105,16 @@ class Comparison:
 
 
 def verdict(errors: Sequence[float], names: Sequence[str], u_val: float) -> str:
-    """ "A better", "B better" or "not resolvable": |E_A| - |E_B| against u_val."""
+    """ "A better", "B better" or "not resolvable": |E_A| - |E_B| against u_val.
+
+    Models that are all more than 100 % away describe something else: none is preferred.
+    """
     if len(errors) < 2:
         return "within u_val" if abs(errors[0]) <= u_val else "outside u_val"
     order = np.argsort(np.abs(errors), kind="stable")
     best, second = int(order[0]), int(order[1])
+    if abs(errors[best]) > FAR:
+        return "no preference: all are more than 100 % away"
     gap = abs(errors[second]) - abs(errors[best])
     return f"{names[best]} better" if gap > u_val else "not resolvable"
 

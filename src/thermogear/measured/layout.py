@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
+from thermogear.measured.clock import comment_column, labelled
 from thermogear.measured.options import ReadOptions, refused
 from thermogear.measured.record import Notice
 from thermogear.measured.traps import is_possible_rate, is_rate_name, is_time_name, split_unit
@@ -23,7 +24,8 @@ class Layout:
     """How the numbers of a text file are written: found from its first lines.
 
     ``separator`` None: runs of blanks. ``paired``: commas part both numbers and decimals, two
-    fields make one number. ``skip``: lines before the first row.
+    fields make one number. ``skip``: lines before the first row. ``commented``: what follows the
+    columns is a comment; ``clocks``: clock stamps are turned to seconds.
     """
 
     separator: str | None
@@ -34,6 +36,8 @@ class Layout:
     units: list[str | None]
     skip: int
     rate: float | None = None
+    commented: bool = False
+    clocks: bool = False
     notices: list[Notice] = field(default_factory=list)
 
 
@@ -52,6 +56,9 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     separator, decimal = _separator(body, options, path)
     swap = decimal == "," and separator != ","
     table = [cells_of(line.replace(",", ".") if swap else line, separator) for line in head]
+    comment = comment_column(table)
+    if comment is not None:
+        table = [c if i < comment[0] else c[: comment[1]] for i, c in enumerate(table)]
     rows = [i for i, cells in enumerate(table) if _is_row(cells)]
     # the table starts at the first row that another one of equal width follows at once
     follows = dict(itertools.pairwise(rows))
@@ -67,6 +74,9 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         raise refused(path, "text", "no row of numbers in its first lines")
     width = len(table[start])
     above = [line for line in head[:start] if line.strip()]
+    if comment is not None and comment[0] < start:
+        above = [line for line in head[: comment[0]] if line.strip()]
+        above.append((separator or " ").join(table[comment[0]]))
     names, units = _header(above, separator, width)
     paired = separator == "," and _paired(
         [table[i] for i in rows if i >= start], len(names), path, options
@@ -76,6 +86,10 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         why = f"{columns} columns; allowed 1..{MOST_COLUMNS} (channels stand side by side)"
         raise refused(path, "text", why)
     layout = Layout(separator, decimal, paired, columns, names, units, start)
+    layout.commented = comment is not None
+    said = [unit(text) for text in labelled(above)]
+    if said and len(names) == columns == len(said) + 1:
+        layout.units = ["s", *said]  # LabVIEW counts X in seconds
     if paired:
         layout.notices.append(
             Notice("warning", "commas part both numbers and decimals: two fields make one number")

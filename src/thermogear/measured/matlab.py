@@ -135,7 +135,9 @@ def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named
     name = prefix + own if own else prefix.rstrip(".")
     if kind == _STRUCT:
         return _structure(parts, order, name, shape, depth)
-    if kind in (_CELL, _CHAR) or kind > 15 or kind < 6 or is_complex or len(parts) < 4:
+    if kind == _CELL:
+        return _cells(parts[3:], order, name, shape, depth)
+    if kind == _CHAR or kind > 15 or kind < 6 or is_complex or len(parts) < 4:
         return []
     stored, content = parts[3]
     if stored not in _KINDS:
@@ -150,7 +152,7 @@ def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named
 def _structure(
     parts: list[tuple[int, memoryview]], order: str, name: str, shape: tuple[int, ...], depth: int
 ) -> list[Named]:
-    if math.prod(shape) != 1 or len(parts) < 5 or len(parts[3][1]) < 4:
+    if len(parts) < 5 or len(parts[3][1]) < 4:
         return []
     width = struct.unpack(order + "i", parts[3][1][:4])[0]
     text = bytes(parts[4][1])
@@ -161,7 +163,24 @@ def _structure(
         for i in range(0, len(text), width)
     ]
     found: list[Named] = []
-    for label, (kind, body) in zip(fields, parts[5:], strict=False):
+    if not fields:
+        return found
+    # the structures of an array one after another, each with all its fields
+    one = math.prod(shape) == 1
+    for place, (kind, body) in enumerate(parts[5:]):
+        number, field = divmod(place, len(fields))
         if kind == _MATRIX:
-            found += _matrix(body, order, f"{name}.{label}.", depth + 1)
+            which = name if one else f"{name}({number + 1})"
+            found += _matrix(body, order, f"{which}.{fields[field]}.", depth + 1)
+    return found
+
+
+def _cells(
+    parts: list[tuple[int, memoryview]], order: str, name: str, shape: tuple[int, ...], depth: int
+) -> list[Named]:
+    """The arrays in a cell array, numbered from 1."""
+    found: list[Named] = []
+    for number, (kind, body) in enumerate(parts[: math.prod(shape)], start=1):
+        if kind == _MATRIX:
+            found += _matrix(body, order, f"{name}{{{number}}}.", depth + 1)
     return found

@@ -13,7 +13,13 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import METHODS, Chain
-from thermogear.measured.changing import Changing, OrderSlices, order_lines, read_in_angle
+from thermogear.measured.changing import (
+    Changing,
+    OrderSlices,
+    of_velocity,
+    order_lines,
+    read_in_angle,
+)
 from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
@@ -216,6 +222,7 @@ def measure(
                 rate=doubt,
             ),
         )
+    lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
     return Measurement(

@@ -250,6 +250,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
     lines is taken, if that is more than without it.
     """
     best: Tracked | None = None
+    ends = 0, table.shape[-1]
     loudest = table[np.argsort(-np.std(table, axis=-1))[:2]]
     for path in paths(table):
         if path.span < VARIES or path.height < 1.0:
@@ -262,7 +263,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
             if found.sharp >= max(_SHARPER * found.blunt, _LEAST_SHARP) and (
                 best is None or found.sharp > best.sharp
             ):
-                best = found
+                best, ends = found, (int(path.at[1]), int(path.at[-2]) + 1)
         if best is not None:
             break
     if best is None:
@@ -275,11 +276,13 @@ def tracked_shaft(table: Floats) -> Shaft | None:
         "important",
         f"no tacho: the speed is tracked from a line that runs through the spectrum; {numbers}",
     )
-    return Shaft(
-        turns=best.cycles,
-        first=0,
+    # near its ends a path is less sure: a frame of each is left out
+    cycles = best.cycles[ends[0] : ends[1]]
+    shaft = Shaft(
+        turns=cycles - cycles[0],
+        first=ends[0],
         noise=best.noise,
         origin="the tracked line",
         line=True,
-        told=(told,),
     )
+    return replace(shaft, told=(told, *_missing(shaft, table.shape[-1])))

@@ -16,6 +16,7 @@ from thermogear.measured.traps import (
     MOST_STAMPS,
     is_possible_rate,
     is_rate_name,
+    is_step_name,
     is_tacho_name,
     is_time_name,
     read_time,
@@ -122,8 +123,12 @@ class _Told:
     def number(self, name: str, value: Any, origin: str, factor: float = 1.0) -> None:
         """A rate, where ``name`` says so and ``value`` is a number of ``factor`` [1/s]."""
         number = number_of(value)
-        if number is not None and number > 0 and is_rate_name(name):
+        if number is None or number <= 0:
+            return
+        if is_rate_name(name):
             self.rates.append((number * factor, origin))
+        elif is_step_name(name):
+            self.rates.append((1.0 / max(number, 1e-300), f"{origin} (a step, in seconds)"))
 
     def array(self, array: Named) -> None:
         """A number, a time, one channel or several, by its shape and name."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.base.errors import InputError, nearest
+from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import ReadOptions, place_of, refused, too_large
 from thermogear.measured.record import BLOCK, Channel, Notice, Record
@@ -39,7 +40,17 @@ def read_text(path: Path, options: ReadOptions) -> Record:
     encoding, notes = _encoding(path)
     with _open(path, encoding, options) as lines:
         head = _head(lines)
+    clocks = has_clocks(head)
+    if clocks:
+        head = [without_clocks(line) for line in head]
     layout = find_layout(head, path, options)
+    layout.clocks = clocks
+    if clocks:
+        layout.units = [
+            "s" if u is None and (is_time_name(n) or is_stamp_name(n)) else u
+            for n, u in zip(layout.names, layout.units, strict=True)
+        ]
+        layout.names = ["time" if is_stamp_name(n) else n for n in layout.names]
     layout.notices[:0] = notes
     keep = _kept(layout, options)
     store = ColumnStore(len(keep))
@@ -157,6 +168,8 @@ def _tables(lines: io.TextIOWrapper, layout: Layout, path: Path) -> Iterator[Flo
             block, last = _block(lines, path, number)
             if not block:
                 return
+            if layout.clocks:
+                block = [without_clocks(line) for line in block]
             if last:
                 _cut_end(block, layout)
             if block:
@@ -206,6 +219,8 @@ def _fields(line: str, layout: Layout) -> list[str]:
     if layout.decimal == "," and layout.separator != ",":
         line = line.replace(",", ".")
     cells = cells_of(line, layout.separator)
+    if layout.commented:
+        cells = cells[: layout.columns]
     if layout.paired:
         whole = iter(cells)
         cells = [f"{left}.{right}" for left, right in zip(whole, whole, strict=False)]
@@ -217,7 +232,10 @@ def _table(block: list[str], layout: Layout, path: Path, number: int, last: bool
         swap = layout.decimal == "," and layout.separator != ","
         plain = [line.replace(",", ".") for line in block] if swap else block
         try:
-            table = np.loadtxt(plain, delimiter=layout.separator, ndmin=2, comments=None)
+            used = range(layout.columns) if layout.commented else None
+            table = np.loadtxt(
+                plain, delimiter=layout.separator, ndmin=2, comments=None, usecols=used
+            )
             if table.shape[1] == layout.columns:
                 return table
         except (ValueError, UserWarning):

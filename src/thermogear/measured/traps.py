@@ -24,6 +24,12 @@ _RATE = re.compile(
 )
 
 
+_DT = re.compile(
+    r"^(dt|delta[ _]?t|[td][ _]?step|samp(?:ling|le)?[ _-]?(?:interval|period))$", re.I
+)
+_SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
+"""A unit behind an underscore: of times and speeds alone, where nothing else can be meant."""
+
 _LONGEST = 200  # characters of a name that are looked at and kept
 
 HUGE = 1e100
@@ -41,6 +47,15 @@ def is_time_name(name: str) -> bool:
     (True, False)
     """
     return bool(_TIME.match(name.strip()[:_LONGEST]))
+
+
+def is_step_name(name: str) -> bool:
+    """Whether a variable's name says the time between two samples.
+
+    >>> is_step_name("dt"), is_step_name("date")
+    (True, False)
+    """
+    return bool(_DT.match(name.strip()[:_LONGEST]))
 
 
 def is_tacho_name(name: str) -> bool:
@@ -61,8 +76,8 @@ def is_possible_rate(rate: float) -> bool:
 def split_unit(name: str) -> tuple[str, str | None]:
     """A header cell as (name, known unit): "a1 [g]", "Time(ms)", "acc / m/s²", "加速度(m/s²)".
 
-    >>> split_unit("Time(ms)")
-    ('Time', 'ms')
+    >>> split_unit("Time(ms)"), split_unit("time_s")
+    (('Time', 'ms'), ('time', 's'))
     """
     text = name.strip()[:_LONGEST].strip("\"'").strip()
     for pattern in (r"^(.*?)\s*[\[(（{]([^\])）}]*)[\])）}]\s*$", r"^(.*?)\s+(?:/|in)\s+(.+)$"):
@@ -71,6 +86,11 @@ def split_unit(name: str) -> tuple[str, str | None]:
             known = unit(found.group(2))
             if known is not None:
                 return found.group(1).strip(), known
+    found = _SUFFIX.match(text)
+    if found and (known := unit(found.group(2))):
+        turns = kind_of(known) in ("speed", "frequency") and not is_rate_name(text)
+        if turns or is_time_name(found.group(1)):
+            return found.group(1), known
     return text, None
 
 

@@ -1,0 +1,90 @@
+"""LabVIEW files with a comment column, clock stamps, MAT cells and structures, steps, suffixes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import io
+
+from thermogear.measured.comparison import verdict
+from thermogear.measured.readers import read_record
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import measure
+
+HEAD = """LabVIEW Measurement\t
+Separator\tTab
+Date\t2020/01/05
+Time\t12:00:00.123
+***End_of_Header***\t
+Channels\t2\t\t
+Samples\t400\t400\t
+Y_Unit_Label\tg\tm/s^2\t
+Delta_X\t0.0001\t0.0001\t
+***End_of_Header***\t\t\t
+X_Value\tacc1\tacc2\tComment
+"""
+
+
+@pytest.mark.parametrize("first", ["\t", "\tstart, here", ""])
+def test_labview_with_a_comment_column(tmp_path: Path, first: str) -> None:
+    rows = [f"{i * 1e-4:.6f}\t{i % 7}.25\t-{i % 5}.5" for i in range(400)]
+    rows[0] += first
+    path = tmp_path / "rig.lvm"
+    path.write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+    record = read_record(path)
+    assert record.names == ("acc1", "acc2")
+    assert [c.unit for c in record.channels] == ["g", "m/s^2"]
+    assert record.samples == 400
+    assert record.rate == pytest.approx(10_000.0)
+    np.testing.assert_allclose(record.channels[1].values()[:3], [-0.5, -1.5, -2.5])
+
+
+@pytest.mark.parametrize("stamp", ["2024-01-05 12:00:{:09.6f}", "12:00:{:09.6f}"])
+def test_clock_stamps_are_a_time(tmp_path: Path, stamp: str) -> None:
+    rows = [f"{stamp.format(i * 1e-3)},{i % 7}.5" for i in range(1000)]
+    path = tmp_path / "clock.csv"
+    path.write_text("timestamp,a [g]\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    record = read_record(path)
+    assert (record.names, record.samples) == (("a",), 1000)
+    assert record.rate == pytest.approx(1000.0, rel=1e-4)
+
+
+def test_units_behind_an_underscore_of_times_and_speeds(tmp_path: Path) -> None:
+    rows = [f"{i * 1e-3:.4f},{1000 + i % 3},{i % 7}.5" for i in range(400)]
+    path = tmp_path / "a.csv"
+    path.write_text("time_s,speed_rpm,acc_g\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    record = read_record(path)
+    assert record.rate == pytest.approx(1000.0)
+    assert [c.unit for c in record.channels] == ["rpm", None]
+
+
+def test_cells_arrays_of_structures_and_a_step(tmp_path: Path) -> None:
+    a = np.arange(500.0)
+    cells = np.empty((1, 2), object)
+    cells[0, 0], cells[0, 1] = a, a + 1
+    many = np.zeros((1, 2), dtype=[("x", object), ("word", object)])
+    many["x"][0] = [a + 2, a + 3]
+    many["word"][0] = ["one", "two"]
+    io.savemat(tmp_path / "c.mat", {"data": cells, "run": many, "dt": 1e-4})
+    record = read_record(tmp_path / "c.mat")
+    assert record.names == ("data{1}", "data{2}", "run(1).x", "run(2).x")
+    assert record.rate == pytest.approx(10_000.0)
+    assert [c.values()[0] for c in record.channels] == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_a_velocity_has_acceleration_and_displacement() -> None:
+    t = np.arange(40_000) / 10_000.0
+    random = np.random.default_rng(1)
+    v = 5.0 * np.cos(2 * np.pi * 400 * t) + 2.0 * np.cos(2 * np.pi * 800 * t)
+    v += 0.05 * random.standard_normal(t.size)
+    found = measure(Record((Channel("v", v, "mm/s"),), "x", 10_000.0, "made"), teeth=20)
+    line = found.lines[0]
+    assert line.displacement == pytest.approx(5e-3 / (2 * np.pi * 400), rel=1e-3)
+    assert line.acceleration == pytest.approx(5e-3 * 2 * np.pi * 400, rel=1e-3)
+
+
+def test_no_model_is_preferred_where_all_are_far() -> None:
+    assert verdict([4.0, 2.5], ["a", "b"], 0.1).startswith("no preference")
+    assert verdict([4.0, 0.5], ["a", "b"], 0.1) == "b better"
