@@ -38,7 +38,7 @@ class Several:
     @property
     def change(self) -> Floats:
         """(reading - baseline)/baseline, (record, line)."""
-        return self.reading / self.reading[self.baseline] - 1.0
+        return np.asarray(self.reading / self.reading[self.baseline] - 1.0)
 
     @property
     def change_half_width(self) -> Floats:
@@ -46,7 +46,7 @@ class Several:
         base = self.reading[self.baseline]
         own = self.half_width / base
         ratio = self.reading / base * self.half_width[self.baseline] / base
-        return np.hypot(own, ratio)
+        return np.asarray(np.hypot(own, ratio))
 
     @property
     def beyond(self) -> NDArray[np.bool_]:
