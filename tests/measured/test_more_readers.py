@@ -86,5 +86,5 @@ def test_a_velocity_has_acceleration_and_displacement() -> None:
 
 
 def test_no_model_is_preferred_where_all_are_far() -> None:
-    assert verdict([4.0, 2.5], ["a", "b"], 0.1).startswith("no preference")
+    assert "better" not in verdict([4.0, 2.5], ["a", "b"], 0.1)
     assert verdict([4.0, 0.5], ["a", "b"], 0.1) == "b better"

@@ -109,7 +109,13 @@ def read_in_angle(
     """
     notices: list[Notice] = []
     table = through.table
-    shaft = given_shaft(record, table.shape[-1], through.start, pulses_per_turn, tacho)
+    shaft = given_shaft(
+        record,
+        samples=table.shape[-1],
+        start=through.start,
+        pulses_per_turn=pulses_per_turn,
+        tacho=tacho,
+    )
     if shaft is not None and shaft.turns.size == 0:
         notices += shaft.told
         shaft = None
@@ -298,7 +304,14 @@ def _sliced(
         kinds=tuple(
             kind_of(c.unit) if k and c.unit else "" for c, k in zip(chosen, known, strict=True)
         ),
-        map=order_map(maps, per_turn, turns, rate, unit, float(np.max(places))),
+        map=order_map(
+            maps,
+            turns=turns,
+            per_turn=per_turn,
+            rate=rate,
+            unit=unit,
+            highest=float(np.max(places)),
+        ),
     )
     if record.rate is not None:
         slices = replace(slices, resonances=resonances_of(slices))
@@ -448,7 +461,7 @@ def _lines(
             # neighbours share their samples and their bias: no root of their number
             relative = float(np.sqrt(np.mean(h[good] ** 2))) / max(size, 1e-300)
             omega = 2.0 * np.pi * slices.frequency[k]
-            own = quantities(a * slices.si[c], omega, slices.kinds[c])
+            own = quantities(a * slices.si[c], omega=omega, kind=slices.kinds[c])
             acc, disp = (float(np.sqrt(np.mean(q[good] ** 2))) for q in own)
             found.append(
                 MeasuredLine(
@@ -473,7 +486,7 @@ def _lines(
     return tuple(found)
 
 
-def quantities(amplitude: Floats, omega: Floats, kind: str) -> tuple[Floats, Floats]:
+def quantities(amplitude: Floats, *, omega: Floats, kind: str) -> tuple[Floats, Floats]:
     """Acceleration and displacement of lines of a known kind of quantity, else nan."""
     power = {"acceleration": 0, "velocity": 1, "displacement": 2}.get(kind)
     if power is None:

@@ -36,8 +36,8 @@ class Layout:
     units: list[str | None]
     skip: int
     rate: float | None = None
-    commented: bool = False
-    clocks: bool = False
+    commented: bool = field(default=False, kw_only=True)
+    clocks: bool = field(default=False, kw_only=True)
     notices: list[Notice] = field(default_factory=list)
 
 

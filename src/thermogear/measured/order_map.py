@@ -29,8 +29,9 @@ class OrderMap:
 
 def order_map(
     straight: list[Floats],
-    per_turn: int,
+    *,
     turns: Floats,
+    per_turn: int,
     rate: float,
     unit: float,
     highest: float,

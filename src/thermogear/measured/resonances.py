@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-_ABOVE = 1.4  # times the valleys beside it a peak must stand
+_ABOVE = 1.4  # times the valleys beside it a peak must be
 _SAME = 0.03  # peaks nearer than this, relative, are of one frequency, or of one speed
 _SHOULDER = 0.6  # of a peak: what is fitted
 
@@ -64,7 +64,7 @@ class _Peak:
 def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
     """Peaks of all orders and channels, sorted into resonances, speeds and single peaks.
 
-    A peak stands 1.4 times over the valleys on both sides, intervals counted off. Around it, down
+    A peak is 1.4 times the valleys on both sides, intervals counted off. Around it, down
     to 0.6 of its height, the shape of one mass on a spring is fitted:
 
         1/a^2 = c_2 f^4 + c_1 f^2 + c_0,  f_n^4 = c_0/c_2,  2 zeta^2 = 1 + c_1/(2 f_n^2 c_2),
@@ -195,12 +195,12 @@ def _shape(f: Floats, a: Floats, half: Floats) -> tuple[float, float, float]:
 
     place, damping = solved(inverse)
     # jackknife over the points: neighbours overlap, so that it is a floor of the error
-    left = [solved_without(matrix, inverse, sigma, i) * centre for i in range(f.size)]
+    left = [_solved_without(matrix, inverse, sigma, i) * centre for i in range(f.size)]
     spread = np.nanstd(np.asarray(left)) * np.sqrt(f.size - 1.0)
     return place, float(spread) if np.isfinite(spread) else float("nan"), damping
 
 
-def solved_without(matrix: Floats, values: Floats, sigma: Floats, gone: int) -> float:
+def _solved_without(matrix: Floats, values: Floats, sigma: Floats, gone: int) -> float:
     """Natural frequency over the peak's, one of the points left out; nan: no fit."""
     kept = np.arange(values.size) != gone
     scaled = matrix[kept] / sigma[kept, None]

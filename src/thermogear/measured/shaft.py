@@ -60,6 +60,7 @@ class Shaft:
 
 def given_shaft(
     record: Record,
+    *,
     samples: int,
     start: int,
     pulses_per_turn: float | None,
@@ -182,7 +183,7 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     """The shaft of a speed channel, its angle corrected by the phase of the clearest line.
 
     A speed is read with errors that add up over the turns. Where a line of a whole order (``teeth``
-    or what stands highest) can be followed by its own phase, that phase is the angle, and
+    or what is highest) can be followed by its own phase, that phase is the angle, and
     how far the speed channel reads off is told. A line within 2 % of a whole order is taken for
     that order.
     """
@@ -192,7 +193,7 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     best: tuple[float, Tracked] | None = None
     for order in orders:
         for channel in inside[: 2 if len(inside) > 1 else 1]:
-            found = track(channel, order * rough)
+            found = track(channel, cycles=order * rough)
             if found is not None and (best is None or found.sharp > best[1].sharp):
                 best = order, found
     before = _sharp_by(inside[0], rough)
@@ -231,7 +232,7 @@ def _sharp_by(values: Floats, turns: Floats) -> float:
 
 
 def _broad_orders(table: Floats, turns: Floats) -> list[float]:
-    """Orders around which the power stands highest, a per cent wide: three at most."""
+    """Orders around which the power is highest, a per cent wide: three at most."""
     per_turn = samples_per_turn(turns)
     spectrum = line_spectrum(
         resample_by_angle(table[0], turns, samples_per_turn=per_turn), float(per_turn)
@@ -257,7 +258,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
             continue
         cycles = path.cycles(table.shape[-1])
         for channel in loudest:
-            found = track(channel, cycles)
+            found = track(channel, cycles=cycles)
             if found is None or found.span < VARIES:
                 continue
             if found.sharp >= max(_SHARPER * found.blunt, _LEAST_SHARP) and (

@@ -23,7 +23,7 @@ def slice_groups(found: OrderSlices) -> dict[str, xr.Dataset]:
     """
     omega = 2.0 * np.pi * found.frequency
     si = found.reading * found.si[:, None, None]
-    moved = [quantities(a, omega, kind) for a, kind in zip(si, found.kinds, strict=True)]
+    moved = [quantities(a, omega=omega, kind=kind) for a, kind in zip(si, found.kinds, strict=True)]
     axes = ("channel", "slice", "step")
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = found.half_width / found.reading

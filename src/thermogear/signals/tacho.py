@@ -240,7 +240,7 @@ def speed_turns(
     ``rate`` [1/s] of the speed's samples, ``sample_rate`` [1/s] and ``samples`` of the record,
     whose first is at ``start`` [s] of the speed's time. Noise is taken away by a Hann kernel of a
     hundredth of the record, cut at its ends; then the speed is summed by trapezoids.
-    Raises InputError where the shaft stands still or turns back.
+    Raises InputError where the shaft is still or turns back.
 
     >>> found = speed_turns(np.full(100, 20.0), rate=100.0, samples=1000, sample_rate=1000.0)
     >>> round(float(found.turns[-1]), 3)

@@ -171,7 +171,7 @@ def _best(score: Floats) -> NDArray[np.int64]:
     return found
 
 
-def track(x: ArrayLike, cycles: ArrayLike) -> Tracked | None:
+def track(x: ArrayLike, *, cycles: ArrayLike) -> Tracked | None:
     """The line that turns about once per cycle of ``cycles``, followed by its phase in angle.
 
     ``x`` [any unit] one channel, ``cycles`` at each sample, rising: a first guess within a few
