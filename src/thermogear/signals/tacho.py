@@ -244,7 +244,7 @@ def speed_turns(
 
     >>> found = speed_turns(np.full(100, 20.0), rate=100.0, samples=1000, sample_rate=1000.0)
     >>> round(float(found.turns[-1]), 3)
-    19.78
+    19.8
     """
     values = finite_record(speed, "speed")
     length = max(3, values.size // 100 // 2 * 2 + 1)
