@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-branches trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-trains unit
+.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-branches trial-coverage trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-trains unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -134,6 +134,9 @@ trial-located: $(STAMP)  ## located bifurcations of random drive trains against 
 	@$(BIN)/python checks/trial_located.py
 trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways, 40 by another integration, an hour; TRAINS="--count 20" for a short one; docs/trial_trains.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -W ignore checks/trial_trains.py $(TRAINS)
+
+trial-coverage: $(STAMP)  ## do stated 95 % intervals of lines hold? 500 records a scenario, half an hour; docs/trial_coverage.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_coverage.py $(COVERAGE)
 
 trial-branches: $(STAMP)  ## random branches and run-ups against finer ones, ten minutes; docs/trial_branches.md
 	@$(BIN)/python checks/trial_branches.py

@@ -203,6 +203,12 @@ QUANTITIES: dict[str, Quantity] = {
     "line_acceleration": Quantity("m/s^2", "acceleration of a line (peak)", "a"),
     "line_displacement": Quantity("m", "displacement of a line (peak)", "x"),
     "line_uncertainty": Quantity("1", "relative standard uncertainty of a line", "u_D"),
+    "line_half_width": Quantity("1", "relative half width of the 95 % interval of a line", "U_D"),
+    "line_position_half_width": Quantity("1", "half width of the 95 % interval of f/f_s", ""),
+    "line_frequency_half_width": Quantity("Hz", "half width of the 95 % interval of f", "U(f)"),
+    "implied_shaft_speed_half_width": Quantity(
+        "rad/s", "half width of the 95 % interval of the first shaft's speed", "U(ω₁)"
+    ),
     "line_bin_offset": Quantity("1", "distance from the nearest bin's centre", ""),
     "line_prominence": Quantity("1", "amplitude over the floor beside", ""),
     "implied_shaft_speed": Quantity("rad/s", "speed of the first shaft", "ω₁"),

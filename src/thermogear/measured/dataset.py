@@ -75,6 +75,8 @@ def figures(found: Measurement) -> dict[str, Any]:
         "settings": found.settings,
         "teeth": found.teeth,
         "mesh_position": gearing.mesh_frequency if gearing else None,
+        "shaft_speed": plain(found.lines[0].shaft_speed) if found.lines else None,
+        "shaft_speed_half_width": plain(found.lines[0].speed_half_width) if found.lines else None,
         "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
         "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
         "evidence": list(gearing.evidence) if gearing else [],
@@ -92,9 +94,13 @@ def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:
         "line_acceleration": "acceleration",
         "line_displacement": "displacement",
         "line_uncertainty": "uncertainty",
+        "line_half_width": "half_width",
+        "line_position_half_width": "position_half_width",
+        "line_frequency_half_width": "frequency_half_width",
         "line_bin_offset": "bin_offset",
         "line_prominence": "prominence",
         "implied_shaft_speed": "shaft_speed",
+        "implied_shaft_speed_half_width": "speed_half_width",
     }
     values = {
         stored: (("line",), np.array([getattr(line, own) for line in lines], dtype=float))

@@ -90,19 +90,6 @@ def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Geari
     return _of_family(table, families[0])[1]
 
 
-def mesh_angle(channels: Sequence[Floats], mesh: float) -> tuple[Floats, int, float] | None:
-    """Mesh cycles at each sample from the line's phase, samples dropped at each end, and how far
-    [cycles, standard deviation] the phase wanders from a steady speed. None: it cannot be told.
-    """
-    found = _angle(np.stack([np.asarray(c, dtype=float) for c in channels]), mesh)
-    if found is None:
-        return None
-    cycles, dropped = found[:2]
-    place = np.arange(cycles.size)
-    steady = np.polyval(np.polyfit(place, cycles, 1), place)
-    return cycles, dropped, float(np.std(cycles - steady))
-
-
 @dataclass(frozen=True)
 class _Family:
     """A line and its harmonics: ``heights`` their log prominences, ``score`` the mean."""

@@ -8,14 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.units import STANDARD_GRAVITY
-from thermogear.measured.chain import Chain, Turning, reduced
+from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
+from thermogear.measured.turns import MeshTurns, sides_of
 from thermogear.measured.units import kind_of
-from thermogear.signals.lines import LineSpectrum, line_spectrum
+from thermogear.signals.interval import Reading, read_line, strong_lines
 from thermogear.signals.spectra import amplitude_spectrum
 
 Floats = NDArray[np.float64]
+
+_NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,9 +27,15 @@ class MeasuredLine:
 
     ``kind``: "mesh" (harmonic of the mesh line), "sideband", "second mesh" or "line". ``order``
     of the first shaft, ``position`` [cycles/sample], ``frequency`` [Hz]; ``reading`` peak
-    amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m];
-    ``uncertainty``: relative standard uncertainty u_D (noise, scatter between quarters of the
-    record, sensor); ``bin_offset`` [bins]; ``prominence`` over the floor beside.
+    amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m].
+
+    What is measured: the amplitude over the stretch, root of the mean square of the line's own
+    a(t) in Re[a(t) exp(i phase)], and the mean frequency, the line's turns over their time (rate
+    taken as exact). ``uncertainty``: relative standard uncertainty u_D of the amplitude from
+    noise, lines beside, what damage of the record may do (Student's t counted in) and the
+    sensor; ``half_width`` = 1.96 u_D, the 95 % interval's; ``frequency_half_width`` [Hz],
+    ``position_half_width`` [cycles/sample] and ``speed_half_width`` [rad/s] likewise.
+    ``bin_offset`` [bins]; ``prominence`` over the floor beside.
     """
 
     channel: str
@@ -42,6 +51,10 @@ class MeasuredLine:
     bin_offset: float
     prominence: float
     shaft_speed: float
+    half_width: float = float("nan")
+    position_half_width: float = float("nan")
+    frequency_half_width: float = float("nan")
+    speed_half_width: float = float("nan")
 
     @property
     def acceleration_g(self) -> float:
@@ -114,7 +127,7 @@ def channel_lines(
     chain: Chain,
     wanted: list[Wanted],
     sensor_tolerance: float | None,
-    turning: Turning | None,
+    turns: MeshTurns | None,
 ) -> list[MeasuredLine]:
     """The ``wanted`` lines of one channel, ``values`` (sample,) in the file's unit."""
     rate = record.rate or 1.0
@@ -123,21 +136,38 @@ def channel_lines(
     accelerates = known and channel.unit is not None and kind_of(channel.unit) == "acceleration"
     moves = known and channel.unit is not None and kind_of(channel.unit) == "displacement"
     through = reduced(
-        values * factor, rate, chain, accelerates and record.rate is not None, turning
+        values * factor,
+        rate,
+        chain,
+        accelerates and record.rate is not None,
+        turns.turning if turns else None,
     )
-    quarters = [
-        line_spectrum(part, through.spectrum.rate)
-        for part in np.array_split(through.acceleration, 4)
-    ]
+    strong = strong_lines(through.spectrum)
+    places = [want.position for want in wanted]
     found = []
+    in_hertz = record.rate is not None
+    shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
+    speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
+    share = turns.half_width / turns.frequency if turns else float("nan")
     for want in wanted:
         line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
-        scatter = _scatter(quarters, through.axis, line.frequency, want.half_width * rate)
-        parts = [line.amplitude_error / line.amplitude, scatter, sensor_tolerance or 0.0]
-        position = line.frequency / rate
-        shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
-        speed = 2 * np.pi * rate * shaft if record.rate is not None else float("nan")
-        in_hertz = record.rate is not None
+        beside = [p * rate / through.axis for p in (*places, *_sides(gearing, teeth, want))]
+        reading = read_line(
+            through.spectrum,
+            line.frequency / through.axis,
+            beside=beside,
+            strong=strong,
+            followed=turns.followed * rate / through.axis if turns else 0.0,
+        )
+        position = reading.frequency * through.axis / rate
+        amplitude, relative = _amplitude(reading, position, turns)
+        # the chain's displacement, read as the acceleration was
+        displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
+        own = reading.frequency_half_width * through.axis / rate
+        if turns is not None and turns.turning is not None:
+            own = float(np.hypot(own, share * position))
+        parts = [relative, _NORMAL * (sensor_tolerance or 0.0)]
+        half_width = float(np.sqrt(sum(p**2 for p in parts)))
         found.append(
             MeasuredLine(
                 channel=channel.name,
@@ -145,33 +175,42 @@ def channel_lines(
                 name=want.name,
                 order=position / shaft,
                 position=position,
-                frequency=line.frequency if in_hertz else float("nan"),
-                reading=line.amplitude / factor,
-                acceleration=line.amplitude if accelerates else float("nan"),
-                displacement=line.amplitude
+                frequency=position * rate if in_hertz else float("nan"),
+                reading=amplitude / factor,
+                acceleration=amplitude if accelerates else float("nan"),
+                displacement=amplitude
                 if moves
                 else displacement
                 if accelerates and in_hertz
                 else float("nan"),
-                uncertainty=float(np.sqrt(sum(p**2 for p in parts))),
+                uncertainty=half_width / _NORMAL,
                 bin_offset=line.bin_offset,
                 prominence=line.prominence,
                 shaft_speed=speed,
+                half_width=half_width,
+                position_half_width=own,
+                frequency_half_width=own * rate if in_hertz else float("nan"),
+                speed_half_width=share * speed,
             )
         )
     return found
 
 
-def _scatter(quarters: list[LineSpectrum], axis: float, frequency: float, reach: float) -> float:
-    """Relative standard error of the mean amplitude over four quarters of the record."""
-    amplitudes = []
-    for quarter in quarters:
-        width = max(reach / axis, quarter.bin_width)
-        low = max(1, int((frequency / axis - width) / quarter.bin_width))
-        high = min(quarter.hann.size, int((frequency / axis + width) / quarter.bin_width) + 2)
-        if low < high:
-            amplitudes.append(float(np.sqrt(np.sum(quarter.hann[low:high] ** 2))))
-    mean = float(np.mean(amplitudes)) if amplitudes else 0.0
-    if mean <= 0.0 or len(amplitudes) < 2:
-        return 0.0
-    return float(np.std(amplitudes, ddof=1) / mean / np.sqrt(len(amplitudes)))
+def _amplitude(reading: Reading, position: float, turns: MeshTurns | None) -> tuple[float, float]:
+    """Amplitude of a line and the relative half width of its 95 % interval.
+
+    Noise in the angle that a record was straightened by smears the line at rank k of the mesh by
+    up to (k phase noise)^2/2.
+    """
+    relative = reading.half_width / max(reading.amplitude, 1e-300)
+    if turns is not None and turns.turning is not None:
+        relative += 0.5 * (position / turns.frequency * turns.phase_noise) ** 2
+    return reading.amplitude, relative
+
+
+def _sides(gearing: Gearing | None, teeth: int | None, want: Wanted) -> tuple[float, ...]:
+    """Where the shafts' sidebands of the nearest mesh harmonic stand [cycles/sample]."""
+    if gearing is None:
+        return ()
+    rank = max(1, int(np.rint(want.position / gearing.mesh_frequency)))
+    return sides_of(gearing, teeth, rank, gearing.mesh_frequency)

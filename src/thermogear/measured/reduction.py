@@ -11,21 +11,19 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
-from thermogear.measured.chain import METHODS, Chain, Turning
-from thermogear.measured.gearing import Gearing, find_gearing, mesh_angle
+from thermogear.measured.chain import METHODS, Chain
+from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
-from thermogear.signals.orders import tacho_angle, tacho_times
+from thermogear.measured.turns import MeshTurns, mesh_turns
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
-
-_STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 
 _FACTORS = {
     10.0: "ten times too high",
@@ -115,14 +113,15 @@ def measure(
     start, table = _stretch(chosen, notices)
     gearing = _gearing(table, notices, _expected(record, teeth, speed))
     teeth = _teeth(gearing, teeth, notices)
-    turning = _turning(record, chosen, table, gearing, teeth, harmonics, pulses_per_turn, start)
-    if gearing is not None and turning is not None:
-        # in the resampled record the lines stand at multiples of this mean and nowhere else
-        gearing = replace(gearing, mesh_frequency=turning[0].mean)
+    turns: MeshTurns | None = None
+    if gearing is not None:
+        turns = mesh_turns(record, table, gearing, teeth, harmonics, pulses_per_turn, start)
+        # in a resampled record the lines stand at multiples of this mean and nowhere else
+        gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
         _check_rate(record, gearing, teeth, speed, notices)
-    if turning is not None:
-        notices.append(Notice("info", turning[1]))
+    if turns is not None and turns.said:
+        notices.append(Notice("info", turns.said))
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
@@ -137,7 +136,7 @@ def measure(
             wanted,
             wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
             sensor_tolerance,
-            turning[0] if turning else None,
+            turns,
         )
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
@@ -332,40 +331,4 @@ def _check_rate(
             f"teeth makes {60 * implied:.6g} rpm at {record.rate:g} samples/s, the speed given is "
             f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
         )
-    )
-
-
-def _turning(
-    record: Record,
-    chosen: list[Channel],
-    table: Floats,
-    gearing: Gearing | None,
-    teeth: int | None,
-    harmonics: int,
-    pulses_per_turn: float | None,
-    start: int,
-) -> tuple[Turning, str] | None:
-    """The angle to read lines in and how it was found; None where a steady speed will do."""
-    if gearing is None:
-        return None
-    per_cycle = int(2 ** np.ceil(np.log2(1.0 / gearing.mesh_frequency)))
-    if record.tacho is not None and pulses_per_turn and teeth and record.rate is not None:
-        pulses = record.channel(record.tacho).values(start, stop=start + table.shape[-1])
-        times = tacho_times(pulses, record.rate)
-        angle = teeth * tacho_angle(
-            times, pulses_per_turn, np.arange(table.shape[-1]) / record.rate
-        )
-        inside = np.flatnonzero(np.isfinite(angle))
-        turning = Turning(cycles=angle[inside], dropped=int(inside[0]), per_cycle=per_cycle)
-        return turning, f"lines are read in angle, by the tacho {record.tacho!r}"
-    found = mesh_angle(list(table), gearing.mesh_frequency)
-    if found is None:
-        return None
-    cycles, dropped, wander = found
-    if wander * harmonics <= _STEADY or cycles.size < 0.5 * table.shape[-1]:
-        return None
-    return (
-        Turning(cycles=cycles, dropped=dropped, per_cycle=per_cycle),
-        f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by that "
-        "phase",
     )

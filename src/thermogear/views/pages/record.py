@@ -114,15 +114,18 @@ def _lines(results: Result) -> Section | None:
         return None
     strongest = np.argsort(-data["line_prominence"].values)[:_SHOWN]
     unit = results.text("unit") or "file's"
-    head: list[Cell] = ["channel", "line", "order", "cycles/sample", "f [Hz]", f"reading [{unit}]"]
-    head += ["a [g]", "x [µm]", html_symbol("u_D [%]"), "over floor", "off bin"]
+    head: list[Cell] = ["channel", "line", "order", "cycles/sample", "f [Hz]", "± [Hz]"]
+    head += [f"reading [{unit}]", "a [g]", "x [µm]", html_symbol("u_D [%]"), "± [%]"]
+    head += ["over floor", "off bin"]
     rows: list[list[str | Markup]] = []
     for place in np.sort(strongest):
         one = data.isel(line=int(place))
 
-        def value(name: str, factor: float = 1.0, one: xr.Dataset = one) -> str:
+        def value(name: str, factor: float = 1.0, *, digits: int = 4, one: xr.Dataset = one) -> str:
+            if name not in one:  # stored by an older version
+                return "–"
             found = float(one[name]) * factor
-            return number(found, 4) if np.isfinite(found) else "–"
+            return number(found, digits) if np.isfinite(found) else "–"
 
         rows.append(
             [
@@ -130,17 +133,21 @@ def _lines(results: Result) -> Section | None:
                 str(one["name"].values),
                 f"{float(one['line_order']):.3f}" if np.isfinite(float(one["line_order"])) else "–",
                 f"{float(one['line_position']):.6f}",
-                value("line_frequency"),
+                value("line_frequency", digits=8),
+                value("line_frequency_half_width", digits=2),
                 value("line_reading"),
                 value("line_acceleration", 1 / STANDARD_GRAVITY),
                 value("line_displacement", 1e6),
                 value("line_uncertainty", 100.0),
+                value("line_half_width", 100.0, digits=3),
                 value("line_prominence"),
                 value("line_bin_offset"),
             ]
         )
     caption = prose(
-        "Peak amplitudes; u_D: relative standard uncertainty. – : the record does not tell."
+        "Peak amplitudes over the record (root mean square of a line's own amplitude); u_D: "
+        "relative standard uncertainty; ±: half width of the 95 % interval. – : the record does "
+        "not tell."
     )
     return Section("lines", "Lines", [Table(caption, head, rows, names=2)])
 

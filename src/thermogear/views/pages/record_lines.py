@@ -15,8 +15,12 @@ def measured(result: Result) -> list[str]:
     told = [f"{one.level}: {one.text}" for one in result.notices]
     told += [f"evidence: {text}" for text in found["evidence"]]
     told += [f"{name}: {value}" for name, value in found["settings"].items()]
-    head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'reading':>10}"
-    told.append(f"{head} {'g':>9} {'um':>9} {'u_D %':>7}")
+    if found.get("shaft_speed") is not None:
+        speed, half = found["shaft_speed"] / RPM, found["shaft_speed_half_width"]
+        around = f" +- {half / RPM:.3g} rpm (95 %)" if half is not None else ""
+        told.append(f"shaft speed: {speed:.8g} rpm{around}")
+    head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'+- Hz':>9}"
+    told.append(f"{head} {'reading':>10} {'g':>9} {'um':>9} {'u_D %':>7} {'+- %':>7}")
     return told + [_line(one) for one in found["lines"]]
 
 
@@ -24,8 +28,10 @@ def _line(one: Mapping[str, Any]) -> str:
     return (
         f"{one['channel'][:12]:12} {one['name'][:22]:22} {_cell(one['order'], 9, 3)} "
         f"{_cell(one['position'], 11, 6)} {_cell(one['frequency'], 10, 3)} "
+        f"{_cell(one['frequency_half_width'], 9, 5)} "
         f"{_cell(one['reading'], 10, 4)} {_cell(one['acceleration'], 9, 3, 1 / STANDARD_GRAVITY)} "
-        f"{_cell(one['displacement'], 9, 3, 1e6)} {_cell(one['uncertainty'], 7, 2, 100.0)}"
+        f"{_cell(one['displacement'], 9, 3, 1e6)} {_cell(one['uncertainty'], 7, 2, 100.0)} "
+        f"{_cell(one['half_width'], 7, 2, 100.0)}"
     )
 
 

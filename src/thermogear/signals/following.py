@@ -1,0 +1,229 @@
+"""The turns of a line whose frequency wanders, over the whole record, and their mean rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import interpolate, signal
+
+from thermogear.base.errors import InputError
+from thermogear.signals.interval import student
+from thermogear.signals.lines import LineSpectrum
+from thermogear.signals.spectra import finite_record, positive_rate
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+WIDTHS = (0.006, 0.012, 0.025, 0.05)
+"""Half widths of the filter over a line, relative to its frequency, the narrowest first."""
+
+_GAIN = 1.1  # a wider filter must bring a tenth more power
+_FINER = 32  # samples of the envelope in a kernel
+_PASSES = 3
+_CUTS = 8
+_PIECE = 4  # kernels on one side of a cut
+
+
+@dataclass(frozen=True, kw_only=True)
+class Followed:
+    """``cycles`` of a line at each sample, 0 at none; ``frequency``: its turns over the record's
+    length, with standard error and ``degrees`` of freedom; ``half_width`` of the filter that caught
+    it and ``last`` of the one that followed it; ``whole``: whether the line stayed in the first.
+    Units of the rate."""
+
+    cycles: Floats
+    frequency: float
+    frequency_error: float
+    degrees: float
+    half_width: float
+    last: float
+    whole: bool
+
+    @property
+    def frequency_half_width(self) -> float:
+        """Half width of the frequency's 95 % interval."""
+        return student(self.degrees) * self.frequency_error
+
+
+def band_power(spectrum: LineSpectrum, frequency: float, half_width: float) -> float:
+    """Sum of squared amplitudes within ``frequency`` +- ``half_width``, less the noise beside.
+
+    The noise is the median beyond, up to twice ``half_width`` or 60 bins.
+    """
+    width = spectrum.bin_width
+    power = np.abs(spectrum.lines) ** 2
+    low, high = _bins(spectrum, frequency, half_width)
+    more = max(half_width, 60.0 * width)
+    first, last = _bins(spectrum, frequency, half_width + more)
+    beside = np.concatenate([power[first:low], power[high:last]])
+    floor = float(np.median(beside)) / float(np.log(2.0)) if beside.size else 0.0
+    return max(0.0, float(np.sum(power[low:high])) - floor * (high - low))
+
+
+def _bins(spectrum: LineSpectrum, frequency: float, half_width: float) -> tuple[int, int]:
+    width = spectrum.bin_width
+    low = max(1, int(np.floor((frequency - half_width) / width)))
+    return low, min(spectrum.lines.size, int(np.ceil((frequency + half_width) / width)) + 1)
+
+
+def filter_widths(
+    spectrum: LineSpectrum, frequency: float, widths: Sequence[float] = WIDTHS
+) -> tuple[float, ...]:
+    """Half widths to try on a wandering line, the narrowest that may hold it first.
+
+    Twelve bins at least; a wider one than the first brings less than a tenth more power. None where
+    twelve bins are more than a fifth of ``frequency``.
+    """
+    least = 12.0 * spectrum.bin_width
+    if least > 0.2 * frequency:
+        return ()
+    steps = [*dict.fromkeys(max(least, w * frequency) for w in widths)]
+    powers = [band_power(spectrum, frequency, one) for one in steps]
+    first = next(i for i in range(len(steps)) if max(powers[i:]) <= _GAIN * powers[i])
+    return tuple(steps[first:])
+
+
+def follow_line(x: ArrayLike, rate: float, *, frequency: float, half_width: float) -> Followed:
+    """The phase of the line near ``frequency`` in a filter of +-``half_width``, unwrapped.
+
+    The record, shifted by -``frequency``, is smoothed by a Hann kernel of 2/half_width, which is
+    cut at the record's ends, where nothing is dropped; the phase found is taken away and what is
+    left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
+    caught a filter of half the width follows it (not narrower than the first of WIDTHS).
+    The mean frequency is (cycles at the last sample - cycles at the first)/(time between). Its
+    error is seen where the record is cut inside: phase at the cut from one side against both.
+
+    ``x`` [any unit] one channel; ``rate``, ``frequency`` and ``half_width`` in one unit. Range: the
+    line outweighs the noise within the filter, and no line of half its height stands there; where
+    the envelope all but vanishes, ``whole`` is False. Raises InputError for a filter that the
+    record is too short for.
+
+    >>> x = np.cos(2 * np.pi * 0.1 * np.arange(2000))
+    >>> f"{follow_line(x, 1.0, frequency=0.101, half_width=0.01).frequency:.6f}"
+    '0.100000'
+    """
+    values, per_second = finite_record(x), positive_rate(rate)
+    count = values.size
+    if not 0 < half_width <= frequency < 0.5 * per_second:
+        raise InputError("half_width", half_width, allowed=f"0..{frequency:g}")
+    length = 2.0 * per_second / half_width  # of the kernel, samples
+    if count < 2.0 * length:
+        least = 4.0 * per_second / count
+        raise InputError("half_width", half_width, allowed=f"above {least:.3g} for {count} samples")
+    last = min(length * 2.0, max(length, 2.0 / (WIDTHS[0] * frequency) * per_second))
+    cycles, whole = _path(values, frequency / per_second, length, last=last)
+    errors = _cut_errors(values, cycles, frequency / per_second, length, last)
+    # what the path from both sides misses is in neither: counted as large again
+    edge = float(np.sqrt(2.0 * np.mean(errors**2))) if errors.size else 0.5
+    edge = edge if whole else max(edge, 0.5)  # a turn may be lost
+    return Followed(
+        cycles=cycles,
+        frequency=float(cycles[-1] - cycles[0]) / (count - 1) * per_second,
+        frequency_error=float(np.sqrt(2.0)) * edge / (count - 1) * per_second,
+        degrees=float(max(errors.size // 2, 1)),
+        half_width=half_width,
+        last=half_width * length / last,
+        whole=whole,
+    )
+
+
+def best_followed(x: ArrayLike, spectrum: LineSpectrum, frequency: float) -> Followed | None:
+    """``follow_line`` by the filter that leaves the smallest error; None: the record is too short.
+
+    ``spectrum``: that of ``x``. A filter too narrow loses the wander, one too wide lets noise in.
+    """
+    best: Followed | None = None
+    for half_width in filter_widths(spectrum, frequency):
+        if spectrum.samples * half_width < 4.0 * spectrum.rate:
+            continue
+        found = follow_line(x, spectrum.rate, frequency=frequency, half_width=half_width)
+        if abs(found.frequency - frequency) > 0.2 * half_width and (
+            half_width <= found.frequency < 0.45 * spectrum.rate
+        ):
+            found = follow_line(x, spectrum.rate, frequency=found.frequency, half_width=half_width)
+        if best is not None and best.whole and found.frequency_error >= best.frequency_error:
+            break
+        best = found
+    return best
+
+
+def _hann_kernel(length: float) -> Floats:
+    odd = max(3, int(np.ceil(length)) // 2 * 2 + 1)
+    return np.asarray(np.hanning(odd + 2)[1:-1])
+
+
+def _envelope(values: Floats, cycles: Floats, length: float) -> tuple[Complexes, NDArray[np.int64]]:
+    """The record turned back by ``cycles``, behind a filter four times wider than the kernel, and
+    which samples of it are kept."""
+    count = values.size
+    kernel = _hann_kernel(length / 4.0)
+    turn = np.exp(-2j * np.pi * cycles)
+    weight = signal.oaconvolve(np.ones(count), kernel, mode="same")
+    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="same") / weight
+    size = max(64, int(np.ceil(count / length * _FINER)))
+    place = np.unique(np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64))
+    return base[place], place
+
+
+def _smoothed(envelope: Complexes, kernel: Floats, passes: int) -> tuple[Floats, Floats]:
+    """Unwrapped phase of the smoothed envelope [rad], and the envelope's size at first."""
+    weight = signal.oaconvolve(np.ones(envelope.size), kernel, mode="same")
+    phase = np.zeros(envelope.size)
+    size = np.zeros(0)
+    for _ in range(passes):
+        turned = envelope * np.exp(-1j * phase)
+        base = signal.oaconvolve(turned, kernel, mode="same") / weight
+        phase = phase + np.unwrap(np.angle(base))
+        size = np.abs(base) if size.size == 0 else size
+    return np.asarray(phase), size
+
+
+def _path(values: Floats, frequency: float, length: float, *, last: float) -> tuple[Floats, bool]:
+    """Cycles of the line at each sample, and whether it stayed within the filter.
+
+    Caught by a kernel of ``length``, then followed by the longer ``last``, which the line no longer
+    leaves and which lets less of other lines in.
+    """
+    grid = np.arange(values.size)
+    cycles = np.asarray(frequency * grid, float)
+    whole = True
+    for kernel_length, passes in ((length, 1), (last, _PASSES)):
+        # the envelope's own filter has cut kernels at the ends as well, so it is made twice
+        envelope, place = _envelope(values, cycles, kernel_length)
+        kernel = _hann_kernel(kernel_length * (place.size - 1) / (values.size - 1))
+        phase, size = _smoothed(envelope, kernel, passes)
+        if passes == 1:
+            whole = bool(np.min(size) > 0.5 * np.median(size))
+            phase = _quiet(phase, _hann_kernel(kernel.size * last / length))
+        cycles = cycles + interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
+    return cycles, whole
+
+
+def _quiet(phase: Floats, kernel: Floats) -> Floats:
+    """The phase, its straight line kept, smoothed by a kernel that is cut at the ends."""
+    grid = np.arange(phase.size)
+    line = np.polyval(np.polyfit(grid, phase, 1), grid)
+    weight = signal.oaconvolve(np.ones(phase.size), kernel, mode="same")
+    return np.asarray(line + signal.oaconvolve(phase - line, kernel, mode="same") / weight)
+
+
+def _cut_errors(
+    values: Floats, cycles: Floats, frequency: float, length: float, last: float
+) -> Floats:
+    """Cycles at cuts inside, from one side of the record less those from both, without turns."""
+    found = []
+    piece = int(np.ceil(_PIECE * last))
+    for number in range(1, _CUTS):
+        cut = values.size * number // _CUTS
+        for part in (slice(max(0, cut - piece), cut), slice(cut, cut + piece)):
+            own = values[part]
+            if own.size < 2.0 * last:
+                continue
+            path, _ = _path(own, frequency, length, last=last)
+            at = -1 if part.stop == cut else 0
+            found.append(float(path[at] - cycles[cut + min(at, 0)]))
+    errors = np.asarray(found, dtype=float)
+    return np.asarray(errors - np.rint(errors))

@@ -1,0 +1,427 @@
+"""A line's amplitude and frequency over a stretch of record, with intervals that hold 95 %.
+
+The flat top and the Hann window see the middle of a record and little of its ends. Here a line is
+fitted by least squares over the whole stretch, and what is left beside it tells apart noise,
+a changing amplitude and a changing phase:
+
+    x(t) = Re[(a(t) exp(i theta(t))) exp(2 pi i f t)] + other lines + noise.
+
+Left over at m bins beside the line, R_m and R_-m, turned by the line's own phase, make
+
+    I_m = (R_m + conj R_-m)/sqrt 2,    Q_m = (R_m - conj R_-m)/sqrt 2;
+
+a changing amplitude fills I, a changing phase Q, noise both alike. So the quieter is the noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from thermogear.signals.lines import LineSpectrum, floor_around, hann_offset
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+REACH = 40
+"""Bins on each side of a line from which its noise is judged."""
+
+_NEAR = 6  # bins on each side in which a neighbour is looked for
+_APART = 0.75  # bins: two lines nearer than this are one that changes
+_CLEARLY = 2.5
+_CLEAN = 60  # strong lines of a spectrum whose leakage is taken away
+_LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """One line over the whole stretch.
+
+    ``amplitude``: root of the mean square of a(t), the peak amplitude of a steady line of the same
+    power; ``frequency`` (unit of the rate): where the line stands, the mean of a steady phase;
+    ``amplitude_error`` and ``frequency_error``: standard; ``degrees`` of freedom behind them;
+    ``half_width`` and ``frequency_half_width``: of the 95 % interval, Student's t. ``changing`` and
+    ``turning``: rms of the amplitude's change (relative) and of the phase's [rad] beyond noise;
+    ``neighbours``: frequencies of lines fitted beside it and ``beside`` the sum of their squared
+    amplitudes; ``noise``: rms amplitude that noise
+    brings to one bin; ``explained`` is False where more is left over than noise and a changing
+    amplitude or phase can be.
+    """
+
+    amplitude: float
+    frequency: float
+    amplitude_error: float
+    frequency_error: float
+    degrees: float
+    changing: float
+    turning: float
+    neighbours: tuple[float, ...]
+    beside: float
+    noise: float
+    explained: bool
+
+    @property
+    def half_width(self) -> float:
+        """Half width of the amplitude's 95 % interval, in the amplitude's unit."""
+        return student(self.degrees) * self.amplitude_error
+
+    @property
+    def frequency_half_width(self) -> float:
+        """Half width of the frequency's 95 % interval, in the frequency's unit."""
+        return student(self.degrees) * self.frequency_error
+
+
+def student(degrees: float) -> float:
+    """Student's t that bounds 95 % on both sides.
+
+    >>> f"{student(10.0):.3f}"
+    '2.228'
+    """
+    return float(stats.t.ppf(0.975, max(degrees, 1.0)))
+
+
+@dataclass(frozen=True)
+class Strong:
+    """A line whose leakage is taken away: ``place`` [bins], complex peak ``amplitude``."""
+
+    place: float
+    amplitude: complex
+
+
+def dirichlet(offset: Floats, samples: int) -> Complexes:
+    """What a line of amplitude 1 shows ``offset`` bins below it, no window, N ``samples``.
+
+    D(u) = (1/N) sum_n exp(2 pi i u n/N) = exp(i pi u (N-1)/N) sin(pi u)/(N sin(pi u/N)).
+
+    >>> np.abs(dirichlet(np.array([0.0, 0.5, 1.0]), 1000)).round(3)
+    array([1.   , 0.637, 0.   ])
+    """
+    u = np.asarray(offset, dtype=float)
+    low = samples * np.sin(np.pi * u / samples)
+    near = np.abs(low) < 1e-9
+    size = np.where(near, 1.0, np.sin(np.pi * u) / np.where(near, 1.0, low))
+    return np.asarray(np.exp(1j * np.pi * u * (samples - 1) / samples) * size)
+
+
+def strong_lines(spectrum: LineSpectrum, most: int = _CLEAN) -> tuple[Strong, ...]:
+    """The strongest lines, four bins or more apart, each six times over its floor (Hann window).
+
+    Each is taken away with its skirts before the next is looked for.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> from thermogear.signals.lines import line_spectrum
+    >>> x = np.cos(2 * np.pi * 50.3 * t) + 0.1 * np.cos(2 * np.pi * 80 * t)
+    >>> [f"{one.place:.1f}" for one in strong_lines(line_spectrum(x, 1000.0), 2)]
+    ['50.3', '80.0']
+    """
+    left = spectrum.windowed("hann").copy()
+    size, count = np.abs(left), left.size
+    open_to = np.ones(count, dtype=bool)
+    open_to[:3] = open_to[-3:] = False
+    found: list[Strong] = []
+    for _ in range(3 * most):
+        if len(found) == most or not np.any(open_to):
+            break
+        peak = int(np.argmax(np.where(open_to, size, 0.0)))
+        if size[peak] <= 6.0 * floor_around(size, peak, lobe=4) or size[peak] <= 0.0:
+            break
+        offset = hann_offset(size[peak - 1 : peak + 2])
+        value = complex(left[peak]) / complex(_hann(np.array([offset]), spectrum.samples)[0])
+        low, high = max(0, peak - 60), min(count, peak + 61)
+        bins = np.arange(low, high, dtype=np.float64)
+        left[low:high] -= value * _hann((peak + offset) - bins, spectrum.samples)
+        size[low:high] = np.abs(left[low:high])
+        open_to[max(0, peak - 3) : peak + 4] = False
+        found.append(Strong(peak + offset, value))
+    return tuple(found)
+
+
+def _hann(offset: Floats, samples: int) -> Complexes:
+    """What a line of amplitude 1 shows ``offset`` bins below it through the Hann window."""
+    sides = dirichlet(offset - 1.0, samples) + dirichlet(offset + 1.0, samples)
+    return np.asarray(dirichlet(offset, samples) - 0.5 * sides)
+
+
+def read_line(
+    spectrum: LineSpectrum,
+    frequency: float,
+    *,
+    beside: Sequence[float] = (),
+    strong: Sequence[Strong] = (),
+    followed: float = 0.0,
+) -> Reading:
+    """The line near ``frequency`` over the whole stretch, with errors.
+
+    ``frequency`` (unit of the rate) good to half a bin; ``beside``: frequencies at which other
+    lines are known to stand; ``strong``: ``strong_lines`` of the same spectrum, whose leakage is
+    taken away; ``followed``: half width (unit of the rate) within which the record has been
+    straightened by this line's own phase, so that the phase tells nothing of the noise there.
+
+    Amplitude, frequency and known neighbours are fitted together (Gauss-Newton) to REACH bins on
+    each side, the line's image below 0 Hz included. A further line is fitted where it takes
+    three quarters of what is left with it: a changing amplitude or phase is even about the line
+    and is not taken for one. Errors: the fit's covariance with the noise of I or Q, the quieter;
+    what is in both and no line explains comes on top, as the largest leakage it can have.
+
+    Range: the interval of the frequency holds for the mean phase slope of a phase that wanders
+    less than a radian. Amplitude: noise with no line of its own in the bins beside.
+    """
+    fit = _Fit.of(spectrum, frequency, beside, strong)
+    fit = fit.refined()
+    left = fit.left(followed)
+    for _ in range(3):
+        longer = fit.with_neighbour(left)
+        if longer is None:
+            break
+        tried = longer.left(followed)
+        if tried.near > 0.25 * left.near + 11.0 * tried.noise:
+            break
+        fit, left = longer, tried
+    return fit.reading(left)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Left:
+    """What the fit leaves beside the line, m = 1.. bins off: powers of I and Q, of each side."""
+
+    even: Floats
+    odd: Floats
+    noise: float  # power in one bin
+    degrees: float
+    places: Floats  # of the finer grid on which a neighbour is looked for [bins from the line]
+    finer: Floats  # power there
+
+    @property
+    def near(self) -> float:
+        """Power beyond noise within the bins in which a neighbour is looked for."""
+        reach = min(_NEAR, self.even.size)
+        total = np.sum(self.even[:reach]) + np.sum(self.odd[:reach])
+        return float(max(total - 2 * reach * self.noise, 0.0))
+
+    @property
+    def shared(self) -> float:
+        """Power near the line that I and Q have in the same bins, as a further line's would be."""
+        quiet = np.minimum(self.even, self.odd)[:_NEAR] - 4.0 * self.noise
+        return float(2.0 * np.sum(np.maximum(quiet, 0.0)))
+
+    def beyond(self, which: Floats) -> float:
+        """Power of I or Q beyond noise, 0 where it is within four of its standard deviations."""
+        extra = float(np.sum(which) - which.size * self.noise)
+        return extra if extra > 4.0 * self.noise * np.sqrt(which.size) else 0.0
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Lines at ``places`` [bins], the first the one that is read; ``free`` may move."""
+
+    spectrum: LineSpectrum
+    bins: Floats
+    data: Complexes
+    places: Floats
+    free: NDArray[np.bool_]
+    amplitudes: Complexes
+
+    @classmethod
+    def of(
+        cls,
+        spectrum: LineSpectrum,
+        frequency: float,
+        beside: Sequence[float],
+        strong: Sequence[Strong],
+    ) -> _Fit:
+        count, width = spectrum.samples, spectrum.bin_width
+        place = frequency / width
+        centre = int(np.rint(place))
+        low, high = max(1, centre - REACH), min((count - 1) // 2, centre + REACH)
+        bins = np.arange(low, high + 1, dtype=float)
+        known = [
+            one / width
+            for one in beside
+            if 1.2 < abs(one / width - place) < REACH and one / width > 1
+        ]
+        data = spectrum.lines[low : high + 1].copy()
+        for one in strong:
+            if abs(one.place - place) < _APART or any(abs(one.place - k) < 2.0 for k in known):
+                continue
+            if abs(one.place - place) < 4.0:
+                continue  # too near to be told apart by the Hann window
+            data -= one.amplitude * dirichlet(one.place - bins, count)
+            data -= np.conj(one.amplitude) * dirichlet(-one.place - bins, count)
+        places = np.array([place, *known])
+        free = np.zeros(places.size, dtype=bool)
+        free[0] = True
+        return cls(spectrum, bins, data, places, free, np.zeros(places.size, complex))._solved()
+
+    def _columns(self, places: Floats) -> tuple[Complexes, Complexes]:
+        """Of each place the bins of its cosine and of its sine: (bin, place)."""
+        up = dirichlet(places[None, :] - self.bins[:, None], self.spectrum.samples)
+        down = dirichlet(-places[None, :] - self.bins[:, None], self.spectrum.samples)
+        return up + down, 1j * (up - down)
+
+    def _matrix(self, slopes: bool) -> Floats:
+        """Real matrix of the linear problem: cosines, sines, and slopes of the free places."""
+        even, odd = self._columns(self.places)
+        columns = [even, odd]
+        if slopes:
+            step = 1e-4
+            above, below = self._columns(self.places + step), self._columns(self.places - step)
+            a = self.amplitudes
+            moved = (above[0] - below[0]) * a.real + (above[1] - below[1]) * a.imag
+            columns.append((moved / (2.0 * step))[:, self.free])
+        whole = np.concatenate(columns, axis=1)
+        return np.concatenate([whole.real, whole.imag])
+
+    def _model(self) -> Complexes:
+        even, odd = self._columns(self.places)
+        return np.asarray(even @ self.amplitudes.real + odd @ self.amplitudes.imag)
+
+    def _solved(self) -> _Fit:
+        matrix = self._matrix(False)
+        found = np.linalg.lstsq(matrix, np.concatenate([self.data.real, self.data.imag]))[0]
+        count = self.places.size
+        return replace(self, amplitudes=found[:count] + 1j * found[count : 2 * count])
+
+    def refined(self) -> _Fit:
+        """Amplitudes and free places by Gauss-Newton."""
+        fit = self
+        for _ in range(12):
+            error = fit.data - fit._model()
+            found = np.linalg.lstsq(
+                fit._matrix(True), np.concatenate([error.real, error.imag]), rcond=1e-9
+            )[0]
+            move = np.clip(found[2 * fit.places.size :], -0.3, 0.3)
+            places = fit.places.copy()
+            places[fit.free] += move
+            fit = replace(fit, places=places)._solved()
+            if np.max(np.abs(move)) < 1e-7:
+                break
+        return fit
+
+    def left(self, followed: float) -> _Left:
+        """What is left beside the line, turned by its phase."""
+        error = self.data - self._model()
+        place, phase = float(self.places[0]), np.exp(-1j * np.angle(self.amplitudes[0]))
+        reach = int(max(1, min(place - self.bins[0], self.bins[-1] - place)))
+        steps = np.arange(1, reach + 1, dtype=float)
+
+        def seen(at: Floats) -> Complexes:
+            shapes = dirichlet(place + at[:, None] - self.bins[None, :], self.spectrum.samples)
+            return np.asarray((np.conj(shapes) @ error) * phase)
+
+        above, below = seen(steps), np.conj(seen(-steps))
+        even, odd = np.abs(above + below) ** 2 / 2.0, np.abs(above - below) ** 2 / 2.0
+        noise, degrees = _noise(even, odd, followed / self.spectrum.bin_width)
+        fine = np.arange(-_NEAR, _NEAR + 0.01, 0.125)
+        fine = fine[np.abs(fine) >= _APART]
+        fine = fine[(place + fine > self.bins[0]) & (place + fine < self.bins[-1])]
+        return _Left(
+            even=even,
+            odd=odd,
+            noise=noise,
+            degrees=degrees,
+            places=fine,
+            finer=np.abs(seen(fine)) ** 2,
+        )
+
+    def with_neighbour(self, left: _Left) -> _Fit | None:
+        """The fit with a further line at the highest of what is left, where that is no noise.
+
+        None also where the lines of the fit run into each other.
+        """
+        if left.places.size == 0:
+            return None
+        top = int(np.argmax(left.finer))
+        if left.finer[top] < 12.0 * left.noise:
+            return None
+        fit = replace(
+            self,
+            places=np.append(self.places, self.places[0] + left.places[top]),
+            free=np.append(self.free, True),
+            amplitudes=np.append(self.amplitudes, 0.0),
+        )
+        fit = fit._solved().refined()
+        apart = np.abs(fit.places[1:] - fit.places[0])
+        moved = abs(fit.places[0] - self.places[0])
+        if np.any(apart < _APART) or np.any(apart > REACH) or moved > 0.5:
+            return None
+        return fit
+
+    def reading(self, left: _Left) -> Reading:
+        """Amplitude and frequency with their errors."""
+        matrix, width = self._matrix(True), self.spectrum.bin_width
+        count = self.places.size
+        spread = np.linalg.pinv(matrix.T @ matrix, rcond=1e-12) * (0.5 * left.noise)
+        own = self.amplitudes[0]
+        size = abs(own)
+        way = np.zeros(matrix.shape[1])
+        if size > 0.0:
+            way[0], way[count] = own.real / size, own.imag / size
+        changed, turned = left.beyond(left.even), left.beyond(left.odd)
+        # mean square of a(t): that of the mean, of the change, less what noise brings to both
+        square = size**2 - float(spread[0, 0] + spread[count, count]) + turned
+        square += float(np.sum(left.even)) - left.even.size * left.noise
+        amplitude = float(np.sqrt(square)) if square > left.noise else size
+        hidden_power = left.shared if changed and turned else 0.0
+        both = _LEAK**2 * hidden_power
+        variance = float(way @ spread @ way) * max(1.0, (size / amplitude) ** 2) + both
+        # noise in the bins of the change
+        variance += 0.25 * left.even.size * left.noise**2 / max(amplitude, 1e-300) ** 2
+        hidden = size**2 <= 12.0 * left.noise  # a peak of noise stands as high
+        if hidden:
+            variance += left.noise
+        phase = turned / max(size, 1e-300) ** 2
+        wander = 0.25 * phase + both / max(size, 1e-300) ** 2
+        return Reading(
+            amplitude=amplitude,
+            frequency=float(self.places[0]) * width,
+            amplitude_error=float(np.sqrt(variance)),
+            frequency_error=float(np.sqrt(spread[2 * count, 2 * count] + wander)) * width,
+            degrees=left.degrees,
+            changing=float(np.sqrt(changed) / max(size, 1e-300)),
+            turning=float(np.sqrt(phase)),
+            neighbours=tuple(
+                float(p) * width
+                for p, free in zip(self.places[1:], self.free[1:], strict=True)
+                if free
+            ),
+            beside=float(np.sum(np.abs(self.amplitudes[1:][self.free[1:]]) ** 2)),
+            noise=float(np.sqrt(left.noise)),
+            explained=hidden_power == 0.0,
+        )
+
+
+def _noise(even: Floats, odd: Floats, followed: float) -> tuple[float, float]:
+    """Power of noise in one bin and the degrees of freedom behind it, from powers of I and Q.
+
+    Medians over bins, so that single lines count little: ln 2 of the mean where it is noise. Q of
+    bins nearer than ``followed`` has been taken away with the phase. Both together, unless one is
+    2.5 times the other: then the quieter, because a change fills one alone; likewise the outer
+    half of its bins, because a change fills the inner ones first.
+    """
+    first = 1 if even.size > 3 else 0  # the fitted place takes part of the first
+    one, two = even[first:], odd[max(first, int(np.ceil(followed))) :]
+    if two.size < 4:
+        return _outer(one)
+    if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
+        return min(_outer(one), _outer(two))
+    joined = np.concatenate([one, two])
+    far = np.concatenate([one[one.size // 2 :], two[two.size // 2 :]])
+    if far.size >= 16 and _median(joined) > 2.0 * _median(far):
+        joined = far
+    return _median(joined), float(joined.size)
+
+
+def _outer(powers: Floats) -> tuple[float, float]:
+    """Noise from all bins or, where it is clearly less, from the outer half; degrees of freedom."""
+    outer = powers[powers.size // 2 :]
+    if outer.size >= 8 and _median(powers) > _CLEARLY * _median(outer):
+        return _median(outer), float(outer.size)
+    return _median(powers), float(powers.size)
+
+
+def _median(powers: Floats) -> float:
+    return float(max(np.median(powers) / np.log(2.0), 1e-300)) if powers.size else 1e-300

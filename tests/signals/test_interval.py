@@ -1,0 +1,96 @@
+"""Lines over the whole stretch: against least squares in time, closed forms, many records."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from conftest import Compared
+from thermogear.base.errors import InputError
+from thermogear.signals.following import best_followed, follow_line
+from thermogear.signals.interval import Reading, dirichlet, read_line, student
+from thermogear.signals.lines import line_spectrum
+
+RATE = 1000.0
+
+
+def reading(x: NDArray[np.float64], near: float) -> Reading:
+    return read_line(line_spectrum(x, RATE), near)
+
+
+def test_the_kernel_is_the_sum_it_stands_for() -> None:
+    u, count = np.array([-3.2, 0.0, 0.4, 17.9]), 64
+    n = np.arange(count)
+    summed = np.exp(2j * np.pi * np.outer(u, n) / count).mean(axis=-1)
+    np.testing.assert_allclose(dirichlet(u, count), summed, atol=1e-12)
+
+
+@pytest.mark.parametrize(("frequency", "count"), [(50.3, 4000), (12.34, 1000), (7.7, 1000)])
+def test_a_steady_line_is_read_exactly(frequency: float, count: int, compared: Compared) -> None:
+    """A line that does not close on itself, down to eight periods: its image counts too."""
+    t = np.arange(count) / RATE
+    x = 2.0 * np.cos(2 * np.pi * frequency * t + 1.0)
+    found = reading(x, frequency + 0.2 * RATE / count)
+    error = [found.amplitude - 2.0, found.frequency - frequency]
+    compared("a line over the whole stretch", "the line put in", error, 2e-3)
+
+
+def test_a_line_in_noise_is_that_of_least_squares_in_time(compared: Compared) -> None:
+    rng = np.random.default_rng(5)
+    t = np.arange(4000) / RATE
+    x = np.cos(2 * np.pi * 50.3 * t + 1.0) + rng.normal(size=t.size)
+    found = reading(x - x.mean(), 50.3)
+    turn = 2 * np.pi * found.frequency * t
+    fit = np.linalg.lstsq(np.column_stack([np.cos(turn), np.sin(turn)]), x - x.mean())[0]
+    # noise brings 2 sigma^2/N to the square of each of both, and to the sum of squares 4 sigma^2/N
+    own = np.sqrt(np.hypot(*fit) ** 2 - 4.0 / t.size)
+    compared("a line in noise", "least squares in time", found.amplitude / own - 1.0, 0.02)
+    assert found.amplitude_error == pytest.approx(np.sqrt(2.0 / t.size), rel=0.3)
+    # Cramer and Rao: var f = 6 sigma^2/(pi^2 A^2 T^2 N)
+    bound = np.sqrt(6.0 / (np.pi**2 * 16.0 * t.size))
+    assert found.frequency_error == pytest.approx(bound, rel=0.3)
+
+
+def test_a_changing_amplitude_is_no_noise() -> None:
+    """Its root mean square is read, and the interval stays that of the noise."""
+    rng = np.random.default_rng(6)
+    t = np.arange(4000) / RATE
+    a = 1.0 + 0.1 * np.cos(2 * np.pi * 0.9 * t + 2.0)
+    x = a * np.cos(2 * np.pi * 50.3 * t) + 0.1 * rng.normal(size=t.size)
+    found = reading(x, 50.3)
+    assert found.amplitude == pytest.approx(np.sqrt(np.mean(a**2)), abs=found.half_width)
+    assert found.half_width < 0.01
+    assert found.changing == pytest.approx(0.1 / np.sqrt(2.0), rel=0.1)
+    assert found.neighbours == ()
+
+
+def test_a_neighbour_is_told_from_a_changing_amplitude() -> None:
+    rng = np.random.default_rng(7)
+    t = np.arange(4000) / RATE
+    x = np.cos(2 * np.pi * 50.3 * t) + 0.3 * np.cos(2 * np.pi * 50.7 * t + 1.0)
+    found = reading(x + 0.1 * rng.normal(size=t.size), 50.3)
+    assert found.neighbours == (pytest.approx(50.7, abs=0.01),)
+    assert found.amplitude == pytest.approx(1.0, abs=2.0 * found.half_width)
+    assert found.explained
+
+
+@pytest.mark.parametrize("wander", [1e-3, 1e-2])
+def test_turns_of_a_wandering_line(wander: float, compared: Compared) -> None:
+    t = np.arange(8000) / RATE
+    speed = 100.0 * (1.0 + wander * np.sin(2 * np.pi * 0.3 * t + 0.7))
+    cycles = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) / RATE
+    x = np.cos(2 * np.pi * cycles + 0.4) + 0.05 * np.random.default_rng(8).normal(size=t.size)
+    found = best_followed(x, line_spectrum(x, RATE), 100.0)
+    assert found is not None
+    assert found.whole
+    turns = found.cycles - found.cycles[0] - cycles
+    compared("turns of a wandering line", "the turns put in", turns, 0.05, "cycles")
+    mean = cycles[-1] / t[-1]
+    assert found.frequency == pytest.approx(mean, abs=1.5 * found.frequency_half_width)
+
+
+def test_refusals() -> None:
+    with pytest.raises(InputError, match="half_width"):
+        follow_line(np.ones(100), RATE, frequency=100.0, half_width=1.0)
+    assert student(1e9) == pytest.approx(1.959964, abs=1e-5)
