@@ -48,7 +48,7 @@ def prominence(channels: Floats, rate: float) -> Prominence:
     spectrum = amplitude_spectrum(channels - channels.mean(axis=-1, keepdims=True), rate, "hann")
     amplitudes = np.maximum(spectrum.amplitudes, 1e-300)
     logs = np.log(amplitudes)
-    level = np.mean(logs - _running_median(logs), axis=0)
+    level = np.mean(logs - running_median(logs), axis=0)
     level = level - np.median(level)
     pairs = np.maximum(level[:-1], level[1:])
     spread = float(np.diff(np.percentile(pairs, [15.87, 50.0]))[0])
@@ -61,7 +61,7 @@ def prominence(channels: Floats, rate: float) -> Prominence:
     )
 
 
-def _running_median(logs: Floats, width: int = 301) -> Floats:
+def running_median(logs: Floats, width: int = 301) -> Floats:
     """Median over about ``width`` bins, on a grid of half widths, straight between."""
     count = logs.shape[-1]
     width = min(width, max(9, count // 8))

@@ -1,0 +1,283 @@
+"""What a record's lines say about teeth, as hypotheses with weights.
+
+A hypothesis foretells lines: a mesh line and its harmonics; around each seen harmonic sidebands 1
+to 3 of each of its gears' shafts; those shafts' own lines 1 to 4; and combs of impacts or shaft
+harmonics on all that is left. "No gear" has the combs alone. The log evidence of each is that of
+its groups of lines over chance (:mod:`thermogear.measured.groups`), with the prior of its free
+numbers: mesh line anywhere, teeth one of 12..250 for each gear. Weights are evidences, normalised.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from thermogear.measured.groups import Flags, narrow, refined, seen, some_of, take
+from thermogear.measured.impacts import Comb, background, combs_of
+from thermogear.measured.peaks import Peaks
+
+Floats = NDArray[np.float64]
+
+TEETH = (12, 250)
+"""Tooth numbers looked for: fewer are not made as power gears."""
+CLEAR = 0.99
+"""Weight from which something is called decided."""
+
+_HARMONICS = 5
+_MESH_SPREAD = 1.5  # nepers, of mesh harmonics about a fall with their rank
+_SIDE_SPREAD = 1.0
+_SHAFT_SPREAD = 1.5
+_MESHES = 48  # lines tried as mesh lines
+_PAIRS = 60  # pairs of mesh line and teeth looked at closely
+_MEMBERS = 6  # tooth numbers that are put together in twos
+_FINAL = 36
+_GIVEN = 0.9  # how far a stated tooth number or speed is trusted
+_SPEED_SPREAD = 0.05  # a stated speed is nominal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """What a user says: teeth of a gear, and its shaft's turns per sample."""
+
+    teeth: int | None = None
+    shaft: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hypothesis:
+    """``kind`` "gear" or "no gear"; ``mesh`` [cycles/sample] (nan: none), ``teeth`` of the gears
+    whose shafts show, ``evidence`` its logarithm over chance, ``weight``, ``combs``: steps of the
+    combs beside it [cycles/sample]."""
+
+    kind: str
+    mesh: float
+    teeth: tuple[int, ...]
+    evidence: float
+    weight: float = 0.0
+    combs: tuple[float, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """In words."""
+        beside = ", ".join(f"{step:.6f}" for step in self.combs)
+        if self.kind == "gear":
+            teeth = " and ".join(map(str, self.teeth))
+            return f"mesh line {self.mesh:.6f} cycles/sample, {teeth} teeth"
+        return "no gear" + (f": lines every {beside} cycles/sample" if beside else "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """Hypotheses, best first; ``teeth`` decided on ``mesh`` (empty, nan: undecided)."""
+
+    hypotheses: tuple[Hypothesis, ...]
+    mesh: float
+    teeth: tuple[int, ...]
+    weights: tuple[float, ...]
+
+    @property
+    def verdict(self) -> str:
+        """"decided", "undecided" or "no gear found"."""
+        if self.teeth:
+            return "decided"
+        best = self.hypotheses[0]
+        clear = best.kind == "no gear" and best.weight >= CLEAR
+        return "no gear found" if clear else "undecided"
+
+
+def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
+    """Hypotheses on the teeth behind these lines, with weights."""
+    stated = stated or Stated()
+    pairs = _screened(peaks, stated)
+    drafts: dict[tuple[int, tuple[int, ...]], _Draft] = {}
+    by_mesh: dict[int, list[tuple[float, int]]] = {}
+    meshes: dict[int, float] = {}
+    for mesh, teeth in pairs:
+        key = int(np.rint(mesh / peaks.bin_width / 2.0))
+        meshes.setdefault(key, mesh)
+        draft = _gear(peaks, meshes[key], (teeth,), stated)
+        drafts[key, (teeth,)] = draft
+        by_mesh.setdefault(key, []).append((draft.evidence, teeth))
+    for key, members in by_mesh.items():
+        best = [z for _, z in sorted(set(members), reverse=True)[:_MEMBERS]]
+        for place, one in enumerate(best):
+            for other in best[place + 1 :]:
+                both = (min(one, other), max(one, other))
+                drafts[key, both] = _gear(peaks, meshes[key], both, stated)
+    chosen = sorted(drafts.values(), key=lambda draft: -draft.evidence)[:_FINAL]
+    steps = tuple(dict.fromkeys(d.mesh / z for d in chosen[:6] for z in d.teeth))
+    steps += tuple(dict.fromkeys(d.mesh for d in chosen[:6]))
+    combs = combs_of(peaks, steps)
+    none = np.zeros(peaks.size, dtype=bool)
+    alone, told = background(peaks, none, combs)
+    found = [
+        Hypothesis(
+            kind="no gear",
+            mesh=float("nan"),
+            teeth=(),
+            evidence=max(0.0, alone),
+            combs=tuple(one.step for one in told),
+        )
+    ]
+    for draft in chosen:
+        beside, told = background(peaks, draft.used, combs)
+        found.append(
+            Hypothesis(
+                kind="gear",
+                mesh=draft.mesh,
+                teeth=draft.teeth,
+                evidence=draft.evidence + beside,
+                combs=tuple(one.step for one in told),
+            )
+        )
+    return _decided(found)
+
+
+@dataclass(frozen=True)
+class _Draft:
+    mesh: float
+    teeth: tuple[int, ...]
+    evidence: float
+    used: Flags
+
+
+def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
+    """The pairs of mesh line and teeth with the most lines where they foretell some."""
+    if peaks.size < 3:
+        return []
+    gain = np.zeros(peaks.bins + 2)
+    centre = np.rint(peaks.place / peaks.bin_width).astype(int)
+    worth = np.clip(-np.log(peaks.density), 0.5, 8.0)
+    for shift in (-1, 0, 1):
+        np.maximum.at(gain, np.clip(centre + shift, 0, peaks.bins), worth)
+    tops = peaks.place[np.argsort(-peaks.level)[:_MESHES]]
+    tried = np.unique(np.concatenate([tops, tops / 2.0, tops / 3.0]))
+    teeth = np.arange(TEETH[0], TEETH[1] + 1, dtype=float)
+    scores, pairs = [], []
+    for start in tried[tried > 40.0 * peaks.bin_width]:
+        highest = min(_HARMONICS, int(0.47 / start))
+        if highest < 1:
+            continue
+        mesh = refined(peaks, float(start), np.arange(1, highest + 1))[0]
+        rank = np.arange(1, highest + 1)
+        there = _looked(gain, peaks, rank * mesh) > 0
+        if not np.any(there):
+            continue
+        around = rank[there][:, None, None] + np.array([-3, -2, -1, 1, 2, 3])[:, None] / teeth
+        sides = np.sum(_looked(gain, peaks, around * mesh), axis=(0, 1))
+        own = np.sum(_looked(gain, peaks, np.array([1, 2, 3])[:, None] * mesh / teeth), axis=0)
+        carriers = np.sum(_looked(gain, peaks, rank * mesh))
+        score = sides + own + 2.0 * carriers
+        score[mesh / teeth < 4.0 * peaks.bin_width] = -np.inf
+        for place in np.argsort(-score)[:8]:
+            scores.append(float(score[place]))
+            pairs.append((mesh, int(teeth[place])))
+        if stated.teeth is not None:
+            scores.append(np.inf)
+            pairs.append((mesh, stated.teeth))
+    order = np.argsort(-np.asarray(scores))[:_PAIRS]
+    kept = [pairs[i] for i in order]
+    # halves and doubles of the best contradict them: they must be weighed too
+    for mesh, z in kept[:12]:
+        for k in (2, 3):
+            kept += [(mesh, z * k), (mesh * k, z * k)]
+            if z % k == 0:
+                kept += [(mesh, z // k), (mesh / k, z // k)]
+    fitting = [(m, z) for m, z in kept if TEETH[0] <= z <= TEETH[1] and m < 0.47]
+    return list(dict.fromkeys(fitting))
+
+
+def _looked(gain: Floats, peaks: Peaks, position: Floats) -> Floats:
+    place = np.rint(position / peaks.bin_width).astype(int)
+    return np.asarray(gain[np.where((place > 2) & (place < peaks.bins), place, peaks.bins + 1)])
+
+
+def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> _Draft:
+    """Log evidence of a mesh line with these gears, without what is left of the lines."""
+    used = np.zeros(peaks.size, dtype=bool)
+    ranks = np.arange(1, min(_HARMONICS, int(0.47 / mesh)) + 1)
+    mesh, error = refined(peaks, mesh, ranks)
+    rank = ranks.astype(float)
+    carriers = seen(
+        peaks,
+        used,
+        (rank * mesh)[None, :],
+        error=(rank * error)[None, :],
+        spread=_MESH_SPREAD,
+        trend=-np.log(rank)[None, :],
+    )
+    total = float(carriers.evidence[0]) + narrow(error, 0.47)
+    lines = carriers.lines[0]
+    used[lines[lines >= 0]] = True
+    there = rank[lines >= 0]
+    tops = peaks.level[lines[lines >= 0]]
+    for z in teeth:
+        orders = np.array([1.0, 2.0, 3.0])
+        centre = np.repeat(there, orders.size)
+        away = np.tile(orders, there.size) / z
+        position = np.stack([centre - away, centre + away], axis=1) * mesh
+        sides = seen(
+            peaks,
+            used,
+            position,
+            error=centre[:, None] * error,
+            spread=_SIDE_SPREAD,
+            top=np.repeat(tops, orders.size),
+        )
+        own = seen(
+            peaks,
+            used,
+            np.arange(1.0, 5.0)[:, None] * mesh / z,
+            error=np.arange(1.0, 5.0)[:, None] * error / z,
+            spread=_SHAFT_SPREAD,
+        )
+        total += some_of(sides.evidence) + some_of(own.evidence) + _prior(mesh, z, stated)
+        take(used, sides)
+        take(used, own)
+    return _Draft(mesh, teeth, total, used)
+
+
+def _prior(mesh: float, teeth: int, stated: Stated) -> float:
+    """Log prior of a gear: any tooth number alike, or as stated; a stated speed is nominal."""
+    total = -float(np.log(TEETH[1] - TEETH[0] + 1))
+    if stated.teeth is not None:
+        own = _GIVEN if teeth == stated.teeth else 0.0
+        total = float(np.log(own + (1.0 - _GIVEN) * np.exp(total)))
+    if stated.shaft is not None:
+        away = np.log(mesh / teeth / stated.shaft) / _SPEED_SPREAD
+        # against a shaft anywhere within a factor of 30 to both sides
+        near = np.exp(-0.5 * away**2) / (_SPEED_SPREAD * np.sqrt(2 * np.pi)) * 2 * np.log(30.0)
+        total += float(np.log(_GIVEN * near + 1.0 - _GIVEN))
+    return total
+
+
+def _decided(found: list[Hypothesis]) -> Evidence:
+    """Weights of the hypotheses, and the gears that carry nearly all of it."""
+    logs = np.array([one.evidence for one in found])
+    weights = np.exp(logs - special.logsumexp(logs))
+    named = [
+        Hypothesis(**{**vars(one), "weight": float(w)})
+        for one, w in zip(found, weights, strict=True)
+    ]
+    named.sort(key=lambda one: -one.weight)
+    best = named[0]
+    teeth, sure = [], []
+    for z in best.teeth:
+        # the same gear under another hypothesis: the same mesh line, the same teeth
+        share = sum(
+            one.weight
+            for one in named
+            if one.kind == "gear" and abs(one.mesh / best.mesh - 1.0) < 3e-4 and z in one.teeth
+        )
+        if share >= CLEAR:
+            teeth.append(z)
+            sure.append(float(share))
+    return Evidence(
+        hypotheses=tuple(named),
+        mesh=best.mesh,
+        teeth=tuple(teeth),
+        weights=tuple(sure),
+    )
