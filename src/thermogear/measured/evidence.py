@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from thermogear.measured.groups import Flags, narrow, refined, seen, some_of, take
+from thermogear.measured.groups import Flags, Seen, mean_exp, narrow, refined, seen, some_of, take
 from thermogear.measured.impacts import Comb, background, combs_of
 from thermogear.measured.peaks import Peaks
 
@@ -26,10 +26,10 @@ TEETH = (12, 250)
 CLEAR = 0.99
 """Weight from which something is called decided."""
 
-_HARMONICS = 5
+_HARMONICS = 6
 _MESH_SPREAD = 1.5  # nepers, of mesh harmonics about a fall with their rank
-_SIDE_SPREAD = 1.0
-_SHAFT_SPREAD = 1.5
+_SIDE_SPREAD = 1.2  # of sidebands, and of a shaft's own lines, about a fall with their order
+_FALL = 0.7  # nepers for each order
 _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
 _MEMBERS = 6  # tooth numbers that are put together in twos
@@ -215,29 +215,39 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
     there = rank[lines >= 0]
     tops = peaks.level[lines[lines >= 0]]
     for z in teeth:
-        orders = np.array([1.0, 2.0, 3.0])
-        centre = np.repeat(there, orders.size)
-        away = np.tile(orders, there.size) / z
-        position = np.stack([centre - away, centre + away], axis=1) * mesh
-        sides = seen(
-            peaks,
-            used,
-            position,
-            error=centre[:, None] * error,
-            spread=_SIDE_SPREAD,
-            top=np.repeat(tops, orders.size),
-        )
-        own = seen(
-            peaks,
-            used,
-            np.arange(1.0, 5.0)[:, None] * mesh / z,
-            error=np.arange(1.0, 5.0)[:, None] * error / z,
-            spread=_SHAFT_SPREAD,
-        )
-        total += some_of(sides.evidence) + some_of(own.evidence) + _prior(mesh, z, stated)
-        take(used, sides)
-        take(used, own)
+        total += _prior(mesh, z, stated)
+        around = []
+        for centre, top in zip(there, tops, strict=True):
+            away = np.array([-1.0, 1.0, -2.0, 2.0, -3.0, 3.0])
+            position = (centre + away / z) * mesh
+            around.append(_falling(peaks, used, position, np.abs(away), centre * error, top))
+        own = np.arange(1.0, 5.0)
+        around.append(_falling(peaks, used, own * mesh / z, own, own * error / z, np.inf))
+        total += some_of(np.array([evidence for evidence, _ in around]))
+        for _, found in around:
+            take(used, found)
     return _Draft(mesh, teeth, total, used)
+
+
+def _falling(
+    peaks: Peaks, used: Flags, position: Floats, order: Floats, error: Floats | float, top: float
+) -> tuple[float, Seen]:
+    """Log evidence of lines that fall with their order, up to an open order, and the lines."""
+    parts: list[tuple[float, Seen]] = []
+    for last in range(1, int(order.max()) + 1):
+        kept = order <= last
+        found = seen(
+            peaks,
+            used,
+            position[kept][None, :],
+            error=np.broadcast_to(error, order.shape)[kept],
+            spread=_SIDE_SPREAD,
+            trend=-_FALL * (order[kept] - 1.0),
+            top=top,
+        )
+        parts.append((float(found.evidence[0]), found))
+    best = max(parts, key=lambda part: part[0])[1]
+    return mean_exp([evidence for evidence, _ in parts]), best
 
 
 def _prior(mesh: float, teeth: int, stated: Stated) -> float:

@@ -24,6 +24,7 @@ Flags = NDArray[np.bool_]
 _LEVELS = np.arange(-3.0, 10.01, 0.5)  # over the threshold [nepers]
 _SHARES = np.array([0.02, 0.1, 0.3, 0.6, 0.9])  # of groups that are there at all
 _REACH = 4.0  # standard deviations of a place
+_OUTLIER = 3.0
 _LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
 
 BLOCK = 6
@@ -99,7 +100,8 @@ def refined(
 ) -> tuple[float, float]:
     """The step whose multiples ``ranks`` fit the lines beside them best, and its error.
 
-    Lines within ``reach`` bins, weighted by their errors, a straight line through 0. No line: the
+    Lines within ``reach`` bins, weighted by their errors, a straight line through 0; one that is
+    more than three errors off is left out, the worst first. No line: the
     step itself with half a bin at the highest rank.
     """
     index, off = peaks.nearest(ranks * step)
@@ -107,9 +109,15 @@ def refined(
     if not np.any(near):
         return step, 0.5 * peaks.bin_width / float(ranks.max())
     rank, line = ranks[near].astype(float), index[near]
-    weight = 1.0 / peaks.error[line] ** 2
-    bottom = float(np.sum(weight * rank**2))
-    return float(np.sum(weight * rank * peaks.place[line])) / bottom, float(bottom**-0.5)
+    while True:
+        weight = 1.0 / peaks.error[line] ** 2
+        bottom = float(np.sum(weight * rank**2))
+        fitted = float(np.sum(weight * rank * peaks.place[line])) / bottom
+        away = np.abs(peaks.place[line] - rank * fitted) / peaks.error[line]
+        if rank.size < 3 or away.max() < _OUTLIER:
+            return fitted, float(bottom**-0.5)
+        kept = np.arange(rank.size) != int(np.argmax(away))
+        rank, line = rank[kept], line[kept]
 
 
 def comb_of(peaks: Peaks, step: float) -> tuple[float, float]:
@@ -126,15 +134,21 @@ def comb_of(peaks: Peaks, step: float) -> tuple[float, float]:
 def comb(peaks: Peaks, used: Flags, step: float, error: float) -> tuple[float, Flags, Seen]:
     """Log evidence of a comb of impacts every ``step``, lines explained with it, its blocks.
 
-    Blocks of six neighbours share a level; how many blocks are there is open. The prior of the
-    step is uniform up to 0.1 cycles/sample: log(error sqrt(2 pi)/0.1) is added.
+    Blocks of six neighbours share a level; how many blocks are there is open, and whether the first
+    one starts at the first line or in the middle. The prior of the step is uniform up to 0.1
+    cycles/sample: log(error sqrt(2 pi)/0.1) is added.
     """
     highest = min(LONGEST_COMB, int(0.47 / step))
-    ranks = np.arange(1, -(-highest // BLOCK) * BLOCK + 1).reshape(-1, BLOCK).astype(float)
-    found = seen(peaks, used, ranks * step, error=ranks * error, spread=COMB_SPREAD)
     after = used.copy()
-    take(after, found)
-    return some_of(found.evidence) + narrow(error, 0.1), after, found
+    parts: list[tuple[float, Seen]] = []
+    for start in (1, 1 - BLOCK // 2):
+        blocks = -(-(highest + 1 - start) // BLOCK)
+        ranks = (start + np.arange(blocks * BLOCK)).reshape(-1, BLOCK).astype(float)
+        found = seen(peaks, used, ranks * step, error=np.abs(ranks) * error, spread=COMB_SPREAD)
+        parts.append((some_of(found.evidence), found))
+        take(after, found)
+    best = max(parts, key=lambda part: part[0])[1]
+    return mean_exp([part[0] for part in parts]) + narrow(error, 0.1), after, best
 
 
 def narrow(error: float, width: float) -> float:

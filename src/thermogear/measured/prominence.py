@@ -67,6 +67,7 @@ def running_median(logs: Floats, width: int = 301) -> Floats:
     width = min(width, max(9, count // 8))
     starts = np.arange(0, max(1, count - width + 1), max(1, width // 2))
     middles = starts + 0.5 * (width - 1)
-    medians = np.stack([np.median(logs[:, s : s + width], axis=-1) for s in starts], axis=-1)
+    windows = np.lib.stride_tricks.sliding_window_view(logs, width, axis=-1)
+    medians = np.median(windows[:, starts], axis=-1)
     grid = np.arange(count)
     return np.stack([np.interp(grid, middles, row) for row in medians])
