@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from thermogear.measured.groups import Flags, Seen, mean_exp, narrow, refined, seen, some_of, take
-from thermogear.measured.impacts import Comb, background, combs_of
+from thermogear.measured.groups import Flags, falling, mean_exp, narrow, refined, seen, some_of, take
+from thermogear.measured.impacts import background, combs_of, standing_out
 from thermogear.measured.peaks import Peaks
 
 Floats = NDArray[np.float64]
@@ -30,10 +30,14 @@ _HARMONICS = 6
 _MESH_SPREAD = 1.5  # nepers, of mesh harmonics about a fall with their rank
 _SIDE_SPREAD = 1.2  # of sidebands, and of a shaft's own lines, about a fall with their order
 _FALL = 0.7  # nepers for each order
+_SIDES = np.array([-1, 1, -2, 2, -3, 3])
+_OWN = np.arange(1, 5)
 _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
 _MEMBERS = 6  # tooth numbers that are put together in twos
-_FINAL = 36
+_FINAL = 24
+_TOLD = 1e-3  # least weight that is told
+_MOST_TOLD = 6
 _GIVEN = 0.9  # how far a stated tooth number or speed is trusted
 _SPEED_SPREAD = 0.05  # a stated speed is nominal
 
@@ -79,6 +83,41 @@ class Evidence:
     weights: tuple[float, ...]
 
     @property
+    def mesh_weight(self) -> float:
+        """Weight of all hypotheses with this mesh line."""
+        return sum(one.weight for one in self.hypotheses if _same_mesh(one, self.mesh))
+
+    @property
+    def told(self) -> tuple[Hypothesis, ...]:
+        """The hypotheses that carry any weight, best first."""
+        kept = [one for one in self.hypotheses if one.weight >= _TOLD]
+        return tuple(kept[:_MOST_TOLD])
+
+    def fits(self, shaft: float, teeth: int | None, tolerance: float) -> bool:
+        """Whether a reading with some weight has a shaft that turns so [turns/sample]."""
+        return any(
+            abs(one.mesh / z / shaft - 1.0) <= tolerance
+            for one in self.hypotheses
+            if one.kind == "gear" and one.weight >= _TOLD
+            for z in one.teeth
+            if teeth is None or z == teeth
+        )
+
+    @property
+    def words(self) -> str:
+        """Verdict and weights in words."""
+        listed = "; ".join(f"{one.words} (weight {one.weight:.3f})" for one in self.told)
+        if self.verdict == "decided":
+            both = " and ".join(
+                f"{z} teeth (weight {w:.4f})" for z, w in zip(self.teeth, self.weights, strict=True)
+            )
+            one = "" if len(self.teeth) > 1 else ", one of the mesh's two gears"
+            return f"decided: {both} on mesh line {self.mesh:.6f} cycles/sample{one}"
+        if self.verdict == "no gear found":
+            return f"no gear found: {listed}"
+        return f"teeth undecided: {listed}"
+
+    @property
     def verdict(self) -> str:
         """"decided", "undecided" or "no gear found"."""
         if self.teeth:
@@ -111,6 +150,10 @@ def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
     steps = tuple(dict.fromkeys(d.mesh / z for d in chosen[:6] for z in d.teeth))
     steps += tuple(dict.fromkeys(d.mesh for d in chosen[:6]))
     combs = combs_of(peaks, steps)
+    for one in combs[:3]:  # where a comb holds all lines, those that stand out of it may be a mesh
+        for z in standing_out(peaks, one.step, *TEETH):
+            if all(z not in d.teeth or abs(d.mesh / z / one.step - 1) > 1e-4 for d in chosen):
+                chosen.append(_gear(peaks, z * one.step, (z,), stated))
     none = np.zeros(peaks.size, dtype=bool)
     alone, told = background(peaks, none, combs)
     found = [
@@ -123,14 +166,18 @@ def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
         )
     ]
     for draft in chosen:
-        beside, told = background(peaks, draft.used, combs)
+        fixed = tuple(draft.mesh / z for z in draft.teeth)
+        beside, told = background(peaks, draft.used, combs, fixed)
+        # or the shafts' lines are those of their combs, and the mesh's alone stand out
+        bare, bare_told = background(peaks, draft.mesh_lines, combs, fixed)
+        both = draft.evidence + beside, draft.bare + bare
         found.append(
             Hypothesis(
                 kind="gear",
                 mesh=draft.mesh,
                 teeth=draft.teeth,
-                evidence=draft.evidence + beside,
-                combs=tuple(one.step for one in told),
+                evidence=mean_exp(both),
+                combs=tuple(one.step for one in (told if both[0] > both[1] else bare_told)),
             )
         )
     return _decided(found)
@@ -142,6 +189,8 @@ class _Draft:
     teeth: tuple[int, ...]
     evidence: float
     used: Flags
+    bare: float  # evidence of the mesh line's harmonics alone
+    mesh_lines: Flags
 
 
 def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
@@ -212,42 +261,36 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
     total = float(carriers.evidence[0]) + narrow(error, 0.47)
     lines = carriers.lines[0]
     used[lines[lines >= 0]] = True
+    bare, mesh_lines = total, used.copy()
     there = rank[lines >= 0]
     tops = peaks.level[lines[lines >= 0]]
     for z in teeth:
-        total += _prior(mesh, z, stated)
-        around = []
-        for centre, top in zip(there, tops, strict=True):
-            away = np.array([-1.0, 1.0, -2.0, 2.0, -3.0, 3.0])
-            position = (centre + away / z) * mesh
-            around.append(_falling(peaks, used, position, np.abs(away), centre * error, top))
-        own = np.arange(1.0, 5.0)
-        around.append(_falling(peaks, used, own * mesh / z, own, own * error / z, np.inf))
-        total += some_of(np.array([evidence for evidence, _ in around]))
-        for _, found in around:
-            take(used, found)
-    return _Draft(mesh, teeth, total, used)
-
-
-def _falling(
-    peaks: Peaks, used: Flags, position: Floats, order: Floats, error: Floats | float, top: float
-) -> tuple[float, Seen]:
-    """Log evidence of lines that fall with their order, up to an open order, and the lines."""
-    parts: list[tuple[float, Seen]] = []
-    for last in range(1, int(order.max()) + 1):
-        kept = order <= last
-        found = seen(
+        sides = falling(
             peaks,
             used,
-            position[kept][None, :],
-            error=np.broadcast_to(error, order.shape)[kept],
+            (there[:, None] + _SIDES / z) * mesh,
+            np.abs(_SIDES),
+            error=there[:, None] * error,
             spread=_SIDE_SPREAD,
-            trend=-_FALL * (order[kept] - 1.0),
-            top=top,
+            fall=_FALL,
+            top=tops,
         )
-        parts.append((float(found.evidence[0]), found))
-    best = max(parts, key=lambda part: part[0])[1]
-    return mean_exp([evidence for evidence, _ in parts]), best
+        own = falling(
+            peaks,
+            used,
+            (_OWN * mesh / z)[None, :],
+            _OWN,
+            error=(_OWN * error / z)[None, :],
+            spread=_SIDE_SPREAD,
+            fall=_FALL,
+            top=np.inf,
+        )
+        prior = _prior(mesh, z, stated)
+        bare += prior
+        total += prior + some_of(np.concatenate([sides.evidence, own.evidence]))
+        take(used, sides)
+        take(used, own)
+    return _Draft(mesh, teeth, total, used, bare, mesh_lines)
 
 
 def _prior(mesh: float, teeth: int, stated: Stated) -> float:
@@ -262,6 +305,10 @@ def _prior(mesh: float, teeth: int, stated: Stated) -> float:
         near = np.exp(-0.5 * away**2) / (_SPEED_SPREAD * np.sqrt(2 * np.pi)) * 2 * np.log(30.0)
         total += float(np.log(_GIVEN * near + 1.0 - _GIVEN))
     return total
+
+
+def _same_mesh(one: Hypothesis, mesh: float) -> bool:
+    return one.kind == "gear" and abs(one.mesh / mesh - 1.0) < 3e-4
 
 
 def _decided(found: list[Hypothesis]) -> Evidence:
@@ -280,7 +327,7 @@ def _decided(found: list[Hypothesis]) -> Evidence:
         share = sum(
             one.weight
             for one in named
-            if one.kind == "gear" and abs(one.mesh / best.mesh - 1.0) < 3e-4 and z in one.teeth
+            if _same_mesh(one, best.mesh) and z in one.teeth
         )
         if share >= CLEAR:
             teeth.append(z)

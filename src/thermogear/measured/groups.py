@@ -29,9 +29,9 @@ _LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
 
 BLOCK = 6
 """Neighbours in a comb that share a level."""
-COMB_SPREAD = 0.8
-"""Scatter [nepers] of neighbours in a comb of impacts about the resonances' envelope."""
-LONGEST_COMB = 600
+COMB_SPREADS = (0.5, 1.0, 1.6)
+"""Scatter [nepers] of neighbours in a comb about the resonances' envelope: one of these."""
+LONGEST_COMB = 400
 
 
 @dataclass(frozen=True)
@@ -59,26 +59,71 @@ def seen(
     ``top`` [nepers]: the group's level is not above it (group,). ``used`` lines are explained
     already: members there say nothing. Members hidden beside another line say nothing.
     """
+    each, lines = _members(peaks, used, position, error, spread, trend)
+    return Seen(_over_levels(np.sum(each, axis=-1), peaks, top), lines)
+
+
+def falling(
+    peaks: Peaks,
+    used: Flags,
+    position: Floats,
+    order: NDArray[np.int64],
+    *,
+    error: Floats | float,
+    spread: float,
+    fall: float,
+    top: Floats | float,
+) -> Seen:
+    """``seen`` for groups whose members fall by ``fall`` [nepers] with their ``order`` (member,)
+    from 1 on, up to an order that is open: all of them alike."""
+    each, lines = _members(peaks, used, position, error, spread, -fall * (order - 1.0))
+    last = np.arange(1, int(order.max()) + 1)
+    parts = np.stack([np.sum(each[..., order <= one], axis=-1) for one in last])
+    evidence = np.stack([_over_levels(part, peaks, top) for part in parts])
+    best = last[np.argmax(evidence, axis=0)]
+    kept = np.where(order <= best[:, None], lines, -1)
+    return Seen(_log_sum(evidence) - float(np.log(last.size)), kept)
+
+
+def _members(
+    peaks: Peaks,
+    used: Flags,
+    position: Floats,
+    error: Floats | float,
+    spread: float,
+    trend: Floats | float,
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Log likelihood over chance (level, group, member), and the lines (-1: none)."""
     shape = position.shape
     if peaks.size == 0:
-        return Seen(np.zeros(shape[0]), np.full(shape, -1))
+        return np.zeros((_LEVELS.size, *shape)), np.full(shape, -1)
     index, off = peaks.nearest(position)
-    deviation = np.hypot(peaks.error[index], np.broadcast_to(error, shape)) / peaks.bin_width
+    deviation = np.hypot(peaks.error[index], error) / peaks.bin_width
     outside = (position < 3.0 * peaks.bin_width) | (position > 0.47)
     hit = (np.abs(off) < _REACH * deviation) & ~used[index] & ~outside
-    missing = ~hit & ~peaks.hidden(position)
+    missing = ~hit & ~outside & (np.abs(off) >= 3.0)
     mean = max(0.3, float(np.mean(peaks.level - peaks.least)))
     height = peaks.level[index] - peaks.least
-    gain = -_LOG_ROOT - np.log(deviation) - 0.5 * (off / deviation) ** 2
+    gain = -2.0 * _LOG_ROOT - np.log(deviation) - 0.5 * (off / deviation) ** 2 - np.log(spread)
     gain = gain - np.log(peaks.density[index]) + np.log(mean) + height / mean
     level = _LEVELS[:, None, None] + np.broadcast_to(trend, shape)
-    log_hit = gain - _LOG_ROOT - np.log(spread) - 0.5 * ((height - level) / spread) ** 2
+    log_hit = gain - 0.5 * ((height - level) / spread) ** 2
     log_missing = special.log_ndtr(-level / spread)
-    total = np.sum(np.where(hit, log_hit, np.where(missing, log_missing, 0.0)), axis=-1)
-    below = _LEVELS[:, None] <= np.maximum(np.broadcast_to(top, shape[:1]) - peaks.least, -3.0)
-    total = np.where(below, total, -np.inf)
-    evidence = special.logsumexp(total, axis=0) - np.log(np.sum(below, axis=0))
-    return Seen(np.asarray(evidence), np.where(hit, index, -1))
+    each = np.where(hit, log_hit, np.where(missing, log_missing, 0.0))
+    return each, np.where(hit, index, -1)
+
+
+def _over_levels(total: Floats, peaks: Peaks, top: Floats | float) -> Floats:
+    """Log of the mean over levels up to ``top`` of exp(total) (level, group)."""
+    highest = np.broadcast_to(top, total.shape[1:]) - peaks.least
+    below = _LEVELS[:, None] <= np.maximum(highest, _LEVELS[0])
+    return _log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0))
+
+
+def _log_sum(values: Floats) -> Floats:
+    """Log of the sum of exponentials over the first axis."""
+    highest = np.max(values, axis=0)
+    return np.asarray(highest + np.log(np.sum(np.exp(values - highest), axis=0)))
 
 
 def some_of(evidence: Floats) -> float:
@@ -86,7 +131,7 @@ def some_of(evidence: Floats) -> float:
     if evidence.size == 0:
         return 0.0
     each = np.logaddexp(np.log1p(-_SHARES)[:, None], np.log(_SHARES)[:, None] + evidence)
-    return float(special.logsumexp(np.sum(each, axis=-1)) - np.log(_SHARES.size))
+    return mean_exp(np.sum(each, axis=-1))
 
 
 def take(used: Flags, found: Seen) -> None:
@@ -131,23 +176,27 @@ def comb_of(peaks: Peaks, step: float) -> tuple[float, float]:
     return step, error
 
 
-def comb(peaks: Peaks, used: Flags, step: float, error: float) -> tuple[float, Flags, Seen]:
-    """Log evidence of a comb of impacts every ``step``, lines explained with it, its blocks.
+def comb(
+    peaks: Peaks, used: Flags, step: float, error: float
+) -> tuple[float, Flags, Seen]:
+    """Log evidence of a comb of lines every ``step``, lines explained with it, its blocks.
 
-    Blocks of six neighbours share a level; how many blocks are there is open, and whether the first
-    one starts at the first line or in the middle. The prior of the step is uniform up to 0.1
-    cycles/sample: log(error sqrt(2 pi)/0.1) is added.
+    Blocks of six neighbours share a level; open are the scatter about it, how many blocks are
+    there, and whether the first one starts at the first line or in the middle. The prior of the
+    step is uniform up to 0.1 cycles/sample: log(error sqrt(2 pi)/0.1) is added.
     """
     highest = min(LONGEST_COMB, int(0.47 / step))
-    after = used.copy()
     parts: list[tuple[float, Seen]] = []
     for start in (1, 1 - BLOCK // 2):
         blocks = -(-(highest + 1 - start) // BLOCK)
         ranks = (start + np.arange(blocks * BLOCK)).reshape(-1, BLOCK).astype(float)
-        found = seen(peaks, used, ranks * step, error=np.abs(ranks) * error, spread=COMB_SPREAD)
-        parts.append((some_of(found.evidence), found))
-        take(after, found)
+        errors = np.abs(ranks) * error
+        for spread in COMB_SPREADS:
+            found = seen(peaks, used, ranks * step, error=errors, spread=spread)
+            parts.append((some_of(found.evidence), found))
     best = max(parts, key=lambda part: part[0])[1]
+    after = used.copy()
+    take(after, best)
     return mean_exp([part[0] for part in parts]) + narrow(error, 0.1), after, best
 
 
@@ -156,6 +205,6 @@ def narrow(error: float, width: float) -> float:
     return min(0.0, float(np.log(error / width)) + _LOG_ROOT)
 
 
-def mean_exp(values: Sequence[float]) -> float:
+def mean_exp(values: Sequence[float] | Floats) -> float:
     """Log of the mean of exponentials."""
-    return float(special.logsumexp(np.asarray(values)) - np.log(len(values)))
+    return float(_log_sum(np.asarray(values, dtype=float))) - float(np.log(len(values)))

@@ -6,6 +6,7 @@ They need no teeth: their heights follow the resonances of the metal, neighbour 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,11 @@ _STRONG = 14
 _STEPS = 10
 _KEPT = 6
 _SIDE_SPREAD = 1.0
+_BESIDE = 4
+_WHOLE = 12
+_RATIOS = len({Fraction(p, q) for p in range(1, _WHOLE + 1) for q in range(1, _WHOLE + 1)})
+_OUTSTANDING = 3
+_SAME = 1e-4  # two steps are one
 
 
 @dataclass(frozen=True)
@@ -65,24 +71,63 @@ def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
     found.sort(key=lambda one: -one.evidence)
     kept: list[Comb] = []
     for one in found:
-        if all(abs(one.step / other.step - 1.0) > 1e-4 for other in kept):
+        if all(abs(one.step / other.step - 1.0) > _SAME for other in kept):
             kept.append(one)
     return kept[:_KEPT]
 
 
-def background(peaks: Peaks, used: Flags, combs: list[Comb]) -> tuple[float, tuple[Comb, ...]]:
-    """Log evidence of the combs on the lines not used, each with its sidebands, and those seen."""
+def standing_out(peaks: Peaks, step: float, fewest: int, most: int) -> list[int]:
+    """The numbers of steps whose first six multiples stand highest over their eight neighbours."""
+    count = int(0.47 / step)
+    if count < fewest + _BESIDE:
+        return []
+    index, off = peaks.nearest(np.arange(1, count + 1) * step)
+    level = np.where(np.abs(off) < 1.0, peaks.level[index] - peaks.least, 0.0)
+    around = np.ones(2 * _BESIDE + 1) / (2.0 * _BESIDE)
+    around[_BESIDE] = 0.0
+    over = level - np.convolve(level, around, mode="same")
+    number = np.arange(fewest, min(most, count) + 1)
+    total = np.zeros(number.size)
+    for rank in range(1, 7):
+        there = rank * number <= count
+        total[there] += over[rank * number[there] - 1]
+    return [int(number[place]) for place in np.argsort(-total)[:_OUTSTANDING]]
+
+
+def background(
+    peaks: Peaks, used: Flags, combs: list[Comb], fixed: tuple[float, ...] = ()
+) -> tuple[float, tuple[Comb, ...]]:
+    """Log evidence of the combs on the lines not used, each with its sidebands, and those seen.
+
+    The step of a shaft in ``fixed`` [cycles/sample] is no free number. One that is p/q of a step
+    seen before, p and q up to 12, is one of so many ratios: shafts of one train turn so.
+    """
     total, told = 0.0, []
     used = used.copy()
+    known = list(fixed)
     for one in combs:
         evidence, after, found = comb(peaks, used, one.step, one.error)
+        if any(abs(one.step / step - 1.0) < _SAME for step in fixed):
+            evidence -= narrow(one.error, 0.1)
+        elif any(_in_ratio(one, step) for step in known):
+            evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, 0.1))
         if evidence <= 0.0:
             continue
         sides, after = _sidebands(peaks, after, one, found)
         total += evidence + sides
         used = after
+        known.append(one.step)
         told.append(one)
     return total, tuple(told)
+
+
+def _in_ratio(one: Comb, step: float) -> bool:
+    """Whether two steps are as whole numbers up to 12 are."""
+    ratio = one.step / step
+    near = Fraction(ratio).limit_denominator(_WHOLE)
+    return 0 < near.numerator <= _WHOLE and abs(ratio - float(near)) < max(
+        3.0 * one.error / step, 0.1 * _SAME
+    )
 
 
 def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float, Flags]:

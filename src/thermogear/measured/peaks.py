@@ -87,6 +87,7 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
     top = np.flatnonzero((total == highest) & (total > least) & (inside > 2) & (inside < number - 3))
     if top.size > MOST:
         top = np.sort(top[np.argsort(-total[top])[:MOST]])
+        least = float(np.min(total[top]))
     root = np.sqrt(total)
     shift = np.array([hann_offset(root[i - 1 : i + 2]) for i in top])
     place = (top + shift) * spectrum.bin_width
