@@ -151,6 +151,13 @@ def _teeth(random: Random) -> tuple[int, int]:
     return one, max(one, min(120, int(one * random.uniform(1.0, 4.0))))
 
 
+def _swapped(random: Random, depths: dict[float, float]) -> dict[float, float]:
+    """The two depths as they are, or exchanged."""
+    if random.uniform() < 0.5:
+        return depths
+    return dict(zip(depths, reversed(depths.values()), strict=True))
+
+
 def _geared(kind: str, number: int, random: Random) -> Made:
     rate, count = _clock(random)
     teeth = _teeth(random)
@@ -164,7 +171,9 @@ def _geared(kind: str, number: int, random: Random) -> Made:
     depths = {
         "pinion": {shaft: depth},
         "wheel": {slow: depth},
-        "both": {shaft: depth, slow: other} if random.uniform() < 0.5 else {shaft: other, slow: depth},
+        "both": {shaft: depth, slow: other}
+        if random.uniform() < 0.5
+        else {shaft: other, slow: depth},
         "first harmonic": {(shaft if random.uniform() < 0.5 else slow): depth},
         "two stages": {shaft: depth, slow: other},
     }[kind]
@@ -216,7 +225,9 @@ def _coloured(random: Random, count: int) -> Floats:
         return white
     f, damping = random.uniform(0.05, 0.4), _between(random, 0.02, 0.1)
     pole = np.exp(2 * np.pi * f * (-damping + 1j))
-    ringing = signal.lfilter([1.0], [1.0, -2 * pole.real, abs(pole) ** 2], random.normal(size=count))
+    ringing = signal.lfilter(
+        [1.0], [1.0, -2 * pole.real, abs(pole) ** 2], random.normal(size=count)
+    )
     return np.asarray((white + ringing / np.std(ringing)) / np.sqrt(2.0))
 
 

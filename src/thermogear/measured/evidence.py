@@ -9,14 +9,25 @@ numbers: mesh line anywhere, teeth one of 12..250 for each gear. Weights are evi
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from thermogear.measured.groups import Flags, falling, mean_exp, narrow, refined, seen, some_of, take
-from thermogear.measured.impacts import background, combs_of, standing_out
+from thermogear.measured.groups import (
+    Flags,
+    falling,
+    mean_exp,
+    narrow,
+    refined,
+    seen,
+    some_of,
+    take,
+)
+from thermogear.measured.impacts import Comb, best_background, combs_of, orders_of, standing_out
 from thermogear.measured.peaks import Peaks
 
 Floats = NDArray[np.float64]
@@ -36,6 +47,8 @@ _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
 _MEMBERS = 6  # tooth numbers that are put together in twos
 _FINAL = 24
+_APART = 3.0  # bins between the lines of two shafts
+_SAME_STEP = 1e-4
 _TOLD = 1e-3  # least weight that is told
 _MOST_TOLD = 6
 _GIVEN = 0.9  # how far a stated tooth number or speed is trusted
@@ -119,7 +132,7 @@ class Evidence:
 
     @property
     def verdict(self) -> str:
-        """"decided", "undecided" or "no gear found"."""
+        """ "decided", "undecided" or "no gear found"."""
         if self.teeth:
             return "decided"
         best = self.hypotheses[0]
@@ -130,57 +143,66 @@ class Evidence:
 def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
     """Hypotheses on the teeth behind these lines, with weights."""
     stated = stated or Stated()
-    pairs = _screened(peaks, stated)
+    drafts = sorted(_drafts(peaks, stated), key=lambda draft: -draft.evidence)[:_FINAL]
+    steps = [draft.mesh / z for draft in drafts[:6] for z in draft.teeth]
+    combs = combs_of(peaks, tuple(dict.fromkeys(steps + [draft.mesh for draft in drafts[:6]])))
+    # where a comb holds all lines, those that stand out of it may be a mesh
+    for comb in combs[:3]:
+        known = [z for draft in drafts for z in draft.teeth if _turns(draft, z, comb.step)]
+        drafts += [
+            _gear(peaks, z * comb.step, (z,), stated)
+            for z in standing_out(peaks, comb.step, *TEETH)
+            if z not in known
+        ]
+    orders = orders_of(peaks, combs)
+    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders)
+    none = Hypothesis(
+        kind="no gear",
+        mesh=float("nan"),
+        teeth=(),
+        evidence=max(0.0, alone),
+        combs=tuple(one.step for one in told),
+    )
+    return _decided([none, *(_beside(peaks, draft, orders) for draft in drafts)])
+
+
+def _turns(draft: _Draft, teeth: int, step: float) -> bool:
+    return abs(draft.mesh / teeth / step - 1.0) < _SAME_STEP
+
+
+def _drafts(peaks: Peaks, stated: Stated) -> list[_Draft]:
+    """Mesh lines with one gear each, and with two of the best."""
     drafts: dict[tuple[int, tuple[int, ...]], _Draft] = {}
-    by_mesh: dict[int, list[tuple[float, int]]] = {}
+    members: dict[int, dict[int, float]] = {}
     meshes: dict[int, float] = {}
-    for mesh, teeth in pairs:
+    for mesh, teeth in _screened(peaks, stated):
         key = int(np.rint(mesh / peaks.bin_width / 2.0))
-        meshes.setdefault(key, mesh)
-        draft = _gear(peaks, meshes[key], (teeth,), stated)
+        draft = _gear(peaks, meshes.setdefault(key, mesh), (teeth,), stated)
         drafts[key, (teeth,)] = draft
-        by_mesh.setdefault(key, []).append((draft.evidence, teeth))
-    for key, members in by_mesh.items():
-        best = [z for _, z in sorted(set(members), reverse=True)[:_MEMBERS]]
-        for place, one in enumerate(best):
-            for other in best[place + 1 :]:
-                both = (min(one, other), max(one, other))
-                drafts[key, both] = _gear(peaks, meshes[key], both, stated)
-    chosen = sorted(drafts.values(), key=lambda draft: -draft.evidence)[:_FINAL]
-    steps = tuple(dict.fromkeys(d.mesh / z for d in chosen[:6] for z in d.teeth))
-    steps += tuple(dict.fromkeys(d.mesh for d in chosen[:6]))
-    combs = combs_of(peaks, steps)
-    for one in combs[:3]:  # where a comb holds all lines, those that stand out of it may be a mesh
-        for z in standing_out(peaks, one.step, *TEETH):
-            if all(z not in d.teeth or abs(d.mesh / z / one.step - 1) > 1e-4 for d in chosen):
-                chosen.append(_gear(peaks, z * one.step, (z,), stated))
-    none = np.zeros(peaks.size, dtype=bool)
-    alone, told = background(peaks, none, combs)
-    found = [
-        Hypothesis(
-            kind="no gear",
-            mesh=float("nan"),
-            teeth=(),
-            evidence=max(0.0, alone),
-            combs=tuple(one.step for one in told),
-        )
-    ]
-    for draft in chosen:
-        fixed = tuple(draft.mesh / z for z in draft.teeth)
-        beside, told = background(peaks, draft.used, combs, fixed)
-        # or the shafts' lines are those of their combs, and the mesh's alone stand out
-        bare, bare_told = background(peaks, draft.mesh_lines, combs, fixed)
-        both = draft.evidence + beside, draft.bare + bare
-        found.append(
-            Hypothesis(
-                kind="gear",
-                mesh=draft.mesh,
-                teeth=draft.teeth,
-                evidence=mean_exp(both),
-                combs=tuple(one.step for one in (told if both[0] > both[1] else bare_told)),
-            )
-        )
-    return _decided(found)
+        members.setdefault(key, {})[teeth] = draft.evidence
+    for key, own in members.items():
+        best = sorted(sorted(own, key=lambda z: -own[z])[:_MEMBERS])
+        for both in itertools.combinations(best, 2):
+            if meshes[key] / both[0] - meshes[key] / both[1] < _APART * peaks.bin_width:
+                continue  # one line cannot tell of two shafts
+            drafts[key, both] = _gear(peaks, meshes[key], both, stated)
+    return list(drafts.values())
+
+
+def _beside(peaks: Peaks, draft: _Draft, orders: list[list[Comb]]) -> Hypothesis:
+    """The draft with combs on what is left: beside its sidebands, or with its shafts' lines among
+    those of the combs, so that the mesh's alone stand out."""
+    fixed = tuple(draft.mesh / z for z in draft.teeth)
+    beside, told = best_background(peaks, draft.used, orders, fixed)
+    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, fixed)
+    both = draft.evidence + beside, draft.bare + bare
+    return Hypothesis(
+        kind="gear",
+        mesh=draft.mesh,
+        teeth=draft.teeth,
+        evidence=mean_exp(both),
+        combs=tuple(one.step for one in (told if both[0] > both[1] else bare_told)),
+    )
 
 
 @dataclass(frozen=True)
@@ -239,7 +261,7 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
     return list(dict.fromkeys(fitting))
 
 
-def _looked(gain: Floats, peaks: Peaks, position: Floats) -> Floats:
+def _looked(gain: Floats, peaks: Peaks, position: NDArray[np.floating[Any]]) -> Floats:
     place = np.rint(position / peaks.bin_width).astype(int)
     return np.asarray(gain[np.where((place > 2) & (place < peaks.bins), place, peaks.bins + 1)])
 
@@ -324,11 +346,7 @@ def _decided(found: list[Hypothesis]) -> Evidence:
     teeth, sure = [], []
     for z in best.teeth:
         # the same gear under another hypothesis: the same mesh line, the same teeth
-        share = sum(
-            one.weight
-            for one in named
-            if _same_mesh(one, best.mesh) and z in one.teeth
-        )
+        share = sum(one.weight for one in named if _same_mesh(one, best.mesh) and z in one.teeth)
         if share >= CLEAR:
             teeth.append(z)
             sure.append(float(share))

@@ -76,7 +76,9 @@ def falling(
 ) -> Seen:
     """``seen`` for groups whose members fall by ``fall`` [nepers] with their ``order`` (member,)
     from 1 on, up to an order that is open: all of them alike."""
-    each, lines = _members(peaks, used, position, error, spread, -fall * (order - 1.0))
+    each, lines = _members(
+        peaks, used, position, error, spread, np.asarray(-fall * (order - 1.0), float)
+    )
     last = np.arange(1, int(order.max()) + 1)
     parts = np.stack([np.sum(each[..., order <= one], axis=-1) for one in last])
     evidence = np.stack([_over_levels(part, peaks, top) for part in parts])
@@ -117,7 +119,7 @@ def _over_levels(total: Floats, peaks: Peaks, top: Floats | float) -> Floats:
     """Log of the mean over levels up to ``top`` of exp(total) (level, group)."""
     highest = np.broadcast_to(top, total.shape[1:]) - peaks.least
     below = _LEVELS[:, None] <= np.maximum(highest, _LEVELS[0])
-    return _log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0))
+    return np.asarray(_log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0)))
 
 
 def _log_sum(values: Floats) -> Floats:
@@ -127,7 +129,7 @@ def _log_sum(values: Floats) -> Floats:
 
 
 def some_of(evidence: Floats) -> float:
-    """Log evidence of groups of which an unknown share is there: sum log(1 - w + w e), mean in w."""
+    """Log evidence of groups of which a share w is there: sum of log(1 - w + w e), mean in w."""
     if evidence.size == 0:
         return 0.0
     each = np.logaddexp(np.log1p(-_SHARES)[:, None], np.log(_SHARES)[:, None] + evidence)
@@ -149,7 +151,7 @@ def refined(
     more than three errors off is left out, the worst first. No line: the
     step itself with half a bin at the highest rank.
     """
-    index, off = peaks.nearest(ranks * step)
+    index, off = peaks.nearest(np.asarray(ranks * step, float))
     near = np.abs(off) < reach
     if not np.any(near):
         return step, 0.5 * peaks.bin_width / float(ranks.max())
@@ -176,9 +178,7 @@ def comb_of(peaks: Peaks, step: float) -> tuple[float, float]:
     return step, error
 
 
-def comb(
-    peaks: Peaks, used: Flags, step: float, error: float
-) -> tuple[float, Flags, Seen]:
+def comb(peaks: Peaks, used: Flags, step: float, error: float) -> tuple[float, Flags, Seen]:
     """Log evidence of a comb of lines every ``step``, lines explained with it, its blocks.
 
     Blocks of six neighbours share a level; open are the scatter about it, how many blocks are

@@ -81,7 +81,7 @@ def standing_out(peaks: Peaks, step: float, fewest: int, most: int) -> list[int]
     count = int(0.47 / step)
     if count < fewest + _BESIDE:
         return []
-    index, off = peaks.nearest(np.arange(1, count + 1) * step)
+    index, off = peaks.nearest(np.asarray(np.arange(1, count + 1) * step, float))
     level = np.where(np.abs(off) < 1.0, peaks.level[index] - peaks.least, 0.0)
     around = np.ones(2 * _BESIDE + 1) / (2.0 * _BESIDE)
     around[_BESIDE] = 0.0
@@ -119,6 +119,25 @@ def background(
         known.append(one.step)
         told.append(one)
     return total, tuple(told)
+
+
+def best_background(
+    peaks: Peaks, used: Flags, orders: list[list[Comb]], fixed: tuple[float, ...] = ()
+) -> tuple[float, tuple[Comb, ...]]:
+    """``background`` in the order of combs that explains most."""
+    found = [background(peaks, used, order, fixed) for order in orders]
+    return max(found, key=lambda one: one[0])
+
+
+def orders_of(peaks: Peaks, combs: list[Comb]) -> list[list[Comb]]:
+    """The combs in the order of their evidence alone, and with that one first which leaves most
+    to the others: a comb at a part of a step holds lines that belong to another's sidebands."""
+    none = np.zeros(peaks.size, dtype=bool)
+    orders = [[one, *(other for other in combs if other is not one)] for one in combs]
+    if len(orders) < 2:
+        return [combs]
+    best = max(orders, key=lambda order: background(peaks, none, order)[0])
+    return [orders[0]] if best is orders[0] else [orders[0], best]
 
 
 def _in_ratio(one: Comb, step: float) -> bool:

@@ -84,7 +84,8 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
     least = float(stats.gamma.isf(_FALSE / number, count))
     highest = ndimage.maximum_filter1d(total, 3)
     inside = np.arange(number)
-    top = np.flatnonzero((total == highest) & (total > least) & (inside > 2) & (inside < number - 3))
+    clear = (total == highest) & (total > least)
+    top = np.flatnonzero(clear & (inside > 2) & (inside < number - 3))
     if top.size > MOST:
         top = np.sort(top[np.argsort(-total[top])[:MOST]])
         least = float(np.min(total[top]))

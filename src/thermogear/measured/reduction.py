@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import METHODS, Chain
+from thermogear.measured.evidence import Stated
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
@@ -24,6 +25,8 @@ Floats = NDArray[np.float64]
 
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
+
+_NEAR = 0.1  # a stated speed is nominal: motors slip
 
 _FACTORS = {
     10.0: "ten times too high",
@@ -43,7 +46,11 @@ _FACTORS = {
 
 @dataclass(frozen=True)
 class Measurement:
-    """A record reduced: lines, gearing with evidence, settings and notices."""
+    """A record reduced: lines, gearing with evidence, settings and notices.
+
+    ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
+    speed [rad/s]), None where he said nothing.
+    """
 
     record: Record
     channels: tuple[str, ...]
@@ -54,6 +61,7 @@ class Measurement:
     lines: tuple[MeasuredLine, ...]
     notices: tuple[Notice, ...]
     start: int
+    given: tuple[int | None, float | None] = (None, None)
 
     @property
     def settings(self) -> dict[str, str]:
@@ -111,7 +119,9 @@ def measure(
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
     start, table = _stretch(chosen, notices)
-    gearing = _gearing(table, notices, _expected(record, teeth, speed))
+    given = teeth, speed
+    expected = _expected(record, teeth, speed)
+    gearing = _gearing(table, notices, expected, _stated(record, teeth, speed))
     teeth = _teeth(gearing, teeth, notices)
     turns: MeshTurns | None = None
     if gearing is not None:
@@ -119,7 +129,7 @@ def measure(
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
-        _check_rate(record, gearing, teeth, speed, notices)
+        _check_rate(record, gearing, teeth, given[0], speed, notices)
     if turns is not None and turns.said:
         notices.append(Notice("info", turns.said))
     rate = record.rate or 1.0
@@ -150,6 +160,7 @@ def measure(
         tuple(lines),
         tuple(notices),
         start,
+        given,
     )
 
 
@@ -244,10 +255,19 @@ def _expected(record: Record, teeth: int | None, speed: float | None) -> float |
     return teeth * speed / (2.0 * np.pi) / record.rate
 
 
-def _gearing(table: Floats, notices: list[Notice], expected: float | None) -> Gearing | None:
-    """What the lines say by themselves; the expected place only where it is clear as well."""
+def _stated(record: Record, teeth: int | None, speed: float | None) -> Stated:
+    if speed is None or record.rate is None:
+        return Stated(teeth=teeth)
+    return Stated(teeth=teeth, shaft=speed / (2.0 * np.pi) / record.rate)
+
+
+def _gearing(
+    table: Floats, notices: list[Notice], expected: float | None, stated: Stated
+) -> Gearing | None:
+    """What the lines say, with what is stated as evidence; the expected place only where a line
+    is clear there as well."""
     try:
-        free: Gearing | None = find_gearing(list(table))
+        free: Gearing | None = find_gearing(list(table), stated=stated)
     except InputError as error:
         notices.append(Notice("important", str(error)))
         free = None
@@ -255,7 +275,7 @@ def _gearing(table: Floats, notices: list[Notice], expected: float | None) -> Ge
         return free
     if 5.0 / table.shape[-1] < expected < 0.45:
         try:
-            near = find_gearing(list(table), expected)
+            near = find_gearing(list(table), expected, stated)
         except InputError:
             return free  # nothing stands where teeth and speed put the mesh line
         heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
@@ -274,7 +294,7 @@ def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) ->
         notices.append(
             Notice(
                 "important",
-                f"the sidebands say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
+                f"the lines say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
                 "mesh line over shaft line must be a whole number of teeth",
             )
         )
@@ -285,9 +305,12 @@ def _check_rate(
     record: Record,
     gearing: Gearing,
     teeth: int | None,
+    given: int | None,
     speed: float | None,
     notices: list[Notice],
 ) -> None:
+    """Say what speed the rate implies; blame it only where the teeth are decided and no reading
+    of the lines with any weight fits the speed (and the teeth ``given``)."""
     if teeth is None:
         return
     turns = gearing.mesh_frequency / teeth  # turns per sample
@@ -315,13 +338,26 @@ def _check_rate(
         )
     if speed is None:
         return
-    ratio = implied / (speed / (2 * np.pi))
-    if abs(ratio - 1.0) <= 0.1:
+    shaft = speed / (2 * np.pi)
+    ratio = implied / shaft
+    weighed = gearing.weighed
+    if abs(ratio - 1.0) <= _NEAR or weighed.fits(shaft / record.rate, given, _NEAR):
+        return
+    if weighed.verdict != "decided":
+        # what the mesh line is, is open: it contradicts nobody
+        notices.append(
+            Notice(
+                "warning",
+                f"the mesh line read at {gearing.mesh_frequency:.6f} cycles/sample does not fit "
+                f"the {speed * 30 / np.pi:.6g} rpm given, and the record does not decide that it "
+                "is one",
+            )
+        )
         return
     named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
     what = (
         f"the rate looks {_FACTORS[named]}"
-        if abs(ratio / named - 1.0) <= 0.1
+        if abs(ratio / named - 1.0) <= _NEAR
         else f"rate, teeth or speed is wrong by a factor {ratio:.4g}"
     )
     notices.append(
