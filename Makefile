@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-branches trial-coverage trial-damage trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-trains unit
+.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-trains unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -132,8 +132,18 @@ trial-labels: $(STAMP)  ## 2 000 random motions: every label put to another test
 
 trial-located: $(STAMP)  ## located bifurcations of random drive trains against a fine sweep, cost of a proof; docs/trial_located.md
 	@$(BIN)/python checks/trial_located.py
+
 trial-trains: $(STAMP)  ## 200 random drive trains: every label asked four ways, 40 by another integration, an hour; TRAINS="--count 20" for a short one; docs/trial_trains.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -W ignore checks/trial_trains.py $(TRAINS)
+
+trial-attacks: $(STAMP)  ## what a stranger may try with the app, each attempt at a real server, a minute; docs/trial_attacks.md
+	@$(BIN)/python checks/trial_attacks.py
+
+trial-app: $(STAMP)  ## the app walked through in a browser: actions, times, the pictures of its page (docs/trial_app.md)
+	$(BIN)/python checks/app_walk.py
+
+trial-defects: $(STAMP)  ## records with one defect each: error before and now, or withheld, a minute; docs/trial_defects.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_defects.py
 
 trial-coverage: $(STAMP)  ## do stated 95 % intervals of lines hold? 500 records a scenario, half an hour; docs/trial_coverage.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_coverage.py $(COVERAGE)

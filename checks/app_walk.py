@@ -1,12 +1,13 @@
 """The app walked through by mouse and by keyboard: actions counted, moves timed, pictures taken.
 
-``python checks/app_walk.py`` (``make trial-app``) starts the app on the rig, answers three questions
-by mouse and one by keyboard alone in a real browser, times moves at the server beside the same
+``python checks/app_walk.py`` (``make trial-app``) starts the app on the rig, answers three
+questions by mouse and one by keyboard alone in a real browser, times moves beside the same
 answers by commands, and writes docs/trial_app.md with the pictures of docs/howto/app.md.
 """
 
 from __future__ import annotations
 
+import base64
 import os
 import resource
 import subprocess
@@ -22,12 +23,13 @@ sys.path += [
     str(ROOT / "tests" / "front" / "app"),
 ]
 
-import browser
-from served import Served, served
+import browser  # noqa: E402
+from served import Served, served  # noqa: E402
 
 DOCS = ROOT / "docs"
 PICTURES = DOCS / "pictures"
-CASE = ("rig", "--set", "operating.speed=4500 rpm")
+SPEED = "operating.speed=4500 rpm"
+CASE = ("rig", "--set", SPEED)
 STATE = "document.getElementById('state').textContent"
 
 
@@ -46,7 +48,8 @@ class Walk:
         x, y = self.page.value(
             f"(() => {{ const e = document.querySelector({selector!r});"
             "e.scrollIntoView({block: 'center', behavior: 'instant'});"
-            "const r = e.getBoundingClientRect(); return [r.left + r.width / 2, r.top + r.height / 2]; })()"
+            "const r = e.getBoundingClientRect();"
+            "return [r.left + r.width / 2, r.top + r.height / 2]; })()"
         )
         return float(x), float(y)
 
@@ -77,25 +80,20 @@ class Walk:
         self.page.until("document.body.dataset.done === document.body.dataset.asked", 300)
 
     def lines(self, part: str) -> list[str]:
-        return list(
-            self.page.value(
-                f"[...document.querySelectorAll('[data-part=\"{part}\"] .lines li')].map(e => e.textContent)"
-            )
-        )
+        items = f"[...document.querySelectorAll('[data-part=\"{part}\"] .lines li')]"
+        return list(self.page.value(f"{items}.map(e => e.textContent)"))
 
     def shot(self, name: str, selector: str = "") -> None:
         """Take a picture of the window, scrolled to an element."""
         if selector:
             self.page.value(
-                f"document.querySelector({selector!r}).scrollIntoView({{block: 'start', behavior: 'instant'}});"
-                "scrollBy(0, -70)"
+                f"document.querySelector({selector!r})"
+                ".scrollIntoView({block: 'start', behavior: 'instant'}); scrollBy(0, -70)"
             )
         else:
             self.page.value("scrollTo({top: 0, behavior: 'instant'})")
         self.page.value("new Promise(r => setTimeout(r, 200)).then(() => 1)")
         shot = self.page.ask("Page.captureScreenshot")
-        import base64
-
         (PICTURES / f"app-{name}.png").write_bytes(base64.b64decode(shot["data"]))
 
 
@@ -123,9 +121,11 @@ def relief(walk: Walk) -> str:
     walk.press("#pin", "Pin")
     walk.press("#every > summary", "Every field")
     for gear in ("pinion", "wheel"):
-        group = f"#fields details:has([id='field-gears.{gear}.tip_relief'],[id='field-gears.{gear}.tip_relief.amount'])"
-        walk.press(f"{group} > summary", f"gears, {gear}, tip relief")
-        walk.write(f"[id='field-gears.{gear}.tip_relief.amount']", "4 um", f"{gear}'s amount")
+        field = f"[id='field-gears.{gear}.tip_relief.%s']"
+        group = f"#fields details:has({field % 'amount'}) > summary"
+        walk.press(group, f"gears, {gear}, tip relief")
+        walk.write(field % "amount", "4 um", f"{gear}'s amount")
+        walk.write(field % "length", "3 mm", f"{gear}'s length")
     walk.done()
     walk.shot("relief", "[data-part='run-up']")
     return f"{before} without, {error(walk)} with 4 µm at both tips"
@@ -134,7 +134,8 @@ def relief(walk: Walk) -> str:
 def error(walk: Walk) -> str:
     """What the answers say of the static transmission error."""
     rows = walk.page.value(
-        "[...document.querySelectorAll('[data-part=answers] tbody tr')].map(r => r.children[2].textContent)"
+        "[...document.querySelectorAll('[data-part=answers] tbody tr')]"
+        ".map(r => r.children[2].textContent)"
     )
     return str(next(one for one in rows if one.startswith("Static and loaded")))
 
@@ -196,8 +197,8 @@ def moves(walk: Walk) -> dict[str, list[float]]:
         for value in values:
             walk.page.value("window.times = {}; 1")
             walk.page.value(
-                f"(() => {{ const e = document.getElementById('dial-{dial}-number'); e.value = {value};"
-                "e.dispatchEvent(new Event('change')); })()"
+                f"(() => {{ const e = document.getElementById('dial-{dial}-number');"
+                f"e.value = {value}; e.dispatchEvent(new Event('change')); }})()"
             )
             walk.page.until(f"(window.times['{name}'] ?? []).length > 0", 60)
             found[name].append(float(walk.page.value(f"window.times['{name}'][0]")))
@@ -218,8 +219,10 @@ def after_closing(server: Served) -> float:
     with browser.opened(program) as other:
         other.go(server.address)
         other.until("!!document.getElementById('count')?.value")
-        other.value("document.getElementById('count').value = 1500;"
-                    "document.getElementById('count').dispatchEvent(new Event('change'))")  # fmt: skip
+        other.value(
+            "(() => { const e = document.getElementById('count'); e.value = 1500;"
+            "e.dispatchEvent(new Event('change')); })()"
+        )
         other.until(f"{STATE}.includes('run-up')")
         time.sleep(0.5)
         other.ask("Page.navigate", url="about:blank")
@@ -231,6 +234,35 @@ def after_closing(server: Served) -> float:
 
 def median(values: list[float]) -> float:
     return sorted(values)[len(values) // 2]
+
+
+def page_text(
+    rows: list[str],
+    times: dict[str, tuple[float, float]],
+    commands: dict[str, float],
+    memory_: float,
+    rest: float,
+) -> str:
+    """The page of what was seen."""
+    shown = {name: f"{middle:.0f} ({worst:.0f})" for name, (middle, worst) in times.items()}
+    return "\n".join((
+        "---", "orphan: true", "---", "# The app walked through", "",
+        "Made by `make trial-app`: the app on the rig in a real browser.", "",
+        "| question | by | actions | which | what the page says |",
+        "|---|---|---:|---|---|",
+        *rows, "",
+        "An action is a click, a key, or a text written.", "",
+        "Processor time at the server from a dial's move to its picture, median of five (worst),",
+        "beside that of a command which answers the same from the start, in one run:", "",
+        "| move | picture | dial, ms | command, ms |",
+        "|---|---|---:|---:|",
+        f"| gear temperature | stiffness | {shown['mesh']} | {commands['check']:.0f} (`check`, "
+        "without a picture) |",
+        f"| speed | orbit with its proof | {shown['orbit']} | {commands['orbit']:.0f} (`orbit`) |",
+        f"| damping | first speeds of a run-up of 300 | {shown['run-up']} | |", "",
+        f"The server takes {memory_:.0f} MB with one page open; {rest:.2f} s of processor time in",
+        "the two seconds after a page was closed amid a run-up of 1500 speeds.", "",
+    ))  # fmt: skip
 
 
 def main() -> int:
@@ -257,40 +289,20 @@ def main() -> int:
             print(rows[-1], flush=True)
         one = memory(server.process.pid)
         times = moves(walk)
-        others = [browser.opened(program) for _ in range(1)]
-        del others
         rest = after_closing(server)
-    change = ("--set", "operating.speed=4500 rpm", "--set", "temperatures.pinion_addendum=121 degC",
-              "--set", "temperatures.wheel_addendum=121 degC")  # fmt: skip
-    commands = {
-        "mesh": by_command("check", "rig", *change),
-        "orbit": by_command("orbit", "rig", *change),
-    }
-    text = f"""---
-orphan: true
----
-# The app walked through
-
-Made by `make trial-app`: the app on the rig in a real browser.
-
-| question | by | actions | which | what the page says |
-|---|---|---:|---|---|
-{chr(10).join(rows)}
-
-An action is a click, a key, or a text written.
-
-Processor time at the server from a dial's move to the picture, median of five (worst), beside that
-of a command which answers the same from the start, in one run:
-
-| move | picture | dial, ms | command, ms |
-|---|---|---:|---:|
-| gear temperature | stiffness | {median(times["mesh"]):.0f} ({max(times["mesh"]):.0f}) | {1e3 * commands["mesh"]:.0f} (`check`, without a picture) |
-| speed | orbit with its proof | {median(times["orbit"]):.0f} ({max(times["orbit"]):.0f}) | {1e3 * commands["orbit"]:.0f} (`orbit`) |
-| damping | first speeds of a run-up of 300 | {median(times["run-up"]):.0f} ({max(times["run-up"]):.0f}) | |
-
-The server takes {one:.0f} MB with one page open; {rest:.2f} s of processor time in the two seconds
-after a page was closed amid a run-up of 1500 speeds.
-"""
+    change = [
+        SPEED,
+        "temperatures.pinion_addendum=121 degC",
+        "temperatures.wheel_addendum=121 degC",
+    ]
+    set_ = [word for one in change for word in ("--set", one)]
+    text = page_text(
+        rows,
+        {name: (median(values), max(values)) for name, values in times.items()},
+        {name: 1e3 * by_command(name, "rig", *set_) for name in ("check", "orbit")},
+        one,
+        rest,
+    )
     (DOCS / "trial_app.md").write_text(text, "utf-8")
     print(text)
     return 0

@@ -164,11 +164,15 @@ def drawn(scenario: Scenario, random: Random) -> Drawn:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """One scenario: errors of the four NUMBERS and their stated half widths, (number, run)."""
+    """One scenario: errors of the four NUMBERS and their stated half widths, (number, run).
+
+    Of ``drawn`` records those in which a mesh line was found.
+    """
 
     name: str
     errors: Floats
     half_widths: Floats
+    drawn: int
     seconds: float
 
     @property
@@ -182,24 +186,26 @@ class Cell:
         return np.asarray(np.median(self.half_widths, axis=-1) / np.std(self.errors, axis=-1))
 
 
-def run(place: int, count: int, seed: int = SEED) -> Cell:
-    """``count`` records of one scenario through ``measure``; teeth and nominal speed are given."""
+def run(place: int, count: int, first: int = 0) -> Cell:
+    """``count`` records of one scenario, from number ``first`` on, through ``measure``."""
     scenario, start = SCENARIOS[place], time.process_time()
     rows = []
-    for number in range(count):
-        made = drawn(scenario, np.random.default_rng([seed, place, number]))
+    for number in range(first, first + count):
+        made = drawn(scenario, np.random.default_rng([SEED, place, number]))
         found = measure(
             made.record, teeth=TEETH, speed=made.nominal, sidebands=0, harmonics=len(HARMONICS)
         )
         lines = {line.name: line for line in found.lines}
-        first, second = (lines[f"mesh x {rank}"] for rank, _ in HARMONICS)
+        if "mesh x 1" not in lines:  # no interval is stated
+            continue
+        one, two = (lines[f"mesh x {rank}"] for rank, _ in HARMONICS)
         turn = 2.0 * np.pi * made.frequency / TEETH
         rows.append(
             [
-                (first.acceleration - made.amplitudes[0], first.half_width * first.acceleration),
-                (second.acceleration - made.amplitudes[1], second.half_width * second.acceleration),
-                (first.frequency - made.frequency, first.frequency_half_width),
-                (first.shaft_speed - turn, first.speed_half_width),
+                (one.acceleration - made.amplitudes[0], one.half_width * one.acceleration),
+                (two.acceleration - made.amplitudes[1], two.half_width * two.acceleration),
+                (one.frequency - made.frequency, one.frequency_half_width),
+                (one.shaft_speed - turn, one.speed_half_width),
             ]
         )
     table = np.asarray(rows).transpose(2, 1, 0)
@@ -207,6 +213,7 @@ def run(place: int, count: int, seed: int = SEED) -> Cell:
         name=scenario.name,
         errors=table[0],
         half_widths=table[1],
+        drawn=count,
         seconds=time.process_time() - start,
     )
 
@@ -229,14 +236,15 @@ def told(cells: list[Cell], count: int) -> list[str]:
     low, high = (f"{100 * share:.0f}" for share in HOLDS)
     lines = [
         "| record | " + " | ".join(f"{name} [%]" for name in NUMBERS) + " | sd of amplitude [%] |"
-        " half width/sd, amplitudes |",
-        "|---|" + "---:|" * (len(NUMBERS) + 2),
+        " half width/sd, amplitudes | records, without a mesh line |",
+        "|---|" + "---:|" * (len(NUMBERS) + 3),
     ]
     for cell in cells:
         held = " | ".join(f"{100 * share:.1f}" for share in cell.held)
         sd = 100.0 * float(np.std(cell.errors[0]))
         widths = ", ".join(f"{one:.2f}" for one in cell.widths[:2])
-        lines.append(f"| {cell.name} | {held} | {sd:.3g} | {widths} |")
+        runs = f"{cell.drawn}, {cell.drawn - cell.errors.shape[-1]}"
+        lines.append(f"| {cell.name} | {held} | {sd:.3g} | {widths} | {runs} |")
     beyond = outside(cells)
     lines += [
         "",
@@ -244,7 +252,7 @@ def told(cells: list[Cell], count: int) -> list[str]:
         f"{WIDEST:g} standard deviations of its error. "
         + ("Outside: " + "; ".join(beyond) + "." if beyond else "Every cell is inside."),
         "",
-        f"{count} records each, seed {SEED}; a share of 95 % counted so scatters by "
+        f"Seed {SEED}; a share of 95 % counted in {count} records scatters by "
         f"{100 * float(np.sqrt(0.95 * 0.05 / count)):.1f} %. Processor time "
         f"{sum(cell.seconds for cell in cells) / 60:.0f} min.",
     ]

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 sys.path.insert(0, str(Path(__file__).parent))
 from train_draws import ERRORS, IN_TURN, RATIO, SEED, UNIT_LOAD, Drawn, drawn
@@ -76,6 +77,7 @@ def told(found: Motion, seconds: float) -> Record:
         "orbit": found.orbit is not None,
         "lyapunov": found.lyapunov,
         "frequency": None if torus is None else torus.frequency,
+        "curves": 1 if torus is None else torus.curves,
     }
 
 
@@ -154,11 +156,17 @@ def why(
         or label_of(here, back)[0].name == names[1]
     ):
         return "both motions exist there"
+    both = (
+        (train, here, state, names[0]),
+        (other, there, np.array(record[way]["state"]), names[1]),
+    )
     for share in MOVES:
         for turn in (1.0 - share, 1.0 + share):
-            moved = train.at_speed(one.case, one.rest.speed * turn)
-            if label_of(GearedMap(model=moved.model), state)[0].name not in (names[0], "undecided"):
-                return f"border within {100.0 * share:g} % of the speed"
+            for own, section, begun, name in both:
+                moved = own.at_speed(one.case, one.rest.speed * turn)
+                beside = GearedMap(model=moved.model, how=section.how)
+                if label_of(beside, begun)[0].name not in (name, "undecided"):
+                    return f"border within {100.0 * share:g} % of the speed"
     return "unexplained"
 
 
@@ -177,9 +185,19 @@ APART = 1e-9
 LONG = 2000
 """Mesh periods at least that a motion is followed."""
 LONGER = 8000
+"""On a torus, and at most in chaos."""
+SLOWEST = 80_000
+"""At most, beside an orbit: one that is neared slowly is followed until the start's distance has
+shrunk by 1000, as its multiplier says."""
 LONGEST = 512
 CLOSES = 1e-4
 """Units of the map within which a motion has returned."""
+LINEAR = (1e-7, 1e-3)
+"""Returns between which the rate is measured: above rounding, and the multipliers' own."""
+RATE = 0.2
+"""Share by which the rate may be another than the multiplier says."""
+SLOW = 0.99
+"""Of a largest multiplier above it the end of the motion is this one's alone."""
 
 
 def chosen(records: Sequence[Record], count: int) -> list[Record]:
@@ -208,19 +226,23 @@ def checked(record: Record) -> str:
     aside = rng.uniform(-1.0, 1.0, state.size) * section.unit
     if label["name"].startswith("period-"):
         return _closes(section, other, state, aside, label)
-    return _stays_open(section, other, state, aside, label)
+    return _stays_open(section, other, state, aside, record)
 
 
 def _closes(
     section: GearedMap, other: Independent, state: Floats, aside: Floats, label: Record
 ) -> str:
-    """A start beside the orbit must come back to it, close after that period and not sooner."""
+    """A start beside the orbit must come back to it, close after that period and not sooner.
+
+    As fast as its largest multiplier says.
+    """
     cycle, n = section.model.cycle, int(label["period"])
-    decay = -np.log(label["multiplier"]) / (n * cycle) if label["orbit"] else 1e-3
     lag = n * cycle
-    periods = lag * int(np.ceil(np.clip(10.0 / decay, LONG, LONGER) / lag) + 2)
+    decay = -np.log(label["multiplier"]) if label["orbit"] else 1e-3 * lag
+    periods = lag * int(np.ceil(np.clip(7.0 * lag / decay, LONG, SLOWEST) / lag) + 2)
     path = np.vstack([state, other.carry(state + 1e-3 * aside, periods)])
-    gap = [float(section.distance(path[k], path[k - lag])) for k in (len(path) // 2, -1)]
+    gaps = section.distance(path[lag::lag], path[:-lag:lag])
+    gap = [float(gaps[k]) for k in (len(gaps) // 2, -1)]
     if gap[1] > CLOSES or (gap[1] > 1e-7 and gap[1] > 0.7 * gap[0]):
         return f"does not close after {lag} mesh periods: {gap[0]:.1e}, later {gap[1]:.1e}"
     away = float(section.distance(path[-lag:], state).min())
@@ -231,44 +253,132 @@ def _closes(
             sooner = float(section.distance(path[-1], path[-1 - shorter * cycle]))
             if sooner < 10.0 * max(gap[1], CLOSES):
                 return f"closes after {shorter} of {n} already: {sooner:.1e}"
+    return _nears(gaps, decay) if label["orbit"] else ""
+
+
+def _nears(gaps: Floats, decay: float) -> str:
+    """The returns of one orbit after the other must shrink by exp(-decay) each."""
+    low, high = LINEAR
+    large = np.flatnonzero(gaps > high)
+    own = gaps[int(large[-1]) + 1 if large.size else 0 :]
+    rounded = np.flatnonzero(own < low)
+    own = own[: int(rounded[0]) if rounded.size else own.size]
+    own = own[own.size // 2 :]
+    if own.size < 25:
+        return ""
+    rate = -float(np.polyfit(np.arange(own.size), np.log(own), 1)[0])
+    fast = rate > (1.0 + RATE) * decay and np.exp(-decay) > SLOW
+    if rate < (1.0 - RATE) * decay or fast:
+        return f"nears by {np.exp(-rate):.6f} an orbit, its multiplier is {np.exp(-decay):.6f}"
     return ""
 
 
 def _stays_open(
-    section: GearedMap, other: Independent, state: Floats, aside: Floats, label: Record
+    section: GearedMap, other: Independent, state: Floats, aside: Floats, record: Record
 ) -> str:
     """No lag closes; neighbours part in chaos, and on a torus they do not."""
+    label = record["label"]
     chaotic = label["name"] == "chaotic"
-    periods = LONG
+    periods = LONGER
     if chaotic:
         growth = max(label["lyapunov"] * section.period, 1e-9)
         periods = int(np.clip(60.0 / growth, LONG, LONGER))
     path = other.carry(state, periods)
     near = other.carry(state + APART * aside, periods)
     last = path[-LONGEST - 256 :]
-    for lag in range(1, LONGEST + 1):
-        back = float(section.distance(last[lag:], last[:-lag])[-256:].max())
-        if back < CLOSES:
-            return f"closes after {lag} periods within {back:.1e}"
+    back = np.array(
+        [section.distance(last[lag:], last[:-lag])[-256:].max() for lag in range(1, LONGEST + 1)]
+    )
     parted = float(section.distance(path[-256:], near[-256:]).max())
     if chaotic:
+        if back.min() < CLOSES:
+            return f"closes after {back.argmin() + 1} periods within {back.min():.1e}"
         return "" if parted > 1e-3 else f"neighbours stay {parted:.1e} apart"
     if parted > 1e-3:
         return f"neighbours {APART:g} apart part to {parted:.1e}"
-    away = _turns_like(section, path, float(label["frequency"]))
-    return "" if away < 1e-5 else f"second frequency {away:.1e} away"
+    nu, curves = float(label["frequency"]), int(label["curves"])
+    # what finer steps change of the frequency is the label's own error
+    finer = record["steps"]["frequency"]
+    within = 1e-5 + (abs(nu - float(finer)) if finer is not None else 0.0)
+    away = _turns_like(section, path, nu, curves)
+    if away > within:
+        return f"second frequency {away:.1e} away, allowed {within:.1e}"
+    return _returns(path / section.unit, back, nu, curves)
 
 
-def _turns_like(section: GearedMap, path: Floats, frequency: float) -> float:
+def _returns(path: Floats, back: Floats, nu: float, curves: int) -> str:
+    """On closed curves the return after q periods is as far as q nu is from a whole number.
+
+    A curve of one line of size a comes back within 2 a |sin(pi q nu)|; here of all its lines,
+    fitted to the sections themselves at the frequency that leaves least. A periodic motion of q
+    periods would come back within nothing: q nu must not be whole within its error, and no return
+    nearer than half of what is foretold.
+    """
+    path = path[len(path) % (2 * curves) :]
+    half = len(path) // 2
+    whole, first, second = (_frequency(p, nu, curves) for p in (path, path[:half], path[half:]))
+    error = max(abs(first - second), abs(whole - first))
+    count, lags = len(path) - LONGEST, np.arange(1, LONGEST + 1)
+    model = _fitted(path, whole, curves)[0]
+    here = _turned(whole, curves, np.arange(count)[-256:]) @ model
+    for lag in lags:
+        off = abs(lag * whole * curves - round(lag * whole * curves)) / curves
+        if lag % curves == 0 and off < 4.0 * lag * error:
+            return f"{lag} nu is whole within its error: {off:.1e} of {lag * error:.1e}"
+        there = _turned(whole, curves, np.arange(count)[-256:] + lag) @ model
+        told, found = float(np.abs(there - here).max()), float(back[lag - 1])
+        if found < 0.5 * told:
+            return f"comes back after {lag} periods within {found:.1e}, foretold {told:.1e}"
+    return ""
+
+
+LINES = 12
+"""Harmonics of the second frequency, each way, that the check fits to sections on a torus."""
+NEAR_NU = 4e-5
+"""Cycles a period about the label's frequency in which the check looks for its own."""
+
+
+def _turned(nu: float, curves: int, k: NDArray[np.int64]) -> Floats:
+    """Lines at the multiples of ``nu``, another set on each of the curves visited in turn."""
+    turn = 2.0 * np.pi * nu * np.multiply.outer(k, np.arange(1, LINES + 1))
+    one = np.hstack([np.ones((k.size, 1)), np.cos(turn), np.sin(turn)])
+    return np.hstack([one * (k % curves == c)[:, None] for c in range(curves)])
+
+
+def _fitted(path: Floats, nu: float, curves: int) -> tuple[Floats, float]:
+    """Least squares of the lines, and what they leave; both ends of the record count little."""
+    t = (np.arange(len(path)) + 0.5) / len(path)
+    weight = np.exp(-0.5 / (t * (1.0 - t)))[:, None]
+    lines = weight * _turned(nu, curves, np.arange(len(path)))
+    model = np.linalg.lstsq(lines.T @ lines, lines.T @ (weight * path), rcond=None)[0]
+    return model, float(np.linalg.norm(lines @ model - weight * path))
+
+
+def _frequency(path: Floats, nu: float, curves: int) -> float:
+    """The frequency near ``nu`` that leaves least of the sections."""
+    most = path[:, [int(path.std(axis=0).argmax())]]
+    found = minimize_scalar(
+        lambda one: _fitted(most, one, curves)[1],
+        bounds=(nu - NEAR_NU, nu + NEAR_NU),
+        method="bounded",
+        options={"xatol": 1e-10},
+    )
+    return float(found.x)
+
+
+def _turns_like(section: GearedMap, path: Floats, frequency: float, curves: int) -> float:
     """How far the strongest line of the sections is from the nearest multiple of ``frequency``."""
-    moved = (path - path.mean(axis=0)) / section.unit
-    one = moved[:, int(moved.std(axis=0).argmax())] * np.hanning(len(path))
+    moved = path[len(path) % curves :] / section.unit
+    turns = moved.reshape(-1, curves, moved.shape[1])
+    moved = (turns - turns.mean(axis=0)).reshape(moved.shape)
+    one = moved[:, int(moved.std(axis=0).argmax())] * np.hanning(len(moved))
     size = np.abs(np.fft.rfft(one))
     size[:4] = 0.0
     at = int(np.clip(size.argmax(), 1, size.size - 2))
     low, mid, high = np.log(size[at - 1 : at + 2])
-    line = (at + 0.5 * (low - high) / (low - 2.0 * mid + high)) / len(path)
-    multiples = np.mod(frequency * np.arange(1, 13), 1.0)
+    line = (at + 0.5 * (low - high) / (low - 2.0 * mid + high)) / len(moved)
+    shifts = np.arange(curves) / curves
+    multiples = np.mod(np.add.outer(frequency * np.arange(1, 13), shifts), 1.0)
     return float(np.abs(np.minimum(multiples, 1.0 - multiples) - line).min())
 
 
@@ -282,9 +392,11 @@ def code() -> str:
         parts += sorted((ROOT / "src" / "thermogear" / floor).rglob("*.py"))
     parts += sorted((ROOT / "src" / "thermogear" / "study" / "shafts").glob("*.py"))
     own = [label_of, told, labelled, explained, why, across]
-    own += [checked, _closes, _stays_open, _turns_like]
+    own += [checked, _closes, _nears, _stays_open, _returns, _turned, _fitted, _frequency]
+    own += [_turns_like]
     text = "".join([*(one.read_text("utf-8") for one in parts), *map(inspect.getsource, own)])
     text += repr((FINER, MODES, MORE_MODES, MOVES, APART, LONG, LONGER, LONGEST, CLOSES))
+    text += repr((SLOWEST, LINEAR, RATE, SLOW, LINES, NEAR_NU))
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -400,7 +512,8 @@ def page(
         "",
         "A label counts as changed where both are decided and differ. *Both motions exist there*: "
         "started on the",
-        "other's motion, the train keeps it. *Border*: a speed as little away has another label.",
+        "other's motion, the train keeps it. *Border*: at a speed as little away one of both has "
+        "another label.",
         "",
         "Changed, by number:",
         "",
@@ -412,11 +525,12 @@ def page(
         "",
         f"**Wrong: {len(wrong)} of {len(complaints)}** labels held against a long integration of "
         "the same equation by",
-        f"another rule (DOP853, {LONG} to {LONGER} mesh periods): a start beside a periodic motion "
-        "must come back to it",
-        "and close after that period, not sooner; in chaos neighbours part and no return up to",
-        f"{LONGEST} closes; on a torus none closes, neighbours stay together and the sections turn "
-        "at its second frequency.",
+        f"another rule (DOP853, {LONG} to {SLOWEST} mesh periods): a start beside a periodic "
+        "motion must come back to it",
+        "as fast as its multiplier says, and close after that period, not sooner; in chaos "
+        f"neighbours part and no return up to {LONGEST}",
+        "closes; on a torus none comes nearer than its closed curve foretells, neighbours stay "
+        "together and the sections turn at its second frequency.",
         "",
         *(f"- {number}: {words}" for number, words in wrong.items()),
         f"Processor time of a label: median {np.median(seconds):.2g} s, nine of ten below "

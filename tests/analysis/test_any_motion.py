@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import pytest
 from tests.dynamics.geared_trains import from_outputs, moving_six
 from tests.dynamics.test_geared_truth import TRUTH
 
 from thermogear.analysis.any_motion import Search, settle
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.dynamics.return_map import return_map
+from thermogear.dynamics.return_map import Visit, return_map
 
 BASE = TorsionalModel(
     damping_ratio=0.1535, frequency=1.245, stiffness_amplitude=0.335, mean_force=0.017,
@@ -59,3 +61,41 @@ def test_nearing_itself_counts_where_no_orbit_is_polished() -> None:
     found = settle(return_map(model), start, how)
     assert (found.name, found.orbit) == ("period-2", None)
     assert found.away < 1e-6
+
+
+class Fading:
+    """z' = mu z: its own steps, and finer ones that know better."""
+
+    dimension, period, unit, slowest = 1, 1.0, np.ones(1), 0.999
+
+    def __init__(self, mu: float, finer: float | None = None) -> None:
+        self.mu = mu
+        if finer is not None:
+            self.finer = Fading(finer)
+
+    def determinant(self, periods: int) -> float:
+        return float("nan")
+
+    def distance(self, one: Any, other: Any) -> Any:
+        return np.max(np.abs(one - other), axis=-1)
+
+    def carry(self, start: Any, periods: int) -> Any:
+        return np.multiply.outer(self.mu ** np.arange(1.0, periods + 1.0), start)
+
+    def visit(self, start: Any, periods: int = 1, *, sampled: bool = False) -> Visit:
+        return Visit(
+            points=np.vstack([start[None], self.carry(start, periods)]),
+            jacobian=np.array([[self.mu**periods]]),
+            contact_losses=0, back_impacts=0, shares=np.zeros(3), samples=np.empty((0, 1)),
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("finer", "name"), [(0.9992, "period-1"), (0.9994, "undecided"), (1.001, "undecided")]
+)
+def test_a_multiplier_near_one_must_hold_with_finer_steps(finer: float, name: str) -> None:
+    """A decay of 0.999 at rest allows 0.9992, if finer steps change it little."""
+    found = settle(Fading(0.9992, finer), np.array([0.01]))
+    assert found.name == name
+    # far from 1 nobody asks
+    assert settle(Fading(0.9, 1.5), np.array([0.01])).name == "period-1"

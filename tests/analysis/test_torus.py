@@ -16,7 +16,7 @@ from thermogear.analysis.any_motion import settle
 from thermogear.analysis.bifurcations import TORUS
 from thermogear.analysis.continuation import continuation
 from thermogear.analysis.orbits import periodic_orbit
-from thermogear.analysis.torus import torus
+from thermogear.analysis.torus import smooth_window, torus
 from thermogear.dynamics.return_map import Visit, return_map, stretched
 
 ONE = np.ones(3)
@@ -120,6 +120,52 @@ def test_the_frequency_of_random_curves(compared: Compared) -> None:
     assert undecided <= 2
     # what the rule against short ratios relies on
     compared("second base frequency over its stated error", "random closed curves", worst, 4.0)
+
+
+def in_turn(rng: np.random.Generator, nu: float, curves: int) -> Any:
+    """Sections that visit so many random closed curves one after the other."""
+    found = np.zeros((K.size, 3))
+    for c in range(curves):
+        mine = curve(rng, nu) + 5.0 * rng.normal(size=3)
+        found[c::curves] = mine[c::curves]
+    return found
+
+
+@pytest.mark.parametrize("curves", [2, 3, 5, 8])
+def test_a_torus_may_be_a_few_curves_in_turn(curves: int) -> None:
+    """As it is where it began at an orbit of so many periods."""
+    nu = 0.5 * (np.sqrt(5.0) - 1.0) / curves
+    sections = in_turn(np.random.default_rng([20261125, curves]), nu, curves)
+    found = torus(sections, unit=ONE)
+    assert found is not None
+    assert found.proven
+    assert found.curves == curves
+    # a frequency counts up to a whole turn of every curve, and its harmonics
+    turns = curves * found.frequency
+    away = min(abs(folded(turns) - folded(m * curves * nu)) for m in range(1, 8)) / curves
+    assert away < 1e-7
+    which = curves - 1
+    angle = np.mod(found.frequency * K[which::curves], 1.0)
+    away = found.curve(sections, angle=angle, which=which) - sections[which::curves]
+    # the error of the frequency, 2048 periods later
+    assert np.abs(away).max() < 1e-4
+
+
+def test_a_curve_with_corners_is_one() -> None:
+    """Harmonics that fall as slowly as 1/m^2: |sin|, as contact that is lost leaves it."""
+    turn = 2.0 * np.pi * 0.5 * (3.0 - np.sqrt(5.0)) * K
+    sections = np.stack([np.abs(np.sin(0.5 * turn)), np.cos(turn), np.sin(turn)], axis=1)
+    found = torus(sections * np.array([9.0, 1.0, 1.0]), unit=ONE)
+    assert found is not None
+    assert found.proven
+    assert found.curves == 1
+
+
+def test_a_smooth_mean_is_near_its_limit() -> None:
+    """The mean of cos(2 pi nu k) is zero; a plain one falls with the length alone."""
+    wave = np.cos(2.0 * np.pi * 0.5 * (3.0 - np.sqrt(5.0)) * K)
+    assert abs(float(smooth_window(K.size) @ wave)) < 1e-12
+    assert smooth_window(K.size).sum() == pytest.approx(1.0, abs=1e-14)
 
 
 @pytest.mark.parametrize("kind", ["ratio", "noise", "fading", "growing", "still"])

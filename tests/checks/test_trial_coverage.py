@@ -36,7 +36,9 @@ def test_drawn_records_are_what_they_say() -> None:
 
 def test_a_cell_outside_is_named() -> None:
     errors = np.random.default_rng(3).normal(size=(4, 500))
-    cell = TRIAL.Cell(name="x", errors=errors, half_widths=np.full((4, 500), 1.0), seconds=1.0)
+    cell = TRIAL.Cell(
+        name="x", errors=errors, half_widths=np.full((4, 500), 1.0), drawn=500, seconds=1.0
+    )
     said = TRIAL.outside([cell])
     assert len(said) == 4
     assert "Outside: x, amplitude: " in "\n".join(TRIAL.told([cell], 500))

@@ -138,12 +138,19 @@ def test_the_real_records_with_a_wrong_rate(name: str) -> None:
     assert fitting == pytest.approx(12800.0, rel=0.02)
 
 
-def test_only_the_longest_whole_stretch_is_used() -> None:
+def test_few_gaps_are_filled_and_of_many_the_longest_whole_stretch_is_used() -> None:
     x = mesh_train(1 << 15, channels=1)[0]
-    x[5000] = np.nan
+    whole = measure(Record((Channel("a", x.copy(), "g"),), "x", RATE, "given")).lines[0]
+    x[5000:5100] = np.nan
     found = measure(Record((Channel("a", x, "g"),), "x", RATE, "given"))
-    assert (found.start, found.samples) == (5001, (1 << 15) - 5001)
-    assert any("samples 5001..32767" in n.text for n in found.notices)
+    assert (found.start, found.samples) == (0, 1 << 15)
+    assert [(one.first, one.last, one.count) for one in found.findings] == [(5000, 5099, 100)]
+    assert found.lines[0].reading == pytest.approx(whole.reading, rel=3e-3)
+    assert found.lines[0].half_width > whole.half_width
+    x[5000:8000] = np.nan
+    found = measure(Record((Channel("a", x, "g"),), "x", RATE, "given"))
+    assert (found.start, found.samples) == (8000, (1 << 15) - 8000)
+    assert any("samples 8000..32767" in n.text for n in found.notices)
 
 
 def test_dead_channels_are_left_out_and_refused_when_asked_for() -> None:

@@ -191,6 +191,8 @@ def test_lines_of_two_base_frequencies_are_kept() -> None:
     for one in (1.0, nu, 1.0 - nu, 2.0 + 2.0 * nu, 12.0):
         assert np.abs(orders - one).min() < 1e-8
     assert 0.5 not in orders
+    # two curves in turn: every order is met by half ones, too
+    assert np.abs(torus_orders(nu, curves=2) - (0.5 + nu)).min() < 1e-8
     phase = np.arange(64 * SAMPLES) / SAMPLES
     found = lines(3.0 * np.cos(2.0 * np.pi * (1.0 + nu) * phase), orders=orders)
     assert abs(orders[found.argmax()] - 1.0 - nu) < 1e-8

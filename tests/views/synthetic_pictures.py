@@ -17,6 +17,7 @@ from thermogear.views.plots import (
     flanks,
     gears,
     laws,
+    live,
     loaded,
     lost_contact,
     one_motion,
@@ -40,7 +41,7 @@ SIZES = {
     "regime_name": 3, "temperature": 2, "mesh_phase": 8, "pair": 2, "temperature_difference": 3,
     "pair_kind": 2, "speeds": 4, "torques": 3, "node": 2, "time": 12, "piece": 2, "sensor": 2,
     "channel": 1, "thermal": 2, "torque": 2, "row": 2, "heat": 1, "flip": 2, "entry": 2,
-    "output": 2, "input": 3, "gears.pinion.face_width": 3, "bearing": 2,
+    "output": 2, "input": 3, "gear_temperature": 6, "gears.pinion.face_width": 3, "bearing": 2,
     "pinion_position": 12, "wheel_position": 12, "mode": 5, "stiffness_level": 3, "line": 3,
     "source": 3, "response_speed": 12,
 }  # fmt: skip
@@ -442,7 +443,58 @@ def of_shafts() -> dict[str, Picture]:
     }
 
 
+def of_dials() -> dict[str, Picture]:
+    two = ["undeformed", "hot"]
+    mesh = made("state mesh_phase", "mesh_stiffness").assign(
+        mean_stiffness=rising("state"), half_backlash=("state", np.array([1e-4, 5e-5]))
+    )  # fmt: skip
+    mesh = mesh.assign_coords(state=two, mesh_phase=rising("mesh_phase", low=0.0, high=0.9)[1])
+    gap = xr.Dataset(
+        {"half_backlash": rising("gear_temperature", low=1e-4, high=2e-5)},
+        {"gear_temperature": rising("gear_temperature", low=293.0, high=460.0)},
+    ).assign_attrs(jam_temperature=500.0, hot_temperature=413.0)  # fmt: skip
+    speeds = np.linspace(100.0, 500.0, 12)
+    lanes = ("state", "direction", "pinion_speed")
+    leap = np.full((1, 2, 12, 3), np.nan)
+    leap[0, 1, 4, 0] = 250.0
+    ran = xr.Dataset(
+        {"dte_peak_to_peak": (lanes, np.linspace(1e-6, 9e-5, 24).reshape(1, 2, 12)),
+         "section_x": ((*lanes, "section"), np.linspace(0.5, 1.5, 96).reshape(1, 2, 12, 4)),
+         "leap_kind": ((*lanes, "leap"), np.where(np.isnan(leap), np.nan, 0.0)),
+         **{f"leap_{n}": ((*lanes, "leap"), leap * scale)
+            for n, scale in (("fold", 1.0), ("before", 1e-7), ("after", 2e-7))}},
+        {"pinion_speed": speeds},
+    ).assign_attrs(preview=0, done=24, length=1e-4)  # fmt: skip
+    t = np.arange(64) / 64.0
+    orbit = xr.Dataset(
+        {"time": ("sample", 1e-3 * t), "displacement": ("sample", 1e-5 * np.sin(6.28 * t)),
+         "velocity": ("sample", 1e-2 * np.cos(6.28 * t)), "half_backlash": 5e-6,
+         "section_displacement": ("section", np.array([0.0])),
+         "section_velocity": ("section", np.array([1e-2])),
+         "line_amplitude": ("order", np.geomspace(1e-5, 1e-9, 8))},
+        {"order": np.arange(1, 9) / 1.0},
+    )  # fmt: skip
+    motions = {"as the case starts": orbit, "running up": 0.5 * orbit}
+    grid = xr.Dataset(
+        {n: (("pinion_speed", "gear_temperature"), np.resize([0, 1, 2], (4, 3)))
+         for n in ("label", "period")},
+        {"pinion_speed": ("pinion_speed", speeds[:4], {"units": "rad/s"}),
+         "gear_temperature": ("gear_temperature", np.array([293.0, 350.0, 400.0]),
+                              {"units": "K"})},
+    )  # fmt: skip
+    lines = {"order": np.array([1.0, 2.0]), "amplitude": np.array([4e-6, 1e-6]),
+             "half": np.array([1e-6, np.nan])}  # fmt: skip
+    return {
+        "dial-stiffness": live.stiffness(mesh),
+        "dial-gap": live.gap(gap),
+        "dial-run-up": live.run_up({"hot": ran, "undeformed": ran}, 300.0),
+        "dial-orbits": live.orbits(motions),
+        "dial-record": live.measured_orders(motions, **lines),
+        "dial-regimes": live.regimes(grid, np.arange(12).reshape(4, 3) > 2),
+    }
+
+
 def every() -> dict[str, Picture]:
     """All of them by name."""
     gears = of_sweeps() | of_orbits() | of_surveys() | of_shafts()
-    return gears | of_claims() | of_sampled_rigs() | of_planes()
+    return gears | of_claims() | of_sampled_rigs() | of_planes() | of_dials()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
 from thermogear.analysis.curve import Curve, Family, Point, Stretch, Tests
+from thermogear.analysis.nearby import zero_near
 from thermogear.analysis.orbits import Orbit, closed
 from thermogear.base.errors import ConvergenceError, InputError
 from thermogear.dynamics.return_map import MovedMap, is_moved
@@ -44,7 +45,6 @@ FARTHEST = 0.25
 HIDDEN = ("fold", "flip", "margin", "spiral")
 """What of a point may dip to 0 and back within a step."""
 MOST_STEPS = 8
-MOST_LOOKS = 30
 CARRIED = 1e-8
 """It has settled where a step is shorter: the next would be shorter than rounding."""
 SILENT = 1e-11
@@ -266,48 +266,8 @@ def _settled(curve: Curve, kind: str, guess: Floats) -> Floats | None:
             return scaled
         if not length < FARTHEST:
             break
-    return _along(curve, attrgetter(test), guess)
-
-
-def _along(curve: Curve, test: Callable[[Point], float], guess: Floats) -> Floats | None:
-    """The nearest zero of a test function on the branch through the neighbourhood of ``guess``.
-
-    Near a grazing multipliers run as the root of the distance from it, which no Newton follows.
-    """
-    gap, jacobian, section = curve.residual(guess)
-    units = curve.unit[:-1]
-    flat = np.column_stack(
-        [
-            jacobian / units[:, None] * units - np.eye(units.size),
-            curve.in_parameter(guess, section)[0],
-        ]
-    )
-    if not (np.all(np.isfinite(gap)) and np.all(np.isfinite(flat))):
-        return None
-    here = curve.correct(guess, normal=np.linalg.svd(flat)[2][-1], reach=FARTHEST)
-    if here is None:
-        return None
-    ends, steps = {1.0: here, -1.0: here}, {1.0: 1e-4, -1.0: 1e-4}
-    for _ in range(MOST_LOOKS):
-        for way in [w for w in ends if steps[w] > 1e-8]:
-            last, step = ends[way], way * steps[way]
-            there = curve.correct(
-                last.scaled + step * last.tangent,
-                normal=last.tangent,
-                old=last.tangent,
-                reach=0.5 * steps[way],
-            )
-            if there is None or there.tangent @ last.tangent < 0.5:
-                steps[way] *= 0.25
-                continue
-            if test(last) * test(there) < 0.0:
-                stretch = Stretch(curve, *((last, there) if way > 0.0 else (there, last)))
-                zero = stretch.zero(test, low=0.0, high=stretch.length)
-                return stretch.at(zero).scaled
-            ends[way] = there
-            far = float(np.linalg.norm(there.scaled - here.scaled)) > FARTHEST
-            steps[way] = 0.0 if far else 2.0 * steps[way]
-    return None
+    found = zero_near(curve, attrgetter(test), guess, farthest=FARTHEST)
+    return None if found is None else found.scaled
 
 
 def looked_closer(curve: Curve, before: Point | None, a: Point, b: Point) -> list[Point]:

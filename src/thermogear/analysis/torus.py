@@ -10,8 +10,12 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
-HARMONICS = 24
-"""Harmonics of the second base frequency of which a section is made."""
+HARMONICS = 96
+"""Harmonics of the second base frequency of which a section is made, at most."""
+TOLD_BY = 4
+"""Sections at least for every number that is fitted to them."""
+CURVES = 8
+"""Closed curves at most that the sections visit in turn."""
 FORETOLD = 1e-2
 """Share of its size to which a torus foretells itself."""
 PARTS = 4
@@ -28,7 +32,9 @@ class Torus:
 
     ``frequency`` nu in cycles per period, 0 < nu <= 1/2, with its ``error``; ``foretold``: how far
     the second half of the sections is from what the first half says, over its size; the nearest
-    ratio p/q, q up to :data:`LONGEST`, and the ``distance`` to it.
+    ratio p/q, q up to :data:`LONGEST`, and the ``distance`` to it. ``curves``: a torus that began
+    at an orbit of n periods meets the section in n closed curves, one after the other; then c_m is
+    another one for every k mod n.
     """
 
     frequency: float
@@ -36,21 +42,24 @@ class Torus:
     foretold: float
     ratio: tuple[int, int]
     distance: float
+    curves: int = 1
 
     @property
     def proven(self) -> bool:
         """The section is a closed curve, and no orbit of up to :data:`LONGEST` periods."""
         return self.foretold < FORETOLD and self.distance > 4.0 * self.error
 
-    def curve(self, sections: Floats, *, angle: Floats) -> Floats:
+    def curve(self, sections: Floats, *, angle: Floats, which: int = 0) -> Floats:
         """The closed curve on which ``sections`` (period, d) lie, at ``angle`` -> (angle, d).
 
-        ``angle`` nu k [cycles], 0 at the first section; the harmonics are fitted to them.
+        ``angle`` nu k [cycles], 0 at the first section; the harmonics are fitted to them. Of more
+        ``curves`` ``which`` is that of the section of this number, and every n-th from it.
         """
-        model, _, _, _ = np.linalg.lstsq(
-            _lines(self.frequency, np.arange(len(sections))), sections, rcond=None
-        )
-        return np.asarray(_lines(1.0, angle) @ model)
+        own = sections[which :: self.curves]
+        nu = self.curves * self.frequency
+        count = _harmonics(nu, len(own))
+        model = _fit(_lines(nu, np.arange(len(own)), count), own)
+        return np.asarray(_lines(1.0, angle - which * self.frequency, count) @ model)
 
 
 def torus(sections: Floats, *, unit: Floats) -> Torus | None:
@@ -60,51 +69,88 @@ def torus(sections: Floats, *, unit: Floats) -> Torus | None:
     in its ``unit``, is greatest; a smooth window makes its error fall faster than any power of the
     length (Laskar's frequency analysis; weighted Birkhoff averages, Das and others, Nonlinearity 30
     (2017) 4111). Its error is what both halves differ by. A chaotic or a decaying motion is not
-    foretold by such a sum.
+    foretold by such a sum. The fewest closed curves that foretell the sections count; each is
+    measured from its own middle.
     """
     scaled = (sections - sections.mean(axis=0)) / unit
-    most = int(scaled.std(axis=0).argmax())
-    if scaled[:, most].std() < 1e-9:
+    own = scaled[:, int(scaled.std(axis=0).argmax())]
+    best: Torus | None = None
+    for curves in range(1, CURVES + 1):
+        found = _curves(own, curves)
+        if found is not None and (best is None or found.foretold < best.foretold):
+            best = found
+        if best is not None and best.foretold < FORETOLD:
+            break
+    return best
+
+
+def _curves(values: Floats, curves: int) -> Torus | None:
+    """The best torus that meets the section in so many ``curves``."""
+    turns = values[: len(values) // (2 * curves) * 2 * curves].reshape(-1, curves)
+    turns = turns - turns.mean(axis=0)
+    size = turns.std()
+    if size < 1e-9:
         return None
-    half = len(scaled) // 2
-    whole, first, second = (
-        _frequency(part[:, most]) for part in (scaled, scaled[:half], scaled[half : 2 * half])
-    )
+    turns = turns / size
+    row = turns.ravel()
+    half = len(row) // 2
+    whole, first, second = (_frequency(part) for part in (row, row[:half], row[half:]))
     error = max(abs(first - second), abs(whole - first), LEAST)
-    own = scaled[:, most] / scaled[:, most].std()
     # the strongest line may be a harmonic of the base frequency
-    away, parts = np.inf, 1
+    away, parts, base = np.inf, 1, curves * whole
     for share in range(1, PARTS + 1):
         for turn in range(share):
-            found = _foretold(own, (whole + turn) / share)
+            found = _foretold(turns, (curves * whole + turn) / share)
             if found < 0.1 * away:
-                away, parts, base = found, share, (whole + turn) / share
-    whole = min(base % 1.0, 1.0 - base % 1.0)
-    error /= parts
+                away, parts, base = found, share, (curves * whole + turn) / share
+    # of the frequencies that are one on each of the curves, that of the strongest line
+    among = np.mod((base + np.arange(curves)) / curves, 1.0)
+    among = np.minimum(among, 1.0 - among)
+    nu = float(among[int(np.abs(among - whole).argmin())])
     q = np.arange(1, LONGEST + 1)
-    gaps = np.abs(whole - np.round(whole * q) / q)
+    gaps = np.abs(nu - np.round(nu * q) / q)
     place = int(gaps.argmin())
     return Torus(
-        frequency=whole,
-        error=error,
+        frequency=nu,
+        error=error / parts,
         foretold=away,
-        ratio=(round(whole * int(q[place])), int(q[place])),
+        ratio=(round(nu * int(q[place])), int(q[place])),
         distance=float(gaps[place]),
+        curves=curves,
     )
 
 
-def _foretold(own: Floats, nu: float) -> float:
-    """How far the second half of ``own`` is from what the first half says, at ``nu``."""
-    half = own.size // 2
-    model, _, _, _ = np.linalg.lstsq(_lines(nu, np.arange(half)), own[:half], rcond=None)
-    told = _lines(nu, np.arange(half, 2 * half)) @ model
-    return float(np.std(told - own[half : 2 * half]))
+def _foretold(turns: Floats, nu: float) -> float:
+    """How far the second half of ``turns`` (k, curve) is from what the first half says."""
+    half = len(turns) // 2
+    lines = _lines(nu, np.arange(len(turns)), _harmonics(nu, half))
+    return float(np.std(lines[half:] @ _fit(lines[:half], turns[:half]) - turns[half:]))
 
 
-def _lines(nu: float, k: NDArray[np.int64] | Floats) -> Floats:
-    """cos and sin (period, 2 harmonics + 1) of the harmonics of ``nu``."""
-    turn = 2.0 * np.pi * nu * np.multiply.outer(k, np.arange(1, HARMONICS + 1))
-    return np.hstack([np.ones((k.size, 1)), np.cos(turn), np.sin(turn)])
+def _fit(lines: Floats, values: Floats) -> Floats:
+    """Least squares by the normal equations: the lines are all but orthogonal."""
+    model, _, _, _ = np.linalg.lstsq(lines.T @ lines, lines.T @ values, rcond=1e-10)
+    return np.asarray(model)
+
+
+def _harmonics(nu: float, count: int) -> int:
+    """As many as ``count`` sections of a curve determine well, and tell from each other.
+
+    Near a ratio p/q harmonics that are q apart fold to nearly one frequency: together they would
+    follow a motion that fades.
+    """
+    most = min(HARMONICS, (count // TOLD_BY - 1) // 2)
+    turns = nu * np.arange(1, 2 * max(most, 1) + 1)
+    near = np.flatnonzero(np.abs(turns - np.round(turns)) < 1.0 / count)
+    if near.size:
+        most = min(most, int(near[0]) // 2)
+    return max(most, 1)
+
+
+def _lines(nu: float, k: NDArray[np.int64] | Floats, count: int) -> Floats:
+    """cos and sin (period, 2 count + 1) of the harmonics of ``nu``."""
+    turn = 2.0 * np.pi * nu * np.multiply.outer(k, np.arange(1, count + 1))
+    return np.hstack([np.ones((len(k), 1)), np.cos(turn), np.sin(turn)])
 
 
 def _frequency(values: Floats) -> float:
@@ -112,9 +158,7 @@ def _frequency(values: Floats) -> float:
     from scipy.optimize import minimize_scalar  # slow to import, seldom needed
 
     count = values.size
-    t = (np.arange(count) + 0.5) / count
-    window = np.exp(-1.0 / (t * (1.0 - t)))
-    window /= window.sum()
+    window = smooth_window(count)
     own = window * (values - float(window @ values))
     size = np.abs(np.fft.rfft(own, 4 * count))
     # beside the line at zero, which the window makes some bins wide
@@ -130,3 +174,14 @@ def _frequency(values: Floats) -> float:
         options={"xatol": 1e-13},
     )  # fmt: skip
     return float(found.x)
+
+
+def smooth_window(count: int) -> Floats:
+    """Weights w of a mean over a record that falls to nothing, and smoothly, at both ends.
+
+    w(t) ~ exp(-1/(t (1 - t))), 0 < t < 1: the mean of what turns with fixed frequencies comes to
+    its limit faster than any power of the length (Das and others, see :func:`torus`).
+    """
+    t = (np.arange(count) + 0.5) / count
+    window = np.exp(-1.0 / (t * (1.0 - t)))
+    return np.asarray(window / window.sum())

@@ -51,8 +51,9 @@ class Dial:
 
     @property
     def row(self) -> dict[str, Any]:
-        """For a page."""
-        return {one: getattr(self, one) for one in self.__dataclass_fields__}
+        """For a page; the value None where the heat balance found none."""
+        found = {one: getattr(self, one) for one in self.__dataclass_fields__}
+        return found | {"value": self.value if math.isfinite(self.value) else None}
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -45,6 +45,15 @@ class GearedMap:
     def period(self) -> float:
         """Duration of one application [s]."""
         return self.model.cycle * self.model.period
+
+    @cached_property
+    def finer(self) -> GearedMap:
+        """The same map by finer steps: what both differ by is the error of this one."""
+        how = self.how
+        steps = replace(
+            how, accuracy=0.01 * how.accuracy, longest=2 * how.longest, rungs=how.rungs + 2
+        )
+        return GearedMap(model=self.model, how=steps, samples=self.samples)
 
     @cached_property
     def slowest(self) -> float:

@@ -67,7 +67,7 @@ def app(
     from thermogear.front.app.given import Given
 
     given = Given(case, read, measured, "" if record is None else Path(record).name)
-    listening, token = server.bound(port, USUAL_PORT), guard.new_token()
+    listening, token = server.bound(port, usual=USUAL_PORT), guard.new_token()
     click.echo(f"http://{server.ADDRESS}:{listening.getsockname()[1]}/?token={token}")
     click.echo("open it in a browser on this machine; Ctrl+C ends it", err=True)
     server.serve(given, listening, token, browser=not no_browser)

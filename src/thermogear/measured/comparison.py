@@ -116,6 +116,9 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
     """The mesh line of a measurement (its clearest channel) as a table."""
     lines = [line for line in found.lines if line.name == "mesh x 1"]
     lines = [line for line in lines if np.isfinite(line.displacement)]
+    withheld = next((line.withheld for line in found.lines if line.withheld), "")
+    if not lines and withheld:
+        raise InputError("measured", found.record.source, why=f"its lines are withheld: {withheld}")
     if not lines:
         raise InputError(
             "measured",

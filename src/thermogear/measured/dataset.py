@@ -27,9 +27,8 @@ _LONGEST = 1 << 20
 def result_of(found: Measurement) -> Result:
     """Groups ``record`` (an excerpt), ``spectrum`` (its peaks), ``lines``; settings, gearing and
     notices as texts. Rates and units that are unknown stay empty."""
-    stop = found.start + min(found.samples, _LONGEST)
     channels = [found.record.channel(name) for name in found.channels]
-    table = np.stack([c.values(found.start, stop=stop) for c in channels])
+    table = found.values[:, :_LONGEST]
     spectrum = amplitude_spectrum(table - table.mean(axis=-1, keepdims=True), 1.0, "hann")
     place, peaks = _peaks(spectrum.frequencies, spectrum.amplitudes)
     excerpt = min(_DRAWN, table.shape[-1])
@@ -55,6 +54,7 @@ def result_of(found: Measurement) -> Result:
         created=now(),
         settings=found.settings,
         evidence=list(gearing.evidence) if gearing else [],
+        findings=[one.text for one in found.findings],
         rate="" if found.record.rate is None else repr(found.record.rate),
         unit=channels[0].unit or "",
         teeth="" if found.teeth is None else str(found.teeth),
@@ -83,6 +83,7 @@ def figures(found: Measurement) -> dict[str, Any]:
         "evidence": list(gearing.evidence) if gearing else [],
         "given": {"teeth": found.given[0], "speed": found.given[1]},
         "found": _found(gearing),
+        "findings": [{**vars(one), "text": one.text} for one in found.findings],
         "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
         "notices": [vars(notice) for notice in found.notices],
     }
@@ -134,6 +135,7 @@ def _lines(lines: tuple[MeasuredLine, ...]) -> xr.Dataset:
         channel=("line", [line.channel for line in lines]),
         kind=("line", [line.kind for line in lines]),
         name=("line", [line.name for line in lines]),
+        withheld=("line", [line.withheld for line in lines]),
     )
 
 

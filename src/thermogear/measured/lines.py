@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +35,7 @@ class MeasuredLine:
     noise, lines beside, what damage of the record may do (Student's t counted in) and the
     sensor; ``half_width`` = 1.96 u_D, the 95 % interval's; ``frequency_half_width`` [Hz],
     ``position_half_width`` [cycles/sample] and ``speed_half_width`` [rad/s] likewise.
-    ``bin_offset`` [bins]; ``prominence`` over the floor beside.
+    ``bin_offset`` [bins]; ``prominence`` over the floor beside; ``withheld``: why numbers are.
     """
 
     channel: str
@@ -55,11 +55,33 @@ class MeasuredLine:
     position_half_width: float = float("nan")
     frequency_half_width: float = float("nan")
     speed_half_width: float = float("nan")
+    withheld: str = ""
 
     @property
     def acceleration_g(self) -> float:
         """The acceleration in standard gravities."""
         return self.acceleration / STANDARD_GRAVITY
+
+
+@dataclass(frozen=True, kw_only=True)
+class Doubts:
+    """What damage does to a channel's lines: ``extra`` relative half width of amplitudes, why
+    amplitudes are ``withheld``, why the ``rate`` is doubtful."""
+
+    extra: float = 0.0
+    withheld: str = ""
+    rate: str = ""
+
+    def applied(self, line: MeasuredLine) -> MeasuredLine:
+        """The line without what is withheld."""
+        nan = float("nan")
+        if self.withheld:
+            line = replace(line, reading=nan, acceleration=nan, displacement=nan, uncertainty=nan)
+            line = replace(line, half_width=nan)
+        if self.rate:
+            line = replace(line, frequency=nan, frequency_half_width=nan, displacement=nan)
+            line = replace(line, shaft_speed=nan, speed_half_width=nan)
+        return replace(line, withheld="; ".join(t for t in (self.withheld, self.rate) if t))
 
 
 @dataclass(frozen=True)
@@ -128,6 +150,7 @@ def channel_lines(
     wanted: list[Wanted],
     sensor_tolerance: float | None,
     turns: MeshTurns | None,
+    doubts: Doubts,
 ) -> list[MeasuredLine]:
     """The ``wanted`` lines of one channel, ``values`` (sample,) in the file's unit."""
     rate = record.rate or 1.0
@@ -166,31 +189,33 @@ def channel_lines(
         own = reading.frequency_half_width * through.axis / rate
         if turns is not None and turns.turning is not None:
             own = float(np.hypot(own, share * position))
-        parts = [relative, _NORMAL * (sensor_tolerance or 0.0)]
-        half_width = float(np.sqrt(sum(p**2 for p in parts)))
+        # damage is no random error: its share is added, not its square
+        half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + doubts.extra
         found.append(
-            MeasuredLine(
-                channel=channel.name,
-                kind=want.kind,
-                name=want.name,
-                order=position / shaft,
-                position=position,
-                frequency=position * rate if in_hertz else float("nan"),
-                reading=amplitude / factor,
-                acceleration=amplitude if accelerates else float("nan"),
-                displacement=amplitude
-                if moves
-                else displacement
-                if accelerates and in_hertz
-                else float("nan"),
-                uncertainty=half_width / _NORMAL,
-                bin_offset=line.bin_offset,
-                prominence=line.prominence,
-                shaft_speed=speed,
-                half_width=half_width,
-                position_half_width=own,
-                frequency_half_width=own * rate if in_hertz else float("nan"),
-                speed_half_width=share * speed,
+            doubts.applied(
+                MeasuredLine(
+                    channel=channel.name,
+                    kind=want.kind,
+                    name=want.name,
+                    order=position / shaft,
+                    position=position,
+                    frequency=position * rate if in_hertz else float("nan"),
+                    reading=amplitude / factor,
+                    acceleration=amplitude if accelerates else float("nan"),
+                    displacement=amplitude
+                    if moves
+                    else displacement
+                    if accelerates and in_hertz
+                    else float("nan"),
+                    uncertainty=half_width / _NORMAL,
+                    bin_offset=line.bin_offset,
+                    prominence=line.prominence,
+                    shaft_speed=speed,
+                    half_width=half_width,
+                    position_half_width=own,
+                    frequency_half_width=own * rate if in_hertz else float("nan"),
+                    speed_half_width=share * speed,
+                )
             )
         )
     return found
@@ -213,4 +238,4 @@ def _sides(gearing: Gearing | None, teeth: int | None, want: Wanted) -> tuple[fl
     if gearing is None:
         return ()
     rank = max(1, int(np.rint(want.position / gearing.mesh_frequency)))
-    return sides_of(gearing, teeth, rank, gearing.mesh_frequency)
+    return sides_of(gearing, teeth=teeth, rank=rank, mesh=gearing.mesh_frequency)

@@ -92,7 +92,8 @@ class Record:
     """Channels sampled together. ``rate`` [samples/s] is None where the file does not tell it.
 
     ``rate_origin`` says where the rate is from; ``start`` [s] is the time of the first sample;
-    ``tacho`` names the tacho channel; ``notices`` are the traps met while reading.
+    ``tacho`` names the tacho channel; ``notices`` are the traps met while reading; ``rate_doubt``:
+    what contradicts the rate.
     """
 
     channels: tuple[Channel, ...]
@@ -102,6 +103,7 @@ class Record:
     start: float = 0.0
     tacho: str | None = None
     notices: tuple[Notice, ...] = ()
+    rate_doubt: str = ""
 
     def __post_init__(self) -> None:
         if not self.channels:
@@ -175,6 +177,8 @@ class Record:
                     f"the rate given, {rate:g}/s, is not the file's, {self.rate:g}/s "
                     f"({self.rate_origin}): factor {rate / self.rate:.4g}",
                 )
+                text = f"{rate:g}/s is given, the file says {self.rate:g}/s"
+                record = replace(record, rate_doubt=text)
             record = replace(record, rate=float(rate), rate_origin="given")
         if unit is not None or scale is not None:
             name = None if unit is None else known_unit(unit)

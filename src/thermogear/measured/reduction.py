@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,14 @@ from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.evidence import Stated
+from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.lines import MeasuredLine, channel_lines, wanted_lines
+from thermogear.measured.lines import Doubts, MeasuredLine, channel_lines, wanted_lines
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
-from thermogear.measured.turns import MeshTurns, mesh_turns
+from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.signals.quality import phase_jumps
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
@@ -27,6 +30,7 @@ LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
 _NEAR = 0.1  # a stated speed is nominal: motors slip
+_JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
 
 _FACTORS = {
     10.0: "ten times too high",
@@ -50,6 +54,8 @@ class Measurement:
 
     ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
     speed [rad/s]), None where he said nothing.
+    ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
+    what the lines were read from, in the file's unit.
     """
 
     record: Record
@@ -61,6 +67,15 @@ class Measurement:
     lines: tuple[MeasuredLine, ...]
     notices: tuple[Notice, ...]
     start: int
+    findings: tuple[Finding, ...] = ()
+    values: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    given: tuple[int | None, float | None] = (None, None)
+
+    @property
+    def damage(self) -> tuple[tuple[str, str], ...]:
+        """Level and text of every finding."""
+        return tuple((one.notice.level, one.notice.text) for one in self.findings)
+
     given: tuple[int | None, float | None] = (None, None)
 
     @property
@@ -105,10 +120,15 @@ def measure(
     the mesh line. Without a rate the lines are given in orders and cycles per sample, without a
     unit in the file's own numbers.
 
-    Raises InputError for a record without a line or a channel without a signal.
+    Before any number the record passes the gate (:mod:`~thermogear.measured.gate`): damage is in
+    ``findings``, and the uncertainty holds it or the number is withheld.
+
+    Raises InputError for a record without a line, a channel without a signal, a rate so low that
+    it may be a shaft's.
     """
     if not isinstance(record, Record):
         record = read_record(record)
+    require_sampling_rate(record)
     if harmonics < 1 or sidebands < 0:
         raise InputError("harmonics, sidebands", f"{harmonics}, {sidebands}", allowed=">= 1, >= 0")
     if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
@@ -118,18 +138,44 @@ def measure(
     require_teeth(teeth)
     notices = list(record.notices)
     chosen = _chosen(record, channels, notices)
-    start, table = _stretch(chosen, notices)
+    through = passed(chosen, LONGEST)
+    if len(chosen[0]) > LONGEST:
+        notices.append(
+            Notice("info", f"the first {LONGEST} of {len(chosen[0])} samples are reduced to lines")
+        )
     given = teeth, speed
-    expected = _expected(record, teeth, speed)
-    gearing = _gearing(table, notices, expected, _stated(record, teeth, speed))
+    expected, stated = _expected(record, teeth, speed), _stated(record, teeth, speed)
+    gearing = _gearing(through.table, notices, expected, stated)
+    if _whole_turns(through, gearing, teeth):
+        gearing = _gearing(through.table, [], expected, stated)
+    chosen, start, table = through.channels, through.start, through.table
     teeth = _teeth(gearing, teeth, notices)
     turns: MeshTurns | None = None
+    doubt = record.rate_doubt
     if gearing is not None:
-        turns = mesh_turns(record, table, gearing, teeth, harmonics, pulses_per_turn, start)
+        turns = mesh_turns(
+            record,
+            table,
+            gearing,
+            teeth=teeth,
+            harmonics=harmonics,
+            pulses_per_turn=pulses_per_turn,
+            start=start,
+        )
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
-        _check_rate(record, gearing, teeth, given[0], speed, notices)
+        doubt = _check_rate(record, gearing, teeth, given[0], speed, notices)
+    if doubt:
+        through.findings.append(
+            Finding(
+                kind=f"the rate is doubtful: {doubt}",
+                done="frequencies, speed and displacements are withheld",
+                effect="they would be wrong by the rate's factor; orders and accelerations stand",
+                withholds=True,
+            )
+        )
+    notices += [one.notice for one in through.findings]
     if turns is not None and turns.said:
         notices.append(Notice("info", turns.said))
     rate = record.rate or 1.0
@@ -147,6 +193,11 @@ def measure(
             wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
             sensor_tolerance,
             turns,
+            Doubts(
+                extra=through.extra.get(channel.name, 0.0),
+                withheld=through.withheld.get(channel.name, ""),
+                rate=doubt,
+            ),
         )
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)
@@ -160,6 +211,8 @@ def measure(
         tuple(lines),
         tuple(notices),
         start,
+        tuple(through.findings),
+        table,
         given,
     )
 
@@ -212,30 +265,34 @@ def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]
     return alive
 
 
-def _stretch(channels: list[Channel], notices: list[Notice]) -> tuple[int, Floats]:
-    """The longest stretch in which no channel has a gap, at most LONGEST samples of it."""
-    count = len(channels[0])
-    table = np.stack([c.values(0, stop=min(count, LONGEST)) for c in channels])
-    start = 0
-    bad = np.flatnonzero(~np.all(np.isfinite(table), axis=0))
-    if bad.size:
-        edges = np.concatenate([[-1], bad, [table.shape[-1]]])
-        longest = int(np.argmax(np.diff(edges)))
-        start, stop = int(edges[longest]) + 1, int(edges[longest + 1])
-        table = table[:, start:stop]
-        notices.append(
-            Notice(
-                "warning",
-                f"gaps: only the longest whole stretch is used, samples {start}..{stop - 1}",
-            )
+def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) -> bool:
+    """Cut to the longest stretch between jumps of the mesh line's phase; whether there were any."""
+    if gearing is None:
+        return False
+    values = clearest(through.table, gearing.mesh_frequency)[0]
+    piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
+    jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
+    if not jumps:
+        return False
+    around = int(np.ceil(piece / gearing.mesh_frequency))  # a jump is placed so well
+    edges = [-around, *jumps, values.size + around]
+    first, stop = max(
+        ((a + around, b - around) for a, b in pairwise(edges)), key=lambda pair: pair[1] - pair[0]
+    )
+    least = max(256, int(np.ceil(20.0 / gearing.mesh_frequency)))
+    if stop - first < least:
+        return False
+    places = ", ".join(str(through.start + at) for at in jumps[:5])
+    through.findings.append(
+        Finding(
+            kind=f"the mesh line's phase jumps near sample {places}: samples are lost there",
+            done=f"only the longest stretch between is used, samples {through.start + first}.."
+            f"{through.start + stop - 1}",
+            effect="none on that stretch",
         )
-    if count > LONGEST:
-        notices.append(
-            Notice("info", f"the first {LONGEST} of {count} samples are reduced to lines")
-        )
-    if table.shape[-1] < 256:
-        raise InputError("record", f"{table.shape[-1]} samples without a gap", allowed=">= 256")
-    return start, table
+    )
+    through.cut(first, stop=stop)
+    return True
 
 
 def require_teeth(teeth: int | None) -> None:
@@ -308,11 +365,15 @@ def _check_rate(
     given: int | None,
     speed: float | None,
     notices: list[Notice],
-) -> None:
-    """Say what speed the rate implies; blame it only where the teeth are decided and no reading
-    of the lines with any weight fits the speed (and the teeth ``given``)."""
+) -> str:
+    """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
+
+    A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
+    blamed only where the teeth are decided and no reading of the lines with any weight fits the
+    speed (and the teeth ``given``).
+    """
     if teeth is None:
-        return
+        return record.rate_doubt
     turns = gearing.mesh_frequency / teeth  # turns per sample
     if record.rate is None:
         if speed is not None:
@@ -323,7 +384,7 @@ def _check_rate(
                     f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
                 )
             )
-        return
+        return ""
     implied = turns * record.rate
     notices.append(
         Notice(
@@ -337,12 +398,14 @@ def _check_rate(
             Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
         )
     if speed is None:
-        return
+        return record.rate_doubt
     shaft = speed / (2 * np.pi)
     ratio = implied / shaft
+    if abs(ratio - 1.0) <= _NEAR:
+        return ""
     weighed = gearing.weighed
-    if abs(ratio - 1.0) <= _NEAR or weighed.fits(shaft / record.rate, given, _NEAR):
-        return
+    if weighed.fits(shaft / record.rate, given, _NEAR):
+        return record.rate_doubt
     if weighed.verdict != "decided":
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
@@ -353,7 +416,7 @@ def _check_rate(
                 "is one",
             )
         )
-        return
+        return record.rate_doubt
     named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
     what = (
         f"the rate looks {_FACTORS[named]}"
@@ -368,3 +431,4 @@ def _check_rate(
             f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
         )
     )
+    return what

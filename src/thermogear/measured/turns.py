@@ -44,6 +44,7 @@ def mesh_turns(
     record: Record,
     table: Floats,
     gearing: Gearing,
+    *,
     teeth: int | None,
     harmonics: int,
     pulses_per_turn: float | None,
@@ -70,9 +71,9 @@ def mesh_turns(
             turning=turning,
             said=f"lines are read in angle, by the tacho {record.tacho!r}",
         )
-    values, spectrum = _clearest(table, gearing.mesh_frequency)
+    values, spectrum = clearest(table, gearing.mesh_frequency)
     line = line_in(spectrum, near=gearing.mesh_frequency, half_width=_reach(spectrum, gearing))
-    beside = sides_of(gearing, teeth, 1, line.frequency)
+    beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
     strong = strong_lines(spectrum)
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
     if _wanders(spectrum, reading, line.frequency, harmonics):
@@ -86,7 +87,7 @@ def mesh_turns(
         other = read_line(
             spectrum,
             rank * reading.frequency,
-            beside=sides_of(gearing, teeth, rank, reading.frequency),
+            beside=sides_of(gearing, teeth=teeth, rank=rank, mesh=reading.frequency),
             strong=strong,
         )
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
@@ -94,7 +95,7 @@ def mesh_turns(
     return MeshTurns(frequency=best[0], half_width=best[1])
 
 
-def sides_of(gearing: Gearing, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
+def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
     """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
     known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
     return tuple(
@@ -106,8 +107,8 @@ def _reach(spectrum: LineSpectrum, gearing: Gearing) -> float:
     return max(3.0 * spectrum.bin_width, 2e-4 * gearing.mesh_frequency)
 
 
-def _clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
-    """The channel in which the mesh line stands highest over all else, and its spectrum."""
+def clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
+    """The channel in which the mesh line is highest over all else, and its spectrum."""
     spectra = [line_spectrum(values, 1.0) for values in table]
     place = int(np.rint(mesh * table.shape[-1]))
     heights = [

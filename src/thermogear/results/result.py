@@ -20,6 +20,7 @@ from thermogear.base.netcdf import read_tree, write_tree
 from thermogear.base.stores import RESULT as STORE
 from thermogear.base.stores import about_store, read_store
 from thermogear.results.answer import Answer
+from thermogear.results.beside import with_notices
 from thermogear.results.files import RESULTS, claimed, finite
 from thermogear.results.tables import frames, points, told
 
@@ -317,7 +318,8 @@ def open_results(directory: str | Path, kind: str = "") -> Result:
         return Result.read(path)
     if (path / STORE).exists():
         about = about_store(path)
-        return stored_dataset(read_store(path), about.pop("title", "")).with_(**about)
+        data = with_notices(read_store(path))
+        return stored_dataset(data, about.pop("title", "")).with_(**about)
     there = sorted(file.name for file in path.glob("*.nc"))
     wanted = [FILES.get(kind, f"{kind}.nc")] if kind else there
     if len(wanted) > 1:

@@ -97,7 +97,7 @@ def follow_line(x: ArrayLike, rate: float, *, frequency: float, half_width: floa
     error is seen where the record is cut inside: phase at the cut from one side against both.
 
     ``x`` [any unit] one channel; ``rate``, ``frequency`` and ``half_width`` in one unit. Range: the
-    line outweighs the noise within the filter, and no line of half its height stands there; where
+    line outweighs the noise within the filter, and no line of half its height is there; where
     the envelope all but vanishes, ``whole`` is False. Raises InputError for a filter that the
     record is too short for.
 

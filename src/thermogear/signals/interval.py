@@ -42,7 +42,7 @@ class Reading:
     """One line over the whole stretch.
 
     ``amplitude``: root of the mean square of a(t), the peak amplitude of a steady line of the same
-    power; ``frequency`` (unit of the rate): where the line stands, the mean of a steady phase;
+    power; ``frequency`` (unit of the rate): where the line is, the mean of a steady phase;
     ``amplitude_error`` and ``frequency_error``: standard; ``degrees`` of freedom behind them;
     ``half_width`` and ``frequency_half_width``: of the 95 % interval, Student's t. ``changing`` and
     ``turning``: rms of the amplitude's change (relative) and of the phase's [rad] beyond noise;

@@ -92,9 +92,13 @@ def compare(
             simulated, measured, at, teeth=teeth, speed=speed, u_data=u_data, u_num=u_num,
             tolerances=tolerances, samples=samples, seed=seed,
         )  # fmt: skip
-    printed = _measured(measured, teeth, speed)
+    measured = _reduced(measured, teeth, speed)
+    printed = _printed(measured, teeth, speed)
+    found_damage = measured.damage if isinstance(measured, Measurement) else ()
+    damage = [Notice(*one) for one in found_damage]
     if isinstance(simulated, str) and simulated in PUBLISHED:
-        return compared(PUBLISHED[simulated].models, printed, u_data=u_data, u_num=u_num or 0.0)
+        models = PUBLISHED[simulated].models
+        return compared(models, printed, u_data=u_data, u_num=u_num or 0.0, said=damage)
     found = _simulated(simulated, tolerances or {}, samples, seed, u_num)
     return compared(
         found.tables,
@@ -102,7 +106,7 @@ def compare(
         u_data=u_data,
         u_num=found.u_num,
         u_input=found.u_input,
-        said=found.notices,
+        said=(*damage, *found.notices),
     )
 
 
@@ -139,8 +143,22 @@ def _at_places(
     return compare_sensors(case, measured, at, **how)
 
 
-def _measured(
+def _reduced(
     measured: str | Path | LineTable | Printed | Measurement | Record,
+    teeth: int | None,
+    speed: float | None,
+) -> LineTable | Printed | Measurement | str | Path:
+    """A record or its file reduced to lines; a table, its file or its name stays."""
+    if isinstance(measured, (str, Path)) and measured not in PUBLISHED:
+        path = Path(measured)
+        if not path.is_file():
+            raise InputError("measured", str(measured), fix=nearest(str(measured), PUBLISHED))
+        measured = path if is_table(path) else read_record(path)
+    return measure(measured, teeth=teeth, speed=speed) if isinstance(measured, Record) else measured
+
+
+def _printed(
+    measured: str | Path | LineTable | Printed | Measurement,
     teeth: int | None,
     speed: float | None,
 ) -> Printed:
@@ -151,14 +169,7 @@ def _measured(
     if isinstance(measured, str) and measured in PUBLISHED:
         return Printed(PUBLISHED[measured].measured, {})
     if isinstance(measured, (str, Path)):
-        path = Path(measured)
-        if not path.is_file():
-            raise InputError("measured", str(measured), fix=nearest(str(measured), PUBLISHED))
-        if is_table(path):
-            return Printed(read_lines(path, teeth), {})
-        measured = read_record(path)
-    if isinstance(measured, Record):
-        measured = measure(measured, teeth=teeth, speed=speed)
+        return Printed(read_lines(Path(measured), teeth), {})
     return Printed(table_of(measured, speed), {})
 
 

@@ -117,7 +117,7 @@ def compare_sensors(
         names,
         tuple(made),
         (_implied(measured, rows, base, place, speed),),
-        (*_seen(own), *notices),
+        (*_seen(own), *(Notice(*one) for one in measured.damage), *notices),
         f"within {AGREES:g} u_val: {', '.join(counts)} of {len(made)}",
     )
 
@@ -140,6 +140,13 @@ def _rows(measured: Measurement, sensors: Sequence[Accelerometer]) -> list[_Line
         if not lines:
             raise InputError(
                 "measured", measured.record.source, why="no mesh line was found", fix="--speed"
+            )
+        withheld = next((one.withheld for one in lines if one.withheld), "")
+        if withheld:
+            raise InputError(
+                f"channel {sensor.channel!r}",
+                measured.record.source,
+                why=f"its lines are withheld: {withheld}",
             )
         if not all(np.isfinite(one.acceleration) for one in lines):
             unit = measured.record.channel(sensor.channel).unit or "no unit"

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.bifurcations import GRAZING, PITCHFORK, Bifurcation
+from thermogear.analysis.bordered import Sheet
 from thermogear.analysis.continuation import Branch
-from thermogear.analysis.event_curve import CARRIED, LOST, EventCurve, Sheet, event_curve
+from thermogear.analysis.event_curve import CARRIED, LOST, EventCurve, event_curve
 from thermogear.base.errors import ConvergenceError
 from thermogear.base.parameters import Parameter
 from thermogear.base.progress import Progress
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 MOST_CURVES = 16
 STEPS = 1000
-SAME = 1e-6
+SAME = 1e-3
 """Of the range: a curve that comes back this near to another event ends at it."""
 
 

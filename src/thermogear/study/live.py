@@ -35,8 +35,8 @@ CLOUD, SAMPLES, SHOWN = 400, 64, 6
 """Mesh periods of the section of a motion that does not close, samples a period, periods drawn."""
 COARSE = 8
 """Every so many-th speed of a run-up is looked at first."""
-FIRST, BLOCK = 8, 24
-"""Speeds computed together, at first and then."""
+FIRST, HEATED, BLOCK = 2, 8, 24
+"""Speeds computed together: at first, where a heat balance is solved for them, and then."""
 
 
 def mesh(case: GearCase, alive: Alive = keep_going) -> xr.Dataset:
@@ -198,7 +198,8 @@ def run_ups(
     steps = [fine]
     if speeds.size > 4 * COARSE:
         some = speeds[every(speeds.size, step=COARSE)]
-        steps.insert(0, run_up_plan(case, some, temperatures=[state], branch_period=0, block=FIRST))
+        first = HEATED if case.computed else FIRST
+        steps.insert(0, run_up_plan(case, some, temperatures=[state], branch_period=0, block=first))
     for plan in steps:
         yield from _followed(LiveRunUp(plan, plan is not fine), alive)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from thermogear.base.display import CELSIUS, reach
 from thermogear.base.units import RPM
 from thermogear.case.case import GearCase
 from thermogear.heat.friction import LUBRICATED, beyond
+from thermogear.results.beside import back_side_notice, with_notices
 from thermogear.results.result import Notice, Result, stored_dataset
 
 if TYPE_CHECKING:
@@ -25,26 +25,7 @@ Floats = NDArray[np.float64]
 
 def finished(data: xr.Dataset, title: str = "") -> Result:
     """What a store of long work holds, with what should be known beside it."""
-    told = {} if "notices" in data.attrs else {"notices": json.dumps(back_side_notice(data))}
-    return stored_dataset(data.assign_attrs(told), title)
-
-
-NO_BACK_IMPACT = (
-    "the teeth never reach the back flanks anywhere in this range: a wider or narrower gap would "
-    "change nothing here but the place x is counted from"
-)
-
-
-def back_side_notice(data: xr.Dataset) -> list[str]:
-    """Whether the half backlash has any effect."""
-    if "back_impacts" not in data:
-        return []
-    impacts = data["back_impacts"].values
-    known = impacts[impacts >= 0]
-    chaotic = bool(np.any(data["label"].values == 2))
-    if known.size and not np.any(known > 0) and not chaotic:
-        return [NO_BACK_IMPACT]
-    return []
+    return stored_dataset(with_notices(data), title)
 
 
 def contact_notices(data: xr.Dataset) -> list[str]:

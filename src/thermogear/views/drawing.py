@@ -177,7 +177,8 @@ def _field(axes: Axes, mark: data.Field) -> Any:
     norm: Normalize = (LogNorm if mark.log else Normalize)(mark.low, mark.high)
     if mark.classes:
         norm = BoundaryNorm(np.arange(len(mark.classes) + 1) - 0.5, len(mark.classes))
-        for code in np.unique(mark.values).astype(int):
+        values = np.asarray(mark.values, dtype=float)
+        for code in np.unique(values[np.isfinite(values)]).astype(int):
             axes.plot(
                 [], [], "s", color=mark.colours[code], markeredgecolor=QUIET,
                 label=mark.classes[code],

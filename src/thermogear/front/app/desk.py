@@ -11,6 +11,7 @@ import numpy as np
 
 from thermogear.base.errors import ValidityWarning
 from thermogear.base.plan import Alive
+from thermogear.base.progress import asking
 from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.dials import dials
 from thermogear.front.app.given import Given
@@ -44,7 +45,9 @@ class Desk:
             for part in made(look, name):
                 if part.name:
                     spent = 1e3 * (time.thread_time() - start)
-                    self.post(f"part {part.name}", part.message(show.number, spent))
+                    self.post(
+                        f"part {part.name}", part.message(number=show.number, milliseconds=spent)
+                    )
                 else:
                     self.post("progress", {"kind": "progress", "number": show.number, "name": name,
                                            "done": part.done, "total": part.total})  # fmt: skip
@@ -67,23 +70,23 @@ class Desk:
             "warnings": told,
         }
 
-    def export(self, export: Export) -> dict[str, object]:
+    def export(self, export: Export, alive: Alive) -> dict[str, object]:
         """The state as a file to keep."""
-        name, text = getattr(self, f"_{export.what}")(export)
+        name, text = getattr(self, f"_{export.what}")(export, alive)
         return {"kind": "file", "number": export.number, "what": export.what, "name": name,
                 "text": text}  # fmt: skip
 
-    def _case(self, export: Export) -> tuple[str, str]:
+    def _case(self, export: Export, _: Alive) -> tuple[str, str]:
         from thermogear.base.toml import written
 
         case = self.given.at(export.state)
         head = f"# {case.title}: from `thermogear app {self.given.name}`, comments left out.\n\n"
         return "case.toml", head + written(case.data)
 
-    def _command(self, export: Export) -> tuple[str, str]:
+    def _command(self, export: Export, _: Alive) -> tuple[str, str]:
         return "command.txt", self.given.command(self.given.at(export.state)) + "\n"
 
-    def _report(self, export: Export) -> tuple[str, str]:
+    def _report(self, export: Export, alive: Alive) -> tuple[str, str]:
         from thermogear.study.run import run
         from thermogear.thesis.errata import with_errata
         from thermogear.views.page import render
@@ -96,7 +99,7 @@ class Desk:
         case = self.given.at(export.state)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)
-            page = page_of(with_errata(run(case, progress=report), case))
+            page = page_of(with_errata(run(case, progress=asking(alive, report)), case))
         return "report.html", render(page.showing("first", "All of them: thermogear run"))
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import hmac
+import re
 import secrets
 from collections.abc import Iterable
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
-NAMES = frozenset({"127.0.0.1", "localhost", "[::1]"})
-"""Hosts by which this machine calls itself; an SSH tunnel may have any port."""
+HOST = re.compile(r"(?:127\.0\.0\.1|localhost|\[::1\])(?::([0-9]{1,5}))?", re.ASCII | re.IGNORECASE)
+"""Names by which this machine calls itself; an SSH tunnel may have any port."""
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self' ws://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -36,20 +37,13 @@ def header(headers: Iterable[tuple[bytes, bytes]], name: str) -> str | None:
 
 def own_host(host: str | None) -> bool:
     """Whether a Host header names this machine, with or without a port."""
-    if not host:
-        return False
-    name, colon, port = host.rpartition(":")
-    if not colon or host.endswith("]"):
-        name, port = host, "80"
-    return name.lower() in NAMES and port.isascii() and port.isdigit() and int(port) < 65_536
+    found = HOST.fullmatch(host or "")
+    return found is not None and int(found[1] or 80) < 65_536
 
 
 def own_origin(origin: str | None, host: str | None) -> bool:
     """Whether a websocket was opened by a page of this very server."""
-    if not origin or not own_host(host):
-        return False
-    parts = urlsplit(origin)
-    return parts.scheme == "http" and parts.netloc.lower() == str(host).lower() and not parts.path
+    return own_host(host) and origin is not None and origin.lower() == f"http://{host}".lower()
 
 
 def knows(query: bytes, token: str) -> bool:

@@ -6,17 +6,21 @@ import threading
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from thermogear.base.errors import InputErrors, ThermogearError, ValidityWarning
 from thermogear.base.plan import Stopped
 from thermogear.front.app.wire import Export, Post, Show
-from thermogear.front.lines import say
+from thermogear.front.lines import one_line, say
 
 if TYPE_CHECKING:
     from thermogear.front.app.desk import Desk
 
 MOST_EXPORTS = 4
+ANY = -1
+"""Number of an answer to no message of its own."""
+ENDED = object()
+_T = TypeVar("_T")
 
 
 class Client:
@@ -34,24 +38,45 @@ class Client:
         self.working: Generator[None, None, None] | None = None
         self.at = -1
         """Number of what is worked at."""
+        self.stops = 0
+        self._lock = threading.Lock()
 
     def want(self, message: Show | Export) -> None:
-        if isinstance(message, Show):
-            self.wanted = message
-        elif len(self.exports) < MOST_EXPORTS:
-            self.exports.append(message)
-        else:
-            row = {"field": "", "words": "wait for the files asked for before"}
-            self.post("refused", {"kind": "refused", "number": message.number, "rows": [row]})
+        with self._lock:
+            if isinstance(message, Show):
+                self.wanted = message
+                return
+            if len(self.exports) < MOST_EXPORTS:
+                self.exports.append(message)
+                return
+        row = {"field": "", "words": "wait for the files asked for before"}
+        self.post("refused", {"kind": "refused", "number": message.number, "rows": [row]})
 
     def stop(self) -> None:
         """Drop what is wanted and what is worked at."""
-        self.wanted, self.at = None, -1
+        with self._lock:
+            self.wanted, self.at = None, -1
+            self.exports.clear()
+            self.stops += 1
+
+    def take(self) -> Show | None:
+        """What is wanted, which is what is worked at from now on."""
+        with self._lock:
+            show, self.wanted = self.wanted, None
+            if show is not None:
+                self.at = show.number
+            return show
+
+    def take_export(self) -> Export | None:
+        with self._lock:
+            return self.exports.popleft() if self.exports else None
 
     def require(self, number: int) -> None:
         """Raise where the work on ``number`` is of no use any more."""
-        if self.closed or number != self.at or (self.wanted and self.wanted.number != number):
-            raise Stopped
+        with self._lock:
+            newer = self.wanted is not None and self.wanted.number != number
+            if self.closed or number != self.at or newer:
+                raise Stopped
 
     @property
     def busy(self) -> bool:
@@ -88,15 +113,20 @@ class Worker(threading.Thread):
         with warnings.catch_warnings():
             # what limits a state is told once with it, and not for each of its parts
             warnings.simplefilter("ignore", ValidityWarning)
-            while (client := self._next()) is not None:
-                self._step(client)
+            while self._one_step():
+                pass
+
+    def _one_step(self) -> bool:
+        """One step for the client whose turn it is; it is not held on to."""
+        client = self._next()
+        if client is not None:
+            self._step(client)
+        return client is not None
 
     def _next(self) -> Client | None:
         with self._there:
             while not self._ending:
-                for one in list(self._clients):
-                    if one.closed and one.working is None:
-                        self._clients.remove(one)
+                self._clients = deque(c for c in self._clients if not c.closed or c.working)
                 for _ in range(len(self._clients)):
                     self._clients.rotate(-1)
                     if self._clients[-1].busy:
@@ -105,50 +135,54 @@ class Worker(threading.Thread):
             return None
 
     def _step(self, client: Client) -> None:
-        """One step for a client; every error of it is told to its page, and the work goes on."""
-        number = client.at
-        try:
-            if client.desk is None:
-                client.desk = client.make()
-            if client.closed or client.wanted or client.at < 0:
-                self._leave(client)
-            if client.closed:
-                return
-            if client.wanted:
-                show, client.wanted = client.wanted, None
-                client.at = show.number
-                client.working = client.desk.show(show, _alive(client, show.number))
-            if client.exports:
-                export = client.exports.popleft()
-                number = export.number
-                client.post(f"file {export.what}", client.desk.export(export))
-                return
-            number = client.at
-            if client.working is not None:
-                next(client.working)
-        except StopIteration:
-            client.working = None
-            client.post("done", {"kind": "done", "number": number})
-        except Stopped:
-            client.working = None
-        except ThermogearError as error:
-            client.working = None
-            told = error.errors if isinstance(error, InputErrors) else (error,)
-            rows = [{"field": getattr(one, "field", ""), "words": str(one)} for one in told]
-            client.post("refused", {"kind": "refused", "number": number, "rows": rows})
-        except Exception as error:  # the worker must outlive any fault of a job
-            client.working = None
-            words = f"{type(error).__name__}: {error}"
-            say("error", words)
-            row = {"field": "", "words": f"not computed: {words}"}
-            client.post("refused", {"kind": "refused", "number": number, "rows": [row]})
-
-    @staticmethod
-    def _leave(client: Client) -> None:
-        if client.working is not None:
+        if client.working is not None and (client.closed or client.wanted or client.at < 0):
             client.working.close()
             client.working = None
+        if client.closed:
+            return
+        if client.desk is None:
+            client.desk = _tried(client, ANY, client.make)
+            client.closed = client.desk is None
+            return
+        desk = client.desk
+        if (export := client.take_export()) is not None:
+            _tried(client, export.number, lambda: _exported(client, desk, export))
+            return
+        if (show := client.take()) is not None:
+            number = show.number
+            client.working = desk.show(show, lambda: client.require(number))
+        if (working := client.working) is None:
+            return
+        number = client.at
+        ended = _tried(client, number, lambda: next(working, ENDED) is ENDED)
+        if ended is not False:
+            client.working = None
+        if ended:
+            client.post("done", {"kind": "done", "number": number})
 
 
-def _alive(client: Client, number: int) -> Callable[[], None]:
-    return lambda: client.require(number)
+def _exported(client: Client, desk: Desk, export: Export) -> None:
+    stops = client.stops
+
+    def alive() -> None:
+        if client.closed or client.stops != stops:
+            raise Stopped
+
+    client.post(f"file {export.what}", desk.export(export, alive))
+
+
+def _tried(client: Client, number: int, work: Callable[[], _T]) -> _T | None:
+    """What ``work`` gives; None where it stopped, or failed, which its page is told."""
+    try:
+        return work()
+    except Stopped:
+        return None
+    except ThermogearError as error:
+        told = error.errors if isinstance(error, InputErrors) else (error,)
+        rows = [{"field": getattr(one, "field", ""), "words": one_line(one)} for one in told]
+    except Exception as error:  # the worker must outlive any fault of a job
+        words = one_line(f"{type(error).__name__}: {error}")
+        say("error", words)
+        rows = [{"field": "", "words": f"not computed: {words}"}]
+    client.post("refused", {"kind": "refused", "number": number, "rows": rows})
+    return None

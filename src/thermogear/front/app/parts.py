@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.errors import InputError, ThermogearError
+from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
 from thermogear.base.progress import asking
 from thermogear.base.units import RPM
@@ -52,7 +52,7 @@ class Part:
     done: int = 1
     total: int = 1
 
-    def message(self, number: int, milliseconds: float) -> dict[str, object]:
+    def message(self, *, number: int, milliseconds: float) -> dict[str, object]:
         """As the page takes it."""
         return {
             "kind": "part",
@@ -103,8 +103,6 @@ class Look:
     def speeds(self) -> Floats:
         """Of the run-up [rad/s]."""
         said = self.show.speeds
-        if said.low >= said.high:
-            raise InputError("speeds", f"{said.low:g}..{said.high:g} rpm", allowed="from < to")
         return RPM * np.linspace(said.low, said.high, said.count)
 
     def key(self, *beside: object) -> str:
@@ -280,7 +278,11 @@ def record(look: Look) -> Iterator[Part]:
         f"{196.0 * one.uncertainty:.2g} %"
         for one in rows
     ]
-    yield Part(name="record", picture=plot.measured_orders(motions, order, size, half), lines=lines)
+    yield Part(
+        name="record",
+        picture=plot.measured_orders(motions, order=order, amplitude=size, half=half),
+        lines=lines,
+    )
 
 
 def shafts(look: Look) -> Iterator[Part]:

@@ -29,7 +29,7 @@ ADDRESS = "127.0.0.1"
 MOST_CLIENTS = 16
 MOST_A_SECOND = 200
 """Messages of one page; a page sends one a frame at most."""
-TRY_LATER, TOO_MUCH = 1013, 1008
+TRY_LATER, TOO_MUCH, NOT_TEXT = 1013, 1008, 1003
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[Any]]
@@ -85,28 +85,28 @@ class Outbox:
 
     def __init__(self) -> None:
         self.loop = asyncio.get_running_loop()
-        self.waiting: dict[str, dict[str, object]] = {}
+        self.waiting: dict[str, str] = {}
         self.there = asyncio.Event()
 
     def post(self, name: str, message: dict[str, object]) -> None:
         """From any thread."""
+        text = json.dumps(message, ensure_ascii=False, allow_nan=False)
         with contextlib.suppress(RuntimeError):  # the loop has ended, and the page with it
-            self.loop.call_soon_threadsafe(self._put, name, message)
+            self.loop.call_soon_threadsafe(self._put, name, text)
 
-    def _put(self, name: str, message: dict[str, object]) -> None:
+    def _put(self, name: str, text: str) -> None:
         self.waiting.pop(name, None)
-        self.waiting[name] = message
+        self.waiting[name] = text
         self.there.set()
 
     async def send_all(self, socket_: WebSocket) -> None:
-        """Send what comes, until cancelled."""
-        while True:
-            await self.there.wait()
-            self.there.clear()
-            while self.waiting:
-                name = next(iter(self.waiting))
-                message = self.waiting.pop(name)
-                await socket_.send_text(json.dumps(message, ensure_ascii=False, allow_nan=False))
+        """Send what comes, until cancelled or the page is gone."""
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            while True:
+                await self.there.wait()
+                self.there.clear()
+                while self.waiting:
+                    await socket_.send_text(self.waiting.pop(next(iter(self.waiting))))
 
 
 class App:
@@ -127,7 +127,9 @@ class App:
         }
         routes: list[Any] = [Route(name, _served(*said)) for name, said in names.items()]
         routes.append(WebSocketRoute("/talk", self.talk))
-        return Guarded(Starlette(routes=routes, lifespan=self._lifespan), self.token)
+        app = Starlette(routes=routes, lifespan=self._lifespan)
+        app.router.redirect_slashes = False  # a name that is not served is not there
+        return Guarded(app, self.token)
 
     @contextlib.asynccontextmanager
     async def _lifespan(self, _: Starlette) -> AsyncIterator[None]:
@@ -157,6 +159,8 @@ class App:
             self.open -= 1
             sending.cancel()
             self.worker.wake()
+            with contextlib.suppress(asyncio.CancelledError):
+                await sending
 
     def _desk(self, outbox: Outbox) -> Desk:
         outbox.post("hello", hello(self.given))
@@ -165,7 +169,13 @@ class App:
     async def _listen(self, socket_: WebSocket, client: Client) -> None:
         count, since = 0, time.monotonic()
         while True:
-            text = await socket_.receive_text()
+            received = await socket_.receive()
+            if received["type"] == "websocket.disconnect":
+                return
+            text = received.get("text")
+            if text is None:
+                await socket_.close(NOT_TEXT, "messages are text")
+                return
             now = time.monotonic()
             count, since = (1, now) if now - since > 1.0 else (count + 1, since)
             if count > MOST_A_SECOND:
@@ -221,13 +231,14 @@ def _schema() -> str:
 # --- serving ------------------------------------------------------------------------------------
 
 
-def bound(port: int | None, usual: int) -> socket.socket:
+def bound(port: int | None, *, usual: int) -> socket.socket:
     """A listening socket of this machine alone: at ``port``, or at the usual or any free one."""
     for wanted in (usual, 0) if port is None else (port,):
         one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             one.bind((ADDRESS, wanted))
+            one.listen(128)  # now, so that a second start cannot take the same port
         except OSError as error:
             one.close()
             if port is not None:
@@ -239,18 +250,22 @@ def bound(port: int | None, usual: int) -> socket.socket:
     raise InputError("--port", usual, why="no port is free on this machine")
 
 
-def serve(given: Given, listening: socket.socket, token: str, *, browser: bool) -> None:
-    """Serve until Ctrl+C."""
-    app = App(given, token)
-    address = f"http://{ADDRESS}:{listening.getsockname()[1]}/?token={token}"
+def server_of(app: App) -> uvicorn.Server:
+    """What serves ``app``; its limits are those of one person's page."""
     config = uvicorn.Config(
-        app.asgi(), log_level="error", access_log=False, ws="websockets-sansio",
+        app.asgi(), log_level="error", access_log=False, http="h11", ws="websockets-sansio",
         ws_max_size=MOST_BYTES, ws_ping_interval=20.0, server_header=False, date_header=False,
         timeout_graceful_shutdown=1, limit_concurrency=4 * MOST_CLIENTS, lifespan="on",
     )  # fmt: skip
-    server = uvicorn.Server(config)
+    return uvicorn.Server(config)
+
+
+def serve(given: Given, listening: socket.socket, token: str, *, browser: bool) -> None:
+    """Serve until Ctrl+C."""
+    app = App(given, token)
+    server = server_of(app)
     if browser:
-        webbrowser.open(address)
+        webbrowser.open(f"http://{ADDRESS}:{listening.getsockname()[1]}/?token={token}")
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(server.serve(sockets=[listening]))
     app.worker.end()

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from thermogear.base.errors import InputError, short
+from thermogear.front.lines import one_line
 
 PARTS = ("mesh", "orbit", "gap", "gears", "run-up", "record", "answers", "shafts", "map")
 """The parts of the page, in the order in which they are made."""
@@ -42,6 +43,12 @@ class Speeds(_Message):
     low: Annotated[float, Field(ge=0.1, le=500_000.0)] = 200.0
     high: Annotated[float, Field(ge=0.1, le=500_000.0)] = 12_000.0
     count: Annotated[int, Field(ge=2, le=MOST_SPEEDS)] = 300
+
+    @model_validator(mode="after")
+    def _upwards(self) -> Speeds:
+        if self.low >= self.high:
+            raise ValueError("the first speed must be below the last")
+        return self
 
 
 class Show(_Message):
@@ -80,7 +87,7 @@ def read(text: str) -> Message:
         return _READER.validate_json(text)
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
-        place = ".".join(str(one) for one in first["loc"]) or "message"
-        raise InputError(
-            place, short(first.get("input")), why=first["msg"], fix="load the page anew"
-        ) from None
+        place = one_line(".".join(str(one)[:40] for one in first["loc"]))[:120] or "message"
+        got = one_line(short(first.get("input")))
+        why = one_line(first["msg"])[:120]
+        raise InputError(place, got, why=why, fix="load the page anew") from None

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.analysis.any_motion import Motion, Search, settle
+from thermogear.analysis.continuation import Branch
 from thermogear.analysis.event_curve import EventCurve
 from thermogear.analysis.orbits import Orbit, periodic_orbit, shoot
 from thermogear.base.errors import ConvergenceError, InputError
@@ -164,8 +165,10 @@ def train_branch_results(
             "cycle": grid.family.cycle,
             "began": began,
             "values": count,
+            "straight": straight_error(grid, legs[0].branch, plane),
         }
     }
+    notices.append(_straight_words(summary["train"]["straight"], varied))
     cycle = grid.family.cycle
     if cycle > 1:
         notices.append(
@@ -178,6 +181,46 @@ def train_branch_results(
         summary |= plane.summary(curves, varied)
         groups |= plane.groups(curves, varied)
     return found("branch", groups, summary, interrupted=cut)
+
+
+def straight_error(grid: TrainGrid, branch: Branch, plane: Plane | None) -> dict[str, Any] | None:
+    """How far an orbit of the straight numbers is from that of the train computed there.
+
+    Half way in the middle interval between computed values, at the first value of a second
+    parameter: ``value`` [SI], ``multiplier`` the change of the largest modulus, ``force`` that of
+    the greatest mesh force as a share. None where the branch or one of both orbits is not there.
+    """
+    axis = grid.axes[0]
+    place = (axis.size - 1) // 2
+    value = 0.5 * float(axis[place] + axis[place + 1])
+    index = int(np.argmin(np.abs(branch.values - value)))
+    if abs(branch.values[index] - value) > 0.5 * float(axis[place + 1] - axis[place]):
+        return None
+    rest = () if plane is None else (float(plane.values[0]),)
+    computed = grid.family.train((value, *rest))
+    if computed is None:
+        return None
+    found = []
+    state = branch.states[index]
+    for model in (grid(value, *rest), computed.model):
+        orbit = shoot(return_map(model), state, branch.period, model=model)
+        if orbit is None:
+            return None
+        state = orbit.state
+        size = float(np.abs(orbit.multipliers).max())
+        found.append((size, _greatest(model, state, branch.period)))
+    (one, force), (other, own) = found
+    return {"value": value, "multiplier": abs(one - other), "force": abs(force / own - 1.0)}
+
+
+def _straight_words(found: dict[str, Any] | None, varied: Parameter) -> str:
+    words = "between the computed values (--values) mesh and friction run straight"
+    if found is None:
+        return f"{words}; half way no orbit was found to tell by how much that is off"
+    return (
+        f"{words}: at {varied.told(found['value'])}, half way, the greatest mesh force is off by "
+        f"{100.0 * found['force']:.2g} % and the largest multiplier by {found['multiplier']:.2g}"
+    )
 
 
 def _stored(leg: Leg, varied: Parameter) -> xr.Dataset:

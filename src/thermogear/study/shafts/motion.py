@@ -165,7 +165,7 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
     cycle = max((one.train.model.cycle for one in flat if one.train is not None), default=1)
     own = orders_of_lines(teeth, shafts=cycle > 1)
     tori = [None if one.torus_sections is None else _torus(one) for one in flat]
-    turned = [torus_orders(one.frequency) for one in tori if one is not None]
+    turned = [torus_orders(one.frequency, curves=one.curves) for one in tori if one is not None]
     orders = np.unique(np.round(np.concatenate([own, *turned]), 9))
     names = plan_of(case).bearing_names
     shown = SHOWN * SAMPLES
@@ -187,8 +187,9 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
 
     def felt(one: Moved, values: Floats) -> Floats:
         """Lines at the orders that this motion has, nan at those of others."""
-        torus = one.torus_sections is not None
-        there = torus_orders(_torus(one).frequency) if torus else own
+        there = own
+        if one.torus_sections is not None:
+            there = torus_orders(_torus(one).frequency, curves=_torus(one).curves)
         found = lines(values, orders=orders)
         found[~np.isin(orders, np.round(there, 9))] = np.nan
         return found
@@ -198,8 +199,7 @@ def _table(case: GearCase, found: Sequence[Sequence[Moved]]) -> xr.Dataset:
     curves = np.full((len(flat), TORUS_ANGLES + 1, 2), np.nan)
     for place, one in enumerate(flat):
         if one.torus_sections is not None:
-            angle = np.linspace(0.0, 1.0, TORUS_ANGLES + 1)
-            curves[place] = _torus(one).curve(one.torus_sections, angle=angle)
+            curves[place] = _around(_torus(one), one.torus_sections)
     seconds = [[np.nan, np.nan] if t is None else [t.frequency, t.error] for t in tori]
     second = np.reshape(seconds, (*shape, 2))
     count = len(names)
@@ -309,6 +309,17 @@ def _torus(one: Moved) -> Torus:
     assert one.motion is not None
     assert one.motion.torus is not None
     return one.motion.torus
+
+
+def _around(torus: Torus, sections: Floats) -> Floats:
+    """The closed curves of ``sections``, one after the other with a gap between, (angle, 2)."""
+    found = np.full((TORUS_ANGLES + 1, 2), np.nan)
+    share = (TORUS_ANGLES + 2) // torus.curves
+    angle = np.linspace(0.0, 1.0, share - 1)
+    for which in range(torus.curves):
+        first = which * share
+        found[first : first + share - 1] = torus.curve(sections, angle=angle, which=which)
+    return found
 
 
 def _errors(flat: Sequence[Moved]) -> Floats:

@@ -111,12 +111,13 @@ def orders_of_lines(teeth: tuple[int, int], *, shafts: bool) -> Floats:
     return np.array(sorted(one for one in {round(o, 9) for o in found} if one > 0.0))
 
 
-def torus_orders(second: float) -> Floats:
-    """Orders k + m nu of a motion with the second frequency nu, in mesh frequencies.
+def torus_orders(second: float, *, curves: int = 1) -> Floats:
+    """Orders k/n + m nu of a motion with the second frequency nu, in mesh frequencies.
 
-    k up to the 12th harmonic, m up to two either way.
+    n closed ``curves``; k/n up to the 12th harmonic, m up to two either way.
     """
-    found = np.add.outer(np.arange(HARMONICS + 1), second * np.arange(-2, 3)).ravel()
+    own = np.arange(HARMONICS * curves + 1) / curves
+    found = np.add.outer(own, second * np.arange(-2, 3)).ravel()
     return np.unique(np.round(found[(found > 1e-9) & (found <= HARMONICS + 1e-9)], 9))
 
 

@@ -61,6 +61,13 @@ def _branch_lines(s: dict[str, Any]) -> list[str]:
     if "train" in s:
         train = s["train"]
         lines.append(f"  drive train in {train['coordinates']} coordinates; {train['began']}")
+        straight = train.get("straight")
+        if straight is not None:
+            lines.append(
+                f"  half way between computed values the greatest mesh force is off by "
+                f"{100.0 * straight['force']:.2g} %, the largest multiplier by "
+                f"{straight['multiplier']:.2g}"
+            )
     for event in s["bifurcations"]:
         mu = event["multipliers"][0]
         imag = f"{mu['imag']:+.6f}i" if mu["imag"] else ""

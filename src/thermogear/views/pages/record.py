@@ -28,7 +28,7 @@ KINDS = ("measured", "comparison")
 
 def page(result: Result) -> Page:
     """A measured record, or models against one."""
-    made = (_comparison, _record, _spectrum, _lines, _evidence, _settings)
+    made = (_comparison, _findings, _record, _spectrum, _lines, _evidence, _settings)
     return Page(
         result,
         result.text("conclusion") or _summary(result),
@@ -150,6 +150,14 @@ def _lines(results: Result) -> Section | None:
         "not tell."
     )
     return Section("lines", "Lines", [Table(caption, head, rows, names=2)])
+
+
+def _findings(results: Result) -> Section | None:
+    found = results.values("findings")
+    if not found:
+        return None
+    texts = [Text(str(text)) for text in found]
+    return Section("findings", "Damage of the record", texts, folded=False)
 
 
 def _evidence(results: Result) -> Section | None:

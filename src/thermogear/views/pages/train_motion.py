@@ -43,9 +43,10 @@ ORDERS = (
     "beside them from the shafts or from a second base frequency."
 )
 TORUS = (
-    "The motion never returns: it has two base frequencies, and its sections fill a closed curve. "
+    "The motion never returns: it has two base frequencies, and its sections fill a closed curve, "
+    "or a few that they visit in turn, where the torus began at an orbit of so many periods. "
     "The colour is the second phase at the section, once around from 0 over a half to 1; marked on "
-    "the curve are its quarters. A second frequency is known but for whole multiples of the "
+    "a single curve are its quarters. A second frequency is known but for whole multiples of the "
     "mesh's and for its sign: the one below half the mesh frequency is told."
 )
 FRAMES = 16

@@ -264,7 +264,7 @@ def turning(data: xr.Dataset, operating: int) -> list[int]:
 
 
 def torus_section(data: xr.Dataset, operating: int) -> Picture:
-    """Sections of a quasi-periodic motion, coloured by its second phase, on their closed curve."""
+    """Sections of a quasi-periodic motion, coloured by its second phase, on their closed curves."""
     here = data.isel(operating=operating)
     mesh = float(here["mesh_frequency"])
     panels = []
@@ -289,7 +289,8 @@ def torus_section(data: xr.Dataset, operating: int) -> Picture:
             chosen = kept & (part == hue)
             if chosen.any():
                 panel.points(x[chosen], y[chosen], colour=colour, size=4.5)
-        _quarters(panel, own)
+        if np.isfinite(own).all():  # of several curves none is numbered
+            _quarters(panel, own)
         panels.append(panel)
     return Picture([panels], size=(WIDE if len(panels) > 1 else 6.4, 4.0))
 

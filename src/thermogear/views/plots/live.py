@@ -201,7 +201,8 @@ def told_mesh(data: xr.Dataset) -> list[str]:
         taken = 1e6 * float(data["half_backlash"].values[0]) - left
         if place and np.isfinite(taken):
             needed = number(2.0 * max(taken, 0.0), 4)
-            words += f"; heat takes {number(taken, 4)} µm, so that {needed} µm of total backlash is needed"
+            words += f"; heat takes {number(taken, 4)} µm, so that {needed} µm of total backlash"
+            words += " is needed"
         found.append(words + ("; jammed" if status == "jammed" else ""))
     jam = float(CELSIUS(data["jam_temperature"].values[-1]))
     if np.isfinite(jam) and jam < FAR:
@@ -210,7 +211,7 @@ def told_mesh(data: xr.Dataset) -> list[str]:
 
 
 def measured_orders(
-    computed: Mapping[str, xr.Dataset], order: Floats, amplitude: Floats, half: Floats
+    computed: Mapping[str, xr.Dataset], *, order: Floats, amplitude: Floats, half: Floats
 ) -> Picture:
     """Lines of a record over computed ones: ``amplitude`` [m] with its 95 % ``half`` width."""
     panel = _spectra(computed)

@@ -127,7 +127,8 @@ const follow = (one, said) => {
   }
   if (document.activeElement !== one.range || said.held) put(one, said.value);
   if (document.activeElement !== one.box || said.held)
-    one.box.value = said.held ? Number(said.value.toPrecision(4)) : said.value;
+    one.box.value = said.value === null ? ""
+      : said.held ? Number(said.value.toPrecision(4)) : said.value;
 };
 
 // --- fields ------------------------------------------------------------------------------------
@@ -335,6 +336,7 @@ const heard = (message) => {
   if (kind === "refused") {
     if (message.number !== -1 && message.number !== number_) return;
     answered = true;
+    if (message.number === number_) document.body.dataset.done = String(number_);
     wait(1, 1);
     by("stop").hidden = true;
     tell(message.rows.map((one) => one.words).join(" · "), true);

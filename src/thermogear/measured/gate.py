@@ -1,0 +1,308 @@
+"""The gate that a record passes before any number: damage found, what is done, what it may do.
+
+Each finding says where, how much, what was done and what it may do to the result. Either the
+stated uncertainty holds it, or the number is withheld with the reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.measured.record import Channel, Notice, Record
+from thermogear.signals.filters import without_trend
+from thermogear.signals.quality import Damage, damages, filled
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+FILLED = 0.05
+"""Largest share of a channel's samples that is filled in; above it the longest whole stretch is
+used, or amplitudes are withheld."""
+
+LEAST_RATE = 200.0
+"""Samples a second below which no mesh line is sampled: the rate is taken for a shaft's."""
+
+_SHORTEST = 256  # samples of a stretch
+_LEAST_STRETCH = 0.1  # of the record
+_PROPORTION = 20.0  # of a mean or trend to what vibrates
+_COPY = 1e-9  # 1 - |correlation| of a copy
+_UNSURE = 0.2  # of a filled share: how far its own line may differ from that of the rest
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One damage: ``kind``, ``channel`` ("" for all), samples ``first``..``last`` of the record,
+    how many and which ``share``; what was ``done``, its ``effect``, whether it ``withholds``."""
+
+    kind: str
+    channel: str = ""
+    first: int = 0
+    last: int = 0
+    count: int = 0
+    share: float = 0.0
+    done: str = ""
+    effect: str = ""
+    withholds: bool = False
+
+    @property
+    def text(self) -> str:
+        """One line."""
+        where = f"channel {self.channel!r}: " if self.channel else ""
+        much = ""
+        if self.count:
+            share = f"{100 * self.share:.2g} %"
+            much = f", {self.count} samples ({share}) in {self.first}..{self.last}"
+        return f"{where}{self.kind}{much}; {self.done}; {self.effect}"
+
+    @property
+    def notice(self) -> Notice:
+        """The finding as a notice: important where a number is withheld."""
+        return Notice("important" if self.withholds else "warning", self.text)
+
+
+@dataclass(kw_only=True)
+class Passed:
+    """What came through: ``table`` (channel, sample) from sample ``start`` on, nothing missing.
+
+    ``extra``: relative half width that damage adds to amplitudes, by channel; ``withheld``: why a
+    channel's amplitudes are.
+    """
+
+    channels: list[Channel]
+    table: Floats
+    start: int = 0
+    findings: list[Finding] = field(default_factory=list)
+    extra: dict[str, float] = field(default_factory=dict)
+    withheld: dict[str, str] = field(default_factory=dict)
+
+    def cut(self, first: int, *, stop: int) -> None:
+        """Keep samples ``first``..``stop`` of the table alone."""
+        self.start += first
+        self.table = self.table[:, first:stop]
+
+
+def require_sampling_rate(record: Record) -> None:
+    """Refuse a rate so low that it may be a shaft's."""
+    if record.rate is not None and record.rate < LEAST_RATE:
+        raise InputError(
+            "rate",
+            f"{record.rate:g} samples/s",
+            allowed=f">= {LEAST_RATE:g} samples/s for a mesh line",
+            why=f"is {record.rate:g} the shaft's turns per second ({60 * record.rate:g} rpm)",
+            fix="give the samples per second by --rate, the shaft's speed by --speed",
+        )
+
+
+def passed(channels: Sequence[Channel], longest: int) -> Passed:
+    """The first ``longest`` samples of the channels through the gate.
+
+    Up to FILLED of a channel's samples (missing, sentinels, zeros, held, spikes, clipped) are
+    filled in by the channel's own strong lines. More missing: the longest whole stretch of all
+    channels. More clipped or held: amplitudes are withheld. Copies are left out.
+
+    Raises InputError where fewer than 256 samples are left.
+    """
+    count = len(channels[0])
+    table = np.stack([c.values(0, stop=min(count, longest)) for c in channels])
+    through = _without_copies(Passed(channels=list(channels), table=table))
+    found = [_examined(values) for values in through.table]
+    gone = np.zeros(through.table.shape[-1], dtype=bool)
+    for own in found:
+        lost = _lost(own, gone.size)
+        if np.mean(lost) > FILLED:
+            gone |= lost
+    first, stop = _longest(gone)
+    least = max(_SHORTEST, int(_LEAST_STRETCH * gone.size))
+    cut = bool(gone.any()) and stop - first >= least
+    for place, (channel, own) in enumerate(zip(through.channels, found, strict=True)):
+        whole = _Channel(through, place, channel, own)
+        whole.repair((first, stop) if cut else None)
+    if cut:
+        through.cut(first, stop=stop)
+    if through.table.shape[-1] < _SHORTEST:
+        size = through.table.shape[-1]
+        raise InputError("record", f"{size} samples without a gap", allowed=f">= {_SHORTEST}")
+    _proportions(through)
+    return through
+
+
+def _examined(values: Floats) -> list[Damage]:
+    """The channel's damages; spikes that are many are no spikes."""
+    return [
+        one for one in damages(values) if one.kind != "spikes" or one.count <= FILLED * values.size
+    ]
+
+
+def _lost(own: Sequence[Damage], size: int) -> Mask:
+    """Samples of which nothing is known."""
+    kinds = [one.samples for one in own if one.kind in ("missing", "sentinel", "zeros")]
+    held = [one.samples for one in own if one.kind == "held" and _in_blocks(one)]
+    return np.asarray(np.any([np.zeros(size, dtype=bool), *kinds, *held], axis=0))
+
+
+def _in_blocks(one: Damage) -> bool:
+    """Whether held samples are in long runs rather than alone throughout."""
+    runs = int(np.count_nonzero(np.diff(one.samples.astype(np.int8)) == 1)) + 1
+    return one.count > 4 * runs
+
+
+def _longest(gone: Mask) -> tuple[int, int]:
+    edges = np.concatenate([[-1], np.flatnonzero(gone), [gone.size]])
+    longest = int(np.argmax(np.diff(edges)))
+    return int(edges[longest]) + 1, int(edges[longest + 1])
+
+
+@dataclass
+class _Channel:
+    """One channel on its way through."""
+
+    through: Passed
+    place: int
+    channel: Channel
+    own: list[Damage]
+
+    def repair(self, stretch: tuple[int, int] | None) -> None:
+        """Fill, cut or withhold, and say so. ``stretch``: the samples that are kept, if cut."""
+        values = self.through.table[self.place]
+        inside = slice(*stretch) if stretch else slice(0, values.size)
+        size = inside.stop - inside.start
+        kept = [(one, int(np.count_nonzero(one.samples[inside]))) for one in self.own]
+        total = sum(count for _, count in kept) / size
+        missing = np.zeros(values.size, dtype=bool)
+        withhold = ""
+        for one, count in kept:
+            share = count / size
+            if stretch and count == 0:
+                self.say(one, f"only the longest whole stretch is used, samples "
+                         f"{stretch[0]}..{stretch[1] - 1}", "none on that stretch")  # fmt: skip
+                continue
+            if total <= FILLED:
+                missing |= one.samples
+                continue
+            if one.kind in ("clipping", "held") and not _in_blocks_of_loss(one):
+                effect = _TOO_MUCH[one.kind]
+            else:
+                missing |= one.samples  # a number must stand there
+                effect = "more is lost than can be filled in"
+            withhold = withhold or f"{one.kind}, {100 * share:.2g} % of the samples"
+            self.say(one, "amplitudes are withheld", effect, withholds=True)
+        if stretch:
+            missing[: stretch[0]] = missing[stretch[1] :] = False
+            outside = np.ones(values.size, dtype=bool)
+            outside[inside] = False
+            values = np.where(outside & ~np.isfinite(values), 0.0, values)
+        if missing.any():
+            limits = [
+                (one.samples[inside], one.value)
+                for one in self.own
+                if one.kind == "clipping" and one.value is not None
+            ]
+            part, explained = filled(values[inside], missing[inside], limits)
+            values = values.copy()
+            values[inside] = part
+            if not withhold:
+                self.filled_in(kept, size, explained)
+        self.through.table[self.place] = values
+        if withhold:
+            self.through.withheld[self.channel.name] = withhold
+
+    def filled_in(self, kept: Sequence[tuple[Damage, int]], size: int, explained: float) -> None:
+        """What filled samples may do: the share that the channel's lines do not explain, and how
+        far the line may change there; at a limit the samples are the line's own peaks."""
+        extra = 0.0
+        for one, count in kept:
+            if not count:
+                continue
+            share = count / size * (2.0 if one.kind == "clipping" else 1.0)
+            own = share * (_UNSURE + (1.0 - _UNSURE) * (1.0 - explained))
+            extra += own
+            self.say(one, "filled in by the channel's own lines",
+                     f"adds {100 * own:.2g} % to the half width of amplitudes")  # fmt: skip
+        self.through.extra[self.channel.name] = extra
+
+    def say(self, one: Damage, done: str, effect: str, *, withholds: bool = False) -> None:
+        value = "" if one.value is None else f" {one.value:g}"
+        self.through.findings.append(
+            Finding(
+                kind=f"{_WORDS[one.kind]}{value}",
+                channel=self.channel.name,
+                first=one.first,
+                last=one.last,
+                count=one.count,
+                share=one.count / one.samples.size,
+                done=done,
+                effect=effect,
+                withholds=withholds,
+            )
+        )
+
+
+def _in_blocks_of_loss(one: Damage) -> bool:
+    return one.kind == "held" and _in_blocks(one)
+
+
+_WORDS = {
+    "missing": "no number (NaN)",
+    "sentinel": "the value",
+    "zeros": "blocks of zeros",
+    "held": "held samples",
+    "spikes": "spikes",
+    "clipping": "clipping at",
+}
+_TOO_MUCH = {
+    "clipping": "lines are too small, and harmonics are made, by an unknown amount",
+    "held": "a sample that repeats the one before weakens lines and makes images",
+}
+
+
+def _without_copies(through: Passed) -> Passed:
+    """Channels that are another's copy, or it times a number, left out."""
+    kept: list[int] = []
+    units: list[Floats] = []
+    for place, values in enumerate(through.table):
+        good = np.where(np.isfinite(values), values, 0.0)
+        centred = good - good.mean()
+        length = float(np.sqrt(np.dot(centred, centred)))
+        own = centred / length if length > 0.0 else centred
+        twin = next(
+            (k for k, one in zip(kept, units, strict=True) if abs(np.dot(one, own)) > 1.0 - _COPY),
+            None,
+        )
+        if twin is None:
+            kept.append(place)
+            units.append(own)
+            continue
+        through.findings.append(
+            Finding(
+                kind=f"a copy of {through.channels[twin].name!r}",
+                channel=through.channels[place].name,
+                done="left out",
+                effect="it holds nothing of its own",
+            )
+        )
+    through.channels = [through.channels[k] for k in kept]
+    through.table = through.table[kept]
+    return through
+
+
+def _proportions(through: Passed) -> None:
+    """Means and trends far larger than what vibrates."""
+    for channel, values in zip(through.channels, through.table, strict=True):
+        moving = float(np.std(without_trend(values)))
+        mean = abs(float(np.mean(values)))
+        span = abs(float(np.polyfit(np.linspace(-0.5, 0.5, values.size), values, 1)[0]))
+        for name, size in (("mean", mean), ("trend", span)):
+            if size > _PROPORTION * moving > 0.0:
+                through.findings.append(
+                    Finding(
+                        kind=f"a {name} of {size / moving:.3g} times the rms that vibrates",
+                        channel=channel.name,
+                        done="taken away",
+                        effect="the sensor's range may be used up: see clipping",
+                    )
+                )

@@ -1,0 +1,37 @@
+"""What should be known beside a store of long work, from its data alone."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CHAOTIC = 2
+"""The label of motions whose impacts are not counted."""
+NO_BACK_IMPACT = (
+    "the teeth never reach the back flanks anywhere in this range: a wider or narrower gap would "
+    "change nothing here but the place x is counted from"
+)
+
+
+def with_notices(data: xr.Dataset) -> xr.Dataset:
+    """The data with its notices, where the study stored none."""
+    if "notices" in data.attrs:
+        return data
+    return data.assign_attrs(notices=json.dumps(back_side_notice(data)))
+
+
+def back_side_notice(data: xr.Dataset) -> list[str]:
+    """Whether the half backlash has any effect."""
+    if "back_impacts" not in data:
+        return []
+    impacts = data["back_impacts"].values
+    known = impacts[impacts >= 0]
+    chaotic = bool(np.any(data["label"].values == CHAOTIC))
+    if known.size and not np.any(known > 0) and not chaotic:
+        return [NO_BACK_IMPACT]
+    return []

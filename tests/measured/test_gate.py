@@ -1,0 +1,116 @@
+"""The gate: each damage is seen, said, and filled, cut out or the number withheld."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.measured.comparison import table_of
+from thermogear.measured.dataset import figures
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import Measurement, measure
+from thermogear.signals.quality import damages, filled
+
+RATE, TEETH, MESH, COUNT = 2560.0, 25, 401.3, 8192
+SPEED = 2.0 * np.pi * MESH / TEETH
+
+
+def channel(seed: int = 1) -> NDArray[np.float64]:
+    """A mesh line of amplitude 1 with sidebands, a second harmonic and noise."""
+    cycles = MESH * np.arange(COUNT) / RATE
+    swing = 1.0 + 0.2 * np.cos(2 * np.pi * cycles / TEETH)
+    x = swing * (np.cos(2 * np.pi * cycles + seed) + 0.5 * np.cos(4 * np.pi * cycles))
+    return np.asarray(x + 0.1 * np.random.default_rng(seed).normal(size=COUNT))
+
+
+def measured(*values: NDArray[np.float64], rate: float = RATE) -> Measurement:
+    channels = tuple(Channel(f"a{i}", x, "m/s^2") for i, x in enumerate(values))
+    record = Record(channels, "made", rate, "made")
+    return measure(record, teeth=TEETH, speed=SPEED, sidebands=0, harmonics=1)
+
+
+def test_undamaged_records_pass_without_a_word() -> None:
+    for bits in (24, 12, 8):
+        step = 8.0 * 2.0**-bits
+        assert damages(np.round(channel() / step) * step) == []
+    tone = np.sin(0.371 * np.arange(5000))
+    assert damages(np.round(tone * 100.0) / 100.0) == []
+    ringing = channel()
+    for at in range(500, COUNT - 100, 900):  # impacts of a damaged tooth
+        ringing[at : at + 60] += 15.0 * np.exp(-np.arange(60) / 12.0) * np.cos(np.arange(60))
+    assert [one.kind for one in damages(ringing)] == []
+
+
+@pytest.mark.parametrize("kind", ["missing", "sentinel", "zeros", "held", "spikes"])
+def test_little_damage_is_filled_and_the_interval_holds_it(kind: str) -> None:
+    x = channel()
+    if kind == "spikes":
+        x[[300, 2222, 7000]] = [30.0, -25.0, 28.0]
+    else:
+        stands = {"missing": np.nan, "sentinel": -9999.0, "zeros": 0.0, "held": x[2000]}
+        x[2000:2200] = stands[kind]
+    (damage,) = damages(x)
+    assert (damage.kind, damage.count) == (kind, 3 if kind == "spikes" else damage.count)
+    found = measured(x)
+    line = found.lines[0]
+    assert line.reading == pytest.approx(1.0, abs=1.5 * line.half_width)
+    assert line.half_width < 0.02
+    assert line.withheld == ""
+    assert [one.channel for one in found.findings] == ["a0"]
+
+
+def test_filled_samples_are_those_of_the_lines() -> None:
+    x = np.cos(0.371 * np.arange(4000)) + 3.0
+    missing = np.zeros(4000, dtype=bool)
+    missing[1000:1150] = True
+    y, explained = filled(np.where(missing, np.nan, x), missing)
+    np.testing.assert_allclose(y, x, atol=5e-3)
+    assert explained > 0.999
+
+
+def test_much_clipping_withholds_amplitudes_and_keeps_the_frequency() -> None:
+    found = measured(np.clip(channel(), -0.9, 0.9))
+    line = found.lines[0]
+    assert np.isnan([line.reading, line.acceleration, line.displacement, line.uncertainty]).all()
+    assert line.frequency == pytest.approx(MESH, abs=2.0 * line.frequency_half_width)
+    assert line.withheld.startswith("clipping")
+    told = figures(found)
+    assert told["lines"][0]["reading"] is None
+    assert told["findings"][0]["withholds"]
+    with pytest.raises(InputError, match="its lines are withheld: clipping"):
+        table_of(found)
+
+
+def test_lost_samples_cut_the_record_where_the_phase_jumps() -> None:
+    found = measured(np.delete(channel(), np.arange(5000, 5037)))
+    assert "jumps" in found.findings[0].kind
+    assert (found.start, found.start + found.samples) == (0, pytest.approx(4700, abs=300))
+    assert found.lines[0].frequency == pytest.approx(MESH, abs=0.01)
+
+
+def test_copies_and_means_are_named() -> None:
+    x = channel()
+    found = measured(x, 2.0 * x + 5.0, channel(2) + 1e3)
+    assert found.channels == ("a0", "a2")
+    assert [one.channel for one in found.findings] == ["a1", "a2"]
+
+
+def test_a_shaft_rate_is_no_sampling_rate() -> None:
+    with pytest.raises(
+        InputError, match=r"^rate: got 25 samples/s; .* is 25 the shaft's turns per"
+    ):
+        measured(channel(), rate=25.0)
+
+
+def test_a_doubtful_rate_withholds_hertz() -> None:
+    line = measured(channel(), rate=10.0 * RATE).lines[0]
+    assert np.isnan([line.frequency, line.shaft_speed, line.displacement]).all()
+    assert line.reading == pytest.approx(1.0, abs=0.02)
+    assert line.withheld
+    given = Record((Channel("a", channel(), "m/s^2"),), "made", 10.0 * RATE, "header")
+    right = measure(given.supplied(rate=RATE), teeth=TEETH, speed=SPEED, sidebands=0)
+    assert right.lines[0].frequency == pytest.approx(MESH, rel=1e-4)
+    doubted = measure(given.supplied(rate=RATE), teeth=TEETH, sidebands=0)
+    assert np.isnan(doubted.lines[0].frequency)
