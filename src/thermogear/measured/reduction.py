@@ -76,8 +76,6 @@ class Measurement:
         """Level and text of every finding."""
         return tuple((one.notice.level, one.notice.text) for one in self.findings)
 
-    given: tuple[int | None, float | None] = (None, None)
-
     @property
     def settings(self) -> dict[str, str]:
         """What must be told with every amplitude: rate, N, bin width, window, ENBW, filter."""
