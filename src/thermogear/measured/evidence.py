@@ -45,6 +45,7 @@ _SIDES = np.array([-1, 1, -2, 2, -3, 3])
 _OWN = np.arange(1, 5)
 _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
+_STATED_PAIRS = 12
 _MEMBERS = 6  # tooth numbers that are put together in twos
 _FINAL = 24
 _APART = 3.0  # bins between the lines of two shafts
@@ -67,7 +68,7 @@ class Stated:
 class Hypothesis:
     """``kind`` "gear" or "no gear"; ``mesh`` [cycles/sample] (nan: none), ``teeth`` of the gears
     whose shafts show, ``evidence`` its logarithm over chance, ``weight``, ``combs``: steps of the
-    combs beside it [cycles/sample]."""
+    combs beside it [cycles/sample], ``sides``: log evidence of each gear's sidebands alone."""
 
     kind: str
     mesh: float
@@ -75,6 +76,7 @@ class Hypothesis:
     evidence: float
     weight: float = 0.0
     combs: tuple[float, ...] = ()
+    sides: tuple[float, ...] = ()
 
     @property
     def words(self) -> str:
@@ -202,6 +204,7 @@ def _beside(peaks: Peaks, draft: _Draft, orders: list[list[Comb]]) -> Hypothesis
         teeth=draft.teeth,
         evidence=mean_exp(both),
         combs=tuple(one.step for one in (told if both[0] > both[1] else bare_told)),
+        sides=draft.sides,
     )
 
 
@@ -213,6 +216,7 @@ class _Draft:
     used: Flags
     bare: float  # evidence of the mesh line's harmonics alone
     mesh_lines: Flags
+    sides: tuple[float, ...]  # evidence of each gear's sidebands alone
 
 
 def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
@@ -227,7 +231,8 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
     tops = peaks.place[np.argsort(-peaks.level)[:_MESHES]]
     tried = np.unique(np.concatenate([tops, tops / 2.0, tops / 3.0]))
     teeth = np.arange(TEETH[0], TEETH[1] + 1, dtype=float)
-    scores, pairs = [], []
+    pairs: list[tuple[float, float, int]] = []
+    told: list[tuple[float, float, int]] = []
     for start in tried[tried > 40.0 * peaks.bin_width]:
         highest = min(_HARMONICS, int(0.47 / start))
         if highest < 1:
@@ -243,14 +248,12 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
         carriers = np.sum(_looked(gain, peaks, rank * mesh))
         score = sides + own + 2.0 * carriers
         score[mesh / teeth < 4.0 * peaks.bin_width] = -np.inf
-        for place in np.argsort(-score)[:8]:
-            scores.append(float(score[place]))
-            pairs.append((mesh, int(teeth[place])))
-        if stated.teeth is not None:
-            scores.append(np.inf)
-            pairs.append((mesh, stated.teeth))
-    order = np.argsort(-np.asarray(scores))[:_PAIRS]
-    kept = [pairs[i] for i in order]
+        best = np.argsort(-score)[:8]
+        pairs += [(float(score[i]), mesh, int(teeth[i])) for i in best]
+        if stated.teeth is not None and TEETH[0] <= stated.teeth <= TEETH[1]:
+            told.append((float(score[stated.teeth - TEETH[0]]), mesh, stated.teeth))
+    kept = [(m, z) for _, m, z in sorted(pairs, reverse=True)[:_PAIRS]]
+    kept += [(m, z) for _, m, z in sorted(told, reverse=True)[:_STATED_PAIRS]]
     # halves and doubles of the best contradict them: they must be weighed too
     for mesh, z in kept[:12]:
         for k in (2, 3):
@@ -284,6 +287,7 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
     lines = carriers.lines[0]
     used[lines[lines >= 0]] = True
     bare, mesh_lines = total, used.copy()
+    around: list[float] = []
     there = rank[lines >= 0]
     tops = peaks.level[lines[lines >= 0]]
     for z in teeth:
@@ -309,10 +313,11 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
         )
         prior = _prior(mesh, z, stated)
         bare += prior
+        around.append(some_of(sides.evidence))
         total += prior + some_of(np.concatenate([sides.evidence, own.evidence]))
         take(used, sides)
         take(used, own)
-    return _Draft(mesh, teeth, total, used, bare, mesh_lines)
+    return _Draft(mesh, teeth, total, used, bare, mesh_lines, tuple(around))
 
 
 def _prior(mesh: float, teeth: int, stated: Stated) -> float:
@@ -344,7 +349,12 @@ def _decided(found: list[Hypothesis]) -> Evidence:
     named.sort(key=lambda one: -one.weight)
     best = named[0]
     teeth, sure = [], []
-    for z in best.teeth:
+    for z, sides in zip(best.teeth, best.sides, strict=True):
+        # a shaft's own lines do not say which mesh it has: only sidebands do; and a gear whose
+        # teeth divide another's puts its lines where that one has its second, third, ...
+        divides = any(other != z and other % z == 0 for other in best.teeth)
+        if divides or sides < np.log(CLEAR / (1.0 - CLEAR)):
+            continue
         # the same gear under another hypothesis: the same mesh line, the same teeth
         share = sum(one.weight for one in named if _same_mesh(one, best.mesh) and z in one.teeth)
         if share >= CLEAR:

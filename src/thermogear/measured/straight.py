@@ -17,12 +17,13 @@ _LEAST = 12.0  # bins of that half width
 _STEADY = 0.03  # cycles of wander at the highest frequency
 _HIGHEST = 0.3
 _SMEARED = 10.0  # bins
+_COMPARED = 16  # lines
 _FINER = 4
 
 
 def sharp_peaks(channels: Floats) -> Peaks:
     """Lines of ``channels`` (channel, sample), where the speed wanders in the clock of the line
-    that makes all lines together highest: the sum of their levels decides, the steady
+    that makes the highest lines highest: the sum of their levels decides, the steady
     clock of the record among them. In the new clock it is tried once more, with narrower filters.
     """
     best = peaks_of(channels)
@@ -75,12 +76,14 @@ def _references(peaks: Peaks) -> list[float]:
 
 
 def _sharpness(peaks: Peaks) -> float:
-    """Levels over the threshold, summed over lines: of lines that stand as close as one that is
-    smeared into several does, the highest counts."""
+    """Levels of the highest lines, summed: of lines that stand as close as one that is smeared into
+    several does, the highest counts. Always as many: a clock that is turned by the sidebands of its
+    own reference makes new lines, and none of these higher."""
     if peaks.size == 0:
         return 0.0
     apart = np.flatnonzero(np.diff(peaks.place) > _SMEARED * peaks.bin_width) + 1
-    return float(np.sum(np.maximum.reduceat(peaks.level - peaks.least, np.r_[0, apart])))
+    highest = np.maximum.reduceat(peaks.level - peaks.least, np.r_[0, apart])
+    return float(np.sum(np.sort(highest)[-_COMPARED:]))
 
 
 def _cycles(
