@@ -68,7 +68,8 @@ class Stated:
 class Hypothesis:
     """``kind`` "gear" or "no gear"; ``mesh`` [cycles/sample] (nan: none), ``teeth`` of the gears
     whose shafts show, ``evidence`` its logarithm over chance, ``weight``, ``combs``: steps of the
-    combs beside it [cycles/sample], ``sides``: log evidence of each gear's sidebands alone."""
+    combs beside it [cycles/sample], ``sides``: log evidence of each gear's first sidebands
+    alone."""
 
     kind: str
     mesh: float
@@ -216,7 +217,7 @@ class _Draft:
     used: Flags
     bare: float  # evidence of the mesh line's harmonics alone
     mesh_lines: Flags
-    sides: tuple[float, ...]  # evidence of each gear's sidebands alone
+    sides: tuple[float, ...]  # evidence of each gear's first sidebands alone
 
 
 def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
@@ -301,6 +302,14 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
             fall=_FALL,
             top=tops,
         )
+        first = seen(
+            peaks,
+            used,
+            (there[:, None] + np.array([-1.0, 1.0]) / z) * mesh,
+            error=there[:, None] * error,
+            spread=_SIDE_SPREAD,
+            top=tops,
+        )
         own = falling(
             peaks,
             used,
@@ -313,7 +322,7 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
         )
         prior = _prior(mesh, z, stated)
         bare += prior
-        around.append(some_of(sides.evidence))
+        around.append(some_of(first.evidence))
         total += prior + some_of(np.concatenate([sides.evidence, own.evidence]))
         take(used, sides)
         take(used, own)
@@ -350,7 +359,7 @@ def _decided(found: list[Hypothesis]) -> Evidence:
     best = named[0]
     teeth, sure = [], []
     for z, sides in zip(best.teeth, best.sides, strict=True):
-        # a shaft's own lines do not say which mesh it has: only sidebands do; and a gear whose
+        # a shaft's own lines do not say which mesh it has: only first sidebands do; a gear whose
         # teeth divide another's puts its lines where that one has its second, third, ...
         divides = any(other != z and other % z == 0 for other in best.teeth)
         if divides or sides < np.log(CLEAR / (1.0 - CLEAR)):
