@@ -77,7 +77,7 @@ class Walk:
     def done(self) -> None:
         frames = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
         self.page.value(f"{frames}.then(() => 1)")
-        self.page.until("document.body.dataset.done === document.body.dataset.asked", 300)
+        self.page.until("document.body.dataset.done === document.body.dataset.asked", 900)
 
     def lines(self, part: str) -> list[str]:
         items = f"[...document.querySelectorAll('[data-part=\"{part}\"] .lines li')]"

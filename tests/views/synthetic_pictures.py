@@ -474,7 +474,7 @@ def of_dials() -> dict[str, Picture]:
          "line_amplitude": ("order", np.geomspace(1e-5, 1e-9, 8))},
         {"order": np.arange(1, 9) / 1.0},
     )  # fmt: skip
-    motions = {"as the case starts": orbit, "running up": 0.5 * orbit}
+    motions = {"the case's start": orbit, "running up": 0.5 * orbit}
     grid = xr.Dataset(
         {n: (("pinion_speed", "gear_temperature"), np.resize([0, 1, 2], (4, 3)))
          for n in ("label", "period")},

@@ -74,9 +74,14 @@ def _kinds(case: GearCase) -> dict[str, _Kind]:
     field = "temperatures.housing_below_addendum" if below else "temperatures.housing"
     table = case.file.backlash
     kind = f"{table.extent}, {table.direction}" if table.value is not None else "total, normal"
+    speed, torque = (
+        f"pinion {name}"
+        + (f" (the first of {len(row)}; turned, the only one)" if len(row) > 1 else "")
+        for name, row in (("speed", case.speeds), ("torque", case.torques))
+    )
     found = (
-        _Kind("speed", "pinion speed", "rpm", ("operating.speed",)),
-        _Kind("torque", "pinion torque", "N m", ("operating.torque",)),
+        _Kind("speed", speed, "rpm", ("operating.speed",)),
+        _Kind("torque", torque, "N m", ("operating.torque",)),
         _Kind("gears", "gear temperature", "degC", GIVEN[:2], held),
         _Kind("housing", *housing, (field,), held),
         _Kind("backlash", f"cold backlash ({kind})", "mm", ("backlash.value",)),

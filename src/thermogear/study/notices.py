@@ -33,6 +33,8 @@ def contact_notices(data: xr.Dataset) -> list[str]:
     if "contact_loss_share" not in data or "pinion_speed" not in data["label"].dims:
         return []
     moving = data["status"].values == 0
+    if not moving.any():
+        return ["nothing moves at these speeds: the pair is jammed, or its heat does not settle"]
     speeds = data["pinion_speed"].values / RPM
     axis = data["label"].dims.index("pinion_speed")
     others = tuple(i for i in range(data["label"].ndim) if i != axis)

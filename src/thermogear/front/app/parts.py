@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -25,7 +26,7 @@ from thermogear.views.picture import Picture
 from thermogear.views.plots import live as plot
 
 Floats = NDArray[np.float64]
-OF_ALL = " (in any state, up or down)"
+OF_ALL = re.compile(r" \(in any state(, up or down)?\)$")
 """What notices of several states end with; a live run-up has one."""
 OFTEN = 0.25
 """Seconds between two pictures of one that fills in."""
@@ -133,7 +134,7 @@ def gears(look: Look) -> Iterator[Part]:
 
 def orbit(look: Look) -> Iterator[Part]:
     look.kept.motions.clear()
-    yield _orbit(look, {"as the case starts": None})
+    yield _orbit(look, {"the case's start": None})
 
 
 def _orbit(look: Look, starts: dict[str, tuple[float, float] | None]) -> Part:
@@ -155,7 +156,7 @@ def _orbit(look: Look, starts: dict[str, tuple[float, float] | None]) -> Part:
             continue
         swing = 1e6 * float(np.ptp(one.data["displacement"].values))
         lines.append(f"{name}: {one.words}; peak to peak {swing:.4g} µm")
-    first = kept.get("as the case starts")
+    first = kept.get("the case's start")
     rows = []
     if first is not None and first.orbit is not None:
         from thermogear.views.write import page_of
@@ -234,7 +235,7 @@ def _run_part(look: Look, one: live.LiveRunUp, state: str) -> Part:
                 *contact_notices(run.data),
                 *difference_notices(run.data),
             ]
-            lines += [f"{name}, {words.removesuffix(OF_ALL)}" for words in found]
+            lines += [f"{name}, {OF_ALL.sub('', words)}" for words in found]
     if one.preview:
         lines.append(f"{state}: a coarse look first")
     return Part(name="run-up", picture=_runs(look), lines=lines, done=one.done, total=one.total)
@@ -260,6 +261,9 @@ def answers(look: Look) -> Iterator[Part]:
 def record(look: Look) -> Iterator[Part]:
     """The record's mesh lines over those of the motions shown."""
     measured = look.given.record
+    if measured is not None and "orbit" not in look.show.parts:
+        for _ in orbit(look):
+            look.alive()
     motions = {n: m.data for n, m in look.kept.motions.items() if m.orbit is not None}
     if measured is None or measured.teeth is None:
         if measured is not None:

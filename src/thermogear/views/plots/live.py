@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 DASHED = (3, 2)
-STARTS = {"as the case starts": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}
+STARTS = {"the case's start": INK, "running up": OKABE_ITO[2], "running down": OKABE_ITO[3]}
 """Where a motion comes from, and its colour."""
 
 

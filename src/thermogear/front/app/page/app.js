@@ -24,15 +24,23 @@ const send = (message) => {
   socket.send(JSON.stringify(message));
   return true;
 };
+const faulty = ({low, high, count}) => {
+  if (![low, high, count].every(Number.isFinite)) return "write numbers";
+  if (low < 0.1 || high > 500000) return "allowed are 0.1 to 500000 rpm";
+  if (low >= high) return "the first must be below the last";
+  if (!Number.isInteger(count) || count < 2 || count > 2000) return "a whole number of 2 to 2000 speeds";
+  return "";
+};
 const ask = () => {
   // at most one message a frame: the newest
   if (asked || !ready) return;
   asked = true;
   requestAnimationFrame(() => {
     asked = false;
-    const range = speeds();
-    if (!Object.values(range).every(Number.isFinite)) {
-      tell("speeds of the run-up: write numbers", true);
+    const range = speeds(), fault = faulty(range);
+    for (const name of ["low", "high", "count"]) by(name).setAttribute("aria-invalid", String(Boolean(fault)));
+    if (fault) {
+      tell(`speeds of the run-up: ${fault}`, true);
       return;
     }
     number_ += 1;
@@ -80,7 +88,12 @@ const knob = (said) => {
   for (const one of [range, box]) one.setAttribute("aria-describedby", wrong.id);
   const made = {said, label, range, box, wrong};
   const turn = (value) => {
-    if (!Number.isFinite(value)) return;
+    if (!Number.isFinite(value)) {
+      box.value = made.said.value ?? "";
+      wrong.textContent = "write a number";
+      return;
+    }
+    wrong.textContent = "";
     set.dials.set(said.name, value);
     ask();
   };
@@ -110,10 +123,14 @@ const describe = (one, value) => one.range.setAttribute("aria-valuetext",
   `${value} ${UNITS[one.said.unit] ?? one.said.unit}`.trim());
 const put = (one, value) => {
   if (!Number.isFinite(value)) return;
-  one.range.min = Math.min(Number(one.range.min), value);
-  one.range.max = Math.max(Number(one.range.max), value);
   one.range.value = value;
   describe(one, value);
+};
+// an accepted value may lie beyond the slider
+const reach = (one, value) => {
+  if (!Number.isFinite(value)) return;
+  one.range.min = Math.min(Number(one.range.min), value);
+  one.range.max = Math.max(Number(one.range.max), value);
 };
 const follow = (one, said) => {
   one.said = said;
@@ -125,7 +142,8 @@ const follow = (one, said) => {
     one.range.max = said.high;
     one.ranged = true;
   }
-  if (document.activeElement !== one.range || said.held) put(one, said.value);
+  if (said.value !== null) reach(one, said.value);
+  if (said.value !== null && (document.activeElement !== one.range || said.held)) put(one, said.value);
   if (document.activeElement !== one.box || said.held)
     one.box.value = said.value === null ? ""
       : said.held ? Number(said.value.toPrecision(4)) : said.value;
@@ -240,10 +258,12 @@ const list = (host, lines) => host?.replaceChildren(...lines.map((words) => elem
 const part = (message) => {
   const box = document.querySelector(`.part[data-part="${message.name}"]`);
   if (!box) return;
-  box.classList.remove("busy");
   list(box.querySelector(":scope > .lines"), message.lines);
   const host = box.querySelector(":scope > figure > .canvas");
   if (message.picture && host) show(host, message.name, message.picture);
+  // what is refused leaves the last picture, pale
+  box.querySelector(":scope > figure")?.classList.toggle("stale",
+    !message.picture && !message.gears && message.lines.length > 0);
   if (message.gears) {
     host.previousElementSibling?.classList.contains("live") && host.previousElementSibling.remove();
     const live = element("div", null, {class: "live"});
@@ -327,7 +347,12 @@ const heard = (message) => {
     ask();
     return;
   }
-  if (kind === "file") { save(message); return; }
+  if (kind === "file") {
+    by("stop").hidden = document.body.dataset.done === document.body.dataset.asked;
+    wait(1, 1);
+    save(message);
+    return;
+  }
   if (kind === "progress") {
     tell(`computing ${message.name}: ${message.done} of ${message.total}`);
     wait(message.done, message.total);
@@ -397,7 +422,9 @@ by("unpin").addEventListener("click", () => {
   ask();
 });
 for (const what of ["case", "report"]) by(what).addEventListener("click", () => {
-  if (send({kind: "export", number: number_, what, state: state()})) tell(`writing the ${what}`);
+  if (!send({kind: "export", number: number_, what, state: state()})) return;
+  tell(`writing the ${what}`);
+  by("stop").hidden = false;
 });
 by("stop").addEventListener("click", () => {
   send({kind: "stop", number: number_});
@@ -408,6 +435,7 @@ by("stop").addEventListener("click", () => {
 });
 for (const name of ["low", "high", "count"]) by(name).addEventListener("change", ask);
 for (const one of document.querySelectorAll(".part")) one.addEventListener("toggle", () => {
-  if (one.open) ask();
+  // a folded part's work ends, too
+  if (one.open || document.body.dataset.done !== document.body.dataset.asked) ask();
 });
 connect();
