@@ -70,7 +70,7 @@ def find_gearing(
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
     ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
-    user says, evidence like the lines. Raises InputError when no line stands out.
+    user says, evidence like the lines. Raises InputError when no line is clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
