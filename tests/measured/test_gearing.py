@@ -53,15 +53,17 @@ def test_teeth_of_synthetic_trains(
     teeth: tuple[int, int, int, int], noise: float, compared: Compared
 ) -> None:
     gearing = find_gearing(list(mesh_train(60_000, 0.0713, teeth, noise)))
-    assert [shaft.teeth for shaft in gearing.shafts] == [teeth[0], teeth[1]]
+    # teeth that divide the other gear's may be its shaft's harmonics: they are not named
+    named = [teeth[1]] if teeth[1] % teeth[0] == 0 else [teeth[0], teeth[1]]
+    assert [shaft.teeth for shaft in gearing.shafts] == named
     compared(
         "mesh line of trains with unknown teeth",
         "the line put in",
         gearing.mesh_frequency / 0.0713 - 1.0,
         1e-4,
     )
-    assert gearing.teeth == teeth[0]
-    assert gearing.shaft_frequency == pytest.approx(0.0713 / teeth[0], rel=1e-4)
+    assert gearing.teeth == named[0]
+    assert gearing.shaft_frequency == pytest.approx(0.0713 / named[0], rel=1e-4)
 
 
 def test_a_lone_harmonic_family_names_the_mesh_line_and_no_teeth() -> None:
