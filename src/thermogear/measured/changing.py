@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
+from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
@@ -213,6 +214,7 @@ def _steady(shaft: Shaft, angle: _Angle, notices: list[Notice]) -> Changing:
         shafts=(),
         meshes=(),
         evidence=(f"the mesh line is put at {angle.teeth} times the tacho's shaft",),
+        weighed=Evidence(hypotheses=(), mesh=float("nan"), teeth=(), weights=()),
     )
     turns = MeshTurns(
         frequency=mean,

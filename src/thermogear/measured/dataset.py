@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.vocabulary import label
+from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import MeasuredLine
 from thermogear.measured.reduction import Measurement
 from thermogear.measured.slice_groups import slice_figures, slice_groups
@@ -83,10 +84,33 @@ def figures(found: Measurement) -> dict[str, Any]:
         "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
         "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
         "evidence": list(gearing.evidence) if gearing else [],
+        "given": {"teeth": found.given[0], "speed": found.given[1]},
+        "found": _found(gearing),
         "findings": [{**vars(one), "text": one.text} for one in found.findings],
         "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
         "slices": None if found.slices is None else slice_figures(found.slices),
         "notices": [vars(notice) for notice in found.notices],
+    }
+
+
+def _found(gearing: Gearing | None) -> dict[str, Any]:
+    """The verdict on the teeth, with the hypotheses that carry weight."""
+    if gearing is None:
+        return {"verdict": "no gear found", "teeth": [], "hypotheses": []}
+    return {
+        "verdict": gearing.weighed.verdict,
+        "teeth": [shaft.teeth for shaft in gearing.shafts],
+        "hypotheses": [
+            {
+                "kind": one.kind,
+                "weight": one.weight,
+                "mesh_position": one.mesh if math.isfinite(one.mesh) else None,
+                "teeth": list(one.teeth),
+                "combs": list(one.combs),
+                "words": one.words,
+            }
+            for one in gearing.weighed.told
+        ],
     }
 
 

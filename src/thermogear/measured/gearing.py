@@ -6,14 +6,16 @@ Everything here is in cycles per sample and in orders: no rate is needed and non
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
+from thermogear.measured.evidence import Evidence, Stated, weigh
 from thermogear.measured.prominence import Prominence, prominence
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
+from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.orders import line_angle, resample_by_angle
 from thermogear.signals.spectra import amplitude_spectrum
 
@@ -23,17 +25,15 @@ LONGEST = 1 << 19
 """Samples that the search looks at, from the start of the record."""
 
 _HARMONICS = 5
-_CANDIDATES = 20  # families looked at for sidebands
-_SCREEN = 1 << 16
-_LAW_KEPT = 0.7  # what sidebands at a whole number of teeth count for, beside their height
-_MOST_FROM_SIDEBANDS = 3.2  # scores of sidebands stay below this
+_SAME = 1e-3  # a mesh line's position from two ways of reading it
+_LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gearing:
-    """What a record's lines tell: mesh line [cycles/sample], shafts (first = tooth number of the
-    first shaft), further meshes, and the evidence in words."""
+    """What a record's lines tell: mesh line [cycles/sample], the shafts of gears whose teeth are
+    decided (the fastest first), further meshes, the hypotheses and the evidence in words."""
 
     mesh_frequency: float
     mesh_frequency_error: float
@@ -41,6 +41,7 @@ class Gearing:
     shafts: tuple[Shaft, ...]
     meshes: tuple[Mesh, ...]
     evidence: tuple[str, ...]
+    weighed: Evidence
 
     @property
     def teeth(self) -> int | None:
@@ -53,20 +54,23 @@ class Gearing:
         return self.mesh_frequency / self.shafts[0].teeth if self.shafts else None
 
 
-def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Gearing:
+def find_gearing(
+    channels: Sequence[Floats], near: float | None = None, stated: Stated | None = None
+) -> Gearing:
     """Mesh line, shafts, tooth numbers and further meshes of one record.
 
-    1. Mesh line: the peak with the clearest harmonics 1..5, in the mean of the logarithms of
-       amplitude over floor, over all channels (``near`` [cycles/sample] restricts it to +-3 %).
-    2. The phase of that line is the angle: the record is resampled in mesh cycles, which makes
-       every line of the gear train sharp, whatever the speed does.
-    3. A shaft with z teeth puts sidebands at h +- n/z around the mesh harmonics h. z is the
-       whole number with the clearest sidebands n = 1..3; a second shaft is sought among the
-       z that do not divide it, by n = 1.
+    1. Hypotheses on teeth, on impacts without teeth and on nothing at all are weighed
+       (:func:`~thermogear.measured.evidence.weigh`). Teeth are named where nearly all the weight
+       has them; else the record leaves them undecided and the alternatives are told.
+    2. Mesh line: that of the hypotheses; where they agree on none, the peak with the clearest
+       harmonics 1..5 (``near`` [cycles/sample] restricts it to +-3 %).
+    3. The phase of that line is the angle: the record is resampled in mesh cycles, where the
+       decided shafts' sidebands measure mesh line over shaft line.
     4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
-    ``channels``: one array each, equal lengths. Raises InputError when no mesh line is found.
+    ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
+    user says, evidence like the lines. Raises InputError when no line is clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -74,20 +78,13 @@ def find_gearing(channels: Sequence[Floats], near: float | None = None) -> Geari
     table = table[np.std(table, axis=-1) > 0]
     if table.size == 0 or table.shape[-1] < 256:
         raise InputError("record", f"{table.shape[-1]} samples", allowed=">= 256, not constant")
-    families = _families(prominence(table, 1.0), near)
-    if len(families) > 1:
-        # which family is the mesh's is decided on a part: two channels, fewer samples
-        loudest = np.argsort(-np.max(np.abs(table), axis=-1))[:2]
-        part = table[loudest, :_SCREEN]
-        best, chosen = -np.inf, families[0]
-        for family in families:
-            if family.score + _MOST_FROM_SIDEBANDS < best:
-                break
-            score = _of_family(part, family)[0]
-            if score > best:
-                best, chosen = score, family
-        families = [chosen]
-    return _of_family(table, families[0])[1]
+    raw = prominence(table, 1.0)
+    family = _clearest_family(raw, near)
+    weighed = weigh(sharp_peaks(table), stated)
+    likely = weighed.mesh_weight >= _LIKELY
+    if likely and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
+        family = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
+    return _of_family(table, family, weighed)
 
 
 @dataclass(frozen=True)
@@ -100,60 +97,54 @@ class _Family:
     score: float
 
 
-def _of_family(table: Floats, family: _Family) -> tuple[float, Gearing]:
-    """The gearing if this family is the mesh's, and its score.
-
-    A shaft's own harmonics make a family too, often the stronger one; but no sidebands at whole
-    parts of it are around them. So the sidebands' score counts like the family's.
-    """
+def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
+    """The gearing with this family as the mesh line's, and the teeth decided for it."""
     mesh = family.mesh
     text = ", ".join(f"{np.exp(h):.1f}" for h in family.heights)
     heights = tuple(float(np.exp(h)) for h in family.heights)
     evidence = [
+        weighed.words,
         f"mesh line near {family.line:.6f} cycles/sample: harmonics 1..{len(heights)} stand "
-        f"{text} times over the floor (mean of channels)"
+        f"{text} times over the floor (mean of channels)",
     ]
+    same = weighed.teeth and abs(mesh / weighed.mesh - 1.0) < _SAME
+    teeth = dict(zip(weighed.teeth, weighed.weights, strict=True)) if same else {}
     angle_of = _angle(table, mesh)
-    if angle_of is None:
-        error = 0.5 / table.shape[-1]
-        return family.score, Gearing(
-            mesh_frequency=mesh,
-            mesh_frequency_error=error,
-            harmonics=heights,
-            shafts=(),
-            meshes=(),
-            evidence=tuple(evidence),
-        )
-    cycles, dropped, mesh, error = angle_of
-    kept = table[:, dropped : dropped + cycles.size]
-    top = max(1, min(_HARMONICS, int(0.45 / mesh)))
-    per_cycle = int(2 ** np.ceil(np.log2(1.0 / mesh)))
-    sharp = prominence(
-        resample_by_angle(kept, cycles, samples_per_turn=per_cycle), float(per_cycle)
-    )
-    shafts = shafts_of(sharp, top, evidence)
+    shafts: tuple[Shaft, ...] = ()
     meshes: tuple[Mesh, ...] = ()
-    if not shafts:
-        evidence.append(
-            "no sidebands at whole parts of it: it may be a shaft's own line and no mesh line"
+    error = 0.5 / table.shape[-1]
+    if angle_of is not None:
+        cycles, dropped, mesh, error = angle_of
+        kept = table[:, dropped : dropped + cycles.size]
+        top = max(1, min(_HARMONICS, int(0.45 / mesh)))
+        per_cycle = int(2 ** np.ceil(np.log2(1.0 / mesh)))
+        sharp = prominence(
+            resample_by_angle(kept, cycles, samples_per_turn=per_cycle), float(per_cycle)
         )
-    if len(shafts) > 1:
-        meshes = second_mesh(sharp, shafts, top, evidence)
-    score = family.score
-    if shafts:  # sidebands of one harmonic alone prove less
-        score += (shafts[0].score + _LAW_KEPT) * min(1.0, top / 3.0)
-    return score, Gearing(
+        shafts = shafts_of(sharp, top, teeth)
+        evidence += [
+            f"sidebands at mesh/{shaft.ratio:.3f} (+-{shaft.ratio_error:.3f}), {shaft.lines} of "
+            f"them over 3 times the floor: a gear of {shaft.teeth} teeth, shaft order "
+            f"{shaft.order:.4f}"
+            for shaft in shafts
+        ]
+        if len(shafts) > 1:
+            meshes = second_mesh(sharp, shafts, top, evidence)
+    if not shafts:
+        evidence.append("no tooth number is decided: it may be a shaft's own line and no mesh line")
+    return Gearing(
         mesh_frequency=mesh,
         mesh_frequency_error=error,
         harmonics=heights,
         shafts=shafts,
         meshes=meshes,
         evidence=tuple(evidence),
+        weighed=weighed,
     )
 
 
-def _families(raw: Prominence, near: float | None) -> list[_Family]:
-    """The strongest families of harmonics, best first; a mesh line near ``near`` if given."""
+def _clearest_family(raw: Prominence, near: float | None) -> _Family:
+    """The clearest family of harmonics; of a mesh line near ``near`` if given."""
     level, per = raw.level, raw.per_unit
     low, high = (5.0 / per, 0.45) if near is None else (0.97 * near, 1.03 * near)
     first, last = max(2, int(low * per)), min(level.size - 2, int(np.ceil(high * per)))
@@ -168,14 +159,7 @@ def _families(raw: Prominence, near: float | None) -> list[_Family]:
     if peaks.size == 0:
         raise InputError("mesh line", "none", why="no line stands out of the floor")
     found = [_family(raw, peak / per) for peak in peaks[np.argsort(-level[peaks])][:400]]
-    found.sort(key=lambda family: -family.score)
-    kept: list[_Family] = []
-    for family in found:
-        if all(abs(family.line / other.line - 1.0) > 0.003 for other in kept):
-            kept.append(family)
-        if len(kept) == _CANDIDATES:
-            break
-    return kept
+    return max(found, key=lambda family: family.score)
 
 
 def _family(raw: Prominence, near: float) -> _Family:

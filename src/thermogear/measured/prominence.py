@@ -48,7 +48,7 @@ def prominence(channels: Floats, rate: float) -> Prominence:
     spectrum = amplitude_spectrum(channels - channels.mean(axis=-1, keepdims=True), rate, "hann")
     amplitudes = np.maximum(spectrum.amplitudes, 1e-300)
     logs = np.log(amplitudes)
-    level = np.mean(logs - _running_median(logs), axis=0)
+    level = np.mean(logs - running_median(logs), axis=0)
     level = level - np.median(level)
     pairs = np.maximum(level[:-1], level[1:])
     spread = float(np.diff(np.percentile(pairs, [15.87, 50.0]))[0])
@@ -61,12 +61,13 @@ def prominence(channels: Floats, rate: float) -> Prominence:
     )
 
 
-def _running_median(logs: Floats, width: int = 301) -> Floats:
+def running_median(logs: Floats, width: int = 301) -> Floats:
     """Median over about ``width`` bins, on a grid of half widths, straight between."""
     count = logs.shape[-1]
     width = min(width, max(9, count // 8))
     starts = np.arange(0, max(1, count - width + 1), max(1, width // 2))
     middles = starts + 0.5 * (width - 1)
-    medians = np.stack([np.median(logs[:, s : s + width], axis=-1) for s in starts], axis=-1)
+    windows = np.lib.stride_tricks.sliding_window_view(logs, width, axis=-1)
+    medians = np.median(windows[:, starts], axis=-1)
     grid = np.arange(count)
     return np.stack([np.interp(grid, middles, row) for row in medians])

@@ -20,9 +20,11 @@ from thermogear.measured.changing import (
     order_lines,
     read_in_angle,
 )
+from thermogear.measured.evidence import Stated
 from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
+from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import HUGE, health
@@ -41,26 +43,13 @@ _MOST = 64
 """Harmonics, sidebands and orders that may be asked for."""
 _HIGHEST_ORDER = 10_000.0
 
-_FACTORS = {
-    10.0: "ten times too high",
-    0.1: "ten times too low",
-    100.0: "a hundred times too high",
-    0.01: "a hundred times too low",
-    1000.0: "a thousand times too high (milliseconds read as seconds?)",
-    0.001: "a thousand times too low (seconds read as milliseconds?)",
-    2.0: "twice too high",
-    0.5: "twice too low",
-    2.56: "2.56 times too high (bandwidth and rate exchanged?)",
-    1 / 2.56: "2.56 times too low (bandwidth and rate exchanged?)",
-    60.0: "sixty times too high (turns per minute and per second exchanged?)",
-    1 / 60.0: "sixty times too low (turns per minute and per second exchanged?)",
-}
-
 
 @dataclass(frozen=True)
 class Measurement:
     """A record reduced: lines, gearing with evidence, settings and notices.
 
+    ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
+    speed [rad/s]), None where he said nothing.
     ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
     what the lines were read from, in the file's unit.
     """
@@ -77,6 +66,7 @@ class Measurement:
     findings: tuple[Finding, ...] = ()
     values: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slices: OrderSlices | None = None
+    given: tuple[int | None, float | None] = (None, None)
 
     @property
     def damage(self) -> tuple[tuple[str, str], ...]:
@@ -147,7 +137,8 @@ def measure(
         notices.append(
             Notice("info", f"the first {LONGEST} of {len(chosen[0])} samples are reduced to lines")
         )
-    expected = _expected(record, teeth, speed)
+    given = teeth, speed
+    expected, stated = _expected(record, teeth, speed), _stated(record, teeth, speed)
     changing, said = read_in_angle(
         record,
         through,
@@ -164,11 +155,11 @@ def measure(
     if changing is not None:
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
-        gearing = _gearing(through.table, notices, expected)
+        gearing = _gearing(through.table, notices, expected, stated)
     if changing is not None and changing.slices is not None:
-        return _of_slices(record, through, chain, changing, tuple(notices))
+        return replace(_of_slices(record, through, chain, changing, tuple(notices)), given=given)
     if changing is None and _whole_turns(through, gearing, teeth):
-        gearing = _gearing(through.table, [], expected)
+        gearing = _gearing(through.table, [], expected, stated)
     chosen, start, table = through.channels, through.start, through.table
     if changing is None:
         teeth = _teeth(gearing, teeth, notices)
@@ -183,7 +174,7 @@ def measure(
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
-        doubt = _check_rate(record, gearing, teeth, speed, notices)
+        doubt = check_rate(record, gearing, teeth, given[0], speed, notices)
     if doubt:
         through.findings.append(
             Finding(
@@ -237,6 +228,7 @@ def measure(
         start,
         tuple(through.findings),
         table,
+        given=given,
     )
 
 
@@ -392,10 +384,19 @@ def _expected(record: Record, teeth: int | None, speed: float | None) -> float |
     return teeth * speed / (2.0 * np.pi) / record.rate
 
 
-def _gearing(table: Floats, notices: list[Notice], expected: float | None) -> Gearing | None:
-    """What the lines say by themselves; the expected place only where it is clear as well."""
+def _stated(record: Record, teeth: int | None, speed: float | None) -> Stated:
+    if speed is None or record.rate is None:
+        return Stated(teeth=teeth)
+    return Stated(teeth=teeth, shaft=speed / (2.0 * np.pi) / record.rate)
+
+
+def _gearing(
+    table: Floats, notices: list[Notice], expected: float | None, stated: Stated
+) -> Gearing | None:
+    """What the lines say, with what is stated as evidence; the expected place only where a line
+    is clear there as well."""
     try:
-        free: Gearing | None = find_gearing(list(table))
+        free: Gearing | None = find_gearing(list(table), stated=stated)
     except InputError as error:
         notices.append(Notice("important", str(error)))
         free = None
@@ -403,7 +404,7 @@ def _gearing(table: Floats, notices: list[Notice], expected: float | None) -> Ge
         return free
     if 5.0 / table.shape[-1] < expected < 0.45:
         try:
-            near = find_gearing(list(table), expected)
+            near = find_gearing(list(table), expected, stated)
         except InputError:
             return free  # nothing stands where teeth and speed put the mesh line
         heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
@@ -422,66 +423,8 @@ def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) ->
         notices.append(
             Notice(
                 "important",
-                f"the sidebands say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
+                f"the lines say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
                 "mesh line over shaft line must be a whole number of teeth",
             )
         )
     return teeth
-
-
-def _check_rate(
-    record: Record,
-    gearing: Gearing,
-    teeth: int | None,
-    speed: float | None,
-    notices: list[Notice],
-) -> str:
-    """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
-
-    A rate given that contradicts the file's is kept where teeth and speed confirm it.
-    """
-    if teeth is None:
-        return record.rate_doubt
-    turns = gearing.mesh_frequency / teeth  # turns per sample
-    if record.rate is None:
-        if speed is not None:
-            notices.append(
-                Notice(
-                    "info",
-                    f"if the shaft turns at the {speed * 30 / np.pi:.6g} rpm given, the rate is "
-                    f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
-                )
-            )
-        return ""
-    implied = turns * record.rate
-    notices.append(
-        Notice(
-            "info",
-            f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
-            f"{60 * implied:.6g} rpm",
-        )
-    )
-    if 2.56 * gearing.mesh_frequency > 1.0:
-        notices.append(
-            Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
-        )
-    if speed is None:
-        return record.rate_doubt
-    ratio = implied / (speed / (2 * np.pi))
-    if abs(ratio - 1.0) <= 0.1:
-        return ""
-    named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
-    what = (
-        f"the rate looks {_FACTORS[named]}"
-        if abs(ratio / named - 1.0) <= 0.1
-        else f"rate, teeth or speed is wrong by a factor {ratio:.4g}"
-    )
-    notices.append(
-        Notice(
-            "important",
-            f"{what}: the mesh line at {gearing.mesh_frequency:.6f} cycles/sample over {teeth} "
-            f"teeth makes {60 * implied:.6g} rpm at {record.rate:g} samples/s, the speed given is "
-            f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
-        )
-    )
-    return what

@@ -1,4 +1,4 @@
-"""Shafts and tooth numbers from the sidebands of a mesh line, and a further mesh.
+"""Shafts of gears whose teeth are decided, as their sidebands measure them, and a further mesh.
 
 Everything here is in orders of the mesh line. The one physical law used: a mesh line is at a
 whole number of every shaft it belongs to.
@@ -6,7 +6,7 @@ whole number of every shaft it belongs to.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -16,11 +16,8 @@ from thermogear.measured.prominence import Prominence
 
 Floats = NDArray[np.float64]
 
-_TEETH = (12, 250)  # fewer are not made as power gears
 _FEWEST = 17  # teeth of a further mesh: below, a standard gear of 20 degrees is undercut
 _SIGNIFICANT = 6.0  # standard deviations of a mean over noise lines
-_TRIES = 8
-_WHOLE = 0.02  # how far a measured tooth number may be from a whole one, up to 50 teeth
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +25,8 @@ class Shaft:
     """A shaft seen by its sidebands: ``teeth`` = mesh line over shaft line, whole by law.
 
     ``ratio`` +- ``ratio_error`` is the measured one, ``order`` that of the first shaft,
-    ``score`` the mean log prominence of its sidebands, ``lines`` how many of them are clear.
+    ``score`` the mean log prominence of its sidebands, ``lines`` how many of them are clear,
+    ``weight`` that of all hypotheses with this gear (:mod:`thermogear.measured.evidence`).
     """
 
     teeth: int
@@ -37,6 +35,7 @@ class Shaft:
     order: float
     score: float
     lines: int
+    weight: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,86 +61,26 @@ WEAK = 0.2
 """Margin (of mean log prominence) below which a further mesh is called weak."""
 
 
-def shafts_of(sharp: Prominence, top: int, evidence: list[str]) -> tuple[Shaft, ...]:
-    """The two gears with the clearest sidebands, the faster shaft (fewer teeth) first."""
+def shafts_of(sharp: Prominence, top: int, weights: dict[int, float]) -> tuple[Shaft, ...]:
+    """The shafts of gears whose teeth are decided (teeth -> weight), the faster one first, with
+    the ratio that their sidebands around the harmonics up to ``top`` measure."""
     harmonics = np.arange(1, top + 1)
-    highest = min(_TEETH[1], int(sharp.per_unit / 6))
-    teeth = np.arange(_TEETH[0], highest + 1)
-    if teeth.size < 2:
-        return ()
-    first = np.array([np.mean(sharp.at(_sides(harmonics, int(z), (1,)))) for z in teeth])
-    three = np.array([np.mean(sharp.at(_sides(harmonics, int(z), (1, 2, 3)))) for z in teeth])
-    count = 2 * top
-    needed = _SIGNIFICANT * sharp.spread
-    possible = (three >= needed / np.sqrt(3 * count)) & (first >= needed / np.sqrt(count))
-    # two shafts together fill the lattice of their common multiple, so sidebands 2 and 3 alone
-    # would favour it; the first ones alone would favour a shaft's own strong fourth or fifth
-    score = np.where(possible, first + three, -np.inf)
-    found: list[Shaft] = []
-    for _ in range(_TRIES):
-        if len(found) == 2:
-            break
-        place = int(np.argmax(score))
-        if not np.isfinite(score[place]):
-            break
-        z = _outer(sharp, harmonics, int(teeth[place]), float(three[place]), highest)
-        shaft = _refined(sharp, harmonics, z, float(three[place]))
-        if shaft is None or any(shaft.teeth == other.teeth for other in found):
-            score[place] = -np.inf
-            continue
-        found.append(shaft)
-        # what divides it is explained by it, and so are its neighbours within the resolution
-        same = np.abs(1.0 / teeth - 1.0 / shaft.teeth) * sharp.per_unit < 1.5
-        score[(shaft.teeth % teeth == 0) | same] = -np.inf
-    if len(found) == 1:
-        inner = _inner(sharp, harmonics, found[0].teeth)
-        if inner is not None:
-            found.append(inner)
-    found.sort(key=lambda shaft: shaft.teeth)
-    found = [replace(shaft, order=found[0].teeth / shaft.teeth) for shaft in found]
-    for shaft in found:
-        evidence.append(
-            f"sidebands at mesh/{shaft.ratio:.3f} (+-{shaft.ratio_error:.3f}), {shaft.lines} of "
-            f"them over 3 times the floor: a gear of {shaft.teeth} teeth, shaft order "
-            f"{shaft.order:.4f}"
+    teeth = sorted(weights)
+    found = []
+    for z in teeth:
+        ratio, error, lines, score = _measured(sharp, harmonics, z)
+        found.append(
+            Shaft(
+                teeth=z,
+                ratio=ratio,
+                ratio_error=error,
+                order=teeth[0] / z,
+                score=score,
+                lines=lines,
+                weight=weights[z],
+            )
         )
     return tuple(found)
-
-
-def _outer(
-    sharp: Prominence, harmonics: NDArray[np.int64], teeth: int, score: float, highest: int
-) -> int:
-    """The multiple of ``teeth`` whose sidebands between are nearly as high, else ``teeth``.
-
-    Where the even sidebands of a shaft happen to be the strongest, half its tooth number would
-    win: the odd ones between them tell.
-    """
-    for k in (2, 3):
-        if k * teeth > highest:
-            continue
-        between = tuple(n for n in range(1, 2 * k + 2) if n % k)
-        nearest = np.mean(sharp.at(_sides(harmonics, k * teeth, (1,))))
-        own = np.mean(sharp.at(_sides(harmonics, teeth, (1,))))
-        level = np.mean(sharp.at(_sides(harmonics, k * teeth, between)))
-        # a lattice that two shafts fill together has weak first sidebands
-        if level > 0.75 * score and nearest > 0.7 * own:
-            return _outer(sharp, harmonics, k * teeth, score, highest)
-    return teeth
-
-
-def _inner(sharp: Prominence, harmonics: NDArray[np.int64], teeth: int) -> Shaft | None:
-    """A faster shaft whose tooth number divides ``teeth``: with a whole ratio k its sidebands are
-    every k-th of the slow shaft's, and far higher than those between."""
-    best: tuple[float, int] = (1.0, 0)  # at least a factor e over those between
-    for k in range(2, teeth // _TEETH[0] + 1):
-        if teeth % k:
-            continue
-        on = np.mean(sharp.at(_sides(harmonics, teeth, (k, 2 * k))))
-        # the slow shaft's own first sideband may be strong; its further ones fall off
-        between = tuple(n for n in range(2, 2 * k) if n != k)
-        off = np.mean(sharp.at(_sides(harmonics, teeth, between)))
-        best = max(best, (float(on - off), teeth // k))
-    return _refined(sharp, harmonics, best[1], best[0]) if best[1] else None
 
 
 def _sides(harmonics: NDArray[np.int64], teeth: int, ranks: tuple[int, ...]) -> Floats:
@@ -150,10 +89,16 @@ def _sides(harmonics: NDArray[np.int64], teeth: int, ranks: tuple[int, ...]) -> 
     )
 
 
-def _refined(
-    sharp: Prominence, harmonics: NDArray[np.int64], teeth: int, score: float
-) -> Shaft | None:
-    """The spacing measured from the sidebands' own peaks; None when it is no whole number."""
+def _measured(
+    sharp: Prominence, harmonics: NDArray[np.int64], teeth: int
+) -> tuple[float, float, int, float]:
+    """Mesh line over shaft line as the sidebands' own peaks measure it, its standard error, how
+    many of them are clear, and the mean log prominence of sidebands 1 to 3.
+
+    One bin at the shaft line is the error where fewer than three are clear.
+    """
+    score = float(np.mean(sharp.at(_sides(harmonics, teeth, (1, 2, 3)))))
+    unclear = float(teeth), teeth**2 / sharp.per_unit, 0, score
     spacing = 1.0 / teeth
     good = np.zeros(0, dtype=bool)
     n = d = np.zeros(0)
@@ -175,23 +120,11 @@ def _refined(
         if np.count_nonzero(good) < 3:
             continue
         spacing = float(np.dot(n[good], d[good]) / np.dot(n[good], n[good]))
-    if np.count_nonzero(good) < 3:
-        return None
+    if np.count_nonzero(good) < 3 or abs(spacing * teeth - 1.0) > 0.01:
+        return unclear
     spread = float(np.std(d[good] - spacing * n[good])) / float(np.sqrt(np.dot(n[good], n[good])))
     ratio = 1.0 / spacing
-    error = max(spread, 1e-6 / teeth) * ratio**2
-    whole = int(np.rint(ratio))
-    # a gear's ratio is whole; what only comes near a whole number is another lattice of lines
-    if abs(ratio - whole) > _WHOLE * max(1.0, whole / 50.0) or whole < _TEETH[0]:
-        return None
-    return Shaft(
-        teeth=whole,
-        ratio=ratio,
-        ratio_error=error,
-        order=1.0,
-        score=score,
-        lines=int(np.count_nonzero(good)),
-    )
+    return ratio, max(spread, 1e-6 / teeth) * ratio**2, int(np.count_nonzero(good)), score
 
 
 def second_mesh(

@@ -33,7 +33,7 @@ class Desk:
         """Tell the page everything of a state, the quick parts first; a step each time."""
         from thermogear.front.app.parts import Look, made
 
-        start = time.thread_time()
+        start = time.process_time()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", ValidityWarning)
             case = self.given.at(show.state)
@@ -44,7 +44,7 @@ class Desk:
             alive()
             for part in made(look, name):
                 if part.name:
-                    spent = 1e3 * (time.thread_time() - start)
+                    spent = 1e3 * (time.process_time() - start)
                     self.post(
                         f"part {part.name}", part.message(number=show.number, milliseconds=spent)
                     )
@@ -53,7 +53,7 @@ class Desk:
                                            "done": part.done, "total": part.total})  # fmt: skip
                 yield
                 alive()
-                start = time.thread_time()
+                start = time.process_time()
 
     def _now(self, case: GearCase, show: Show, told: list[str]) -> dict[str, object]:
         from thermogear.case.form import form

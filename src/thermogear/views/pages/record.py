@@ -55,7 +55,7 @@ def _summary(results: Result) -> str:
     said = [
         f"{number(float(rate), 6)} samples/s" if rate else "no rate is known: orders only",
         f"amplitudes in {unit}" if unit else "no unit is known: the file's own numbers",
-        f"{teeth} teeth on the first shaft" if teeth else "no tooth number is known",
+        f"{teeth} teeth on the first shaft" if teeth else "the teeth are undecided",
     ]
     return "; ".join(said) + "."
 
@@ -173,7 +173,8 @@ def _evidence(results: Result) -> Section | None:
     found = results.values("evidence")
     if not found:
         return None
-    return Section("evidence", "How the gearing was found", [Text(str(text)) for text in found])
+    told = [*record_lines.given_and_found(results.table("figures")), *map(str, found)]
+    return Section("evidence", "How the gearing was found", [Text(text) for text in told])
 
 
 def _settings(results: Result) -> Section | None:

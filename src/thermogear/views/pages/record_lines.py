@@ -13,6 +13,7 @@ def measured(result: Result) -> list[str]:
     """Notices, evidence, settings, and a row for each line."""
     found = result.table("figures")
     told = [f"{one.level}: {one.text}" for one in result.notices]
+    told += given_and_found(found)
     told += [f"evidence: {text}" for text in found["evidence"]]
     told += [f"{name}: {value}" for name, value in found["settings"].items()]
     if found.get("shaft_speed") is not None:
@@ -51,6 +52,23 @@ def resonance(one: Mapping[str, Any]) -> str:
         rpm = one["speed"] / RPM
         return f"at {rpm:.5g} rpm {seen} peak together: the speed's doing, no resonance in hertz"
     return f"{seen} alone peaks, at {place}: one order cannot tell a resonance from a speed"
+
+
+def given_and_found(figures: Mapping[str, Any]) -> list[str]:
+    """What the user said, and what the lines say, apart; nothing for results of older versions."""
+    if "found" not in figures:
+        return []
+    given, found = figures["given"], figures["found"]
+    said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
+    said += [f"{given['speed'] / RPM:.6g} rpm"] if given["speed"] is not None else []
+    told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
+    teeth = " and ".join(map(str, found["teeth"]))
+    told.append(f"found: {teeth} teeth, decided" if teeth else f"found: {_open(found['verdict'])}")
+    return told + [f"weight {one['weight']:.3f}: {one['words']}" for one in found["hypotheses"]]
+
+
+def _open(verdict: str) -> str:
+    return "no gear" if verdict == "no gear found" else "teeth undecided"
 
 
 def _line(one: Mapping[str, Any]) -> str:

@@ -1,0 +1,210 @@
+"""How likely lines at foretold places are, against lines that stand there by chance.
+
+Model. Lines that nothing foretells are scattered along the frequency axis (Poisson, by the density
+counted around each), their heights over the threshold exponential. Lines of one group share a
+level: their logarithms of amplitude are normal about it with a stated spread, and what is below the
+threshold is not seen (probability of the normal law below it). The level is unknown, uniform from 3
+nepers below the threshold to 10 above. A place is normal about the foretold one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from thermogear.measured.peaks import Peaks
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_LEVELS = np.arange(-3.0, 10.01, 0.5)  # over the threshold [nepers]
+_SHARES = np.array([0.02, 0.1, 0.3, 0.6, 0.9])  # of groups that are there at all
+_REACH = 4.0  # standard deviations of a place
+_OUTLIER = 3.0
+_LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
+
+BLOCK = 6
+"""Neighbours in a comb that share a level."""
+COMB_SPREADS = (0.5, 1.0, 1.6)
+"""Scatter [nepers] of neighbours in a comb about the resonances' envelope: one of these."""
+LONGEST_COMB = 400
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Log evidence of each group over chance, and the lines each holds (index, -1: none)."""
+
+    evidence: Floats
+    lines: NDArray[np.int64]
+
+
+def seen(
+    peaks: Peaks,
+    used: Flags,
+    position: Floats,
+    *,
+    error: Floats | float,
+    spread: float,
+    trend: Floats | float = 0.0,
+    top: Floats | float = np.inf,
+) -> Seen:
+    """Evidence of groups of lines foretold at ``position`` (group, member) [cycles/sample].
+
+    ``error`` [cycles/sample]: standard deviation of the foretelling; ``spread`` [nepers] of the
+    members about the group's level; ``trend`` [nepers] of members beside the group's level;
+    ``top`` [nepers]: the group's level is not above it (group,). ``used`` lines are explained
+    already: members there say nothing. Members hidden beside another line say nothing.
+    """
+    each, lines = _members(peaks, used, position, error, spread, trend)
+    return Seen(_over_levels(np.sum(each, axis=-1), peaks, top), lines)
+
+
+def falling(
+    peaks: Peaks,
+    used: Flags,
+    position: Floats,
+    order: NDArray[np.int64],
+    *,
+    error: Floats | float,
+    spread: float,
+    fall: float,
+    top: Floats | float,
+) -> Seen:
+    """``seen`` for groups whose members fall by ``fall`` [nepers] with their ``order`` (member,)
+    from 1 on, up to an order that is open: all of them alike."""
+    each, lines = _members(
+        peaks, used, position, error, spread, np.asarray(-fall * (order - 1.0), float)
+    )
+    last = np.arange(1, int(order.max()) + 1)
+    parts = np.stack([np.sum(each[..., order <= one], axis=-1) for one in last])
+    evidence = np.stack([_over_levels(part, peaks, top) for part in parts])
+    best = last[np.argmax(evidence, axis=0)]
+    kept = np.where(order <= best[:, None], lines, -1)
+    return Seen(_log_sum(evidence) - float(np.log(last.size)), kept)
+
+
+def _members(
+    peaks: Peaks,
+    used: Flags,
+    position: Floats,
+    error: Floats | float,
+    spread: float,
+    trend: Floats | float,
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Log likelihood over chance (level, group, member), and the lines (-1: none)."""
+    shape = position.shape
+    if peaks.size == 0:
+        return np.zeros((_LEVELS.size, *shape)), np.full(shape, -1)
+    index, off = peaks.nearest(position)
+    deviation = np.hypot(peaks.error[index], error) / peaks.bin_width
+    outside = (position < 3.0 * peaks.bin_width) | (position > 0.47)
+    hit = (np.abs(off) < _REACH * deviation) & ~used[index] & ~outside
+    missing = ~hit & ~outside & (np.abs(off) >= 3.0)
+    mean = max(0.3, float(np.mean(peaks.level - peaks.least)))
+    height = peaks.level[index] - peaks.least
+    gain = -2.0 * _LOG_ROOT - np.log(deviation) - 0.5 * (off / deviation) ** 2 - np.log(spread)
+    gain = gain - np.log(peaks.density[index]) + np.log(mean) + height / mean
+    level = _LEVELS[:, None, None] + np.broadcast_to(trend, shape)
+    log_hit = gain - 0.5 * ((height - level) / spread) ** 2
+    log_missing = special.log_ndtr(-level / spread)
+    each = np.where(hit, log_hit, np.where(missing, log_missing, 0.0))
+    return each, np.where(hit, index, -1)
+
+
+def _over_levels(total: Floats, peaks: Peaks, top: Floats | float) -> Floats:
+    """Log of the mean over levels up to ``top`` of exp(total) (level, group)."""
+    highest = np.broadcast_to(top, total.shape[1:]) - peaks.least
+    below = _LEVELS[:, None] <= np.maximum(highest, _LEVELS[0])
+    return np.asarray(_log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0)))
+
+
+def _log_sum(values: Floats) -> Floats:
+    """Log of the sum of exponentials over the first axis."""
+    highest = np.max(values, axis=0)
+    return np.asarray(highest + np.log(np.sum(np.exp(values - highest), axis=0)))
+
+
+def some_of(evidence: Floats) -> float:
+    """Log evidence of groups of which a share w is there: sum of log(1 - w + w e), mean in w."""
+    if evidence.size == 0:
+        return 0.0
+    each = np.logaddexp(np.log1p(-_SHARES)[:, None], np.log(_SHARES)[:, None] + evidence)
+    return mean_exp(np.sum(each, axis=-1))
+
+
+def take(used: Flags, found: Seen) -> None:
+    """Mark the lines of groups that are rather there than not as explained."""
+    lines = found.lines[found.evidence > 0.0].ravel()
+    used[lines[lines >= 0]] = True
+
+
+def refined(
+    peaks: Peaks, step: float, ranks: NDArray[np.int64], reach: float = 1.5
+) -> tuple[float, float]:
+    """The step whose multiples ``ranks`` fit the lines beside them best, and its error.
+
+    Lines within ``reach`` bins, weighted by their errors, a straight line through 0; one that is
+    more than three errors off is left out, the worst first. No line: the
+    step itself with half a bin at the highest rank.
+    """
+    index, off = peaks.nearest(np.asarray(ranks * step, float))
+    near = np.abs(off) < reach
+    if not np.any(near):
+        return step, 0.5 * peaks.bin_width / float(ranks.max())
+    rank, line = ranks[near].astype(float), index[near]
+    while True:
+        weight = 1.0 / peaks.error[line] ** 2
+        bottom = float(np.sum(weight * rank**2))
+        fitted = float(np.sum(weight * rank * peaks.place[line])) / bottom
+        away = np.abs(peaks.place[line] - rank * fitted) / peaks.error[line]
+        if rank.size < 3 or away.max() < _OUTLIER:
+            return fitted, float(bottom**-0.5)
+        kept = np.arange(rank.size) != int(np.argmax(away))
+        rank, line = rank[kept], line[kept]
+
+
+def comb_of(peaks: Peaks, step: float) -> tuple[float, float]:
+    """``refined`` from the first multiples on to the last."""
+    highest = min(LONGEST_COMB, int(0.47 / step))
+    error, last = 0.0, 1
+    for last in (3, 6, 12, 25, 50, 100, 200, LONGEST_COMB):
+        step, error = refined(peaks, step, np.arange(1, min(last, highest) + 1), 1.0)
+        if last >= highest:
+            break
+    return step, error
+
+
+def comb(peaks: Peaks, used: Flags, step: float, error: float) -> tuple[float, Flags, Seen]:
+    """Log evidence of a comb of lines every ``step``, lines explained with it, its blocks.
+
+    Blocks of six neighbours share a level; open are the scatter about it, how many blocks are
+    there, and whether the first one starts at the first line or in the middle. The prior of the
+    step is uniform up to 0.1 cycles/sample: log(error sqrt(2 pi)/0.1) is added.
+    """
+    highest = min(LONGEST_COMB, int(0.47 / step))
+    parts: list[tuple[float, Seen]] = []
+    for start in (1, 1 - BLOCK // 2):
+        blocks = -(-(highest + 1 - start) // BLOCK)
+        ranks = (start + np.arange(blocks * BLOCK)).reshape(-1, BLOCK).astype(float)
+        errors = np.abs(ranks) * error
+        for spread in COMB_SPREADS:
+            found = seen(peaks, used, ranks * step, error=errors, spread=spread)
+            parts.append((some_of(found.evidence), found))
+    best = max(parts, key=lambda part: part[0])[1]
+    after = used.copy()
+    take(after, best)
+    return mean_exp([part[0] for part in parts]) + narrow(error, 0.1), after, best
+
+
+def narrow(error: float, width: float) -> float:
+    """Log of the share that a value known to +-error takes of a prior of that width."""
+    return min(0.0, float(np.log(error / width)) + _LOG_ROOT)
+
+
+def mean_exp(values: Sequence[float] | Floats) -> float:
+    """Log of the mean of exponentials."""
+    return float(_log_sum(np.asarray(values, dtype=float))) - float(np.log(len(values)))

@@ -1,0 +1,177 @@
+"""Combs of lines that repeat at one step: impacts of a bearing, a rub, a shaft's own harmonics.
+
+They need no teeth: their heights follow the resonances of the metal, neighbour by neighbour.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.measured.groups import Flags, Seen, comb, comb_of, narrow, seen, some_of, take
+from thermogear.measured.peaks import Peaks
+
+Floats = NDArray[np.float64]
+
+_STRONG = 14
+_STEPS = 10
+_KEPT = 6
+_SIDE_SPREAD = 1.0
+_BESIDE = 4
+_WHOLE = 12
+_RATIOS = len({Fraction(p, q) for p in range(1, _WHOLE + 1) for q in range(1, _WHOLE + 1)})
+_OUTSTANDING = 3
+_SAME = 1e-4  # two steps are one
+
+
+@dataclass(frozen=True)
+class Comb:
+    """Lines every ``step`` +- ``error`` [cycles/sample], and their log evidence alone."""
+
+    step: float
+    error: float
+    evidence: float
+
+
+def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
+    """Combs with evidence for them, best first; ``steps`` are tried beside those of the lines.
+
+    Steps tried: low lines themselves, and for each strong line the distances between strong lines
+    that divide its own place.
+    """
+    if peaks.size < 3:
+        return []
+    strong = np.sort(np.argsort(-peaks.level)[:_STRONG])
+    place = peaks.place[strong]
+    apart = np.abs(place[:, None] - place)
+    apart = apart[(apart > 4.0 * peaks.bin_width) & (apart < 0.1)]
+    low = peaks.place[peaks.place < 0.1]
+    heights = peaks.level[peaks.place < 0.1]
+    tried = [*steps, *low[np.argsort(-heights)[:40]]]
+    for top in place:
+        for distance in np.sort(apart)[:: max(1, apart.size // _STEPS)]:
+            middle = int(np.rint(top / distance))
+            tried += [top / rank for rank in (middle - 1, middle, middle + 1) if rank >= 1]
+    found: list[Comb] = []
+    seen_steps: list[float] = []
+    none = np.zeros(peaks.size, dtype=bool)
+    for start in tried:
+        if start < 4.0 * peaks.bin_width:
+            continue
+        step, error = comb_of(peaks, float(start))
+        if any(abs(step / other - 1.0) < 1e-5 for other in seen_steps):
+            continue
+        seen_steps.append(step)
+        evidence = comb(peaks, none, step, error)[0]
+        if evidence > 0.0:
+            found.append(Comb(step, error, evidence))
+    found.sort(key=lambda one: -one.evidence)
+    kept: list[Comb] = []
+    for one in found:
+        if all(abs(one.step / other.step - 1.0) > _SAME for other in kept):
+            kept.append(one)
+    return kept[:_KEPT]
+
+
+def standing_out(peaks: Peaks, step: float, fewest: int, most: int) -> list[int]:
+    """The numbers of steps whose first six multiples stand highest over their eight neighbours."""
+    count = int(0.47 / step)
+    if count < fewest + _BESIDE:
+        return []
+    index, off = peaks.nearest(np.asarray(np.arange(1, count + 1) * step, float))
+    level = np.where(np.abs(off) < 1.0, peaks.level[index] - peaks.least, 0.0)
+    around = np.ones(2 * _BESIDE + 1) / (2.0 * _BESIDE)
+    around[_BESIDE] = 0.0
+    over = level - np.convolve(level, around, mode="same")
+    number = np.arange(fewest, min(most, count) + 1)
+    total = np.zeros(number.size)
+    for rank in range(1, 7):
+        there = rank * number <= count
+        total[there] += over[rank * number[there] - 1]
+    return [int(number[place]) for place in np.argsort(-total)[:_OUTSTANDING]]
+
+
+def background(
+    peaks: Peaks, used: Flags, combs: list[Comb], fixed: tuple[float, ...] = ()
+) -> tuple[float, tuple[Comb, ...]]:
+    """Log evidence of the combs on the lines not used, each with its sidebands, and those seen.
+
+    The step of a shaft in ``fixed`` [cycles/sample] is no free number. One that is p/q of a step
+    seen before, p and q up to 12, is one of so many ratios: shafts of one train turn so.
+    """
+    total, told = 0.0, []
+    used = used.copy()
+    known = list(fixed)
+    for one in combs:
+        evidence, after, found = comb(peaks, used, one.step, one.error)
+        if any(abs(one.step / step - 1.0) < _SAME for step in fixed):
+            evidence -= narrow(one.error, 0.1)
+        elif any(_in_ratio(one, step) for step in known):
+            evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, 0.1))
+        if evidence <= 0.0:
+            continue
+        sides, after = _sidebands(peaks, after, one, found)
+        total += evidence + sides
+        used = after
+        known.append(one.step)
+        told.append(one)
+    return total, tuple(told)
+
+
+def best_background(
+    peaks: Peaks, used: Flags, orders: list[list[Comb]], fixed: tuple[float, ...] = ()
+) -> tuple[float, tuple[Comb, ...]]:
+    """``background`` in the order of combs that explains most."""
+    found = [background(peaks, used, order, fixed) for order in orders]
+    return max(found, key=lambda one: one[0])
+
+
+def orders_of(peaks: Peaks, combs: list[Comb]) -> list[list[Comb]]:
+    """The combs in the order of their evidence alone, and with that one first which leaves most
+    to the others: a comb at a part of a step holds lines that belong to another's sidebands."""
+    none = np.zeros(peaks.size, dtype=bool)
+    orders = [[one, *(other for other in combs if other is not one)] for one in combs]
+    if len(orders) < 2:
+        return [combs]
+    best = max(orders, key=lambda order: background(peaks, none, order)[0])
+    return [orders[0]] if best is orders[0] else [orders[0], best]
+
+
+def _in_ratio(one: Comb, step: float) -> bool:
+    """Whether two steps are as whole numbers up to 12 are."""
+    ratio = one.step / step
+    near = Fraction(ratio).limit_denominator(_WHOLE)
+    return 0 < near.numerator <= _WHOLE and abs(ratio - float(near)) < max(
+        3.0 * one.error / step, 0.1 * _SAME
+    )
+
+
+def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float, Flags]:
+    """Log evidence of sidebands at one free distance around the comb's lines."""
+    lines = found.lines[found.evidence > 0.0].ravel()
+    lines = lines[lines >= 0]
+    rest = peaks.place[~used]
+    if lines.size < 2 or rest.size < 2:
+        return 0.0, used
+    centre = peaks.place[lines]
+    away = np.abs(rest[:, None] - centre[None, :]).min(axis=1)
+    away = np.sort(away[(away > 4.0 * peaks.bin_width) & (away < one.step)])
+    if away.size < 4:
+        return 0.0, used
+    bins = away / peaks.bin_width
+    count = np.searchsorted(bins, bins + 0.5) - np.searchsorted(bins, bins - 0.5)
+    best, after = 0.0, used
+    for distance in away[np.argsort(-count)[:3]]:
+        near = away[np.abs(away - distance) < 0.6 * peaks.bin_width]
+        middle = float(np.mean(near))
+        error = 0.15 * peaks.bin_width / np.sqrt(near.size)
+        position = np.stack([centre - middle, centre + middle], axis=1)
+        sides = seen(peaks, used, position, error=error, spread=_SIDE_SPREAD)
+        evidence = some_of(sides.evidence) + narrow(error, one.step)
+        if evidence > best:
+            best, after = evidence, used.copy()
+            take(after, sides)
+    return best, after

@@ -1,0 +1,106 @@
+"""The lines of a record as points on the frequency axis: where, how high, how dense, how sure.
+
+Everything is in cycles per sample. Noise model: in every channel the power of a bin over the floor
+around it is exponential (Gaussian noise), channels independent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, stats
+
+from thermogear.measured.prominence import running_median
+from thermogear.signals.lines import hann_offset
+from thermogear.signals.spectra import amplitude_spectrum
+
+Floats = NDArray[np.float64]
+
+MOST = 600
+"""Lines kept, the highest."""
+
+_FALSE = 0.1  # peaks of noise alone expected in a whole spectrum
+_NEAR = 200  # bins to each side in which the density of lines is counted
+_LOBE = 3  # bins beside a line in which a lower one cannot be told
+_PLACE = 0.12  # bins: what lines beside do to a line's place
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peaks:
+    """Lines that stand out of the floor, by position, and what is not seen between them.
+
+    ``place`` [cycles/sample] with standard deviation ``error``; ``level``: natural logarithm of
+    amplitude over the floor's rms; ``density``: other lines per bin around each; ``least``: the
+    level that a line must have to be seen; ``bin_width`` [cycles/sample].
+    """
+
+    place: Floats
+    error: Floats
+    level: Floats
+    density: Floats
+    least: float
+    bin_width: float
+    bins: int
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return int(self.place.size)
+
+    def nearest(self, position: Floats) -> tuple[NDArray[np.int64], Floats]:
+        """Index of the line nearest to each position, and how far it is off [bins]."""
+        if self.size == 0:
+            return np.zeros(position.shape, dtype=np.int64), np.full(position.shape, np.inf)
+        after = np.searchsorted(self.place, position).clip(1, max(1, self.size - 1))
+        before = after - 1
+        after = np.minimum(after, self.size - 1)
+        first = np.abs(self.place[before] - position) <= np.abs(self.place[after] - position)
+        index = np.where(first, before, after)
+        return index, np.asarray((self.place[index] - position) / self.bin_width)
+
+    def hidden(self, position: Floats) -> NDArray[np.bool_]:
+        """Whether a line at each position could not be told, beside a line or outside."""
+        _, off = self.nearest(position)
+        edge = (position < _LOBE * self.bin_width) | (position > 0.47)
+        return np.asarray((np.abs(off) < _LOBE) | edge)
+
+
+def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
+    """The lines of ``channels`` (channel, sample), ``rate`` samples for each unit of frequency.
+
+    ``rate`` is 1 for a record in time; for one resampled in angle, samples per sample of the
+    mean clock. A peak counts where the sum of normalised powers is one that noise alone would
+    pass in a tenth of a bin of the whole spectrum.
+    """
+    spectrum = amplitude_spectrum(channels - channels.mean(axis=-1, keepdims=True), rate, "hann")
+    power = np.maximum(spectrum.amplitudes, 1e-300) ** 2
+    logs = np.log(power)
+    # a sharp resonance needs a short window, lines that stand close a long one
+    floor = np.maximum(running_median(logs, 301), running_median(logs, 61))
+    total = np.sum(power / np.exp(floor) * np.log(2.0), axis=0)
+    count, number = channels.shape[0], total.size
+    least = float(stats.gamma.isf(_FALSE / number, count))
+    highest = ndimage.maximum_filter1d(total, 3)
+    inside = np.arange(number)
+    clear = (total == highest) & (total > least)
+    top = np.flatnonzero(clear & (inside > 2) & (inside < number - 3))
+    if top.size > MOST:
+        top = np.sort(top[np.argsort(-total[top])[:MOST]])
+        least = float(np.min(total[top]))
+    root = np.sqrt(total)
+    shift = np.array([hann_offset(root[i - 1 : i + 2]) for i in top])
+    place = (top + shift) * spectrum.bin_width
+    around = np.searchsorted(top, top + _NEAR) - np.searchsorted(top, top - _NEAR) - 1
+    density = (around + 0.5) / (2.0 * _NEAR)
+    scatter = 0.86 / np.sqrt(2.0 * total[top])  # of a Hann peak's place, (2/3) sqrt(5/3) noise/A
+    return Peaks(
+        place=place,
+        error=np.hypot(scatter, _PLACE) * spectrum.bin_width,
+        level=0.5 * np.log(total[top] / count),
+        density=np.asarray(density, dtype=float),
+        least=0.5 * float(np.log(least / count)),
+        bin_width=spectrum.bin_width,
+        bins=number,
+    )

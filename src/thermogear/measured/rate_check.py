@@ -1,0 +1,100 @@
+"""Whether the sampling rate fits the teeth and the speed that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermogear.measured.gearing import Gearing
+from thermogear.measured.record import Notice, Record
+
+_NEAR = 0.1  # a stated speed is nominal: motors slip
+_FACTORS = {
+    10.0: "ten times too high",
+    0.1: "ten times too low",
+    100.0: "a hundred times too high",
+    0.01: "a hundred times too low",
+    1000.0: "a thousand times too high (milliseconds read as seconds?)",
+    0.001: "a thousand times too low (seconds read as milliseconds?)",
+    2.0: "twice too high",
+    0.5: "twice too low",
+    2.56: "2.56 times too high (bandwidth and rate exchanged?)",
+    1 / 2.56: "2.56 times too low (bandwidth and rate exchanged?)",
+    60.0: "sixty times too high (turns per minute and per second exchanged?)",
+    1 / 60.0: "sixty times too low (turns per minute and per second exchanged?)",
+}
+
+
+def check_rate(
+    record: Record,
+    gearing: Gearing,
+    teeth: int | None,
+    given: int | None,
+    speed: float | None,
+    notices: list[Notice],
+) -> str:
+    """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
+
+    A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
+    blamed only where the teeth are decided and no reading of the lines with any weight fits the
+    speed (and the teeth ``given``).
+    """
+    if teeth is None:
+        return record.rate_doubt
+    turns = gearing.mesh_frequency / teeth  # turns per sample
+    if record.rate is None:
+        if speed is not None:
+            notices.append(
+                Notice(
+                    "info",
+                    f"if the shaft turns at the {speed * 30 / np.pi:.6g} rpm given, the rate is "
+                    f"{speed / (2 * np.pi) / turns:.6g} samples/s (not adopted)",
+                )
+            )
+        return ""
+    implied = turns * record.rate
+    notices.append(
+        Notice(
+            "info",
+            f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
+            f"{60 * implied:.6g} rpm",
+        )
+    )
+    if 2.56 * gearing.mesh_frequency > 1.0:
+        notices.append(
+            Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
+        )
+    if speed is None:
+        return record.rate_doubt
+    shaft = speed / (2 * np.pi)
+    ratio = implied / shaft
+    if abs(ratio - 1.0) <= _NEAR:
+        return ""
+    weighed = gearing.weighed
+    if weighed.fits(shaft / record.rate, given, _NEAR):
+        return record.rate_doubt
+    if weighed.verdict != "decided":
+        # what the mesh line is, is open: it contradicts nobody
+        notices.append(
+            Notice(
+                "warning",
+                f"the mesh line read at {gearing.mesh_frequency:.6f} cycles/sample does not fit "
+                f"the {speed * 30 / np.pi:.6g} rpm given, and the record does not decide that it "
+                "is one",
+            )
+        )
+        return record.rate_doubt
+    named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
+    what = (
+        f"the rate looks {_FACTORS[named]}"
+        if abs(ratio / named - 1.0) <= _NEAR
+        else f"rate, teeth or speed is wrong by a factor {ratio:.4g}"
+    )
+    notices.append(
+        Notice(
+            "important",
+            f"{what}: the mesh line at {gearing.mesh_frequency:.6f} cycles/sample over {teeth} "
+            f"teeth makes {60 * implied:.6g} rpm at {record.rate:g} samples/s, the speed given is "
+            f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
+        )
+    )
+    return what

@@ -1,0 +1,110 @@
+"""Hypotheses on teeth: the likelihood recomputed, and what must and must not be decided."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import integrate, stats
+
+from thermogear.measured.evidence import Stated, weigh
+from thermogear.measured.groups import falling, seen, some_of
+from thermogear.measured.peaks import Peaks, peaks_of
+from thermogear.measured.straight import sharp_peaks
+
+COUNT = 1 << 16
+
+
+def lines_at(places: list[float], levels: list[float]) -> Peaks:
+    """Lines of given levels over a threshold of 1, a hundredth of them per bin."""
+    return Peaks(
+        place=np.array(places),
+        error=np.full(len(places), 2e-6),
+        level=np.array(levels) + 1.0,
+        density=np.full(len(places), 0.01),
+        least=1.0,
+        bin_width=1e-5,
+        bins=50_000,
+    )
+
+
+def test_the_evidence_of_a_group_is_its_integral_over_the_level() -> None:
+    """One line there, one missing: against scipy's densities, integrated over the level."""
+    peaks = lines_at([0.1, 0.2, 0.3], [2.0, 1.0, 3.0])
+    found = seen(peaks, np.zeros(3, bool), np.array([[0.1 + 1e-6, 0.15]]), error=0.0, spread=1.2)
+    mean = 2.0
+
+    def both(level: float) -> float:
+        there = stats.norm.pdf(0.1, scale=0.2) / 0.01 * stats.norm.pdf(2.0, level, 1.2)
+        return float(there / stats.expon.pdf(2.0, scale=mean) * stats.norm.cdf(-level / 1.2))
+
+    expected = np.log(integrate.quad(both, -3.0, 10.0)[0] / 13.0)
+    assert found.evidence[0] == pytest.approx(expected, abs=0.05)
+    assert found.lines.tolist() == [[0, -1]]
+
+
+def test_orders_that_fall_are_an_even_mixture() -> None:
+    peaks = lines_at([0.1, 0.2], [2.0, 1.0])
+    place, order = np.array([[0.1, 0.2]]), np.array([1, 2])
+    none = np.zeros(2, bool)
+    mixed = falling(peaks, none, place, order, error=0.0, spread=1.0, fall=0.7, top=np.inf)
+    one = seen(peaks, none, place[:, :1], error=0.0, spread=1.0).evidence[0]
+    trend = np.array([0.0, -0.7])
+    two = seen(peaks, none, place, error=0.0, spread=1.0, trend=trend).evidence[0]
+    assert mixed.evidence[0] == pytest.approx(np.logaddexp(one, two) - np.log(2.0), abs=1e-12)
+    assert some_of(np.zeros(5)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_noise_alone_has_a_line_in_a_tenth_of_the_spectra() -> None:
+    random = np.random.default_rng(5)
+    counts = [peaks_of(random.normal(size=(1, 4096))).size for _ in range(200)]
+    # Poisson of mean 0.1 each: 20 of 200, and the floor's own scatter
+    assert stats.poisson.ppf(1e-4, 20) <= sum(counts) <= 2.5 * stats.poisson.ppf(0.9999, 20)
+
+
+def train(teeth: int, modulation: float) -> np.ndarray:
+    """A mesh line with four harmonics and one modulating shaft; noise 30 dB below."""
+    n = np.arange(COUNT)
+    mesh = 0.0613
+    x = 0.03 * np.random.default_rng(1).normal(size=COUNT)
+    swing = 1.0 + modulation * np.cos(2 * np.pi * mesh / teeth * n)
+    for rank, height in ((1, 1.0), (2, 0.5), (3, 0.3), (4, 0.2)):
+        x += height * swing * np.cos(2 * np.pi * rank * mesh * n + rank)
+    return x[None, :]
+
+
+@pytest.mark.parametrize("teeth", [19, 38])
+def test_a_tooth_number_and_its_double_are_told_apart(teeth: int) -> None:
+    found = weigh(sharp_peaks(train(teeth, 0.06)))
+    assert (found.verdict, found.teeth) == ("decided", (teeth,))
+    assert found.mesh == pytest.approx(0.0613, rel=1e-5)
+    assert sum(one.weight for one in found.hypotheses) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_impacts_are_no_gear() -> None:
+    """A comb whose heights follow a resonance: any tooth number would fit its places."""
+    n = np.arange(COUNT)
+    x = 0.05 * np.random.default_rng(2).normal(size=COUNT)
+    for rank in range(1, 40):
+        step = 0.0117
+        height = 1.0 / abs(1.0 - (rank * step / 0.2) ** 2 + 0.1j * rank * step / 0.2)
+        x += height * np.cos(2 * np.pi * rank * step * n + rank**2)
+    found = weigh(sharp_peaks(x[None, :]))
+    assert found.teeth == ()
+    assert not found.hypotheses[0].teeth
+
+
+def test_what_is_stated_is_evidence_and_no_more() -> None:
+    peaks = sharp_peaks(train(31, 0.05))
+    wrong = weigh(peaks, Stated(teeth=25))
+    assert wrong.teeth == (31,)
+    right = weigh(peaks, Stated(teeth=31, shaft=0.0613 / 31))
+    assert right.teeth == (31,)
+    assert right.hypotheses[0].evidence > wrong.hypotheses[0].evidence
+    assert right.fits(0.0613 / 31 * 1.02, 31, 0.1)
+    assert not right.fits(0.0613 / 62, None, 0.1)
+
+
+def test_no_line_no_gear() -> None:
+    found = weigh(peaks_of(np.random.default_rng(3).normal(size=(1, 2048))))
+    assert found.teeth == ()
+    assert not found.hypotheses[0].teeth
