@@ -149,7 +149,8 @@ def test_the_end_at_a_speed_is_a_state_of_its_motion(ran) -> None:  # type: igno
     for place in (3, 17, 30):
         speed = speeds[place]
         ends = live.ends_at(fine, speed + 0.3 * (speeds[1] - speeds[0]))
-        assert list(ends) == ["running up", "running down"]
+        ways = ["running up", "running down"]
+        assert list(ends) == ways
         here = again(case, f"operating.speed={float(speed / RPM)!r} rpm")
         for way, end in enumerate(ends.values()):
             data = live.motion(live.point_of(here, end)).data

@@ -16,6 +16,7 @@ def _loaded() -> Any:
         spec = importlib.util.spec_from_file_location(_NAME, ROOT / "checks" / f"{_NAME}.py")
         assert spec is not None
         assert spec.loader is not None
+        sys.path.append(str(ROOT / "checks"))
         sys.modules[_NAME] = module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
     return sys.modules[_NAME]

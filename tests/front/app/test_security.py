@@ -133,4 +133,4 @@ def test_what_was_tried_left_no_trace_at_the_terminal(app: Any) -> None:
     assert app.process.returncode == 0
     assert "ASGI" not in said
     assert "error:" not in said
-    assert "never retrieved" not in said
+    assert "retrieved" not in said

@@ -70,7 +70,8 @@ def test_mesh_hot_and_jam_are_those_of_run() -> None:
     assert f"{data['jam_temperature'].values[1] - 273.15:.0f}" == "235"
     words = [one["lines"] for one in told(case, parts=["mesh"]) if one["kind"] == "part"]
     assert words == [told_mesh(data)]
-    assert "4.631·10⁸ N/m; half backlash 93.08 µm" in words[0][1]
+    for figure in ("4.631·10⁸", "93.08"):
+        assert figure in words[0][1]
     assert "234.6 °C" in words[0][2]
 
 
@@ -211,4 +212,5 @@ def test_every_part_of_the_page_is_made(app: Here) -> None:
         assert all(shown[name]["picture"] for name in ("mesh", "gap", "orbit", "run-up"))
         assert shown["gears"]["gears"]
         assert shown["answers"]["rows"]
-        assert not any("not computed" in line for one in shown.values() for line in one["lines"])
+        fault = "not computed"
+        assert not any(fault in line for one in shown.values() for line in one["lines"])
