@@ -46,7 +46,9 @@ def test_orders_that_fall_are_an_even_mixture() -> None:
     peaks = lines_at([0.1, 0.2], [2.0, 1.0])
     place, order = np.array([[0.1, 0.2]]), np.array([1, 2])
     none = np.zeros(2, bool)
-    mixed = falling(peaks, none, place, order, error=0.0, spread=1.0, fall=0.7, top=np.inf)
+    mixed = falling(
+        peaks, none, position=place, order=order, error=0.0, spread=1.0, fall=0.7, top=np.inf
+    )
     one = seen(peaks, none, place[:, :1], error=0.0, spread=1.0).evidence[0]
     trend = np.array([0.0, -0.7])
     two = seen(peaks, none, place, error=0.0, spread=1.0, trend=trend).evidence[0]
@@ -100,8 +102,8 @@ def test_what_is_stated_is_evidence_and_no_more() -> None:
     right = weigh(peaks, Stated(teeth=31, shaft=0.0613 / 31))
     assert right.teeth == (31,)
     assert right.hypotheses[0].evidence > wrong.hypotheses[0].evidence
-    assert right.fits(0.0613 / 31 * 1.02, 31, 0.1)
-    assert not right.fits(0.0613 / 62, None, 0.1)
+    assert right.fits(0.0613 / 31 * 1.02, teeth=31, tolerance=0.1)
+    assert not right.fits(0.0613 / 62, teeth=None, tolerance=0.1)
 
 
 def test_no_line_no_gear() -> None:

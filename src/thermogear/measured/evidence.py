@@ -109,7 +109,7 @@ class Evidence:
         kept = [one for one in self.hypotheses if one.weight >= _TOLD]
         return tuple(kept[:_MOST_TOLD])
 
-    def fits(self, shaft: float, teeth: int | None, tolerance: float) -> bool:
+    def fits(self, shaft: float, *, teeth: int | None, tolerance: float) -> bool:
         """Whether a reading with some weight has a shaft that turns so [turns/sample]."""
         return any(
             abs(one.mesh / z / shaft - 1.0) <= tolerance
@@ -154,7 +154,7 @@ def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
         known = [z for draft in drafts for z in draft.teeth if _turns(draft, z, comb.step)]
         drafts += [
             _gear(peaks, z * comb.step, (z,), stated)
-            for z in standing_out(peaks, comb.step, *TEETH)
+            for z in standing_out(peaks, comb.step, fewest=TEETH[0], most=TEETH[1])
             if z not in known
         ]
     orders = orders_of(peaks, combs)
@@ -284,7 +284,7 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
         spread=_MESH_SPREAD,
         trend=-np.log(rank)[None, :],
     )
-    total = float(carriers.evidence[0]) + narrow(error, 0.47)
+    total = float(carriers.evidence[0]) + narrow(error, width=0.47)
     lines = carriers.lines[0]
     used[lines[lines >= 0]] = True
     bare, mesh_lines = total, used.copy()
@@ -295,8 +295,8 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
         sides = falling(
             peaks,
             used,
-            (there[:, None] + _SIDES / z) * mesh,
-            np.abs(_SIDES),
+            position=(there[:, None] + _SIDES / z) * mesh,
+            order=np.abs(_SIDES),
             error=there[:, None] * error,
             spread=_SIDE_SPREAD,
             fall=_FALL,
@@ -313,8 +313,8 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
         own = falling(
             peaks,
             used,
-            (_OWN * mesh / z)[None, :],
-            _OWN,
+            position=(_OWN * mesh / z)[None, :],
+            order=_OWN,
             error=(_OWN * error / z)[None, :],
             spread=_SIDE_SPREAD,
             fall=_FALL,

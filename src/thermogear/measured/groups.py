@@ -10,7 +10,7 @@ nepers below the threshold to 10 above. A place is normal about the foretold one
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,7 @@ LONGEST_COMB = 400
 class Seen:
     """Log evidence of each group over chance, and the lines each holds (index, -1: none)."""
 
+    _: KW_ONLY
     evidence: Floats
     lines: NDArray[np.int64]
 
@@ -60,15 +61,15 @@ def seen(
     already: members there say nothing. Members hidden beside another line say nothing.
     """
     each, lines = _members(peaks, used, position, error, spread, trend)
-    return Seen(_over_levels(np.sum(each, axis=-1), peaks, top), lines)
+    return Seen(evidence=_over_levels(np.sum(each, axis=-1), peaks, top), lines=lines)
 
 
 def falling(
     peaks: Peaks,
     used: Flags,
+    *,
     position: Floats,
     order: NDArray[np.int64],
-    *,
     error: Floats | float,
     spread: float,
     fall: float,
@@ -84,7 +85,7 @@ def falling(
     evidence = np.stack([_over_levels(part, peaks, top) for part in parts])
     best = last[np.argmax(evidence, axis=0)]
     kept = np.where(order <= best[:, None], lines, -1)
-    return Seen(_log_sum(evidence) - float(np.log(last.size)), kept)
+    return Seen(evidence=_log_sum(evidence) - float(np.log(last.size)), lines=kept)
 
 
 def _members(
@@ -178,7 +179,7 @@ def comb_of(peaks: Peaks, step: float) -> tuple[float, float]:
     return step, error
 
 
-def comb(peaks: Peaks, used: Flags, step: float, error: float) -> tuple[float, Flags, Seen]:
+def comb(peaks: Peaks, used: Flags, *, step: float, error: float) -> tuple[float, Flags, Seen]:
     """Log evidence of a comb of lines every ``step``, lines explained with it, its blocks.
 
     Blocks of six neighbours share a level; open are the scatter about it, how many blocks are
@@ -197,10 +198,10 @@ def comb(peaks: Peaks, used: Flags, step: float, error: float) -> tuple[float, F
     best = max(parts, key=lambda part: part[0])[1]
     after = used.copy()
     take(after, best)
-    return mean_exp([part[0] for part in parts]) + narrow(error, 0.1), after, best
+    return mean_exp([part[0] for part in parts]) + narrow(error, width=0.1), after, best
 
 
-def narrow(error: float, width: float) -> float:
+def narrow(error: float, *, width: float) -> float:
     """Log of the share that a value known to +-error takes of a prior of that width."""
     return min(0.0, float(np.log(error / width)) + _LOG_ROOT)
 

@@ -5,7 +5,7 @@ They need no teeth: their heights follow the resonances of the metal, neighbour 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -31,6 +31,7 @@ _SAME = 1e-4  # two steps are one
 class Comb:
     """Lines every ``step`` +- ``error`` [cycles/sample], and their log evidence alone."""
 
+    _: KW_ONLY
     step: float
     error: float
     evidence: float
@@ -65,9 +66,9 @@ def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
         if any(abs(step / other - 1.0) < 1e-5 for other in seen_steps):
             continue
         seen_steps.append(step)
-        evidence = comb(peaks, none, step, error)[0]
+        evidence = comb(peaks, none, step=step, error=error)[0]
         if evidence > 0.0:
-            found.append(Comb(step, error, evidence))
+            found.append(Comb(step=step, error=error, evidence=evidence))
     found.sort(key=lambda one: -one.evidence)
     kept: list[Comb] = []
     for one in found:
@@ -76,7 +77,7 @@ def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
     return kept[:_KEPT]
 
 
-def standing_out(peaks: Peaks, step: float, fewest: int, most: int) -> list[int]:
+def standing_out(peaks: Peaks, step: float, *, fewest: int, most: int) -> list[int]:
     """The numbers of steps whose first six multiples stand highest over their eight neighbours."""
     count = int(0.47 / step)
     if count < fewest + _BESIDE:
@@ -106,11 +107,11 @@ def background(
     used = used.copy()
     known = list(fixed)
     for one in combs:
-        evidence, after, found = comb(peaks, used, one.step, one.error)
+        evidence, after, found = comb(peaks, used, step=one.step, error=one.error)
         if any(abs(one.step / step - 1.0) < _SAME for step in fixed):
-            evidence -= narrow(one.error, 0.1)
+            evidence -= narrow(one.error, width=0.1)
         elif any(_in_ratio(one, step) for step in known):
-            evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, 0.1))
+            evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, width=0.1))
         if evidence <= 0.0:
             continue
         sides, after = _sidebands(peaks, after, one, found)
@@ -170,7 +171,7 @@ def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float
         error = 0.15 * peaks.bin_width / np.sqrt(near.size)
         position = np.stack([centre - middle, centre + middle], axis=1)
         sides = seen(peaks, used, position, error=error, spread=_SIDE_SPREAD)
-        evidence = some_of(sides.evidence) + narrow(error, one.step)
+        evidence = some_of(sides.evidence) + narrow(error, width=one.step)
         if evidence > best:
             best, after = evidence, used.copy()
             take(after, sides)

@@ -27,10 +27,11 @@ _FACTORS = {
 def check_rate(
     record: Record,
     gearing: Gearing,
+    notices: list[Notice],
+    *,
     teeth: int | None,
     given: int | None,
     speed: float | None,
-    notices: list[Notice],
 ) -> str:
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
@@ -70,7 +71,7 @@ def check_rate(
     if abs(ratio - 1.0) <= _NEAR:
         return ""
     weighed = gearing.weighed
-    if weighed.fits(shaft / record.rate, given, _NEAR):
+    if weighed.fits(shaft / record.rate, teeth=given, tolerance=_NEAR):
         return record.rate_doubt
     if weighed.verdict != "decided":
         # what the mesh line is, is open: it contradicts nobody

@@ -174,7 +174,7 @@ def measure(
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
     if gearing is not None:
-        doubt = check_rate(record, gearing, teeth, given[0], speed, notices)
+        doubt = check_rate(record, gearing, notices, teeth=teeth, given=given[0], speed=speed)
     if doubt:
         through.findings.append(
             Finding(
