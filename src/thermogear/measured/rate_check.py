@@ -8,6 +8,8 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Notice, Record
 
 _NEAR = 0.1  # a stated speed is nominal: motors slip
+_SURE = 0.9
+"""Weight of all gears on one mesh line from which that line is beyond doubt."""
 _FACTORS = {
     10.0: "ten times too high",
     0.1: "ten times too low",
@@ -36,8 +38,8 @@ def check_rate(
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
     A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
-    blamed only where the teeth are decided and no reading of the lines with any weight fits the
-    speed (and the teeth ``given``).
+    blamed only where the teeth are decided, or are ``given`` and the mesh line is beyond doubt, and
+    no reading of the lines with any weight fits the speed (and the teeth ``given``).
     """
     if teeth is None:
         return record.rate_doubt
@@ -73,7 +75,8 @@ def check_rate(
     weighed = gearing.weighed
     if weighed.fits(shaft / record.rate, teeth=given, tolerance=_NEAR):
         return record.rate_doubt
-    if weighed.verdict != "decided":
+    sure = given is not None and weighed.mesh_weight >= _SURE
+    if weighed.verdict != "decided" and not sure:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
             Notice(
