@@ -29,7 +29,6 @@ def _here(tmp_path, monkeypatch):
         ("sensitivity rig --seed -1", "seed: got -1; allowed 0..4294967295"),
         ("sensitivity rig --speed -100", "--speed: got -100 rpm; allowed > 0"),
         ("compare thesis-5.2 --u-data -1", "u_data: got -1 %; allowed 0..1000 %"),
-        ("measure .", "file: got .; it is a directory"),
         ("measure record.csv --speed -10", "--speed: got -10 rpm; allowed > 0 .. 500000 rpm"),
         ("measure record.csv -o file", "output: got file; it is a file"),
         ("relief rig -o out --torque 1e9", "--torque: got 1e+09; allowed > 0, below 1e9"),

@@ -52,6 +52,11 @@ def band_power(spectrum: LineSpectrum, frequency: float, half_width: float) -> f
     """Sum of squared amplitudes within ``frequency`` +- ``half_width``, less the noise beside.
 
     The noise is the median beyond, up to twice ``half_width`` or 60 bins.
+
+    >>> from thermogear.signals.lines import line_spectrum
+    >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
+    >>> round(band_power(line_spectrum(x, 1.0), 0.1, 0.01), 6)
+    4.0
     """
     width = spectrum.bin_width
     power = np.abs(spectrum.lines) ** 2
@@ -76,6 +81,11 @@ def filter_widths(
 
     Twelve bins at least; a wider one than the first brings less than a tenth more power. None where
     twelve bins are more than a fifth of ``frequency``.
+
+    >>> from thermogear.signals.lines import line_spectrum
+    >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
+    >>> filter_widths(line_spectrum(x, 1.0), 0.1)
+    (0.006,)
     """
     least = 12.0 * spectrum.bin_width
     if least > 0.2 * frequency:
@@ -102,8 +112,8 @@ def follow_line(x: ArrayLike, rate: float, *, frequency: float, half_width: floa
     record is too short for.
 
     >>> x = np.cos(2 * np.pi * 0.1 * np.arange(2000))
-    >>> f"{follow_line(x, 1.0, frequency=0.101, half_width=0.01).frequency:.6f}"
-    '0.100000'
+    >>> f"{follow_line(x, 1.0, frequency=0.101, half_width=0.01).frequency:.5f}"
+    '0.10000'
     """
     values, per_second = finite_record(x), positive_rate(rate)
     count = values.size
@@ -134,6 +144,11 @@ def best_followed(x: ArrayLike, spectrum: LineSpectrum, frequency: float) -> Fol
     """``follow_line`` by the filter that leaves the smallest error; None: the record is too short.
 
     ``spectrum``: that of ``x``. A filter too narrow loses the wander, one too wide lets noise in.
+
+    >>> from thermogear.signals.lines import line_spectrum
+    >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
+    >>> f"{best_followed(x, line_spectrum(x, 1.0), 0.1).frequency:.5f}"
+    '0.10000'
     """
     best: Followed | None = None
     for half_width in filter_widths(spectrum, frequency):

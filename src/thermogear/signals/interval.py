@@ -169,6 +169,12 @@ def read_line(
 
     Range: the interval of the frequency holds for the mean phase slope of a phase that wanders
     less than a radian. Amplitude: noise with no line of its own in the bins beside.
+
+    >>> from thermogear.signals.lines import line_spectrum
+    >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
+    >>> found = read_line(line_spectrum(x, 1.0), 0.1)
+    >>> round(found.amplitude, 6), round(found.frequency, 6)
+    (2.0, 0.1)
     """
     fit = _Fit.of(spectrum, frequency, beside, strong)
     fit = fit.refined()

@@ -179,6 +179,12 @@ def track(x: ArrayLike, *, cycles: ArrayLike) -> Tracked | None:
     the line wanders little; there its phase is followed (``follow_line``), first in a filter of
     2.5 % on each side, then in one of 0.6 %, which lets no sideband in. None where it cannot
     be followed.
+
+    >>> n = np.arange(4000)
+    >>> cycles = 0.02 * n + 3e-7 * n**2
+    >>> found = track(np.cos(2 * np.pi * cycles), cycles=0.0205 * n + 3e-7 * n**2)
+    >>> bool(abs(found.cycles[-1] - cycles[-1]) < 0.05)
+    True
     """
     values, guess = finite_record(x), np.asarray(cycles, dtype=float)
     first = _followed(values, guess, _WIDE)
@@ -275,7 +281,11 @@ def _phase_noise(straight: Floats, per_cycle: int, last: float) -> float:
 
 
 def samples_per_turn(turns: Floats) -> int:
-    """Samples per turn, a power of 2, that lose nothing where the shaft is slowest."""
+    """Samples per turn, a power of 2, that lose nothing where the shaft is slowest.
+
+    >>> samples_per_turn(np.linspace(0.0, 10.0, 641))
+    64
+    """
     steps = np.diff(turns)
     slowest = float(np.percentile(steps, 1.0))
     if slowest <= 0.0:

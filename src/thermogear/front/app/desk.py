@@ -21,6 +21,11 @@ if TYPE_CHECKING:
     from thermogear.case.case import GearCase
 
 
+LONG = ("run-up", "answers", "shafts", "map")
+CALM = 0.08
+"""Seconds without a newer wish before a long part is begun: a dial that moves begins none."""
+
+
 class Desk:
     """Works for one page on what the command line gave; ``post`` tells the page."""
 
@@ -33,7 +38,7 @@ class Desk:
         """Tell the page everything of a state, the quick parts first; a step each time."""
         from thermogear.front.app.parts import Look, made
 
-        start = time.process_time()
+        start, came = time.process_time(), time.monotonic()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", ValidityWarning)
             case = self.given.at(show.state)
@@ -42,6 +47,9 @@ class Desk:
         look = Look(self.given, case, show, alive, self.kept)
         for name in (one for one in PARTS if one in show.parts):
             alive()
+            while name in LONG and time.monotonic() - came < CALM:
+                time.sleep(0.01)
+                alive()
             for part in made(look, name):
                 if part.name:
                     spent = 1e3 * (time.process_time() - start)
