@@ -56,6 +56,10 @@ _GIVEN = 0.9  # how far a stated tooth number or speed is trusted
 _SPEED_SPREAD = 0.05  # a stated speed is nominal
 
 
+_ALIKE = 3e-4
+"""Relative distance of two lines that are one."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Stated:
     """What a user says: teeth of a gear, and its shaft's turns per sample."""
@@ -102,6 +106,16 @@ class Evidence:
     def mesh_weight(self) -> float:
         """Weight of all hypotheses with this mesh line."""
         return sum(one.weight for one in self.hypotheses if _same_mesh(one, self.mesh))
+
+    @property
+    def line_weight(self) -> float:
+        """Weight of all hypotheses with this line: mesh of gears, or comb without any."""
+        beside = (
+            one.weight
+            for one in self.hypotheses
+            if one.kind != "gear" and any(abs(c / self.mesh - 1.0) < _ALIKE for c in one.combs)
+        )
+        return self.mesh_weight + sum(beside)
 
     @property
     def told(self) -> tuple[Hypothesis, ...]:
@@ -344,7 +358,7 @@ def _prior(mesh: float, teeth: int, stated: Stated) -> float:
 
 
 def _same_mesh(one: Hypothesis, mesh: float) -> bool:
-    return one.kind == "gear" and abs(one.mesh / mesh - 1.0) < 3e-4
+    return one.kind == "gear" and abs(one.mesh / mesh - 1.0) < _ALIKE
 
 
 def _decided(found: list[Hypothesis]) -> Evidence:

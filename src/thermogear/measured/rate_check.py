@@ -9,7 +9,7 @@ from thermogear.measured.record import Notice, Record
 
 _NEAR = 0.1  # a stated speed is nominal: motors slip
 _SURE = 0.9
-"""Weight of all gears on one mesh line from which that line is beyond doubt."""
+"""Weight of all that has one line, from which that line is beyond doubt."""
 _FACTORS = {
     10.0: "ten times too high",
     0.1: "ten times too low",
@@ -75,7 +75,7 @@ def check_rate(
     weighed = gearing.weighed
     if weighed.fits(shaft / record.rate, teeth=given, tolerance=_NEAR):
         return record.rate_doubt
-    sure = given is not None and weighed.mesh_weight >= _SURE
+    sure = given is not None and weighed.line_weight >= _SURE
     if weighed.verdict != "decided" and not sure:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
