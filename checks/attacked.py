@@ -10,7 +10,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -147,3 +147,13 @@ def show(number: int, **more: Any) -> str:
 
 def changed(*changes: tuple[str, str]) -> dict[str, Any]:
     return {"changes": changes}
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One thing to try: ``expected`` is what must come back from ``trying`` it."""
+
+    group: str
+    words: str
+    expected: str
+    trying: Callable[[Local], str]

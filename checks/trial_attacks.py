@@ -14,7 +14,6 @@ import socket
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
 from importlib.metadata import files as packaged
 from pathlib import Path
 from typing import Any
@@ -23,6 +22,7 @@ from attacked import (
     PAGE,
     PATIENCE,
     SERVED,
+    Attempt,
     Headers,
     Local,
     ask,
@@ -36,16 +36,6 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
 # --- the attempts ---------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """One thing to try: ``expected`` is what must come back from ``trying`` it."""
-
-    group: str
-    words: str
-    expected: str
-    trying: Callable[[Local], str]
 
 
 def _status(words: str, group: str, expected: int, **request: Any) -> Attempt:

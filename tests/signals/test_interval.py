@@ -46,10 +46,27 @@ def test_a_line_in_noise_is_that_of_least_squares_in_time(compared: Compared) ->
     # noise brings 2 sigma^2/N to the square of each of both, and to the sum of squares 4 sigma^2/N
     own = np.sqrt(np.hypot(*fit) ** 2 - 4.0 / t.size)
     compared("a line in noise", "least squares in time", found.amplitude / own - 1.0, 0.02)
-    assert found.amplitude_error == pytest.approx(np.sqrt(2.0 / t.size), rel=0.3)
-    # Cramer and Rao: var f = 6 sigma^2/(pi^2 A^2 T^2 N)
-    bound = np.sqrt(6.0 / (np.pi**2 * 16.0 * t.size))
-    assert found.frequency_error == pytest.approx(bound, rel=0.3)
+
+
+def test_stated_errors_are_those_of_theory_and_of_the_draws() -> None:
+    """Cramer and Rao: var A = 2 sigma^2/N, var f = 6 sigma^2/(pi^2 A^2 T^2 N); 150 draws."""
+    rng = np.random.default_rng(512026)
+    t = np.arange(4000) / RATE
+    length = t.size / RATE
+    line = np.cos(2 * np.pi * 50.3 * t + 1.0)
+    found = [reading(line + rng.normal(size=t.size), 50.3) for _ in range(150)]
+    theory = {"amplitude": 2.0 / t.size, "frequency": 6.0 / (np.pi**2 * length**2 * t.size)}
+    truth = {"amplitude": 1.0, "frequency": 50.3}
+    # a variance out of d degrees of freedom scatters by sqrt(2/d), a square of one error by sqrt(2)
+    degrees = float(np.median([one.degrees for one in found]))
+    for name, variance in theory.items():
+        stated = np.array([getattr(one, f"{name}_error") for one in found]) ** 2 / variance
+        off = (np.array([getattr(one, name) for one in found]) - truth[name]) ** 2 / variance
+        rooms = 4.0 * np.sqrt(0.5 * np.pi * 2.0 / degrees / 150), 4.0 * np.sqrt(2.0 / 150)
+        seen = float(np.median(stated)), float(off.mean())
+        print(f"{name}: stated {seen[0]:.3f} +- {rooms[0]:.3f}, drawn {seen[1]:.3f} of theory")
+        assert abs(seen[0] - 1.0) < rooms[0]
+        assert abs(seen[1] - 1.0) < rooms[1]
 
 
 def test_a_changing_amplitude_is_no_noise() -> None:

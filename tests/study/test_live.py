@@ -15,6 +15,7 @@ from thermogear.base.vocabulary import STATUS
 from thermogear.case.case import GearCase, gear_case, load_case
 from thermogear.case.dials import dials, turned
 from thermogear.case.family import GearFamily
+from thermogear.case.one_point import of_case
 from thermogear.study import live
 from thermogear.study.orbit import orbit_results
 from thermogear.study.run_up import run_up
@@ -130,7 +131,7 @@ def test_a_whole_run_up_is_that_of_the_command(ran) -> None:  # type: ignore[no-
     assert coarse.done == coarse.total < fine.done == fine.total
     assert done[-1] == fine.total
     whole = run_up(case, np.array(fine.plan.speeds), temperatures=[state], branch_period=0).data
-    mine = fine.finished()
+    mine = fine.plan.finish(fine.data)
     assert set(fine.plan.variables()) <= set(whole.variables)
     for name in mine.variables:
         one, other = mine[name].values, whole[name].values
@@ -143,8 +144,6 @@ def test_a_whole_run_up_is_that_of_the_command(ran) -> None:  # type: ignore[no-
 def test_the_end_at_a_speed_is_a_state_of_its_motion(ran) -> None:  # type: ignore[no-untyped-def]
     """A motion begun there closes on the very section that the run-up stored."""
     case, state, (_, fine), _ = ran
-    if state == "undeformed":
-        pytest.skip("the orbit shown is that of the hot pair")
     speeds = np.array(fine.plan.speeds)
     for place in (3, 17, 30):
         speed = speeds[place]
@@ -153,7 +152,7 @@ def test_the_end_at_a_speed_is_a_state_of_its_motion(ran) -> None:  # type: igno
         assert list(ends) == ways
         here = again(case, f"operating.speed={float(speed / RPM)!r} rpm")
         for way, end in enumerate(ends.values()):
-            data = live.motion(live.point_of(here, end)).data
+            data = live.motion(of_case(here, operating=1, state=state, start=end)).data
             section = data["section_displacement"].values / fine.length
             kept = fine.arrays["section_x"][0, way, place]
             apart = np.abs(kept[:, None] - section[None, :]).min(axis=1)

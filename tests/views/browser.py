@@ -20,6 +20,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
+import pytest
+
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS = {1400: 1.0, 390: 2.0}
 """Width of a page [CSS px] and how many pixels of the picture one of them gets."""
@@ -319,6 +321,26 @@ def _errors(events: list[dict[str, Any]]) -> Iterator[str]:
             yield str(said["entry"]["text"])
         elif what == "Network.loadingFailed" and not said.get("canceled"):
             yield f"not loaded: {said['errorText']}"
+
+
+@contextmanager
+def maybe() -> Iterator[Browser | None]:
+    """A browser where this machine has one, else None."""
+    program = find()
+    if program is None:
+        yield None
+        return
+    with opened(program) as one:
+        yield one
+
+
+def there(one: Browser | None, capsys: pytest.CaptureFixture[str]) -> Browser:
+    """The browser; without one the test says so aloud and is left out."""
+    if one is None:
+        with capsys.disabled():
+            print("\nno browser (package chromium; `make chromium`): its tests are not run")
+        pytest.skip("no browser: make chromium")
+    return one
 
 
 @contextmanager

@@ -147,11 +147,7 @@ def test_words_in_attributes_end_nowhere() -> None:
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[browser.Browser | None]:
-    program = browser.find()
-    if program is None:
-        yield None
-        return
-    with browser.opened(program) as one:
+    with browser.maybe() as one:
         yield one
 
 
@@ -160,14 +156,6 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run's page with all its pictures, and with texts that try to get out."""
     place = tmp_path_factory.mktemp("moving")
     return write_report(synthetic.build(place, title="A pair " + HOSTILE))
-
-
-def there(one: browser.Browser | None, capsys: pytest.CaptureFixture[str]) -> browser.Browser:
-    if one is None:
-        with capsys.disabled():
-            print("\nno browser (package chromium; `make chromium`): moving pictures are not run")
-        pytest.skip("no browser: make chromium")
-    return one
 
 
 CANVAS = """[...document.querySelectorAll("#fig-dial canvas")].filter(c => c.closest(".plot"))
@@ -183,7 +171,7 @@ FRAME = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() =
 def test_the_dial_turns(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one, data = there(chromium, capsys), synthetic.dial_group()
+    one, data = browser.there(chromium, capsys), synthetic.dial_group()
     sight = one.look(page, 1400)
     assert sight.sound, sight.faults
     seen, times = set(), []
@@ -207,7 +195,7 @@ def test_every_picture_is_drawn(
     chromium: browser.Browser | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Those of every study, and one without a single number."""
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     empty = Panel(Axis("speed [rpm]"), Axis("λ [–]", log="decades"))
     empty.curve([1.0] * 9, [np.nan] * 9, colour="#0072B2", label="nothing")
     empty.points([], [], colour="#0072B2", label="no place")
@@ -229,7 +217,7 @@ def test_every_picture_is_drawn(
 def test_curves_go_and_come_and_zoom_goes_back(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     one.look(page, 1400)
     press = """(() => { const b = [...document.querySelectorAll("#fig-dial button")]
       .find(b => (b.getAttribute("aria-label") || b.textContent) === NAME); b.click();
@@ -262,7 +250,7 @@ def test_the_pointer_reads_values_with_units(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """In the middle of the backlash's panel: what is told is a point of the stored data."""
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     one.look(page, 1400)
     said = one.value(
         """(() => { const over = document.querySelectorAll("#fig-dial .u-over")[1];
@@ -285,7 +273,7 @@ def test_the_pointer_reads_values_with_units(
 def test_a_link_opens_the_part_it_leads_to(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     one.look(page, 1400)
     opened = one.value(
         """(async () => {
@@ -307,7 +295,7 @@ def test_a_link_opens_the_part_it_leads_to(
 def test_hostile_words_stay_words_and_the_policy_holds(
     chromium: browser.Browser | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     panel = Panel(Axis(HOSTILE + " [µm]"), Axis("y [–]"), HOSTILE)
     panel.curve([0.0, 1.0], [0.0, 1.0], colour="#0072B2", label=HOSTILE)
     panel.text(0.5, 0.5, HOSTILE)
@@ -340,7 +328,7 @@ def test_hostile_words_stay_words_and_the_policy_holds(
 def test_nobody_else_is_asked_and_without_script_the_still_picture_shows(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     one.look(page, 1400)
     assert one.value("document.querySelectorAll('.live').length") > 10
     assert {url.partition(":")[0] for url in one.asked()} <= {"file", "data"}
@@ -362,7 +350,7 @@ def test_readers_of_any_kind_can_use_the_page(
     chromium: browser.Browser | None, page: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """By the rules of axe-core: wide and light, narrow and dark, every fold open."""
-    one = there(chromium, capsys)
+    one = browser.there(chromium, capsys)
     axe = (files("axe_core_python") / "axe.min.js").read_text("utf-8")
     found = {}
     for width, colours in zip(browser.WIDTHS, ("light", "dark"), strict=True):

@@ -84,7 +84,7 @@ class Measurement:
             "samples": str(self.samples),
             "bin width": f"{(rate or 1.0) / self.samples:.6g} {unit}",
             "window": f"{window.name}, noise bandwidth {window.noise_bandwidth:.4g} bins, "
-            f"line at the interpolated frequency",
+            f"of the displacement; amplitudes are fitted by least squares to all samples",
             "method": METHODS[self.chain.method],
             "band": "none" if band is None else f"{band[0]:.6g}..{band[1]:.6g} {unit}",
             "taps": "none" if taps is None else str(taps),

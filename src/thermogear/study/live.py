@@ -182,10 +182,6 @@ class LiveRunUp:
         told = {"preview": int(self.preview), "done": self.done, "length": self.length}
         return xr.Dataset(variables, own, told)
 
-    def finished(self) -> xr.Dataset:
-        """The whole, with its jumps."""
-        return self.plan.finish(self.data)
-
 
 def run_ups(
     case: GearCase, speeds: Floats, state: StateLike, alive: Alive = keep_going

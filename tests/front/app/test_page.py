@@ -31,11 +31,7 @@ def server() -> Iterator[Served]:
 
 @pytest.fixture(scope="module")
 def shared() -> Iterator[browser.Browser | None]:
-    program = browser.find()
-    if program is None:
-        yield None
-        return
-    with browser.opened(program) as one:
+    with browser.maybe() as one:
         yield one
 
 
@@ -51,7 +47,7 @@ def opened(server: Served, shared: browser.Browser | None) -> browser.Browser | 
 @pytest.fixture
 def page(opened: browser.Browser | None, capsys: pytest.CaptureFixture[str]) -> browser.Browser:
     """The page as the case has it; the answers, which take a second, folded."""
-    one = there(opened, capsys)
+    one = browser.there(opened, capsys)
     fold(one, "answers", False)
     one.value("document.getElementById('back').click()")
     done(one)
@@ -61,14 +57,6 @@ def page(opened: browser.Browser | None, capsys: pytest.CaptureFixture[str]) -> 
 def fold(one: browser.Browser, part: str, open_: bool) -> None:
     said = "true" if open_ else "false"
     one.value(f"document.querySelector('[data-part=\"{part}\"]').open = {said}")
-
-
-def there(one: browser.Browser | None, capsys: pytest.CaptureFixture[str]) -> browser.Browser:
-    if one is None:
-        with capsys.disabled():
-            print("\nno browser (package chromium; `make chromium`): the app's page is not run")
-        pytest.skip("no browser: make chromium")
-    return one
 
 
 def ready(one: browser.Browser, count: int = COUNT) -> None:
@@ -133,7 +121,7 @@ BOXES = """(() => {
 def test_the_page_shows_every_part_and_asks_nobody_else(
     opened: browser.Browser | None, server: Served, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    page = there(opened, capsys)
+    page = browser.there(opened, capsys)
     assert not page.errors
     assert {url.split("/")[2] for url in page.asked() if "//" in url} == {server.host}
     for part in ("mesh", "gap", "run-up", "orbit"):

@@ -94,7 +94,7 @@ def test_the_run_up_jumps_where_the_command_says() -> None:
     speeds = RPM * np.linspace(4340.0, 4960.0, 32)
     for one in live.run_ups(case, speeds, "hot"):
         last = one
-    mine = last.finished()
+    mine = last.plan.finish(last.data)
     whole = run_up(case, speeds, temperatures=["hot"], branch_period=0).data
     jumps = {}
     for data in (mine, whole):

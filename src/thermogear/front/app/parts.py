@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import ThermogearError
 from thermogear.base.plan import Alive, slices
-from thermogear.base.progress import asking
-from thermogear.base.units import RPM
+from thermogear.base.units import RPM, ZERO_CELSIUS
 from thermogear.case.case import GearCase
 from thermogear.front.app.given import Given
 from thermogear.front.app.wire import Show
@@ -106,9 +105,14 @@ class Look:
         said = self.show.speeds
         return RPM * np.linspace(said.low, said.high, said.count)
 
-    def key(self, *beside: object) -> str:
-        """The case as one text, its speed left out where nothing else hangs on it."""
-        return json.dumps([self.case.data, *beside], sort_keys=True, default=str)
+    @property
+    def key(self) -> str:
+        """The case as one text: what shows all of it is made anew when any field changes."""
+        return json.dumps(self.case.data, sort_keys=True, default=str)
+
+    def told(self, stage: str, done: int, total: int) -> None:
+        """A study's progress: it asks whether anybody still waits, and says nothing."""
+        self.alive()
 
 
 def mesh(look: Look) -> Iterator[Part]:
@@ -149,7 +153,8 @@ def _orbit(look: Look, starts: dict[str, tuple[float, float] | None]) -> Part:
     lines: list[str] = []
     shown = dict(kept)
     for name, one in kept.items():
-        twin = next((n for n in lines_of(shown, name) if _same(shown[n], one)), None)
+        before = list(shown)[: list(shown).index(name)]
+        twin = next((other for other in before if _same(shown[other], one)), None)
         if twin is not None:
             lines.append(f"{name}: the same motion as {twin}")
             shown.pop(name)
@@ -164,12 +169,6 @@ def _orbit(look: Look, starts: dict[str, tuple[float, float] | None]) -> Part:
         rows = [[line] for line in page_of(first.orbit).lines()]
     picture = plot.orbits({name: one.data for name, one in shown.items()})
     return Part(name="orbit", picture=picture, lines=lines, rows=rows)
-
-
-def lines_of(shown: dict[str, live.Motion], name: str) -> list[str]:
-    """The motions told before this one."""
-    names = list(shown)
-    return names[: names.index(name)]
 
 
 def _same(one: live.Motion, other: live.Motion) -> bool:
@@ -188,16 +187,18 @@ def run_up(look: Look) -> Iterator[Part]:
     """Hot first, then undeformed; what hangs on nothing that was turned stays."""
     speeds, kept = look.speeds, look.kept
     last = 0.0
-    for state in ("hot", "undeformed"):
-        look.alive()
-        key = live.fingerprint(look.case, speeds, state)
-        if not key:
+    keys = {s: live.fingerprint(look.case, speeds, s) for s in ("hot", "undeformed")}
+    for state, key in keys.items():
+        # nothing of another state of the dials is drawn beside what comes
+        if not key or kept.fresh(f"run-up {state}", key):
             kept.runs.pop(state, None)
             kept.forget(f"run-up {state}")
+    for state, key in keys.items():
+        look.alive()
+        if not key:
             yield Part(name="run-up", lines=_jammed(look, state), picture=_runs(look))
             continue
         if kept.fresh(f"run-up {state}", key):
-            kept.forget(f"run-up {state}")
             for one in live.run_ups(look.case, speeds, state, look.alive):
                 kept.runs[state] = one
                 now = time.monotonic()
@@ -242,17 +243,14 @@ def _run_part(look: Look, one: live.LiveRunUp, state: str) -> Part:
 
 
 def answers(look: Look) -> Iterator[Part]:
-    key = look.key()
+    key = look.key
     if not look.kept.fresh("answers", key):
         return
     from thermogear.study.answers.survey import answers as study
     from thermogear.views.pages.answers import gravest
 
-    def report(stage: str, done: int, total: int) -> None:
-        look.alive()
-
     look.kept.forget("answers")
-    found = study(look.case, progress=asking(look.alive, report)).answers
+    found = study(look.case, progress=look.told).answers
     rows = [[one.question, one.verdict, one.sentence, one.limit] for one in gravest(found)]
     yield Part(name="answers", rows=rows)
     look.kept.keys["answers"] = key
@@ -276,10 +274,10 @@ def record(look: Look) -> Iterator[Part]:
         return
     order = np.array([one.order / measured.teeth for one in rows])
     size = np.array([one.displacement for one in rows])
-    half = np.array([1.96 * one.uncertainty * one.displacement for one in rows])
+    half = np.array([one.half_width * one.displacement for one in rows])
     lines = [
-        f"{one.channel}, {one.name}: {1e6 * one.displacement:.4g} µm ± "
-        f"{196.0 * one.uncertainty:.2g} %"
+        f"{one.channel}, {one.name}: {1e6 * one.displacement:.4g} µm "
+        f"± {100.0 * one.half_width:.2g} %"
         for one in rows
     ]
     yield Part(
@@ -293,21 +291,18 @@ def shafts(look: Look) -> Iterator[Part]:
     """Loads, lift-off and critical speeds of a case with shafts."""
     if look.case.train is None:
         return
-    key = look.key()
+    key = look.key
     if not look.kept.fresh("shafts", key):
         return
     from thermogear.study.shafts.campbell import campbell
     from thermogear.study.shafts.statics import statics
     from thermogear.views.write import page_of
 
-    def report(stage: str, done: int, total: int) -> None:
-        look.alive()
-
     look.kept.forget("shafts")
     pictures: list[tuple[str, Picture]] = []
     rows: list[list[str]] = []
     for place, study in enumerate((statics, campbell)):
-        page = page_of(study(look.case, progress=asking(look.alive, report)))
+        page = page_of(study(look.case, progress=look.told))
         rows += [[line] for line in page.lines()]
         for one in page.pictures:
             if moving(one.picture):
@@ -323,11 +318,10 @@ def parameter_map(look: Look) -> Iterator[Part]:
     speeds = look.speeds
     axes = {
         "pinion_speed": np.linspace(speeds[0], speeds[-1], MAP[0]),
-        "gear_temperature": np.linspace(COLDEST, HOTTEST, MAP[1]) + 273.15,
+        "gear_temperature": np.linspace(COLDEST, HOTTEST, MAP[1]) + ZERO_CELSIUS,
     }
-    slow = replace(look.case, speeds=(float(speeds[0]),))
     data = {k: v for k, v in look.case.data.items() if k != "operating"}
-    key = json.dumps([data, slow.torques, *(a.tolist() for a in axes.values())], default=str)
+    key = json.dumps([data, look.case.torques, *(a.tolist() for a in axes.values())], default=str)
     if not look.kept.fresh("map", key):
         return
     look.kept.forget("map")
