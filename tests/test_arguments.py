@@ -63,6 +63,7 @@ SYMMETRIC: dict[str, Callable[[bool], object]] = {
 
 REASONS = {
     "base.progress.silent": "called as every Progress is: stage, done, total",
+    "front.app.parts.Look.told": "called as every Progress is: stage, done, total",
     **{
         f"views.picture.{kind}": "x before y, as in every plot"
         for kind in ("Curve", "Points", "Stems", "Text", "Bars", "Field", "Contours", "Hatch")
