@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import json
+import os
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 
+from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
+from thermogear.front.measuring import measured_among
+from thermogear.measured import at_once
+from thermogear.measured.at_once import rows_of
+from thermogear.measured.reduction import Measurement
 
 RATE = 5120.0
+WORDS = (
+    "rate", "unit", "scale", "teeth", "speed", "tacho", "pulses", "harmonics", "sidebands",
+    "decimal", "limit", "sensor_tolerance",
+)  # fmt: skip
 
 
 def write(path: Path, size: float, seed: int) -> None:
@@ -47,3 +59,32 @@ def test_one_record_has_no_baseline(tmp_path: Path) -> None:
     done = CliRunner().invoke(measure, [str(tmp_path / "a.csv"), "--baseline", "first"])
     assert done.exit_code != 0
     assert "there is one record" in str(done.exception)
+
+
+@pytest.mark.slow
+def test_processes_give_the_same_rows_and_one_that_ends_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    files = [tmp_path / f"r{number}.csv" for number in range(3)]
+    for number, file in enumerate(files):
+        write(file, 1.0, number)
+    files[1].write_text("nothing\n", encoding="utf-8")
+    options = dict.fromkeys(WORDS) | {"channels": (), "orders": (), "method": "line"}
+    read = partial(measured_among, options=options)
+    told: list[tuple[int, int]] = []
+    serial = rows_of(read, files, cores=1, progress=lambda _, done, total: None)
+    monkeypatch.setattr(at_once, "_WORTH", 0.0)
+    both = rows_of(read, files, cores=2, progress=lambda _, done, total: told.append((done, total)))
+    assert both == serial
+    assert told == [(1, 3), (2, 3), (3, 3)]
+    assert [bool(row.refused) for row in both] == [False, True, False]
+    ended = rows_of(ends, files, cores=2, progress=lambda _, done, total: None)
+    assert "the process that read it ended" in ended[1].refused
+    assert ended[2].refused == "file: got r2.csv; refused"
+
+
+def ends(path: Path) -> Measurement:
+    """Refuses, and ends the process for r1."""
+    if path.name == "r1.csv":
+        os._exit(1)
+    raise InputError("file", path.name, why="refused")

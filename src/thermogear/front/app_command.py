@@ -8,7 +8,8 @@ import click
 
 from thermogear.base.errors import InputError
 from thermogear.front import delivery
-from thermogear.front.measure_commands import measured_by, supplies
+from thermogear.front.measure_commands import supplies
+from thermogear.front.measuring import measured_by
 
 USUAL_PORT = 8350
 

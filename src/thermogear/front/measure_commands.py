@@ -11,10 +11,9 @@ from thermogear.base.errors import InputError
 from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 from thermogear.front import delivery
+from thermogear.front.measuring import measured_by, measured_files
 
 if TYPE_CHECKING:
-    from thermogear.measured.record import Record
-    from thermogear.measured.reduction import Measurement
     from thermogear.results.result import Result
 
 
@@ -29,7 +28,10 @@ def supplies(command: Any) -> Any:
         click.option("--teeth", type=int, help="Teeth of the pinion."),
         click.option("--speed", type=float, metavar="RPM", help="Nominal speed of the pinion."),
         click.option(
-            "--channel", "channels", multiple=True, help="Channel to use (name or number)."
+            "--channel",
+            "channels",
+            multiple=True,
+            help="Channel to use (name or number); of several files also FILE::CHANNEL.",
         ),
         click.option(
             "--tacho",
@@ -82,53 +84,6 @@ def _require_gear(options: dict[str, Any]) -> None:
     require_teeth(options["teeth"])
 
 
-def measured_by(file: str, options: dict[str, Any]) -> Measurement:
-    from thermogear.measured.chain import Chain
-    from thermogear.measured.options import bytes_of_gibibytes
-    from thermogear.measured.readers import read_record
-    from thermogear.measured.reduction import measure as reduce
-
-    speed, limit = options["speed"], options["limit"]
-    most = None if limit is None else bytes_of_gibibytes(limit)
-    named = options["tacho"]
-    other = None if named is None else tacho_file(named, options["decimal"], most)
-    record = read_record(
-        file,
-        rate=options["rate"],
-        unit=options["unit"],
-        scale=options["scale"],
-        channels=options["channels"],
-        tacho=None if other else named,
-        decimal=options["decimal"],
-        limit=most,
-    )
-    return reduce(
-        record,
-        teeth=options["teeth"],
-        speed=None if speed is None else speed * RPM,
-        chain=Chain(options["method"]),
-        sensor_tolerance=options["sensor_tolerance"],
-        pulses_per_turn=options["pulses"],
-        tacho=other,
-        orders=options["orders"],
-        harmonics=3 if options["harmonics"] is None else options["harmonics"],
-        sidebands=2 if options["sidebands"] is None else options["sidebands"],
-    )
-
-
-def tacho_file(named: str, decimal: str | None, limit: int | None) -> Record | None:
-    """The record that ``--tacho FILE`` or ``FILE::CHANNEL`` names; None: a channel's name."""
-    from thermogear.measured.readers import read_record
-
-    place, sign, channel = named.rpartition("::")
-    file = Path(place if sign else named)
-    if not file.is_file():
-        if sign:
-            raise InputError("--tacho", repr(named), why=f"there is no file {place}")
-        return None
-    return read_record(file, tacho=channel if sign else None, decimal=decimal, limit=limit)
-
-
 @click.command()
 @click.argument("files", metavar="FILE|DIR...", nargs=-1, required=True)
 @supplies
@@ -137,11 +92,17 @@ def tacho_file(named: str, decimal: str | None, limit: int | None) -> Record | N
     metavar="first|last|FILE",
     help="Of several records the one that the others are compared with [first].",
 )
+@click.option(
+    "--join",
+    type=click.Choice(["channels", "time"]),
+    help="The files are one run: each some of its channels, or pieces of its time in this order.",
+)
 @delivery.as_json
 @delivery.output("Also write measured.nc (of several: records.nc) and its page.", required=False)
 def measure(
     files: tuple[str, ...],
     baseline: str | None,
+    join: str | None,
     as_json: bool,
     output: str | None,
     **options: Any,
@@ -149,23 +110,23 @@ def measure(
     """Read a record and print its lines: order, frequency, amplitude, uncertainty.
 
     Of several files, or of those in a directory, what changed against a baseline beyond its
-    uncertainty, and trends.
+    uncertainty, and trends; with --join they are one record.
     """
     _require_gear(options)
     one = len(files) == 1 and not Path(files[0]).is_dir()
     if one and baseline is not None:
         raise InputError("--baseline", baseline, why="there is one record", fix="name several")
+    if join is not None and baseline is not None:
+        why = "files that are joined are one record"
+        raise InputError("--baseline", baseline, why=why, fix="leave out --join or --baseline")
 
     def make(report: Progress) -> Result:
         from thermogear.measured.dataset import result_of
-        from thermogear.measured.several import files_of, result_of_several, several
+        from thermogear.measured.several import files_of
 
-        if one:
+        if one and join is None:
             return result_of(measured_by(files[0], options))
-        found = several(
-            files_of(files), lambda path: measured_by(str(path), options), baseline or "first"
-        )
-        return result_of_several(found)
+        return measured_files(files_of(files), join, baseline, options, report)
 
     delivery.deliver(make, output, as_json=as_json)
 

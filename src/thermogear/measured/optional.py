@@ -160,11 +160,13 @@ def read_mdf(path: Path, options: ReadOptions) -> Record:
 
 def _apart(path: Path, folder: Path, options: ReadOptions) -> dict[str, Any]:
     """What the reader of MDF found; a refusal where it crashed or took more than it may."""
+    # asammdf copies a file that was not closed properly to the folder of temporary files
+    held = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
     seconds = 30 + path.stat().st_size // 1_000_000
     words = [str(path.absolute()), str(folder), str(2 * options.limit), str(seconds)]
     run = subprocess.run(
         [sys.executable, str(Path(__file__).with_name("mdf_process.py")), *words],
-        env=os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
+        env=os.environ | held | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

@@ -40,7 +40,8 @@ class Notice:
 class Channel:
     """One signal: ``unit`` a known name or None (the file does not say), ``samples`` its store.
 
-    A value is ``scale`` x sample + ``offset`` in ``unit``.
+    A value is ``scale`` x sample + ``offset`` in ``unit``. ``file``: of a run that lies in several
+    files the one it is from.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Channel:
     scale: float = 1.0
     offset: float = 0.0
     needs_scale: bool = False  # integer full scale: a unit alone does not calibrate it
+    file: str = ""
 
     def __len__(self) -> int:
         return len(self.samples)
@@ -143,14 +145,18 @@ class Record:
             raise InputError("channel", str(name)[:40], allowed=f"1..{len(self.channels)}")
         raise InputError("channel", repr(name), fix=nearest(name, self.names))
 
-    def signals(self) -> tuple[Channel, ...]:
-        """The vibration channels: not the tacho, not time, speed, torque or temperature."""
+    def vibrating(self) -> tuple[Channel, ...]:
+        """The channels that are not the tacho, time, speed, torque or temperature; may be none."""
         other = {"time", "speed", "torque", "temperature", "angle", "frequency"}
-        found = tuple(
+        return tuple(
             c
             for c in self.channels
             if c.name != self.tacho and (c.unit is None or kind_of(c.unit) not in other)
         )
+
+    def signals(self) -> tuple[Channel, ...]:
+        """The vibration channels, of which there must be one."""
+        found = self.vibrating()
         if not found:
             raise InputError(
                 "channel", ", ".join(self.names), why="none of them is a vibration", fix="--channel"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.progress import Progress, silent
 from thermogear.base.vocabulary import label
+from thermogear.measured.at_once import Row, rows_of
 from thermogear.measured.reduction import Measurement
 from thermogear.results.result import Notice, Result, now
 
@@ -25,7 +29,8 @@ _HALF = 1.959964
 class Several:
     """Lines of records: ``reading`` (record, line) with ``half_width`` of its 95 % interval, nan
     where a record has no such line; ``keys`` (channel, name) of the lines; ``refused`` why a file
-    gave none; ``baseline`` the record that others are compared with."""
+    gave none; ``baseline`` the record that others are compared with; ``hint`` what else the files
+    may be."""
 
     names: tuple[str, ...]
     keys: tuple[tuple[str, str], ...]
@@ -34,6 +39,7 @@ class Several:
     baseline: int
     refused: tuple[tuple[str, str], ...]
     unit: str
+    hint: str = ""
 
     @property
     def change(self) -> Floats:
@@ -76,76 +82,113 @@ class Several:
 
 
 def files_of(named: Sequence[str | Path]) -> list[Path]:
-    """The files that are named, and of every directory those in it, by name.
+    """The files that are named, and of every directory those in it, by name, numbers counted:
+    r2 before r10.
 
-    Raises InputError for none, or for more than 10 000.
+    Raises InputError for none, for more than 10 000, for one that is named twice.
     """
     found: list[Path] = []
     for one in map(Path, named):
         if one.is_dir():
-            found += sorted(p for p in one.iterdir() if p.is_file() and not p.name.startswith("."))
+            inside = [p for p in one.iterdir() if p.is_file() and not p.name.startswith(".")]
+            found += sorted(inside, key=_counted)
         else:
             found.append(one)
     if not 1 <= len(found) <= MOST:
         raise InputError("file", f"{len(found)} files", allowed=f"1..{MOST}")
+    twice = [str(path) for path, count in Counter(found).items() if count > 1]
+    if twice:
+        raise InputError("file", twice[0], why="it is named twice", fix="name every file once")
     return found
+
+
+def _counted(path: Path) -> tuple[list[tuple[int, str]], str]:
+    """Sorts names by their numbers."""
+    parts = re.split(r"([0-9]+)", path.name)
+    number = [(int(part[:18]), "") if k % 2 else (0, part) for k, part in enumerate(parts)]
+    return number, path.name
 
 
 def several(
     files: Sequence[Path],
     read: Callable[[Path], Measurement],
     baseline: str = "first",
+    *,
+    cores: int = 1,
+    progress: Progress = silent,
 ) -> Several:
-    """Measure ``files`` one after another by ``read``; a file that is refused is told and left out.
+    """Measure ``files`` by ``read``; a file that is refused is told and left out.
 
     ``baseline``: "first", "last", or the name of a file. Readings are in each record's own unit;
-    records of another unit than the baseline's are refused.
+    records of another unit than the baseline's are refused. ``cores``: processes to measure in;
+    with more than one ``read`` must be a function that a new process can import, and a script
+    needs its ``if __name__ == "__main__":``.
     """
-    rows: list[dict[tuple[str, str], tuple[float, float]]] = []
-    names: list[str] = []
-    units: list[str] = []
-    refused: list[tuple[str, str]] = []
-    for file in files:
-        try:
-            found = read(file)
-        except InputError as error:
-            refused.append((file.name, str(error)))
-            continue
-        names.append(file.name)
-        units.append(found.record.channel(found.channels[0]).unit or "")
-        rows.append(
-            {
-                (one.channel, one.name): (one.reading, one.reading * one.half_width)
-                for one in found.lines
-                if np.isfinite(one.reading)
-            }
-        )
-    if not rows:
+    shown = _shown(files)
+    if baseline not in ("first", "last") and _place(baseline, files, shown) is None:
+        fix = nearest(baseline, [*shown, "first", "last"])
+        raise InputError("--baseline", baseline, allowed="first, last or one of the files", fix=fix)
+    rows = rows_of(read, files, cores=cores, progress=progress)
+    names = dict(zip(files, shown, strict=True))
+    refused = [(names[row.file], row.refused) for row in rows if row.refused]
+    good = [row for row in rows if not row.refused]
+    if not good:
         raise InputError("file", refused[0][0], why=f"no record could be read: {refused[0][1]}")
-    place = {"first": 0, "last": len(names) - 1}.get(baseline)
+    place = {"first": 0, "last": len(good) - 1}.get(baseline)
     if place is None:
-        if Path(baseline).name not in names:
-            raise InputError("--baseline", baseline, allowed="first, last or one of the files")
-        place = names.index(Path(baseline).name)
-    kept = [i for i, unit in enumerate(units) if unit == units[place]]
+        place = _place(baseline, [row.file for row in good], [names[row.file] for row in good])
+    if place is None:
+        why = dict(refused)[shown[_place(baseline, files, shown) or 0]]
+        raise InputError("--baseline", baseline, why=f"it could not be read: {why}")
+    unit = good[place].unit
+    kept = [row for row in good if row.unit == unit]
     refused += [
-        (names[i], f"its unit is {units[i] or 'unknown'}, the baseline's {units[place]}")
-        for i in range(len(names))
-        if i not in kept
+        (
+            names[row.file],
+            f"its unit is {row.unit or 'unknown'}, the baseline's {unit or 'unknown'}",
+        )
+        for row in good
+        if row.unit != unit
     ]
-    keys = tuple(dict.fromkeys(key for i in kept for key in rows[i]))
+    keys = tuple(dict.fromkeys(key for row in kept for key in row.readings))
     blank = (float("nan"), float("nan"))
-    table = np.array([[rows[i].get(key, blank) for key in keys] for i in kept]).reshape(
-        len(kept), len(keys), 2
-    )
+    table = np.array([[row.readings.get(key, blank) for key in keys] for row in kept])
+    table = table.reshape(len(kept), len(keys), 2)
     return Several(
-        names=tuple(names[i] for i in kept),
+        names=tuple(names[row.file] for row in kept),
         keys=keys,
         reading=table[..., 0],
         half_width=table[..., 1],
-        baseline=kept.index(place),
+        baseline=kept.index(good[place]),
         refused=tuple(refused),
-        unit=units[place],
+        unit=unit,
+        hint=_hint(good),
+    )
+
+
+def _shown(files: Sequence[Path]) -> list[str]:
+    """The files' names, with their folders where two are alike."""
+    alike = len({file.name for file in files}) < len(files)
+    return [str(file) if alike else file.name for file in files]
+
+
+def _place(baseline: str, files: Sequence[Path], shown: Sequence[str]) -> int | None:
+    """Where the file that is named stands: by path, else by name where one alone has it."""
+    if Path(baseline) in files:
+        return list(files).index(Path(baseline))
+    name = Path(baseline).name
+    found = [k for k, file in enumerate(files) if name == file.name or baseline == shown[k]]
+    return found[0] if len(found) == 1 else None
+
+
+def _hint(rows: Sequence[Row]) -> str:
+    """What to say where records may be channels of one run."""
+    alike = {(row.rate, row.samples, row.signals) for row in rows}
+    if len(rows) < 2 or len(alike) != 1 or rows[0].signals != 1:
+        return ""
+    return (
+        f"all {len(rows)} files have one channel, one rate and one length: if they are channels of "
+        "one run, --join channels reads them as one record"
     )
 
 
@@ -169,6 +212,8 @@ def result_of_several(found: Several) -> Result:
         name=("line", [name for _, name in found.keys]),
     )
     notices = [Notice("warning", f"{name} is left out: {why}") for name, why in found.refused]
+    if found.hint:
+        notices.append(Notice("info", found.hint))
     return Result.of(
         "records",
         f"{len(found.names)} records against {found.names[found.baseline]}",

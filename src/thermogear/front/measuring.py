@@ -1,0 +1,192 @@
+"""From files and options to measurements: one record, one of several, one run in several files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.base.progress import Progress
+from thermogear.base.units import RPM
+
+if TYPE_CHECKING:
+    from thermogear.measured.record import Record
+    from thermogear.measured.reduction import Measurement
+    from thermogear.results.result import Result
+
+SIGN = "::"
+
+
+def measured_by(file: str, options: dict[str, Any]) -> Measurement:
+    """One file with the options of the command."""
+    from thermogear.measured.readers import read_record
+
+    named, most = options["tacho"], _limit(options)
+    other = None if named is None else tacho_file(named, options["decimal"], most)
+    record = read_record(
+        file,
+        rate=options["rate"],
+        unit=options["unit"],
+        scale=options["scale"],
+        channels=options["channels"],
+        tacho=None if other else named,
+        decimal=options["decimal"],
+        limit=most,
+    )
+    return _reduced(record, other, options)
+
+
+def measured_among(file: Path, options: dict[str, Any]) -> Measurement:
+    """One of several records: of its channels those that ``--channel`` names here.
+
+    ``FILE::CHANNEL`` is said of that file alone; a file of which nothing is named is refused.
+    """
+    wanted = options["channels"]
+    here = [own for place, own in map(_parted, wanted) if place in ("", file.name, str(file))]
+    if wanted and not here:
+        raise InputError("--channel", wanted[0], why="it names no channel of this file")
+    return measured_by(str(file), {**options, "channels": tuple(here)})
+
+
+def measured_run(
+    files: Sequence[Path], how: str, options: dict[str, Any], progress: Progress
+) -> Measurement:
+    """The files of one run, joined ``how`` "channels" or "time"."""
+    from thermogear.measured.joined import join_records, named, only
+
+    if len(files) < 2:
+        why = "there is one file" if files else "there is no file"
+        raise InputError("--join", how, why=why, fix="name the files of the run, or leave it out")
+    records, other = _read_all(files, how, options, progress)
+    record = join_records(list(records.values()), how, names=[str(file) for file in records])
+    record = record.supplied(None, None, options["scale"])
+    tacho = options["tacho"]
+    if tacho is not None and other is None:
+        found = named(record, tacho)
+        if len(found) > 1:
+            fix = f"--tacho {tacho}{SIGN}CHANNEL"
+            raise InputError("--tacho", tacho, why=f"it has {len(found)} channels", fix=fix)
+        record = record.supplied(tacho=found[0])
+    if options["channels"] and how == "channels":
+        record = only(record, options["channels"])
+    return _reduced(record, other, options)
+
+
+def _read_all(
+    files: Sequence[Path], how: str, options: dict[str, Any], progress: Progress
+) -> tuple[dict[Path, Record], Record | None]:
+    """The records by file; and of ``--tacho FILE`` what does not join: a file beside them, or
+    one of them whose rate is another."""
+    from thermogear.measured.readers import read_record
+
+    most, decimal, named = _limit(options), options["decimal"], options["tacho"]
+    place = "" if named is None else named.rpartition(SIGN)[0] or named
+    records: dict[Path, Record] = {}
+    keep = list(options["channels"]) if how == "time" else []
+    if keep and named is not None and not Path(place).is_file():
+        keep.append(named)
+    for number, file in enumerate(files):
+        try:
+            one = read_record(file, channels=keep, decimal=decimal, limit=most)
+            own = _is_named(file, place) and one.rate is not None
+            one = one.supplied(None if own else options["rate"])
+            if options["unit"] is not None and one.vibrating():
+                one = one.supplied(None, options["unit"])
+        except InputError as error:
+            if error.field == "file":
+                raise
+            raise InputError("file", file.name, why=str(error)) from error
+        records[file] = one
+        progress("files", number + 1, len(files))
+    if named is None:
+        return records, None
+    tachos = [file for file in files if _is_named(file, place)]
+    if not tachos:
+        return records, tacho_file(named, decimal, most)
+    rates = {one.rate for file, one in records.items() if file not in tachos}
+    if how == "time" or records[tachos[0]].rate in rates or len(records) < 3:
+        return records, None
+    del records[tachos[0]]
+    return records, tacho_file(f"{tachos[0]}{SIGN}{_parted(named)[1]}" if SIGN in named
+                               else str(tachos[0]), decimal, most)  # fmt: skip
+
+
+def _is_named(file: Path, place: str) -> bool:
+    return bool(place) and (file == Path(place) or file.name == place)
+
+
+def _parted(key: str) -> tuple[str, str]:
+    """File and channel of ``FILE::CHANNEL``; a channel alone has no file."""
+    place, _, own = key.rpartition(SIGN)
+    return place, own
+
+
+def require_channels(files: Sequence[Path], channels: Sequence[str]) -> None:
+    """Refuse ``--channel FILE::CHANNEL`` of a file that is not among those that are named."""
+    known = {file.name for file in files} | {str(file) for file in files}
+    for key in channels:
+        place = _parted(key)[0]
+        if place and place not in known:
+            fix = nearest(place, [file.name for file in files])
+            raise InputError("--channel", repr(key), why=f"no file is {place}", fix=fix)
+
+
+def measured_files(
+    files: Sequence[Path],
+    join: str | None,
+    baseline: str | None,
+    options: dict[str, Any],
+    report: Progress,
+) -> Result:
+    """Several files: one run where they are joined, else records beside a baseline."""
+    from functools import partial
+
+    from thermogear.measured.at_once import cores_here
+    from thermogear.measured.dataset import result_of
+    from thermogear.measured.several import result_of_several, several
+
+    require_channels(files, options["channels"])
+    if join is not None:
+        return result_of(measured_run(files, join, options, report))
+    read = partial(measured_among, options=options)
+    found = several(files, read, baseline or "first", cores=cores_here(), progress=report)
+    return result_of_several(found)
+
+
+def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> Measurement:
+    from thermogear.measured.chain import Chain
+    from thermogear.measured.reduction import measure as reduce
+
+    speed = options["speed"]
+    return reduce(
+        record,
+        teeth=options["teeth"],
+        speed=None if speed is None else speed * RPM,
+        chain=Chain(options["method"]),
+        sensor_tolerance=options["sensor_tolerance"],
+        pulses_per_turn=options["pulses"],
+        tacho=other,
+        orders=options["orders"],
+        harmonics=3 if options["harmonics"] is None else options["harmonics"],
+        sidebands=2 if options["sidebands"] is None else options["sidebands"],
+    )
+
+
+def _limit(options: dict[str, Any]) -> int | None:
+    from thermogear.measured.options import bytes_of_gibibytes
+
+    return None if options["limit"] is None else bytes_of_gibibytes(options["limit"])
+
+
+def tacho_file(named: str, decimal: str | None, limit: int | None) -> Record | None:
+    """The record that ``--tacho FILE`` or ``FILE::CHANNEL`` names; None: a channel's name."""
+    from thermogear.measured.readers import read_record
+
+    place, sign, channel = named.rpartition(SIGN)
+    file = Path(place if sign else named)
+    if not file.is_file():
+        if sign:
+            raise InputError("--tacho", repr(named), why=f"there is no file {place}")
+        return None
+    return read_record(file, tacho=channel if sign else None, decimal=decimal, limit=limit)

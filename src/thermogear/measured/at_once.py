@@ -1,0 +1,142 @@
+"""Records measured on the cores that there are: same rows, same order, one process each."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from thermogear.base.errors import InputError, ValidityWarning
+from thermogear.base.progress import Progress
+from thermogear.measured.reduction import Measurement
+
+Read = Callable[[Path], Measurement]
+
+_WORTH = 5.0
+"""Seconds of work left from which processes are started: each takes about one to begin."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """What is kept of one record: its lines' ``readings`` with half widths, ``unit``, how it was
+    sampled, how many ``signals`` vibrate; or why it was ``refused``."""
+
+    file: Path
+    unit: str = ""
+    readings: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    rate: float | None = None
+    samples: int = 0
+    signals: int = 0
+    refused: str = ""
+    warned: tuple[str, ...] = ()
+
+
+def row_of(read: Read, file: Path) -> Row:
+    """Measure one file; an input that is refused, or that the system or memory fails, is a row."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ValidityWarning)
+        try:
+            found = read(file)
+        except InputError as error:
+            return Row(file=file, refused=str(error))
+        except (MemoryError, OSError) as error:
+            return Row(file=file, refused=str(error) or "it does not fit in memory")
+    return Row(
+        file=file,
+        unit=found.record.channel(found.channels[0]).unit or "",
+        readings={
+            (one.channel, one.name): (one.reading, one.reading * one.half_width)
+            for one in found.lines
+            if np.isfinite(one.reading)
+        },
+        rate=found.record.rate,
+        samples=found.record.samples,
+        signals=len(found.record.vibrating()),
+        warned=tuple(str(one.message) for one in caught),
+    )
+
+
+def rows_of(read: Read, files: Sequence[Path], *, cores: int, progress: Progress) -> list[Row]:
+    """The rows of ``files`` in their order, in up to ``cores`` processes.
+
+    Files are measured here, one after another, until it is clear that what is left is worth other
+    processes; for those ``read`` must be one that can be sent there. A file whose process ends by
+    itself is refused.
+    """
+    found: dict[Path, Row] = {}
+    began = time.perf_counter()
+    left = list(files)
+    while left:
+        if cores > 1 and found and len(left) > 1:
+            spent = time.perf_counter() - began
+            if spent / len(found) * len(left) > _WORTH:
+                break
+        found[left[0]] = row_of(read, left[0])
+        left.pop(0)
+        progress("records", len(found), len(files))
+    if left:
+        for row in _elsewhere(read, left, min(cores, len(left))):
+            found[row.file] = row
+            progress("records", len(found), len(files))
+    for file in files:
+        for text in found[file].warned:
+            warnings.warn(text, ValidityWarning, stacklevel=2)
+    return [found[file] for file in files]
+
+
+def _elsewhere(read: Read, files: Sequence[Path], cores: int) -> Iterator[Row]:
+    """Rows as they come; files that were lost with another's process are tried again alone."""
+    lost: list[Path] = []
+    with _pool(cores) as pool:
+        work: dict[Future[Row], Path] = {pool.submit(row_of, read, one): one for one in files}
+        for done in as_completed(work):
+            try:
+                yield done.result()
+            except BrokenProcessPool:
+                lost.append(work[done])
+    for file in sorted(lost, key=files.index):
+        with _pool(1) as pool:
+            try:
+                yield pool.submit(row_of, read, file).result()
+            except BrokenProcessPool:
+                why = "the process that read it ended: it is damaged, or too large for the memory"
+                yield Row(file=file, refused=why)
+
+
+@contextmanager
+def _pool(cores: int) -> Iterator[ProcessPoolExecutor]:
+    """Processes that start anew, so that no lock is inherited; on an error or Ctrl+C they end."""
+    before = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(
+        cores, mp_context=multiprocessing.get_context("spawn"), initializer=_deaf
+    )
+    try:
+        yield pool
+    except BaseException:
+        for child in set(multiprocessing.active_children()) - before:
+            child.terminate()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _deaf() -> None:
+    """Ctrl+C is the parent's: it ends its children."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def cores_here() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,366 @@
+"""Files of one run as one record: each file some of its channels, or a piece of its time."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError, nearest
+from thermogear.measured.options import place_of
+from thermogear.measured.record import Channel, Notice, Record, Samples
+from thermogear.measured.units import kind_of
+
+Floats = NDArray[np.float64]
+
+JOINS = ("channels", "time")
+SIGN = "::"
+"""Between a file and a channel of it: ``left.csv::a1``."""
+
+_CUT = 0.01  # of the longest file: a shorter one within it lost its last block
+_OFF = 0.25  # of a sample: where a gap is no whole number of samples
+_LONGEST_GAP = 1.0  # of the samples of all pieces
+
+
+def join_records(records: Sequence[Record], how: str, *, names: Sequence[str] = ()) -> Record:
+    """One record of those of ``names`` (default: their sources), as they follow one another.
+
+    ``how`` "channels": each file holds channels of one run, at one rate; files that start apart
+    by their time stamps, or are up to 1 % shorter than the longest, are cut to the time they have
+    in common. A name that two files have becomes ``FILE::CHANNEL``.
+    ``how`` "time": consecutive pieces of one run in the order given, with the same channels, units
+    and rate. Where time stamps go on from file to file they are checked: a gap stands in the
+    record as samples without a number, which the gate finds
+    (:mod:`~thermogear.measured.gate`).
+
+    Raises InputError for fewer than two records, for one that stands there twice, for rates that
+    drift apart by half a sample, lengths, channels or units that differ, pieces that overlap or
+    lie further apart than all are long.
+    """
+    if how not in JOINS:
+        raise InputError("join", repr(how), allowed=" or ".join(JOINS))
+    if len(records) < 2:
+        raise InputError("join", f"{len(records)} record", allowed="two files or more of one run")
+    files = _short(names or [one.source for one in records])
+    rate = _one_rate(records, files)
+    join = _channels if how == "channels" else _pieces
+    found = join(records, files, rate)
+    told = [
+        replace(notice, text=f"{file}: {notice.text}")
+        for file, one in zip(files, records, strict=True)
+        for notice in one.notices
+    ]
+    doubt = next((one.rate_doubt for one in records if one.rate_doubt), "")
+    return replace(found, notices=(*_merged(told, files), *found.notices), rate_doubt=doubt)
+
+
+def _short(names: Sequence[str]) -> list[str]:
+    """The files' names; with their folders where two files are named alike."""
+    paths = [Path(name) for name in names]
+    twice = [name for name, count in Counter(map(str, paths)).items() if count > 1]
+    if twice:
+        raise InputError("file", twice[0], why="it is named twice", fix="name every file once")
+    alike = len({path.name for path in paths}) < len(paths)
+    return [str(path) if alike else path.name for path in paths]
+
+
+def _merged(told: Sequence[Notice], files: Sequence[str]) -> list[Notice]:
+    """Notices; what every file says is said once."""
+    texts = Counter(one.text.partition(": ")[2] for one in told)
+    found: dict[str, Notice] = {}
+    for one in told:
+        text = one.text.partition(": ")[2]
+        if texts[text] == len(files):
+            one = replace(one, text=f"every file: {text}")
+        found.setdefault(one.text, one)
+    return list(found.values())
+
+
+def _one_rate(records: Sequence[Record], files: Sequence[str]) -> float | None:
+    """The rate of all; those that drift apart by half a sample are refused."""
+    first = records[0].rate
+    for file, one in zip(files[1:], records[1:], strict=True):
+        if first is None and one.rate is None:
+            continue
+        known = [rate for rate in (first, one.rate) if rate is not None]
+        if len(known) == 1:
+            mute = file if one.rate is None else files[0]
+            why = f"it states no rate, {files[0] if mute == file else file} states {known[0]:g}/s"
+            raise InputError("file", mute, why=why, fix=f"--rate {known[0]:g} if that is its own")
+        if abs(known[1] / known[0] - 1.0) * max(one.samples, records[0].samples) > 0.5:
+            raise InputError(
+                "file",
+                file,
+                why=f"its rate is {known[1]:g}/s, that of {files[0]} {known[0]:g}/s",
+                fix="leave it out, or resample it first (a tacho may have a rate of its own: "
+                "--tacho FILE)",
+            )
+    return first
+
+
+# --- files that are channels ---------------------------------------------------------------------
+
+
+def _channels(records: Sequence[Record], files: Sequence[str], rate: float | None) -> Record:
+    """Every file's channels side by side, over the time that all files have."""
+    notes: list[Notice] = []
+    begin = max(one.start for one in records)
+    shifts = [0 if rate is None else round((begin - one.start) * rate) for one in records]
+    late = [file for file, shift in zip(files, shifts, strict=True) if shift]
+    left = [one.samples - shift for one, shift in zip(records, shifts, strict=True)]
+    if min(left) < 2:
+        place = int(np.argmin(left))
+        last = files[int(np.argmax([one.start for one in records]))]
+        raise InputError(
+            "file",
+            files[place],
+            why=f"by its time stamps it ends before {last} starts",
+            fix="leave one out, or join pieces with --join time",
+        )
+    if late:
+        notes.append(
+            Notice(
+                "warning",
+                f"by their time stamps the files start up to {max(shifts)} samples apart: all are "
+                f"cut to their common start",
+            )
+        )
+    count, most = min(left), max(left)
+    if count < most:
+        short, long = files[left.index(count)], files[left.index(most)]
+        if count < (1.0 - _CUT) * most:
+            raise InputError(
+                "file",
+                short,
+                why=f"it holds {records[files.index(short)].samples} samples, {long} "
+                f"{records[files.index(long)].samples}: channels of one run are equally long",
+                fix="leave it out, or join pieces with --join time",
+            )
+        text = f"{short} is {most - count} samples shorter than {long}: all are cut to its length"
+        notes.append(Notice("warning", text))
+    names = Counter(c.name for one in records for c in one.channels)
+    channels: list[Channel] = []
+    tacho = None
+    for file, one, shift in zip(files, records, shifts, strict=True):
+        for c in one.channels:
+            name = c.name if names[c.name] == 1 else f"{file}{SIGN}{c.name}"
+            cut: Samples = c.samples
+            if shift or len(c) > count:
+                cut = _Joined((_Part(c.samples, shift, stop=shift + count),))
+            channels.append(replace(c, name=name, samples=cut, file=file))
+            if tacho is None and c.name == one.tacho:
+                tacho = name
+    origin = next((one.rate_origin for one in records if one.rate is not None), "")
+    notes.insert(0, Notice("info", f"{len(files)} files are joined as channels of one run"))
+    return Record(
+        tuple(channels), _source(files), rate, origin, begin, tacho=tacho, notices=tuple(notes)
+    )
+
+
+def _source(files: Sequence[str]) -> str:
+    return f"{files[0]} and {len(files) - 1} more" if len(files) > 2 else " and ".join(files)
+
+
+# --- files that are pieces of time ---------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Samples ``first``..``stop`` of a store; a store of None: so many without a number."""
+
+    samples: Any
+    first: int
+    stop: int
+
+    def __len__(self) -> int:
+        return self.stop - self.first
+
+    def values(self, start: int, *, stop: int) -> Any:
+        if self.samples is None:
+            return np.full(stop - start, np.nan)
+        if isinstance(self.samples, Channel):
+            return self.samples.values(self.first + start, stop=self.first + stop)
+        return self.samples[self.first + start : self.first + stop]
+
+
+class _Joined:
+    """Parts one after another, read slice by slice."""
+
+    def __init__(self, parts: Sequence[_Part]) -> None:
+        self._parts = tuple(parts)
+        self._edges = np.concatenate([[0], np.cumsum([len(one) for one in parts])]).tolist()
+
+    def __len__(self) -> int:
+        return int(self._edges[-1])
+
+    def __getitem__(self, key: slice) -> Any:
+        first, stop, step = key.indices(len(self))
+        found = [
+            np.asarray(part.values(max(first - edge, 0), stop=min(stop - edge, len(part))))
+            for part, edge in zip(self._parts, self._edges, strict=False)
+            if first < edge + len(part) and stop > edge
+        ]
+        return np.concatenate(found)[::step] if found else np.zeros(0)
+
+
+def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None) -> Record:
+    """The pieces one after another, gaps between them as samples without a number."""
+    first = records[0]
+    for place, (file, one) in enumerate(zip(files, records, strict=True)):
+        _require_alike(first, one, files[0], file)
+        for other, before in zip(files[:place], records[:place], strict=True):
+            if _same(before, one, first.names):
+                why = f"it holds the same samples as {other}"
+                raise InputError("file", file, why=why, fix="name every piece once")
+    gaps, notes = _gaps(records, files, rate)
+    parts: dict[str, list[_Part]] = {name: [] for name in first.names}
+    for gap, one in zip(gaps, records, strict=True):
+        for name, own in parts.items():
+            if gap:
+                own.append(_Part(None, 0, stop=gap))
+            own.append(_Part(one.channel(name), 0, stop=one.samples))
+    channels = tuple(
+        replace(c, samples=_Joined(parts[c.name]), scale=1.0, offset=0.0) for c in first.channels
+    )
+    notes.insert(0, Notice("info", f"{len(files)} files are joined as pieces of one run"))
+    return replace(first, channels=channels, source=_source(files), notices=tuple(notes))
+
+
+def _require_alike(first: Record, one: Record, leading: str, file: str) -> None:
+    """Refuse a piece with other channels or units than the first."""
+    lacks, has = (sorted(set(a) - set(b)) for a, b in
+                  ((first.names, one.names), (one.names, first.names)))  # fmt: skip
+    if lacks or has:
+        why = f"it has no channel {lacks[0]!r}, {leading} has" if lacks else (
+            f"it has a channel {has[0]!r}, {leading} has not"
+        )  # fmt: skip
+        fix = "name the channels that all pieces hold with --channel, or --join channels"
+        raise InputError("file", file, why=why, fix=fix)
+    for c in first.channels:
+        unit = one.channel(c.name).unit
+        if unit != c.unit:
+            raise InputError(
+                "file",
+                file,
+                why=f"channel {c.name!r} is in {unit or 'no known unit'}, in {leading} in "
+                f"{c.unit or 'no known unit'}",
+                fix="leave it out, or give --unit for all",
+            )
+
+
+def _same(one: Record, other: Record, names: Sequence[str]) -> bool:
+    if one.samples != other.samples:
+        return False
+    return all(
+        np.array_equal(a, b, equal_nan=True)
+        for name in names
+        for a, b in zip(one.channel(name).blocks(), other.channel(name).blocks(), strict=True)
+    )
+
+
+def _gaps(
+    records: Sequence[Record], files: Sequence[str], rate: float | None
+) -> tuple[list[int], list[Notice]]:
+    """Samples that are missing before each piece, by time stamps that go on; what to say."""
+    gaps = [0] * len(records)
+    starts = [one.start for one in records]
+    if rate is None or len(set(starts)) == 1:
+        text = "no time stamps go on from file to file: that no samples are missing is not checked"
+        return gaps, [Notice("warning", text)]
+    notes: list[Notice] = []
+    total = sum(one.samples for one in records)
+    for k in range(1, len(records)):
+        end = starts[k - 1] + records[k - 1].samples / rate
+        lost = (starts[k] - end) * rate
+        between = f"between {files[k - 1]} and {files[k]}"
+        if lost < -0.5:
+            raise InputError(
+                "file",
+                files[k],
+                why=f"it starts at {starts[k]:.9g} s, before {files[k - 1]} ends ({end:.9g} s)",
+                fix="name the pieces in their order",
+            )
+        if lost > _LONGEST_GAP * total:
+            raise InputError(
+                "file",
+                files[k],
+                why=f"it starts {lost / rate:.4g} s after {files[k - 1]} ends, longer than all "
+                "pieces together",
+                fix="these are records of their own: leave out --join",
+            )
+        gaps[k] = max(0, round(lost))
+        if gaps[k]:
+            text = f"{gaps[k]} samples ({gaps[k] / rate:.4g} s) are missing {between}"
+            notes.append(Notice("important", text))
+        if abs(lost - gaps[k]) > _OFF:
+            text = f"{between} the clock is off by {lost - gaps[k]:+.2g} samples"
+            notes.append(Notice("warning", f"{text}: phases jump there by as much"))
+    if not any(gaps):
+        notes.append(Notice("info", "time stamps go on from file to file without a gap"))
+    return gaps, notes
+
+
+# --- channels by name ----------------------------------------------------------------------------
+
+
+def only(record: Record, wanted: Sequence[str]) -> Record:
+    """A joined record with the ``wanted`` channels (:func:`named`), its tacho and its speeds."""
+    names = {name for key in wanted for name in named(record, key)}
+    kept = tuple(
+        c
+        for c in record.channels
+        if c.name in names
+        or c.name == record.tacho
+        or (c.unit is not None and kind_of(c.unit) in ("speed", "frequency"))
+    )
+    return replace(record, channels=kept)
+
+
+def named(record: Record, key: str) -> list[str]:
+    """The names of the channels of a joined record that ``key`` means.
+
+    ``key``: a name, ``FILE::CHANNEL`` with the channel's name or its number in that file, ``FILE``
+    for all channels of a file, or a number from 1 over all files. Refused where it means none,
+    or the channels of several files.
+    """
+    if key in record.names:
+        return [key]
+    file, sign, own = key.rpartition(SIGN)
+    if sign:
+        here = _of_file(record, file)
+        if not here:
+            files = list(dict.fromkeys(c.file for c in record.channels if c.file))
+            raise InputError(
+                "channel", repr(key), why=f"no file is {file}", fix=nearest(file, files)
+            )
+        found = [c.name for c in here if own_name(c) == own]
+        place = place_of(own, len(here))
+        if not found and place is not None:
+            found = [here[place].name]
+        if not found:
+            fix = nearest(own, [own_name(c) for c in here])
+            raise InputError("channel", repr(key), why=f"{file} has no {own}", fix=fix)
+        return found
+    if here := _of_file(record, key):
+        return [c.name for c in here]
+    found = [c.name for c in record.channels if own_name(c) == key]
+    if len(found) > 1:
+        text = f"{len(found)} files have it"
+        raise InputError("channel", repr(key), why=text, fix=f"{found[0]}, or another of them")
+    return found or [record.channel(key).name]
+
+
+def own_name(channel: Channel) -> str:
+    """A channel's name in its own file."""
+    return channel.name.removeprefix(f"{channel.file}{SIGN}") if channel.file else channel.name
+
+
+def _of_file(record: Record, file: str) -> list[Channel]:
+    """The channels of the file that is named, with its folder or without."""
+    exact = [c for c in record.channels if c.file and c.file == file]
+    return exact or [c for c in record.channels if c.file and Path(c.file).name == Path(file).name]
