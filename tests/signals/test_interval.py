@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.signals.following import best_followed, follow_line
-from thermogear.signals.interval import Reading, dirichlet, read_line, student
+from thermogear.signals.interval import Reading, dirichlet, read_line, strong_lines, student
 from thermogear.signals.lines import line_spectrum
 
 RATE = 1000.0
@@ -111,3 +111,17 @@ def test_refusals() -> None:
     with pytest.raises(InputError, match="half_width"):
         follow_line(np.ones(100), RATE, frequency=100.0, half_width=1.0)
     assert student(1e9) == pytest.approx(1.959964, abs=1e-5)
+
+
+@pytest.mark.parametrize("unit", [1e-60, 1e-12, 1e-7, 1e8, 1e12, 1e60])
+def test_a_reading_is_the_same_in_every_unit(unit: float) -> None:
+    random = np.random.default_rng(17)
+    n = np.arange(4000)
+    x = np.cos(0.6302 * n) + 0.02 * np.cos(0.6364 * n) + 0.1 * random.standard_normal(n.size)
+    whole, scaled = line_spectrum(x, 1.0), line_spectrum(unit * x, 1.0)
+    one = read_line(whole, 0.1003, strong=strong_lines(whole))
+    other = read_line(scaled, 0.1003, strong=strong_lines(scaled))
+    assert other.frequency == pytest.approx(one.frequency, rel=1e-12)
+    assert other.frequency_error == pytest.approx(one.frequency_error, rel=1e-9)
+    for name in ("amplitude", "amplitude_error", "noise"):
+        assert getattr(other, name) == pytest.approx(unit * getattr(one, name), rel=1e-9)

@@ -164,20 +164,25 @@ def _apart(path: Path, folder: Path, options: ReadOptions) -> dict[str, Any]:
     held = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
     seconds = 30 + path.stat().st_size // 1_000_000
     words = [str(path.absolute()), str(folder), str(2 * options.limit), str(seconds)]
-    run = subprocess.run(
+    code = _run(words, held)
+    try:
+        found: dict[str, Any] = json.loads((folder / "parts.json").read_text("utf-8"))
+    except (OSError, ValueError):
+        text = f"its reader ended with code {code}: it is damaged, or too large"
+        raise refused(path, "MDF", text) from None
+    return found
+
+
+def _run(words: list[str], environment: dict[str, str]) -> int:
+    """The exit code of the reader of MDF, run with these ``words``."""
+    return subprocess.run(
         [sys.executable, str(Path(__file__).with_name("mdf_process.py")), *words],
-        env=os.environ | held | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
+        env=os.environ | environment | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         check=False,
-    )
-    try:
-        found: dict[str, Any] = json.loads((folder / "parts.json").read_text("utf-8"))
-    except (OSError, ValueError):
-        text = f"its reader ended with code {run.returncode}: it is damaged, or too large"
-        raise refused(path, "MDF", text) from None
-    return found
+    ).returncode
 
 
 def _record(

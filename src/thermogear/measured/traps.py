@@ -32,7 +32,7 @@ _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 
 _LONGEST = 200  # characters of a name that are looked at and kept
 
-HUGE = 1e100
+HUGE = 1e30
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
 
 

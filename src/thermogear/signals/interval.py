@@ -222,7 +222,10 @@ class _Left:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Lines at ``places`` [bins], the first the one that is read; ``free`` may move."""
+    """Lines at ``places`` [bins], the first the one that is read; ``free`` may move.
+
+    ``data`` and ``amplitudes`` count in ``unit``, so that no result depends on the record's own.
+    """
 
     spectrum: LineSpectrum
     bins: Floats
@@ -230,6 +233,7 @@ class _Fit:
     places: Floats
     free: NDArray[np.bool_]
     amplitudes: Complexes
+    unit: float
 
     @classmethod
     def of(
@@ -260,7 +264,9 @@ class _Fit:
         places = np.array([place, *known])
         free = np.zeros(places.size, dtype=bool)
         free[0] = True
-        return cls(spectrum, bins, data, places, free, np.zeros(places.size, complex))._solved()
+        unit = _near(float(np.max(np.abs(data), initial=0.0)))
+        blank = np.zeros(places.size, complex)
+        return cls(spectrum, bins, data / unit, places, free, blank, unit)._solved()
 
     def _columns(self, places: Floats) -> tuple[Complexes, Complexes]:
         """Of each place the bins of its cosine and of its sine: (bin, place)."""
@@ -360,7 +366,7 @@ class _Fit:
         """Amplitude and frequency with their errors."""
         matrix, width = self._matrix(True), self.spectrum.bin_width
         count = self.places.size
-        spread = np.linalg.pinv(matrix.T @ matrix, rcond=1e-12) * (0.5 * left.noise)
+        spread = _inverse(matrix) * (0.5 * left.noise)
         own = self.amplitudes[0]
         size = abs(own)
         way = np.zeros(matrix.shape[1])
@@ -375,16 +381,17 @@ class _Fit:
         both = _LEAK**2 * hidden_power
         variance = float(way @ spread @ way) * max(1.0, (size / amplitude) ** 2) + both
         # noise in the bins of the change
-        variance += 0.25 * left.even.size * left.noise**2 / max(amplitude, 1e-300) ** 2
+        variance += 0.25 * left.even.size * left.noise**2 / max(amplitude, 1e-150) ** 2
         hidden = size**2 <= 12.0 * left.noise  # a peak of noise stands as high
         if hidden:
             variance += left.noise
-        phase = turned / max(size, 1e-300) ** 2
-        wander = 0.25 * phase + both / max(size, 1e-300) ** 2
+        phase = turned / max(size, 1e-150) ** 2
+        wander = 0.25 * phase + both / max(size, 1e-150) ** 2
+        power = float(np.sum(np.abs(self.amplitudes[1:][self.free[1:]]) ** 2))
         return Reading(
-            amplitude=amplitude,
+            amplitude=amplitude * self.unit,
             frequency=float(self.places[0]) * width,
-            amplitude_error=float(np.sqrt(variance)),
+            amplitude_error=float(np.sqrt(variance)) * self.unit,
             frequency_error=float(np.sqrt(spread[2 * count, 2 * count] + wander)) * width,
             degrees=left.degrees,
             changing=float(np.sqrt(changed) / max(size, 1e-300)),
@@ -394,10 +401,25 @@ class _Fit:
                 for p, free in zip(self.places[1:], self.free[1:], strict=True)
                 if free
             ),
-            beside=float(np.sum(np.abs(self.amplitudes[1:][self.free[1:]]) ** 2)),
-            noise=float(np.sqrt(left.noise)),
+            beside=power * self.unit**2,
+            noise=float(np.sqrt(left.noise)) * self.unit,
             explained=hidden_power == 0.0,
         )
+
+
+def _near(size: float) -> float:
+    """The power of two next to ``size``: numbers divided by it keep their digits."""
+    return float(2.0 ** np.rint(np.log2(size))) if size > 0.0 else 1.0
+
+
+def _inverse(matrix: Floats) -> Floats:
+    """The inverse of matrix^T matrix, of columns as large as one another; a column that the others
+    hold is left out."""
+    sizes = np.linalg.norm(matrix, axis=0)
+    sizes[sizes == 0.0] = 1.0
+    scaled = matrix / sizes
+    found = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)
+    return np.asarray(found / np.outer(sizes, sizes))
 
 
 def _noise(even: Floats, odd: Floats, followed: float) -> tuple[float, float]:
