@@ -36,7 +36,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from hostile_records import LONG, RECORDS, SHORT, command, forked, named, record
+from hostile_records import JOINED, LONG, RECORDS, SHORT, TACHO, command, forked, named, record
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "trial_hostile.md"
@@ -48,6 +48,7 @@ COUNT = 5300
 LONG_SHARE = 0.005
 """Of the records, so long that their teeth are weighed: what a file costs is that."""
 KINDS = (CASES, *RECORDS)
+TEXTS = ("plain.csv", "clocks.csv", "rig.lvm", *JOINED, TACHO)
 SECONDS = 10.0
 MEMORY = 1 << 30
 SILENCE = 300.0
@@ -144,7 +145,44 @@ def mutated_record(name: str, data: bytes, rng: Random) -> bytes:
         content = zlib.compress(mutated_bytes(zlib.decompress(data[136 : 136 + size]), rng), 1)
         head = data[:132] + len(content).to_bytes(4, "little")
         return head + content + data[136 + size :]
+    if name in TEXTS:
+        return mutated_numbers(data, rng)
     return mutated_bytes(data, rng)
+
+
+def mutated_numbers(data: bytes, rng: Random) -> bytes:
+    """Numbers of a text made other numbers, rows lost, doubled, moved, all times shifted."""
+    rows = data.decode().split("\n")
+    for _ in range(int(rng.choice([1, 1, 2, 5]))):
+        place = int(rng.integers(1, len(rows)))
+        size = int(rng.choice([1, 1, 2, 20]))
+        match int(rng.integers(0, 6)):
+            case 0 | 1:
+                numbers = list(re.finditer(r"[-+]?[0-9]+(?:[.,][0-9]+)?", rows[place]))
+                if numbers:
+                    hit = numbers[int(rng.integers(len(numbers)))]
+                    word = CELLS[int(rng.integers(len(CELLS)))].decode("latin-1")
+                    if rng.random() < 0.7:
+                        factor = 10.0 ** float(rng.uniform(-9.0, 9.0)) * float(rng.choice([1, -1]))
+                        word = f"{float(hit[0].replace(',', '.')) * factor:.9g}"
+                    rows[place] = rows[place][: hit.start()] + word + rows[place][hit.end() :]
+            case 2:
+                del rows[place : place + size]
+                rows.append("")
+            case 3:
+                rows[place:place] = rows[place : place + size]
+            case 4:
+                moved = rows[place : place + size]
+                del rows[place : place + size]
+                at = int(rng.integers(1, len(rows) + 1))
+                rows[at:at] = moved
+            case _:
+                shift = float(rng.choice([1e-6, 1e-3, 0.02, 0.05, 1.0, 1e9]) * rng.choice([1, -1]))
+                for number, row in enumerate(rows):
+                    found = re.match(r"[0-9]+\.[0-9]+", row)
+                    if found:
+                        rows[number] = f"{float(found[0]) + shift:.9f}{row[found.end() :]}"
+    return "\n".join(rows).encode("latin-1")
 
 
 def mutated_case(text: str, rng: Random) -> bytes:
