@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import pyuff
 from nptdms import ChannelObject, TdmsWriter
 
 from thermogear import read_record
+from thermogear.base.errors import InputError
 
 RATE = 25_600.0
 COUNT = 5000
@@ -59,3 +61,22 @@ def test_samples_rate_and_unit_come_back(
     assert record.rate == pytest.approx(RATE, rel=1e-9)
     assert record.channels[0].unit == "m/s^2"
     np.testing.assert_allclose(record.channels[0].values(), LINE, atol=1e-11)
+
+
+def test_an_mdf_file_that_was_never_closed_leaves_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its reader copies such a file to the folder of temporary files, and fails over it there."""
+    path, place = tmp_path / "a.mf4", tmp_path / "temporary"
+    mdf(path)
+    data = bytearray(path.read_bytes())
+    data[60:62] = (1).to_bytes(2, "little")
+    data[64:104] = bytes(40)
+    path.write_bytes(data)
+    place.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(place))
+    for name in ("TMPDIR", "TEMP", "TMP"):
+        monkeypatch.setenv(name, str(place))
+    with pytest.raises(InputError, match="MDF"):
+        read_record(path)
+    assert list(place.iterdir()) == []
