@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import warnings
 from pathlib import Path
 
@@ -104,3 +105,15 @@ def test_empty_and_cut_files_are_refused_in_one_line(
     path.write_bytes(content)
     with pytest.raises(InputError, match=rf"^file: got {name}; cannot be read as "):
         read_record(path)
+
+
+def test_a_packed_text_that_ends_in_its_first_lines_is_refused(tmp_path: Path) -> None:
+    """Bytes without their end that hold fewer characters than are looked at first."""
+    random = np.random.default_rng(3)
+    rows = "\n".join(f"{a:.9g}\t{b:.9g}" for a, b in random.standard_normal((9000, 2)))
+    packed = gzip.compress(("a\tb\n" + rows).encode(), 9)
+    for length in range(100, len(packed), len(packed) // 12):
+        path = tmp_path / "cut.txt.gz"
+        path.write_bytes(packed[:length])
+        with pytest.raises(InputError, match="end-of-stream"):
+            read_record(path)

@@ -178,3 +178,34 @@ def test_settings_say_everything_an_amplitude_needs() -> None:
     assert numbers(found.settings["window"])[0] == 3.77
     with pytest.raises(InputError, match=r"^method: got 'trapez'; did you mean 'trapezoid'\?$"):
         Chain("trapez")
+
+
+@pytest.mark.parametrize("order", [1.02, 1.0, 0.4])
+def test_a_line_beside_the_shaft_s_is_named_and_says_nothing_of_sidebands(order: float) -> None:
+    rate, shaft, teeth = 12_800.0, 25.03, 20
+    t = np.arange(1 << 15) / rate
+    random = np.random.default_rng(5)
+    swing = 1.0 + 0.2 * np.cos(2 * np.pi * shaft * t)
+    x = swing * np.cos(2 * np.pi * teeth * shaft * t) + 0.05 * random.standard_normal(t.size)
+    x += 0.4 * np.cos(4 * np.pi * teeth * shaft * t + 1.0)
+    y = x + 0.5 * np.cos(2 * np.pi * order * shaft * t + 0.3)
+    plain, beside = (
+        {
+            line.name: line
+            for line in measure(
+                Record((Channel("a", v, "g"),), "x", rate, "made"), teeth=teeth, orders=orders
+            ).lines
+        }
+        for v, orders in ((x, ()), (y, (1.02,)))
+    )
+    asked = beside["order 1.02"]
+    truth = 0.5 if order == 1.02 else 0.0
+    assert abs(asked.reading - truth) < 1.5 * asked.half_width * asked.reading
+    assert asked.reading - truth < 0.01
+    own = beside[f"order {order:g}"]
+    assert own.reading == pytest.approx(0.5, abs=0.01)
+    assert own.order == pytest.approx(order, abs=1e-3)
+    for name in ("mesh x 1 - 1 shaft/20", "mesh x 1 + 1 shaft/20"):
+        for found in (plain, beside):
+            assert found[name].reading == pytest.approx(0.1, abs=0.01)
+            assert found[name].half_width < 0.1

@@ -13,19 +13,24 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, sides_of
 from thermogear.measured.units import kind_of
-from thermogear.signals.interval import Reading, read_line, strong_lines
+from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
 from thermogear.signals.spectra import amplitude_spectrum
 
 Floats = NDArray[np.float64]
 
 _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
+_OTHERS = 3  # prominent lines that no gear explains, of a channel
+_PROMINENT = 0.1  # of the channel's strongest line
+_FAR = 10  # sidebands of a mesh harmonic
+_NEAR = 4.0  # bins within which a stronger line reaches into an asked one
 
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredLine:
     """One line of one channel. What the record does not allow is nan, never guessed.
 
-    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "second mesh" or "line". ``order``
+    ``kind``: "mesh" (harmonic of the mesh line), "sideband", "second mesh", "order" (asked for) or
+    "line" (prominent, and none of the others). ``order``
     of the first shaft, ``position`` [cycles/sample], ``frequency`` [Hz]; ``reading`` peak
     amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m].
 
@@ -96,10 +101,16 @@ class Wanted:
 
 
 def wanted_lines(
-    gearing: Gearing | None, values: Floats, *, harmonics: int, sidebands: int
+    gearing: Gearing | None,
+    values: Floats,
+    *,
+    harmonics: int,
+    sidebands: int,
+    teeth: int | None = None,
 ) -> list[Wanted]:
     """Harmonics of the mesh line with their sidebands and further meshes, below rate/2.56.
 
+    Sidebands are those of the shafts that are decided, else of ``teeth`` where they are given.
     Without a gearing the highest lines of ``values`` (sample,).
     """
     count = values.size
@@ -116,6 +127,7 @@ def wanted_lines(
                 )
         return found[:harmonics]
     mesh = gearing.mesh_frequency
+    shafts = [shaft.teeth for shaft in gearing.shafts] or ([teeth] if teeth else [])
     found = []
     for rank in range(1, harmonics + 1):
         if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
@@ -123,11 +135,11 @@ def wanted_lines(
         # speed wander spreads a harmonic in proportion to its rank
         reach = max(bins, 2e-4 * rank * mesh)
         found.append(Wanted("mesh", f"mesh x {rank}", position=rank * mesh, half_width=reach))
-        for shaft in gearing.shafts:
+        for own in shafts:
             for n in range(1, sidebands + 1):
                 for sign in (-1, 1):
-                    place = rank * mesh + sign * n * mesh / shaft.teeth
-                    label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{shaft.teeth}"
+                    place = rank * mesh + sign * n * mesh / own
+                    label = f"mesh x {rank} {'+' if sign > 0 else '-'} {n} shaft/{own}"
                     found.append(Wanted("sideband", label, position=place, half_width=reach))
     for number, other in enumerate(gearing.meshes, start=2):
         place = other.order * mesh / gearing.shafts[0].teeth
@@ -138,6 +150,55 @@ def wanted_lines(
     if not found:
         found.append(Wanted("mesh", "mesh x 1", position=mesh, half_width=max(bins, 2e-4 * mesh)))
     return [w for w in found if bins < w.position < 0.5 - bins]
+
+
+def other_lines(
+    strong: list[tuple[float, float]],
+    gearing: Gearing,
+    teeth: int | None,
+    wanted: list[Wanted],
+    *,
+    width: float,
+) -> list[Wanted]:
+    """Prominent lines that neither stand among the ``wanted`` nor belong to a mesh: three at most.
+
+    ``strong``: (position, amplitude) of a channel's strongest lines, ``width`` of a bin
+    [cycles/sample]. To a mesh belong its harmonics and their sidebands of known shafts up to the
+    tenth. Such a line is an unbalance, a shaft beside, a bearing, a resonance: it says nothing of
+    sidebands.
+    """
+    mesh = gearing.mesh_frequency
+    known = [shaft.teeth for shaft in gearing.shafts] or ([teeth] if teeth else [])
+    shaft = mesh / (known[0] if teeth is None else teeth) if known or teeth else None
+    further = [other.order * mesh / gearing.shafts[0].teeth for other in gearing.meshes]
+    least = _PROMINENT * max((size for _, size in strong), default=0.0)
+
+    def explained(place: float) -> bool:
+        reach = max(3.0 * width, 2e-4 * place)
+        if any(
+            abs(place - want.position) < (width if want.kind == "order" else reach)
+            for want in wanted
+        ):
+            return True
+        if any(abs(place - round(place / one) * one) < reach for one in (mesh, *further)
+               if place > 0.5 * one):  # fmt: skip
+            return True
+        away = abs(place - round(place / mesh) * mesh) if place > 0.5 * mesh else np.inf
+        return any(
+            round(away * z / mesh) <= _FAR and abs(away - round(away * z / mesh) * mesh / z) < reach
+            for z in known
+            if np.isfinite(away)
+        )
+
+    found: list[Wanted] = []
+    for place, size in sorted(strong, key=lambda one: -one[1]):
+        if size < least or len(found) == _OTHERS:
+            break
+        if not explained(place) and 3.0 * width < place < 0.5 - 3.0 * width:
+            words = f"line at {place / mesh:.4g} mesh"
+            name = words if shaft is None else f"order {place / shaft:.4g}"
+            found.append(Wanted("line", name, position=place, half_width=width))
+    return found
 
 
 def channel_lines(
@@ -166,6 +227,11 @@ def channel_lines(
         turns.turning if turns else None,
     )
     strong = strong_lines(through.spectrum)
+    bin_width = through.spectrum.bin_width * through.axis / rate
+    if gearing is not None:
+        peaks = [(one.place * bin_width, abs(one.amplitude)) for one in strong]
+        others = other_lines(peaks, gearing, teeth, wanted, width=bin_width)
+        wanted = [*wanted, *others]
     places = [want.position for want in wanted]
     found = []
     in_hertz = record.rate is not None
@@ -174,7 +240,10 @@ def channel_lines(
     share = turns.half_width / turns.frequency if turns else float("nan")
     for want in wanted:
         line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
-        beside = [p * rate / through.axis for p in (*places, *_sides(gearing, teeth, want))]
+        around = [*places, *_sides(gearing, teeth, want)]
+        if want.kind == "order":
+            around += _nearby(strong, want.position, bin_width)
+        beside = [p * rate / through.axis for p in around]
         reading = read_line(
             through.spectrum,
             line.frequency / through.axis,
@@ -219,6 +288,13 @@ def channel_lines(
             )
         )
     return found
+
+
+def _nearby(strong: tuple[Strong, ...], position: float, bin_width: float) -> list[float]:
+    """Strong lines so near to an asked one that they would be taken for it [cycles/sample]."""
+    return [
+        one.place * bin_width for one in strong if abs(one.place - position / bin_width) < _NEAR
+    ]
 
 
 def _amplitude(reading: Reading, position: float, turns: MeshTurns | None) -> tuple[float, float]:

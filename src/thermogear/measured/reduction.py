@@ -200,7 +200,9 @@ def measure(
             teeth,
             wanted,
             _with_orders(
-                wanted_lines(gearing, values, harmonics=harmonics, sidebands=sidebands),
+                wanted_lines(
+                    gearing, values, harmonics=harmonics, sidebands=sidebands, teeth=teeth
+                ),
                 orders,
                 gearing,
                 teeth,

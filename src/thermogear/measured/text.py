@@ -78,7 +78,10 @@ class _Counted(io.RawIOBase):
         return True
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
-        data = self._stream.read(len(buffer))
+        try:
+            data = self._stream.read(len(buffer))
+        except (OSError, EOFError, zlib.error) as error:
+            raise refused(self._path, "text", error) from error
         self._count += len(data)
         if self._count > self._limit:
             raise too_large(self._path, becomes=self._count, limit=self._limit)
@@ -163,23 +166,17 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
 def _tables(lines: io.TextIOWrapper, layout: Layout, path: Path) -> Iterator[Floats]:
     """Blocks of rows; the last row is held back until it is known to be whole."""
     number = layout.skip
-    try:
-        while True:
-            block, last = _block(lines, path, number)
-            if not block:
-                return
-            if layout.clocks:
-                block = [without_clocks(line) for line in block]
-            if last:
-                _cut_end(block, layout)
-            if block:
-                yield _table(block, layout, path, number, last)
-            number += len(block)
-    except (OSError, EOFError, zlib.error) as error:
-        layout.notices.append(
-            Notice("important", f"the packed file ends early ({type(error).__name__})")
-        )
-        raise refused(path, "text", error) from error
+    while True:
+        block, last = _block(lines, path, number)
+        if not block:
+            return
+        if layout.clocks:
+            block = [without_clocks(line) for line in block]
+        if last:
+            _cut_end(block, layout)
+        if block:
+            yield _table(block, layout, path, number, last)
+        number += len(block)
 
 
 def _block(lines: io.TextIOWrapper, path: Path, number: int) -> tuple[list[str], bool]:
