@@ -22,6 +22,7 @@ _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
 _OTHERS = 3  # prominent lines that no gear explains, of a channel
 _PROMINENT = 0.1  # of the channel's strongest line
 _FAR = 10  # sidebands of a mesh harmonic
+_TOLD_APART = 1.2  # bins between two lines that a fit tells apart
 _NEAR = 4.0  # bins within which a stronger line reaches into an asked one
 
 
@@ -240,13 +241,13 @@ def channel_lines(
     share = turns.half_width / turns.frequency if turns else float("nan")
     for want in wanted:
         line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
-        around = [*places, *_sides(gearing, teeth, want)]
-        if want.kind == "order":
-            around += _nearby(strong, want.position, bin_width)
+        around, near = [*places, *_sides(gearing, teeth, want)], line.frequency / through.axis
+        if want.kind == "order" and (stronger := _nearby(strong, want.position, bin_width)):
+            around, near = [*around, *stronger], want.position * rate / through.axis
         beside = [p * rate / through.axis for p in around]
         reading = read_line(
             through.spectrum,
-            line.frequency / through.axis,
+            near,
             beside=beside,
             strong=strong,
             followed=turns.followed * rate / through.axis if turns else 0.0,
@@ -291,10 +292,14 @@ def channel_lines(
 
 
 def _nearby(strong: tuple[Strong, ...], position: float, bin_width: float) -> list[float]:
-    """Strong lines so near to an asked one that they would be taken for it [cycles/sample]."""
-    return [
-        one.place * bin_width for one in strong if abs(one.place - position / bin_width) < _NEAR
-    ]
+    """Strong lines so near to an asked one that they would be taken for it [cycles/sample].
+
+    None where one is too near to be told apart: then it is the asked one.
+    """
+    away = [abs(one.place - position / bin_width) for one in strong]
+    if min(away, default=_NEAR) < _TOLD_APART:
+        return []
+    return [one.place * bin_width for one, a in zip(strong, away, strict=True) if a < _NEAR]
 
 
 def _amplitude(reading: Reading, position: float, turns: MeshTurns | None) -> tuple[float, float]:
