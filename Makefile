@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-teeth trial-trains trial-turning unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -78,6 +78,9 @@ bench-train-map: $(STAMP)  ## a drive train's map on one thread, two and two das
 bench: $(BENCH_STAMP)  ## peers side by side, own environment; BENCH=--quick for a short one
 	PYTHONPATH=src $(BENCH_BIN)/python bench/run.py $(BENCH)
 
+bench-measure: $(STAMP)  ## what measure costs by length, stage and folder; MEASURE=--write for the page
+	$(BIN)/python bench/measured.py $(MEASURE)
+
 bench-paths: $(STAMP)  ## what one answer costs, before and after; PATHS=--write for the page
 	$(BIN)/python bench/paths.py $(PATHS)
 
@@ -121,7 +124,7 @@ trial-long: $(STAMP)  ## the shortened tests with ten times the count, minutes; 
 trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an hour; docs/trial_pairs.md
 	@$(BIN)/python checks/trial_pairs.py
 
-trial-hostile: $(STAMP)  ## 5 000 mutated cases, 5 700 mutated records of 12 kinds; docs/trial_hostile.md
+trial-hostile: $(STAMP)  ## 5 000 mutated cases, 95 400 mutated records of 18 kinds; docs/trial_hostile.md
 	@$(BIN)/python checks/trial_hostile.py
 
 trial-heat: $(STAMP)  ## every steady state of the heat balance, from cold, hot and warm-ups, half an hour; docs/trial_heat.md

@@ -147,6 +147,22 @@ class LineSpectrum:
             total = total + (-1.0) ** q * 0.5 * a * pair
         return np.asarray(total / coefficients[0])
 
+    def windowed_at(self, window: str | Window, place: int) -> complex:
+        """``windowed`` at the bin ``place`` alone."""
+        coefficients = windows.window(window).coefficients
+        count = self.lines.size
+        top = count - 1 if self.samples % 2 == 0 else count
+
+        def line(k: int) -> complex:
+            if 0 <= k < count:
+                return complex(self.lines[k])
+            return complex(np.conj(self.lines[-k if k < 0 else top - 1 - (k - count)]))
+
+        total = coefficients[0] * line(place)
+        for q, a in enumerate(coefficients[1:], start=1):
+            total += (-1.0) ** q * 0.5 * a * (line(place - q) + line(place + q))
+        return complex(total / coefficients[0])
+
 
 def line_spectrum(x: ArrayLike, rate: float) -> LineSpectrum:
     """The spectrum of one channel that ``line_in`` reads lines from; the mean is taken away.
@@ -215,7 +231,7 @@ def line_in(
     amplitudes = spectrum.hann
     peak = low + int(np.argmax(amplitudes[low : high + 1]))
     offset = hann_offset(amplitudes[peak - 1 : peak + 2])
-    value = complex(spectrum.windowed(chosen)[peak]) / float(chosen.response(offset))
+    value = spectrum.windowed_at(chosen, peak) / float(chosen.response(offset))
     hann_floor = floor_around(amplitudes, peak, lobe=4)
     # noise of a line grows with the root of the window's noise bandwidth
     floor = hann_floor * float(np.sqrt(chosen.noise_bandwidth / 1.5))

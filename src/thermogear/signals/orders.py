@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft, interpolate, signal
+from scipy import fft, interpolate, ndimage, signal
 
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import finite_record, positive_rate
@@ -128,8 +128,13 @@ def resample_by_angle(
     wanted = first + np.arange(count * samples_per_turn) / samples_per_turn
     place = np.interp(wanted, turned, np.arange(turned.size))
     fine = _finer(values, 4)
-    grid = np.arange(fine.shape[-1]) / 4.0
-    return np.asarray(interpolate.CubicSpline(grid, fine, axis=-1)(place))
+    rows = [_spline(row, 4.0 * place) for row in fine.reshape(-1, fine.shape[-1])]
+    return np.reshape(rows, (*values.shape[:-1], place.size))
+
+
+def _spline(values: Floats, place: Floats) -> Floats:
+    """A cubic spline through samples at 0, 1, ..., mirrored at both ends as ``_finer`` does."""
+    return np.asarray(ndimage.map_coordinates(values, place[None], order=3, mode="mirror"))
 
 
 def _finer(values: Floats, factor: int) -> Floats:
