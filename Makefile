@@ -10,7 +10,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-teeth trial-trains trial-turning unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -123,6 +123,9 @@ trial-long: $(STAMP)  ## the shortened tests with ten times the count, minutes; 
 
 trial-pairs: $(STAMP)  ## 2 000 random pairs through the whole chain, about an hour; docs/trial_pairs.md
 	@$(BIN)/python checks/trial_pairs.py
+
+trial-public: $(STAMP)  ## what measure says of public records; PUBLIC=FOLDER; docs/public_records.md
+	@$(BIN)/python checks/trial_public.py $(PUBLIC)
 
 trial-hostile: $(STAMP)  ## 5 000 mutated cases, 95 400 mutated records of 18 kinds; docs/trial_hostile.md
 	@$(BIN)/python checks/trial_hostile.py
