@@ -9,6 +9,7 @@ import pytest
 from scripts import script
 
 
+@pytest.mark.slow
 def test_a_page_stays_without_records_and_tells_what_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
