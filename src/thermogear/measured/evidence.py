@@ -19,11 +19,11 @@ from scipy import special
 
 from thermogear.measured.groups import (
     Flags,
+    Seen,
     falling,
     mean_exp,
     narrow,
     refined,
-    seen,
     some_of,
     take,
 )
@@ -290,16 +290,19 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
     ranks = np.arange(1, min(_HARMONICS, int(0.47 / mesh)) + 1)
     mesh, error = refined(peaks, mesh, ranks)
     rank = ranks.astype(float)
-    carriers = seen(
+    carriers = falling(
         peaks,
         used,
-        (rank * mesh)[None, :],
+        position=(rank * mesh)[None, :],
+        order=ranks,
         error=(rank * error)[None, :],
         spread=_MESH_SPREAD,
-        trend=-np.log(rank)[None, :],
+        trend=-np.log(rank),
+        top=np.inf,
     )
-    total = float(carriers.evidence[0]) + narrow(error, width=0.47)
-    lines = carriers.lines[0]
+    evidence, seen_best = _open(carriers)
+    total = evidence + narrow(error, width=0.47)
+    lines = seen_best.lines[0]
     used[lines[lines >= 0]] = True
     bare, mesh_lines = total, used.copy()
     around: list[float] = []
@@ -313,15 +316,7 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
             order=np.abs(_SIDES),
             error=there[:, None] * error,
             spread=_SIDE_SPREAD,
-            fall=_FALL,
-            top=tops,
-        )
-        first = seen(
-            peaks,
-            used,
-            (there[:, None] + np.array([-1.0, 1.0]) / z) * mesh,
-            error=there[:, None] * error,
-            spread=_SIDE_SPREAD,
+            trend=-_FALL * (np.abs(_SIDES) - 1.0),
             top=tops,
         )
         own = falling(
@@ -331,16 +326,24 @@ def _gear(peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated) -> 
             order=_OWN,
             error=(_OWN * error / z)[None, :],
             spread=_SIDE_SPREAD,
-            fall=_FALL,
+            trend=-_FALL * (_OWN - 1.0),
             top=np.inf,
         )
         prior = _prior(mesh, z, stated)
         bare += prior
-        around.append(some_of(first.evidence))
-        total += prior + some_of(np.concatenate([sides.evidence, own.evidence]))
-        take(used, sides)
-        take(used, own)
+        around.append(some_of(sides[0].evidence))
+        total += prior
+        for part in (sides, own):
+            evidence, seen_best = _open(part)
+            total += evidence
+            take(used, seen_best)
     return _Draft(mesh, teeth, total, used, bare, mesh_lines, tuple(around))
+
+
+def _open(parts: tuple[Seen, ...]) -> tuple[float, Seen]:
+    """Log evidence of groups up to an order that is open, all alike, and the best of them."""
+    each = [some_of(part.evidence) for part in parts]
+    return mean_exp(each), parts[int(np.argmax(each))]
 
 
 def _prior(mesh: float, teeth: int, stated: Stated) -> float:
