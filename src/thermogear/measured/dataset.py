@@ -96,16 +96,26 @@ def figures(found: Measurement) -> dict[str, Any]:
 def _found(gearing: Gearing | None) -> dict[str, Any]:
     """The verdict on the teeth, with the hypotheses that carry weight."""
     if gearing is None:
-        return {"verdict": "no gear found", "teeth": [], "hypotheses": []}
+        return {"verdict": "no gear found", "teeth": [], "gears": [], "hypotheses": []}
     return {
         "verdict": gearing.weighed.verdict,
         "teeth": [shaft.teeth for shaft in gearing.shafts],
+        "gears": [
+            {
+                "mesh_position": one.mesh,
+                "teeth": one.teeth,
+                "weight": one.weight,
+                "words": one.words,
+            }
+            for one in gearing.weighed.gears
+        ],
         "hypotheses": [
             {
                 "kind": one.kind,
                 "weight": one.weight,
-                "mesh_position": one.mesh if math.isfinite(one.mesh) else None,
-                "teeth": list(one.teeth),
+                "meshes": [
+                    {"mesh_position": gears.mesh, "teeth": list(gears.teeth)} for gears in one.gears
+                ],
                 "combs": list(one.combs),
                 "words": one.words,
             }

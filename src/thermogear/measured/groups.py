@@ -29,6 +29,8 @@ _FEW, _ASTRAY = 0.2, 0.12  # share of places that are less sure than they look, 
 _OUTLIER = 3.0
 _LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
 
+ONE_MORE = -float(np.log(2.0))
+"""Log prior of a mesh, a comb or its sidebands: there, or not there."""
 BLOCK = 6
 """Neighbours in a comb that share a level."""
 COMB_SPREADS = (0.5, 1.0, 1.6)

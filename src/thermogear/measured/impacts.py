@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.measured.groups import (
+    ONE_MORE,
     Flags,
     Seen,
     comb,
@@ -134,6 +135,7 @@ def background(
             evidence -= narrow(one.error, width=0.1)
         elif any(_in_ratio(one, step) for step in known):
             evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, width=0.1))
+        evidence += ONE_MORE
         if evidence <= 0.0:
             continue
         sides, after = _sidebands(peaks, after, one, found)
@@ -196,7 +198,7 @@ def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float
         anywhere = narrow(error, width=one.step)
         as_teeth = narrow(error * ratio / middle, width=_HIGHEST_RATIO)
         prior = mean_exp((anywhere, as_teeth))
-        evidence = some_of(sides.evidence) + prior
+        evidence = some_of(sides.evidence) + prior + ONE_MORE
         if evidence > best:
             best, after = evidence, used.copy()
             take(after, sides)

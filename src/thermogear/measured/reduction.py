@@ -20,9 +20,9 @@ from thermogear.measured.changing import (
     order_lines,
     read_in_angle,
 )
-from thermogear.measured.evidence import Stated
 from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
