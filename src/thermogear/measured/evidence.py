@@ -21,6 +21,7 @@ CLEAR = 0.99
 """Weight from which something is called decided."""
 
 _SURE_OF = 25.0  # nats
+_PLAIN = 0.1  # weight of a reading that may be the one
 _TOLD = 1e-3  # least weight that is told
 _MOST_TOLD = 6
 _ALIKE = 3e-4  # relative distance of two lines that are one
@@ -119,12 +120,9 @@ class Evidence:
     def fits(self, shaft: float, *, teeth: int | None, tolerance: float) -> bool:
         """Whether a reading with some weight has a shaft that turns so [turns/sample]."""
         return any(
-            abs(gears.mesh / z / shaft - 1.0) <= tolerance
-            for one in self.hypotheses
-            if one.weight >= _TOLD
-            for gears in one.gears
-            for z in gears.teeth
-            if teeth is None or z == teeth
+            abs(one.mesh / one.teeth / shaft - 1.0) <= tolerance
+            for one in self.gears
+            if one.weight >= _PLAIN and teeth in (None, one.teeth)
         )
 
     @property
@@ -155,14 +153,19 @@ class Evidence:
 
 
 def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
-    """Hypotheses on the teeth behind these lines, with weights."""
-    found = hypotheses(peaks, stated or Stated())
+    """Hypotheses on the teeth behind these lines, with weights.
+
+    Of two meshes with decided gears the one with the teeth stated comes first, else the higher.
+    """
+    stated = stated or Stated()
+    found = hypotheses(peaks, stated)
     logs = np.array([one.evidence for one in found])
     logs /= np.sqrt(1.0 + max(0.0, float(logs.max())) / _SURE_OF)
     weights = np.exp(logs - special.logsumexp(logs))
     weighed = [replace(one, weight=float(w)) for one, w in zip(found, weights, strict=True)]
     weighed.sort(key=lambda one: -one.weight)
-    named = [_named(gears, weighed) for gears in weighed[0].gears]
+    meshes = sorted(weighed[0].gears, key=lambda one: (stated.teeth in one.teeth, one.level))
+    named = [_named(gears, weighed) for gears in reversed(meshes)]
     return Evidence(
         hypotheses=tuple(weighed),
         named=tuple(one for one in named if one.teeth),

@@ -68,9 +68,11 @@ class Stated:
 @dataclass(frozen=True, kw_only=True)
 class Gears:
     """A mesh line [cycles/sample] and the teeth of those of its gears whose shafts show, with the
-    log evidence ``sides`` of each one's first sidebands alone."""
+    log evidence ``sides`` of each one's first sidebands alone; ``level`` of its highest harmonic
+    [nepers over the floor]."""
 
     mesh: float
+    level: float
     teeth: tuple[int, ...] = ()
     sides: tuple[float, ...] = ()
 
@@ -342,7 +344,8 @@ def _gear(
             evidence, seen_best = _open(part)
             total += evidence
             take(used, seen_best)
-    gears = Gears(mesh=mesh, teeth=teeth, sides=tuple(around))
+    level = float(np.max(tops, initial=-np.inf))
+    gears = Gears(mesh=mesh, level=level, teeth=teeth, sides=tuple(around))
     if first is None:
         return _Draft((gears,), total, used, bare, mesh_lines)
     return _Draft(
