@@ -29,6 +29,8 @@ _FEW, _ASTRAY = 0.2, 0.12  # share of places that are less sure than they look, 
 _OUTLIER = 3.0
 _LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
 
+HIGHEST = 0.47
+"""Lines are looked for up to here [cycles/sample]."""
 ONE_MORE = -float(np.log(2.0))
 """Log prior of a mesh, a comb or its sidebands: there, or not there."""
 BLOCK = 6
@@ -105,7 +107,7 @@ def _members(
     index, off = peaks.nearest(position)
     close = np.hypot(peaks.error[index], error) / peaks.bin_width
     deviation = np.hypot(close, _ASTRAY)
-    outside = (position < 3.0 * peaks.bin_width) | (position > 0.47)
+    outside = (position < 3.0 * peaks.bin_width) | (position > HIGHEST)
     hit = (np.abs(off) < _REACH * deviation) & ~used[index] & ~outside
     missing = ~hit & ~outside & (np.abs(off) >= 3.0)
     mean = max(0.3, float(np.mean(peaks.level - peaks.least)))
@@ -185,7 +187,7 @@ def refined(
 def comb_of(peaks: Peaks, step: float, error: float) -> tuple[float, float]:
     """The step +- ``error`` and its error, refined by as many multiples as it foretells to half a
     bin, then by as many as that one does, and so on to the last."""
-    highest = min(LONGEST_COMB, int(0.47 / step))
+    highest = min(LONGEST_COMB, int(HIGHEST / step))
     last = 0
     while last < highest:
         reach = int(min(highest, max(2 * last, 3, 0.5 * peaks.bin_width / error)))
@@ -204,7 +206,7 @@ def comb(peaks: Peaks, used: Flags, *, step: float, error: float) -> tuple[float
     there, and whether the first one starts at the first line or in the middle. The prior of the
     step is uniform up to 0.1 cycles/sample: log(error sqrt(2 pi)/0.1) is added.
     """
-    highest = min(LONGEST_COMB, int(0.47 / step))
+    highest = min(LONGEST_COMB, int(HIGHEST / step))
     parts: list[tuple[float, Seen]] = []
     for start in (1, 1 - BLOCK // 2):
         blocks = -(-(highest + 1 - start) // BLOCK)

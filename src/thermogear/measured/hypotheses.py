@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.measured.groups import (
+    HIGHEST,
     ONE_MORE,
     Flags,
     Seen,
@@ -163,9 +164,8 @@ def _bare_lines(peaks: Peaks, drafts: list[_Draft]) -> list[float]:
     found: list[float] = []
     meshes = [draft.gears[0].mesh for draft in drafts]
     for mesh in (*meshes[:_BARE], *peaks.place[np.argsort(-peaks.level)[:_BARE]]):
-        if mesh > _LOWEST * peaks.bin_width and all(
-            abs(mesh / other - 1.0) > _SAME_STEP for other in found
-        ):
+        new = all(abs(mesh / other - 1.0) > _SAME_STEP for other in found)
+        if new and _LOWEST * peaks.bin_width < mesh < HIGHEST:
             found.append(float(mesh))
     return found
 
@@ -252,7 +252,7 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
     pairs: list[tuple[float, float, int]] = []
     told: list[tuple[float, float, int]] = []
     for start in tried[tried > _LOWEST * peaks.bin_width]:
-        highest = min(_HARMONICS, int(0.47 / start))
+        highest = min(_HARMONICS, int(HIGHEST / start))
         if highest < 1:
             continue
         mesh = refined(peaks, float(start), np.arange(1, highest + 1))[0]
@@ -278,7 +278,7 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
             kept += [(mesh, z * k), (mesh * k, z * k)]
             if z % k == 0:
                 kept += [(mesh, z // k), (mesh / k, z // k)]
-    fitting = [(m, z) for m, z in kept if TEETH[0] <= z <= TEETH[1] and m < 0.47]
+    fitting = [(m, z) for m, z in kept if TEETH[0] <= z <= TEETH[1] and m < HIGHEST]
     return list(dict.fromkeys(fitting))
 
 
@@ -293,7 +293,7 @@ def _gear(
     """Log evidence of a mesh line with these gears, without what is left of the lines; of a second
     mesh on the lines that the ``first`` leaves."""
     used = np.zeros(peaks.size, dtype=bool) if first is None else first.used.copy()
-    ranks = np.arange(1, min(_HARMONICS, int(0.47 / mesh)) + 1)
+    ranks = np.arange(1, min(_HARMONICS, int(HIGHEST / mesh)) + 1)
     mesh, error = refined(peaks, mesh, ranks)
     rank = ranks.astype(float)
     carriers = falling(
@@ -307,7 +307,7 @@ def _gear(
         top=np.inf,
     )
     evidence, seen_best = _open(carriers)
-    total = evidence + narrow(error, width=0.47) + ONE_MORE
+    total = evidence + narrow(error, width=HIGHEST) + ONE_MORE
     lines = seen_best.lines[0]
     used[lines[lines >= 0]] = True
     bare, mesh_lines = total, np.zeros(peaks.size, dtype=bool)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.measured.groups import (
+    HIGHEST,
     ONE_MORE,
     Flags,
     Seen,
@@ -102,7 +103,7 @@ def _often(apart: Floats) -> Floats:
 
 def standing_out(peaks: Peaks, step: float, *, fewest: int, most: int) -> list[int]:
     """The numbers of steps whose first six multiples stand highest over their eight neighbours."""
-    count = int(0.47 / step)
+    count = int(HIGHEST / step)
     if count < fewest + _BESIDE:
         return []
     index, off = peaks.nearest(np.asarray(np.arange(1, count + 1) * step, float))
