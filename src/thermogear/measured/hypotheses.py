@@ -52,7 +52,8 @@ _FINAL = 24
 _FIRST, _SECOND = 6, 24  # meshes that a second is put beside, and seconds tried
 _FINAL_TWO = 10
 _BARE = 4  # mesh lines without teeth
-_APART = 3.0  # bins between the lines of two shafts
+_APART = 3.0  # bins between a line and its sidebands, and between the lines of two shafts
+_TOLD_APART = 6.0  # bins between a line and its sidebands where teeth can be named
 _SAME_STEP = 1e-4
 _GIVEN = 0.9  # how far a stated tooth number or speed is trusted
 _SPEED_SPREAD = 0.05  # a stated speed is nominal
@@ -265,7 +266,7 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
         own = np.sum(_looked(gain, peaks, np.array([1, 2, 3])[:, None] * mesh / teeth), axis=0)
         carriers = np.sum(_looked(gain, peaks, rank * mesh))
         score = sides + own + 2.0 * carriers
-        score[mesh / teeth < 4.0 * peaks.bin_width] = -np.inf
+        score[mesh / teeth < _APART * peaks.bin_width] = -np.inf
         best = np.argsort(-score)[:8]
         pairs += [(float(score[i]), mesh, int(teeth[i])) for i in best]
         if stated.teeth is not None and TEETH[0] <= stated.teeth <= TEETH[1]:
@@ -338,7 +339,9 @@ def _gear(
         )
         prior = _prior(mesh, z, stated)
         bare += prior
-        around.append(some_of(sides[0].evidence))
+        # beside a line, as close as its own lobe, others are not placed well enough to count teeth
+        near = mesh / z < _TOLD_APART * peaks.bin_width
+        around.append(0.0 if near else some_of(sides[0].evidence))
         total += prior
         for part in (sides, own):
             evidence, seen_best = _open(part)

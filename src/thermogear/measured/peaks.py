@@ -24,6 +24,7 @@ _FALSE = 0.1  # peaks of noise alone expected in a whole spectrum
 _NEAR = 200  # bins to each side in which the density of lines is counted
 _LOBE = 3  # bins beside a line in which a lower one cannot be told
 _PLACE = 0.01  # bins: what is left of a place's error
+_BANDS = 16
 _LOBE_BINS = np.arange(-2, 3)
 
 
@@ -33,7 +34,10 @@ class Peaks:
 
     ``place`` [cycles/sample] with standard deviation ``error``; ``level``: natural logarithm of
     amplitude over the floor's rms; ``density``: other lines per bin around each; ``least``: the
-    level that a line must have to be seen; ``bin_width`` [cycles/sample].
+    level that a line must have to be seen; ``bin_width`` [cycles/sample]. ``sharpness``: logarithm
+    of the highest bin's share in the power of its band, summed over bands. A wrong clock, which
+    turns with the sidebands of its own reference, takes power from the lines and gives it to new
+    ones: it makes the spectrum less sharp.
     """
 
     place: Floats
@@ -43,6 +47,7 @@ class Peaks:
     least: float
     bin_width: float
     bins: int
+    sharpness: float = 0.0
 
     @property
     def size(self) -> int:
@@ -110,7 +115,13 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
         least=0.5 * float(np.log(least / count)),
         bin_width=bin_width,
         bins=number,
+        sharpness=_sharpness(total),
     )
+
+
+def _sharpness(power: Floats) -> float:
+    edge = np.linspace(0, power.size, _BANDS + 1).astype(int)[:-1]
+    return float(np.sum(np.log(np.maximum.reduceat(power, edge) / np.add.reduceat(power, edge))))
 
 
 def _in_lobe(lobes: NDArray[np.complex128], window: Window) -> tuple[Floats, Floats]:

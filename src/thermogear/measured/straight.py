@@ -16,17 +16,14 @@ _WIDTHS = ((0.004, 0.015), (0.001, 0.004))
 _LEAST = 12.0  # bins of that half width
 _STEADY = 0.03  # cycles of wander at the highest frequency
 _HIGHEST = 0.3
-_SMEARED = 10.0  # bins
-_BAND = 0.06  # cycles/sample
-_COMPARED = 3  # lines of each band
 _FINER = 4
 _NEAR, _AROUND = 20, 300  # bins: to each side of a line, and of its floor
 
 
 def sharp_peaks(channels: Floats) -> Peaks:
     """Lines of ``channels`` (channel, sample), where the speed wanders in the clock of the line
-    that makes the highest lines highest: the sum of their levels decides, the steady
-    clock of the record among them. In the new clock it is tried once more, with narrower filters.
+    that makes the spectrum sharpest, the steady clock of the record among them. In the new clock it
+    is tried once more, with narrower filters.
     """
     best = peaks_of(channels)
     for widths in _WIDTHS:
@@ -41,7 +38,7 @@ def _straighter(
     channels: Floats, peaks: Peaks, widths: tuple[float, ...]
 ) -> tuple[Floats, Peaks] | None:
     """The record in a better clock and its lines; None: there is none."""
-    best, score = None, _sharpness(peaks)
+    best, score = None, peaks.sharpness
     spectra = np.fft.rfft(channels - channels.mean(axis=-1, keepdims=True), axis=-1)
     count = channels.shape[-1]
     fine: Floats | None = None
@@ -60,8 +57,8 @@ def _straighter(
             fine = _finer(channels) if fine is None else fine
             turned = _warped(fine, cycles, start)
             found = peaks_of(turned)
-            if _sharpness(found) > score:
-                best, score = (turned, found), _sharpness(found)
+            if found.sharpness > score:
+                best, score = (turned, found), found.sharpness
     return best
 
 
@@ -84,21 +81,6 @@ def _references(peaks: Peaks) -> list[float]:
         if len(found) == _REFERENCES:
             break
     return found
-
-
-def _sharpness(peaks: Peaks) -> float:
-    """Levels of the highest lines of each eighth of the spectrum, summed: of lines that stand as
-    close as one that is smeared into several does, the highest counts.
-
-    Always as many, and everywhere: a clock that is turned by the sidebands of its own reference
-    makes new lines, none of these higher, and sharpens the lines beside its reference alone.
-    """
-    if peaks.size == 0:
-        return 0.0
-    first = np.r_[0, np.flatnonzero(np.diff(peaks.place) > _SMEARED * peaks.bin_width) + 1]
-    highest = np.maximum.reduceat(peaks.level - peaks.least, first)
-    part = (peaks.place[first] / _BAND).astype(int)
-    return float(sum(np.sum(np.sort(highest[part == k])[-_COMPARED:]) for k in np.unique(part)))
 
 
 def _cycles(
