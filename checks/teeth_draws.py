@@ -37,7 +37,8 @@ class Made:
     """A record (channel, sample) and its truth.
 
     ``modulation``: of the gear that is modulated most, ``level`` [dB]: the first mesh line's
-    power over that of all the noise, ``unbalance``: shaft line over mesh line.
+    power over that of all the noise, ``unbalance``: shaft line over mesh line, ``impacts``: their
+    rate [cycles/sample].
     """
 
     kind: str
@@ -50,6 +51,7 @@ class Made:
     level: float = 0.0
     unbalance: float = 0.0
     wander: float = 0.0
+    impacts: float = float("nan")
 
     @property
     def clear(self) -> bool:
@@ -280,6 +282,7 @@ def _bearing(kind: str, number: int, random: Random) -> Made:
         shaft=shaft,
         level=level,
         unbalance=unbalance,
+        impacts=1.0 / period,
     )
 
 
@@ -362,4 +365,5 @@ def _motor(kind: str, number: int, random: Random) -> Made:
         meshes=(),
         shaft=shaft,
         level=bearing.level,
+        impacts=bearing.impacts,
     )

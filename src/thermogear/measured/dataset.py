@@ -96,10 +96,17 @@ def figures(found: Measurement) -> dict[str, Any]:
 def _found(gearing: Gearing | None) -> dict[str, Any]:
     """The verdict on the teeth, with the hypotheses that carry weight."""
     if gearing is None:
-        return {"verdict": "no gear found", "teeth": [], "gears": [], "hypotheses": []}
+        return {
+            "verdict": "no gear found",
+            "teeth": [],
+            "gears": [],
+            "hypotheses": [],
+            "envelope": None,
+        }
     return {
         "verdict": gearing.weighed.verdict,
         "teeth": [shaft.teeth for shaft in gearing.shafts],
+        "envelope": vars(gearing.envelope) if gearing.envelope else None,
         "gears": [
             {
                 "mesh_position": one.mesh,
