@@ -184,7 +184,7 @@ def refined(
         rank, line = rank[kept], line[kept]
 
 
-def comb_of(peaks: Peaks, step: float, error: float) -> tuple[float, float]:
+def comb_of(peaks: Peaks, *, step: float, error: float) -> tuple[float, float]:
     """The step +- ``error`` and its error, refined by as many multiples as it foretells to half a
     bin, then by as many as that one does, and so on to the last."""
     highest = min(LONGEST_COMB, int(HIGHEST / step))

@@ -78,7 +78,7 @@ def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
     for start, sure_to in tried:
         if start < 4.0 * peaks.bin_width:
             continue
-        step, error = comb_of(peaks, float(start), float(sure_to))
+        step, error = comb_of(peaks, step=float(start), error=float(sure_to))
         if any(abs(step / other - 1.0) < 1e-5 for other in seen_steps):
             continue
         seen_steps.append(step)

@@ -63,7 +63,7 @@ def _straighter(
 
 
 def _clearest(size: Floats, place: float) -> int:
-    """The channel in which a line at ``place`` [bins] stands highest over what is around it."""
+    """The channel in which a line at ``place`` [bins] is highest over what is around it."""
     middle = round(place)
     line = size[:, max(0, middle - _NEAR) : middle + _NEAR + 1].max(axis=-1)
     around = np.median(size[:, max(0, middle - _AROUND) : middle + _AROUND + 1], axis=-1)
