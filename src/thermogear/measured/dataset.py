@@ -56,7 +56,7 @@ def result_of(found: Measurement) -> Result:
         [Notice(n.level, n.text) for n in found.notices],
         created=now(),
         settings=found.settings,
-        evidence=list(gearing.evidence) if gearing else [],
+        evidence=_evidence(found),
         findings=[one.text for one in found.findings],
         rate="" if found.record.rate is None else repr(found.record.rate),
         unit=channels[0].unit or "",
@@ -83,14 +83,20 @@ def figures(found: Measurement) -> dict[str, Any]:
         "shaft_speed_half_width": plain(found.lines[0].speed_half_width) if found.lines else None,
         "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
         "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
-        "evidence": list(gearing.evidence) if gearing else [],
+        "evidence": _evidence(found),
         "given": {"teeth": found.given[0], "speed": found.given[1]},
         "found": _found(gearing),
+        "swelling": vars(found.swelling) if found.swelling else None,
         "findings": [{**vars(one), "text": one.text} for one in found.findings],
         "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
         "slices": None if found.slices is None else slice_figures(found.slices),
         "notices": [vars(notice) for notice in found.notices],
     }
+
+
+def _evidence(found: Measurement) -> list[str]:
+    told = list(found.gearing.evidence) if found.gearing else []
+    return told + ([found.swelling.words] if found.swelling else [])
 
 
 def _found(gearing: Gearing | None) -> dict[str, Any]:
@@ -106,7 +112,6 @@ def _found(gearing: Gearing | None) -> dict[str, Any]:
     return {
         "verdict": gearing.weighed.verdict,
         "teeth": [shaft.teeth for shaft in gearing.shafts],
-        "envelope": vars(gearing.envelope) if gearing.envelope else None,
         "gears": [
             {
                 "mesh_position": one.mesh,

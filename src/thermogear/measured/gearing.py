@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from thermogear.measured.hypotheses import Stated
 from thermogear.measured.prominence import Prominence, prominence
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
 from thermogear.measured.straight import sharp_peaks
-from thermogear.signals.envelope import Envelope, envelope_rate
 from thermogear.signals.orders import line_angle, resample_by_angle
 from thermogear.signals.spectra import amplitude_spectrum
 
@@ -29,8 +27,6 @@ LONGEST = 1 << 19
 
 _HARMONICS = 5
 _SAME = 1e-3  # a mesh line's position from two ways of reading it
-_CHANCE = 1e-3  # of an envelope line that is told
-_WHOLE = 6  # denominators of shafts of a train
 _LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
@@ -38,8 +34,7 @@ _NARROW = 0.006  # half width of the phase filter over the mesh line
 @dataclass(frozen=True, kw_only=True)
 class Gearing:
     """What a record's lines tell: mesh line [cycles/sample], the shafts of gears whose teeth are
-    decided (the fastest first), further meshes, the hypotheses and the evidence in words;
-    ``envelope``: the rate at which the noise swells, where chance does not explain it."""
+    decided (the fastest first), further meshes, the hypotheses and the evidence in words."""
 
     mesh_frequency: float
     mesh_frequency_error: float
@@ -48,7 +43,6 @@ class Gearing:
     meshes: tuple[Mesh, ...]
     evidence: tuple[str, ...]
     weighed: Evidence
-    envelope: Envelope | None = None
 
     @property
     def teeth(self) -> int | None:
@@ -73,9 +67,7 @@ def find_gearing(
        harmonics 1..5 (``near`` [cycles/sample] restricts it to +-3 %).
     3. The phase of that line is the angle: the record is resampled in mesh cycles, where the
        decided shafts' sidebands measure mesh line over shaft line.
-    4. The envelope of what is no line is searched for a rate
-       (:func:`~thermogear.signals.envelope.envelope_rate`), as impacts that slip make it.
-    5. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
+    4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
     ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
@@ -139,9 +131,6 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
         ]
         if len(shafts) > 1:
             meshes = second_mesh(sharp, shafts, top, evidence)
-    swell = _swell(table)
-    if swell is not None:
-        evidence.append(_swell_words(swell, mesh / shafts[0].teeth if shafts else None))
     if not shafts:
         evidence.append("no tooth number is decided: it may be a shaft's own line and no mesh line")
     return Gearing(
@@ -152,30 +141,7 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
         meshes=meshes,
         evidence=tuple(evidence),
         weighed=weighed,
-        envelope=swell,
     )
-
-
-def _swell(table: Floats) -> Envelope | None:
-    """The clearest rate of the channels' envelopes, None where chance may explain it."""
-    found = [one for one in map(envelope_rate, table) if one is not None]
-    best = min(found, key=lambda one: (one.chance, -sum(one.powers)), default=None)
-    return best if best is not None and best.chance * len(found) < _CHANCE else None
-
-
-def _swell_words(swell: Envelope, shaft: float | None) -> str:
-    powers = ", ".join(f"{p:.0f}" for p in swell.powers)
-    said = (
-        f"what is no line between {swell.band[0]:.3f} and {swell.band[1]:.3f} cycles/sample swells "
-        f"every {swell.rate:.6f} cycles/sample (envelope line: harmonics {powers} times noise)"
-    )
-    if shaft is None:
-        return f"{said}: impacts of a bearing or of a shaft, or a load that swings"
-    order = swell.rate / shaft
-    ratio = Fraction(order).limit_denominator(_WHOLE)
-    if ratio > 0 and abs(order / float(ratio) - 1.0) < _SAME:
-        return f"{said}: {ratio} of the first shaft, as a shaft of the train does"
-    return f"{said}: {order:.3f} of the first shaft, no ratio of teeth: impacts as of a bearing"
 
 
 def _clearest_family(raw: Prominence, near: float | None) -> _Family:
