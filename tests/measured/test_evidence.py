@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from thermogear.measured.evidence import Stated, weigh
+from thermogear.measured.evidence import weigh
 from thermogear.measured.groups import falling, seen, some_of
+from thermogear.measured.hypotheses import Stated
 from thermogear.measured.peaks import Peaks, peaks_of
 from thermogear.measured.straight import sharp_peaks
 
@@ -34,7 +35,9 @@ def test_the_evidence_of_a_group_is_its_integral_over_the_level() -> None:
     mean = 2.0
 
     def both(level: float) -> float:
-        there = stats.norm.pdf(0.1, scale=0.2) / 0.01 * stats.norm.pdf(2.0, level, 1.2)
+        place = 0.8 * stats.norm.pdf(0.1, scale=0.2)
+        place += 0.2 * stats.norm.pdf(0.1, scale=np.hypot(0.2, 0.12))
+        there = place / 0.01 * stats.norm.pdf(2.0, level, 1.2)
         return float(there / stats.expon.pdf(2.0, scale=mean) * stats.norm.cdf(-level / 1.2))
 
     expected = np.log(integrate.quad(both, -3.0, 10.0)[0] / 13.0)
@@ -42,18 +45,49 @@ def test_the_evidence_of_a_group_is_its_integral_over_the_level() -> None:
     assert found.lines.tolist() == [[0, -1]]
 
 
-def test_orders_that_fall_are_an_even_mixture() -> None:
+def test_groups_up_to_an_order_are_those_of_its_members() -> None:
     peaks = lines_at([0.1, 0.2], [2.0, 1.0])
     place, order = np.array([[0.1, 0.2]]), np.array([1, 2])
-    none = np.zeros(2, bool)
-    mixed = falling(
-        peaks, none, position=place, order=order, error=0.0, spread=1.0, fall=0.7, top=np.inf
+    none, trend = np.zeros(2, bool), np.array([0.0, -0.7])
+    one, two = falling(
+        peaks, none, position=place, order=order, error=0.0, spread=1.0, trend=trend, top=np.inf
     )
-    one = seen(peaks, none, place[:, :1], error=0.0, spread=1.0).evidence[0]
-    trend = np.array([0.0, -0.7])
-    two = seen(peaks, none, place, error=0.0, spread=1.0, trend=trend).evidence[0]
-    assert mixed.evidence[0] == pytest.approx(np.logaddexp(one, two) - np.log(2.0), abs=1e-12)
+    alone = seen(peaks, none, place[:, :1], error=0.0, spread=1.0)
+    both = seen(peaks, none, place, error=0.0, spread=1.0, trend=trend)
+    assert one.evidence[0] == pytest.approx(alone.evidence[0], abs=1e-12)
+    assert two.evidence[0] == pytest.approx(both.evidence[0], abs=1e-12)
+    assert (one.lines.tolist(), two.lines.tolist()) == ([[0, -1]], [[0, 1]])
     assert some_of(np.zeros(5)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_line_is_placed_to_its_stated_error() -> None:
+    """Drawn lines in white noise: normal of no more than the stated deviation, none far out."""
+    random = np.random.default_rng(77)
+    n = np.arange(8192)
+    off = []
+    for _ in range(150):
+        place = random.uniform(0.05, 0.4)
+        wave = np.cos(2 * np.pi * place * n + random.uniform(0, 6))
+        found = peaks_of(wave[None] + random.uniform(0.05, 2.0) * random.normal(size=(1, n.size)))
+        nearest, _ = found.nearest(np.array([place]))
+        off.append(float((found.place[nearest[0]] - place) / found.error[nearest[0]]))
+    assert 0.5 < np.std(off) < 1.2
+    assert np.max(np.abs(off)) < 4.5
+
+
+def test_first_sidebands_alone_are_teeth_where_the_shaft_shows() -> None:
+    """A textbook's gear: one sideband to each side and the shaft's own line."""
+    n = np.arange(COUNT)
+    mesh = 0.0394
+    for teeth in (25, 31):
+        swing = 1.0 + 0.05 * np.cos(2 * np.pi * mesh / teeth * n)
+        x = 0.05 * np.random.default_rng(teeth).normal(size=n.size)
+        x += swing * sum(0.5**k * np.cos(2 * np.pi * (k + 1) * mesh * n + k) for k in range(3))
+        bare = weigh(sharp_peaks(x[None]))
+        assert bare.gears[0].teeth == teeth
+        assert bare.hypotheses[0].gears
+        x += 0.1 * np.cos(2 * np.pi * mesh / teeth * n)
+        assert weigh(sharp_peaks(x[None])).teeth == (teeth,)
 
 
 def test_noise_alone_has_a_line_in_a_tenth_of_the_spectra() -> None:
@@ -80,6 +114,7 @@ def test_a_tooth_number_and_its_double_are_told_apart(teeth: int) -> None:
     assert (found.verdict, found.teeth) == ("decided", (teeth,))
     assert found.mesh == pytest.approx(0.0613, rel=1e-5)
     assert sum(one.weight for one in found.hypotheses) == pytest.approx(1.0, abs=1e-9)
+    assert (found.gears[0].teeth, found.gears[0].weight) == (teeth, found.weights[0])
 
 
 def test_impacts_are_no_gear() -> None:

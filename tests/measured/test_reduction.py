@@ -104,7 +104,7 @@ def test_without_rate_and_unit_there_are_orders_and_no_hertz() -> None:
         (0.1, "the rate looks ten times too low"),
         (10.0, "the rate looks ten times too high"),
         (2.0, "the rate looks twice too high"),
-        (3.3, r"rate, teeth or speed is wrong by a factor 3\.3"),
+        (5.3, r"rate, teeth or speed is wrong by a factor 5\.3"),
     ],
 )
 def test_a_wrong_rate_is_said_with_the_one_that_fits(factor: float, said: str) -> None:

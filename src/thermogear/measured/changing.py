@@ -214,7 +214,7 @@ def _steady(shaft: Shaft, angle: _Angle, notices: list[Notice]) -> Changing:
         shafts=(),
         meshes=(),
         evidence=(f"the mesh line is put at {angle.teeth} times the tacho's shaft",),
-        weighed=Evidence(hypotheses=(), mesh=float("nan"), teeth=(), weights=()),
+        weighed=Evidence(hypotheses=()),
     )
     turns = MeshTurns(
         frequency=mean,

@@ -56,7 +56,7 @@ def result_of(found: Measurement) -> Result:
         [Notice(n.level, n.text) for n in found.notices],
         created=now(),
         settings=found.settings,
-        evidence=list(gearing.evidence) if gearing else [],
+        evidence=_evidence(found),
         findings=[one.text for one in found.findings],
         rate="" if found.record.rate is None else repr(found.record.rate),
         unit=channels[0].unit or "",
@@ -83,9 +83,10 @@ def figures(found: Measurement) -> dict[str, Any]:
         "shaft_speed_half_width": plain(found.lines[0].speed_half_width) if found.lines else None,
         "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
         "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
-        "evidence": list(gearing.evidence) if gearing else [],
+        "evidence": _evidence(found),
         "given": {"teeth": found.given[0], "speed": found.given[1]},
         "found": _found(gearing),
+        "swelling": vars(found.swelling) if found.swelling else None,
         "findings": [{**vars(one), "text": one.text} for one in found.findings],
         "lines": [{k: plain(v) for k, v in vars(line).items()} for line in found.lines],
         "slices": None if found.slices is None else slice_figures(found.slices),
@@ -93,19 +94,40 @@ def figures(found: Measurement) -> dict[str, Any]:
     }
 
 
+def _evidence(found: Measurement) -> list[str]:
+    told = list(found.gearing.evidence) if found.gearing else []
+    return told + ([found.swelling.words] if found.swelling else [])
+
+
 def _found(gearing: Gearing | None) -> dict[str, Any]:
     """The verdict on the teeth, with the hypotheses that carry weight."""
     if gearing is None:
-        return {"verdict": "no gear found", "teeth": [], "hypotheses": []}
+        return {
+            "verdict": "no gear found",
+            "teeth": [],
+            "gears": [],
+            "hypotheses": [],
+            "envelope": None,
+        }
     return {
         "verdict": gearing.weighed.verdict,
         "teeth": [shaft.teeth for shaft in gearing.shafts],
+        "gears": [
+            {
+                "mesh_position": one.mesh,
+                "teeth": one.teeth,
+                "weight": one.weight,
+                "words": one.words,
+            }
+            for one in gearing.weighed.gears
+        ],
         "hypotheses": [
             {
                 "kind": one.kind,
                 "weight": one.weight,
-                "mesh_position": one.mesh if math.isfinite(one.mesh) else None,
-                "teeth": list(one.teeth),
+                "meshes": [
+                    {"mesh_position": gears.mesh, "teeth": list(gears.teeth)} for gears in one.gears
+                ],
                 "combs": list(one.combs),
                 "words": one.words,
             }

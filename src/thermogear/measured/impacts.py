@@ -11,7 +11,19 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.measured.groups import Flags, Seen, comb, comb_of, narrow, seen, some_of, take
+from thermogear.measured.groups import (
+    HIGHEST,
+    ONE_MORE,
+    Flags,
+    Seen,
+    comb,
+    comb_of,
+    mean_exp,
+    narrow,
+    seen,
+    some_of,
+    take,
+)
 from thermogear.measured.peaks import Peaks
 
 Floats = NDArray[np.float64]
@@ -24,7 +36,9 @@ _BESIDE = 4
 _WHOLE = 12
 _RATIOS = len({Fraction(p, q) for p in range(1, _WHOLE + 1) for q in range(1, _WHOLE + 1)})
 _OUTSTANDING = 3
+_HIGHEST_RATIO = 250.0  # of a step to the distance of its sidebands
 _SAME = 1e-4  # two steps are one
+_NEAR = 0.1  # bins: a step that teeth foretell
 
 
 @dataclass(frozen=True)
@@ -46,23 +60,25 @@ def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
     if peaks.size < 3:
         return []
     strong = np.sort(np.argsort(-peaks.level)[:_STRONG])
-    place = peaks.place[strong]
+    place, sure = peaks.place[strong], peaks.error[strong]
     apart = np.abs(place[:, None] - place)
     apart = apart[(apart > 4.0 * peaks.bin_width) & (apart < 0.1)]
-    low = peaks.place[peaks.place < 0.1]
-    heights = peaks.level[peaks.place < 0.1]
-    tried = [*steps, *low[np.argsort(-heights)[:40]]]
-    for top in place:
-        for distance in np.sort(apart)[:: max(1, apart.size // _STEPS)]:
+    low = np.flatnonzero(peaks.place < 0.1)
+    low = low[np.argsort(-peaks.level[low])[:40]]
+    tried = [(step, _NEAR * peaks.bin_width) for step in steps]
+    tried += zip(peaks.place[low], peaks.error[low], strict=True)
+    for top, error in zip(place, sure, strict=True):
+        for distance in _often(apart / peaks.bin_width) * peaks.bin_width:
             middle = int(np.rint(top / distance))
-            tried += [top / rank for rank in (middle - 1, middle, middle + 1) if rank >= 1]
+            ranks = (rank for rank in (middle - 1, middle, middle + 1) if rank >= 1)
+            tried += [(top / rank, error / rank) for rank in ranks]
     found: list[Comb] = []
     seen_steps: list[float] = []
     none = np.zeros(peaks.size, dtype=bool)
-    for start in tried:
+    for start, sure_to in tried:
         if start < 4.0 * peaks.bin_width:
             continue
-        step, error = comb_of(peaks, float(start))
+        step, error = comb_of(peaks, step=float(start), error=float(sure_to))
         if any(abs(step / other - 1.0) < 1e-5 for other in seen_steps):
             continue
         seen_steps.append(step)
@@ -77,9 +93,17 @@ def combs_of(peaks: Peaks, steps: tuple[float, ...] = ()) -> list[Comb]:
     return kept[:_KEPT]
 
 
+def _often(apart: Floats) -> Floats:
+    """The distances [bins] that most pairs have, each once, the most frequent first."""
+    ordered = np.sort(apart)
+    parts = np.split(ordered, np.flatnonzero(np.diff(ordered) > 0.5) + 1)
+    parts.sort(key=lambda part: -part.size)
+    return np.array([float(np.mean(part)) for part in parts[:_STEPS] if part.size])
+
+
 def standing_out(peaks: Peaks, step: float, *, fewest: int, most: int) -> list[int]:
     """The numbers of steps whose first six multiples stand highest over their eight neighbours."""
-    count = int(0.47 / step)
+    count = int(HIGHEST / step)
     if count < fewest + _BESIDE:
         return []
     index, off = peaks.nearest(np.asarray(np.arange(1, count + 1) * step, float))
@@ -112,6 +136,7 @@ def background(
             evidence -= narrow(one.error, width=0.1)
         elif any(_in_ratio(one, step) for step in known):
             evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, width=0.1))
+        evidence += ONE_MORE
         if evidence <= 0.0:
             continue
         sides, after = _sidebands(peaks, after, one, found)
@@ -166,13 +191,34 @@ def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float
     count = np.searchsorted(bins, bins + 0.5) - np.searchsorted(bins, bins - 0.5)
     best, after = 0.0, used
     for distance in away[np.argsort(-count)[:3]]:
-        near = away[np.abs(away - distance) < 0.6 * peaks.bin_width]
-        middle = float(np.mean(near))
-        error = 0.15 * peaks.bin_width / np.sqrt(near.size)
+        middle, error = _distance(peaks, used, centre, float(distance))
         position = np.stack([centre - middle, centre + middle], axis=1)
         sides = seen(peaks, used, position, error=error, spread=_SIDE_SPREAD)
-        evidence = some_of(sides.evidence) + narrow(error, width=one.step)
+        # any distance alike, or any ratio to the step alike, as of a gear's teeth
+        ratio = one.step / middle
+        anywhere = narrow(error, width=one.step)
+        as_teeth = narrow(error * ratio / middle, width=_HIGHEST_RATIO)
+        prior = mean_exp((anywhere, as_teeth))
+        evidence = some_of(sides.evidence) + prior + ONE_MORE
         if evidence > best:
             best, after = evidence, used.copy()
             take(after, sides)
     return best, after
+
+
+def _distance(peaks: Peaks, used: Flags, centre: Floats, start: float) -> tuple[float, float]:
+    """The distance of the lines that stand so beside the centres, a weighted mean, and its
+    error."""
+    values, weights = [], []
+    for side in (-1.0, 1.0):
+        index, off = peaks.nearest(centre + side * start)
+        near = (np.abs(off) < 0.6) & ~used[index]
+        values.append(side * (peaks.place[index[near]] - centre[near]))
+        own, _ = peaks.nearest(centre[near])
+        weights.append(1.0 / (peaks.error[index[near]] ** 2 + peaks.error[own] ** 2))
+    value, weight = np.concatenate(values), np.concatenate(weights)
+    if value.size == 0:
+        return start, _NEAR * peaks.bin_width
+    middle = float(np.average(value, weights=weight))
+    misfit = float(np.sum(weight * (value - middle) ** 2)) / max(1, value.size - 1)
+    return middle, float(np.sqrt(max(1.0, misfit) / np.sum(weight)))

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage, stats
+from scipy import fft, ndimage, stats
 
 from thermogear.measured.prominence import running_median
-from thermogear.signals.lines import hann_offset
-from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +23,9 @@ MOST = 600
 _FALSE = 0.1  # peaks of noise alone expected in a whole spectrum
 _NEAR = 200  # bins to each side in which the density of lines is counted
 _LOBE = 3  # bins beside a line in which a lower one cannot be told
-_PLACE = 0.12  # bins: what lines beside do to a line's place
+_PLACE = 0.01  # bins: what is left of a place's error
+_BANDS = 16
+_LOBE_BINS = np.arange(-2, 3)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +34,10 @@ class Peaks:
 
     ``place`` [cycles/sample] with standard deviation ``error``; ``level``: natural logarithm of
     amplitude over the floor's rms; ``density``: other lines per bin around each; ``least``: the
-    level that a line must have to be seen; ``bin_width`` [cycles/sample].
+    level that a line must have to be seen; ``bin_width`` [cycles/sample]. ``sharpness``: logarithm
+    of the highest bin's share in the power of its band, summed over bands. A wrong clock, which
+    turns with the sidebands of its own reference, takes power from the lines and gives it to new
+    ones: it makes the spectrum less sharp.
     """
 
     place: Floats
@@ -43,6 +47,7 @@ class Peaks:
     least: float
     bin_width: float
     bins: int
+    sharpness: float = 0.0
 
     @property
     def size(self) -> int:
@@ -74,13 +79,17 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
     mean clock. A peak counts where the sum of normalised powers is one that noise alone would
     pass in a tenth of a bin of the whole spectrum.
     """
-    spectrum = amplitude_spectrum(channels - channels.mean(axis=-1, keepdims=True), rate, "hann")
-    power = np.maximum(spectrum.amplitudes, 1e-300) ** 2
+    count, samples = channels.shape
+    hann = Window("hann")
+    centred = channels - channels.mean(axis=-1, keepdims=True)
+    spectrum = fft.rfft(centred * hann.samples(samples), axis=-1)
+    bin_width = rate / samples
+    power = np.maximum(np.abs(spectrum), 1e-300) ** 2
     logs = np.log(power)
     # a sharp resonance needs a short window, lines that stand close a long one
     floor = np.maximum(running_median(logs, 301), running_median(logs, 61))
     total = np.sum(power / np.exp(floor) * np.log(2.0), axis=0)
-    count, number = channels.shape[0], total.size
+    number = total.size
     least = float(stats.gamma.isf(_FALSE / number, count))
     highest = ndimage.maximum_filter1d(total, 3)
     inside = np.arange(number)
@@ -89,18 +98,46 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
     if top.size > MOST:
         top = np.sort(top[np.argsort(-total[top])[:MOST]])
         least = float(np.min(total[top]))
-    root = np.sqrt(total)
-    shift = np.array([hann_offset(root[i - 1 : i + 2]) for i in top])
-    place = (top + shift) * spectrum.bin_width
+    beside = top[:, None] + _LOBE_BINS
+    # signs: neighbours in a line's main lobe alternate, the record starts at its left end
+    lobes = spectrum[:, beside] * (-1.0) ** _LOBE_BINS / np.exp(0.5 * floor[:, top])[..., None]
+    shift, noise = _in_lobe(lobes * np.sqrt(np.log(2.0)), hann)
+    place = (top + shift) * bin_width
     around = np.searchsorted(top, top + _NEAR) - np.searchsorted(top, top - _NEAR) - 1
     density = (around + 0.5) / (2.0 * _NEAR)
-    scatter = 0.86 / np.sqrt(2.0 * total[top])  # of a Hann peak's place, (2/3) sqrt(5/3) noise/A
+    # of a Hann peak's place: (2/3) sqrt(5/3) noise over amplitude
+    scatter = 0.86 * np.sqrt(np.maximum(1.0, noise) / (2.0 * total[top]))
     return Peaks(
         place=place,
-        error=np.hypot(scatter, _PLACE) * spectrum.bin_width,
+        error=np.hypot(scatter, _PLACE) * bin_width,
         level=0.5 * np.log(total[top] / count),
         density=np.asarray(density, dtype=float),
         least=0.5 * float(np.log(least / count)),
-        bin_width=spectrum.bin_width,
+        bin_width=bin_width,
         bins=number,
+        sharpness=_sharpness(total),
     )
+
+
+def _sharpness(power: Floats) -> float:
+    edge = np.linspace(0, power.size, _BANDS + 1).astype(int)[:-1]
+    return float(np.sum(np.log(np.maximum.reduceat(power, edge) / np.add.reduceat(power, edge))))
+
+
+def _in_lobe(lobes: NDArray[np.complex128], window: Window) -> tuple[Floats, Floats]:
+    """Offsets [bins] of lines from their highest bins, and the power a bin has beside the line's.
+
+    ``lobes`` (channel, line, bin -2..2), a bin's power over the floor. The offset is that of three
+    Hann bins, of each the part in phase with the highest. What the shape of a line
+    does not explain of the five bins is noise, a neighbour, or a line that wanders.
+    """
+    phased = np.sum((lobes * np.conj(lobes[..., 2:3])).real, axis=0)
+    left, peak, right = phased[:, 1], phased[:, 2], phased[:, 3]
+    bottom = left + 2.0 * peak + right
+    shift = 2.0 * (right - left) / np.where(bottom > 0.0, bottom, 1.0)
+    shift = np.clip(np.where(bottom > 0.0, shift, 0.0), -0.5, 0.5)
+    shape = window.response(_LOBE_BINS - shift[:, None])
+    size = np.sum(lobes * shape, axis=-1) / np.sum(shape**2, axis=-1)
+    left_over = np.sum(np.abs(lobes - size[..., None] * shape) ** 2, axis=(0, -1))
+    channels = lobes.shape[0]
+    return np.asarray(shift), np.asarray(2.0 * left_over / (8.0 * channels - 1.0))

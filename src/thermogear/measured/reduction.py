@@ -20,13 +20,14 @@ from thermogear.measured.changing import (
     order_lines,
     read_in_angle,
 )
-from thermogear.measured.evidence import Stated
 from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.swelling import Swelling, swelling_of
 from thermogear.measured.traps import HUGE, health
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.signals.quality import phase_jumps
@@ -51,7 +52,7 @@ class Measurement:
     ``teeth``: those orders are counted with, given or found; ``given``: what the user said (teeth,
     speed [rad/s]), None where he said nothing.
     ``findings``: damage of the record and what was done about it; ``values`` (channel, sample):
-    what the lines were read from, in the file's unit.
+    what the lines were read from, in the file's unit; ``swelling``: impacts that slip.
     """
 
     record: Record
@@ -67,6 +68,7 @@ class Measurement:
     values: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slices: OrderSlices | None = None
     given: tuple[int | None, float | None] = (None, None)
+    swelling: Swelling | None = None
 
     @property
     def damage(self) -> tuple[tuple[str, str], ...]:
@@ -231,7 +233,26 @@ def measure(
         tuple(through.findings),
         table,
         given=given,
+        swelling=_swelling(record, chosen, table, gearing, (teeth, speed))
+        if changing is None
+        else None,
     )
+
+
+def _swelling(
+    record: Record,
+    chosen: Sequence[Channel],
+    table: Floats,
+    gearing: Gearing | None,
+    known: tuple[int | None, float | None],
+) -> Swelling | None:
+    """Impacts that slip, beside the shaft by its teeth or by the speed said [rad/s]."""
+    teeth, speed = known
+    shaft = gearing.mesh_frequency / teeth if gearing is not None and teeth else None
+    if shaft is None and speed is not None and record.rate is not None:
+        shaft = speed / (2.0 * np.pi) / record.rate
+    rate = None if record.rate_doubt else record.rate
+    return swelling_of([one.name for one in chosen], table, rate, shaft)
 
 
 def _require(

@@ -16,15 +16,14 @@ _WIDTHS = ((0.004, 0.015), (0.001, 0.004))
 _LEAST = 12.0  # bins of that half width
 _STEADY = 0.03  # cycles of wander at the highest frequency
 _HIGHEST = 0.3
-_SMEARED = 10.0  # bins
-_COMPARED = 16  # lines
 _FINER = 4
+_NEAR, _AROUND = 20, 300  # bins: to each side of a line, and of its floor
 
 
 def sharp_peaks(channels: Floats) -> Peaks:
     """Lines of ``channels`` (channel, sample), where the speed wanders in the clock of the line
-    that makes the highest lines highest: the sum of their levels decides, the steady
-    clock of the record among them. In the new clock it is tried once more, with narrower filters.
+    that makes the spectrum sharpest, the steady clock of the record among them. In the new clock it
+    is tried once more, with narrower filters.
     """
     best = peaks_of(channels)
     for widths in _WIDTHS:
@@ -39,16 +38,17 @@ def _straighter(
     channels: Floats, peaks: Peaks, widths: tuple[float, ...]
 ) -> tuple[Floats, Peaks] | None:
     """The record in a better clock and its lines; None: there is none."""
-    loudest = channels[int(np.argmax(np.max(np.abs(channels), axis=-1)))]
-    best, score = None, _sharpness(peaks)
-    lines = np.fft.rfft(loudest - loudest.mean())
+    best, score = None, peaks.sharpness
+    spectra = np.fft.rfft(channels - channels.mean(axis=-1, keepdims=True), axis=-1)
+    count = channels.shape[-1]
     fine: Floats | None = None
     for reference in _references(peaks):
+        lines = spectra[_clearest(np.abs(spectra), reference * count)]
         for width in widths:
-            half_width = max(width * reference, _LEAST / loudest.size)
+            half_width = max(width * reference, _LEAST / count)
             if half_width > 0.2 * reference:
                 continue
-            cycles, start = _cycles(lines, loudest.size, reference, half_width)
+            cycles, start = _cycles(lines, count, reference, half_width)
             if np.any(np.diff(cycles) <= 0.0):
                 continue
             steady = np.linspace(cycles[0], cycles[-1], cycles.size)
@@ -57,9 +57,17 @@ def _straighter(
             fine = _finer(channels) if fine is None else fine
             turned = _warped(fine, cycles, start)
             found = peaks_of(turned)
-            if _sharpness(found) > score:
-                best, score = (turned, found), _sharpness(found)
+            if found.sharpness > score:
+                best, score = (turned, found), found.sharpness
     return best
+
+
+def _clearest(size: Floats, place: float) -> int:
+    """The channel in which a line at ``place`` [bins] is highest over what is around it."""
+    middle = round(place)
+    line = size[:, max(0, middle - _NEAR) : middle + _NEAR + 1].max(axis=-1)
+    around = np.median(size[:, max(0, middle - _AROUND) : middle + _AROUND + 1], axis=-1)
+    return int(np.argmax(line / np.maximum(around, 1e-300)))
 
 
 def _references(peaks: Peaks) -> list[float]:
@@ -73,17 +81,6 @@ def _references(peaks: Peaks) -> list[float]:
         if len(found) == _REFERENCES:
             break
     return found
-
-
-def _sharpness(peaks: Peaks) -> float:
-    """Levels of the highest lines, summed: of lines that stand as close as one that is smeared into
-    several does, the highest counts. Always as many: a clock that is turned by the sidebands of its
-    own reference makes new lines, and none of these higher."""
-    if peaks.size == 0:
-        return 0.0
-    apart = np.flatnonzero(np.diff(peaks.place) > _SMEARED * peaks.bin_width) + 1
-    highest = np.maximum.reduceat(peaks.level - peaks.least, np.r_[0, apart])
-    return float(np.sum(np.sort(highest)[-_COMPARED:]))
 
 
 def _cycles(

@@ -64,7 +64,17 @@ def given_and_found(figures: Mapping[str, Any]) -> list[str]:
     told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
     teeth = " and ".join(map(str, found["teeth"]))
     told.append(f"found: {teeth} teeth, decided" if teeth else f"found: {_open(found['verdict'])}")
-    return told + [f"weight {one['weight']:.3f}: {one['words']}" for one in found["hypotheses"]]
+    weighed = list(found.get("gears", []))
+    weighed += [one for one in found["hypotheses"] if not weighed or _without_teeth(one)]
+    if teeth:
+        # what is decided leaves no alternative that carries weight
+        weighed = [one for one in weighed if one.get("teeth") in found["teeth"]]
+    weighed.sort(key=lambda one: -float(one["weight"]))
+    return told + [f"weight {one['weight']:.3f}: {one['words']}" for one in weighed]
+
+
+def _without_teeth(one: Mapping[str, Any]) -> bool:
+    return not any(mesh["teeth"] for mesh in one.get("meshes", []))
 
 
 def _open(verdict: str) -> str:

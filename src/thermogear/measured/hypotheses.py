@@ -1,0 +1,380 @@
+"""Hypotheses on the teeth behind a record's lines, and the evidence for each.
+
+A hypothesis foretells lines: a mesh line and its harmonics up to an open one; around each seen
+harmonic sidebands up to the first, second or third of each of its gears' shafts; those shafts' own
+lines; perhaps a second mesh with the like; and combs of impacts or shaft harmonics on all that is
+left. "No gear" has the combs alone, and a mesh whose teeth do not show has no sidebands. The log
+evidence of each is that of its groups of lines over chance (:mod:`thermogear.measured.groups`),
+with the prior of its free numbers: mesh line anywhere, teeth one of 12..250 for each gear.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.measured.groups import (
+    HIGHEST,
+    ONE_MORE,
+    Flags,
+    Seen,
+    falling,
+    mean_exp,
+    narrow,
+    refined,
+    some_of,
+    take,
+)
+from thermogear.measured.impacts import Comb, best_background, combs_of, orders_of, standing_out
+from thermogear.measured.peaks import Peaks
+
+Floats = NDArray[np.float64]
+
+TEETH = (12, 250)
+"""Tooth numbers looked for: fewer are not made as power gears."""
+
+_HARMONICS = 6
+_MESH_SPREAD = 1.5  # nepers, of mesh harmonics about a fall with their rank
+_SIDE_SPREAD = 1.2  # of sidebands, and of a shaft's own lines, about a fall with their order
+_FALL = 0.7  # nepers for each order
+_SIDES = np.array([-1, 1, -2, 2, -3, 3])
+_OWN = np.arange(1, 5)
+_LOWEST = 40.0  # bins, of a mesh line
+_MESHES = 48  # lines tried as mesh lines
+_PAIRS = 60  # pairs of mesh line and teeth looked at closely
+_STATED_PAIRS = 12
+_MEMBERS = 6  # tooth numbers that are put together in twos
+_FINAL = 24
+_FIRST, _SECOND = 6, 24  # meshes that a second is put beside, and seconds tried
+_FINAL_TWO = 10
+_BARE = 4  # mesh lines without teeth
+_APART = 3.0  # bins between a line and its sidebands, and between the lines of two shafts
+_TOLD_APART = 6.0  # bins between a line and its sidebands where teeth can be named
+_SAME_STEP = 1e-4
+_GIVEN = 0.9  # how far a stated tooth number or speed is trusted
+_SPEED_SPREAD = 0.05  # a stated speed is nominal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """What a user says: teeth of a gear, and its shaft's turns per sample."""
+
+    teeth: int | None = None
+    shaft: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gears:
+    """A mesh line [cycles/sample] and the teeth of those of its gears whose shafts show, with the
+    log evidence ``sides`` of each one's first sidebands alone; ``level`` of its highest harmonic
+    [nepers over the floor]."""
+
+    mesh: float
+    level: float
+    teeth: tuple[int, ...] = ()
+    sides: tuple[float, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """In words."""
+        teeth = f"{' and '.join(map(str, self.teeth))} teeth" if self.teeth else "teeth not seen"
+        return f"mesh line {self.mesh:.6f} cycles/sample, {teeth}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hypothesis:
+    """``gears`` of one mesh or of two, none for "no gear"; ``evidence`` its logarithm over chance,
+    ``weight``, ``combs``: steps of the combs beside them [cycles/sample]."""
+
+    gears: tuple[Gears, ...]
+    evidence: float
+    weight: float = 0.0
+    combs: tuple[float, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """ "gear" or "no gear"."""
+        return "gear" if self.gears else "no gear"
+
+    @property
+    def mesh(self) -> float:
+        """The first mesh line [cycles/sample]; nan: none."""
+        return self.gears[0].mesh if self.gears else float("nan")
+
+    @property
+    def teeth(self) -> tuple[int, ...]:
+        """Teeth on the first mesh line."""
+        return self.gears[0].teeth if self.gears else ()
+
+    @property
+    def words(self) -> str:
+        """In words."""
+        if self.gears:
+            return " and ".join(gears.words for gears in self.gears)
+        beside = ", ".join(f"{step:.6f}" for step in self.combs)
+        return "no gear" + (f": lines every {beside} cycles/sample" if beside else "")
+
+
+@dataclass(frozen=True)
+class _Draft:
+    gears: tuple[Gears, ...]
+    evidence: float
+    used: Flags
+    bare: float  # evidence of the mesh lines' harmonics alone
+    mesh_lines: Flags
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """Turns per sample of the shafts."""
+        return tuple(gears.mesh / z for gears in self.gears for z in gears.teeth)
+
+
+def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
+    """All that are worth weighing, with their evidence."""
+    singles = sorted(_drafts(peaks, stated), key=lambda draft: -draft.evidence)
+    drafts = singles[:_FINAL]
+    tops = drafts[:6]
+    steps = [step for draft in tops for step in draft.steps]
+    combs = combs_of(peaks, tuple(dict.fromkeys(steps + [draft.gears[0].mesh for draft in tops])))
+    # where a comb holds all lines, those that stand out of it may be a mesh
+    for comb in combs[:3]:
+        known = [z for one in drafts for z in one.gears[0].teeth if _turns(one, z, comb.step)]
+        drafts += [
+            _gear(peaks, z * comb.step, (z,), stated)
+            for z in standing_out(peaks, comb.step, fewest=TEETH[0], most=TEETH[1])
+            if z not in known
+        ]
+    orders = orders_of(peaks, combs)
+    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders)
+    none = Hypothesis(gears=(), evidence=max(0.0, alone), combs=tuple(one.step for one in told))
+    found = [(_beside(peaks, draft, orders), draft) for draft in drafts]
+    found.sort(key=lambda pair: -pair[0].evidence)
+    best = [draft for _, draft in found[:_FIRST]]
+    bare = [_gear(peaks, mesh, (), stated) for mesh in _bare_lines(peaks, drafts)]
+    twos = _with_second(peaks, best, singles, stated)
+    others = [_beside(peaks, draft, orders) for draft in (*bare, *twos)]
+    return [none, *(one for one, _ in found), *others]
+
+
+def _bare_lines(peaks: Peaks, drafts: list[_Draft]) -> list[float]:
+    """Mesh lines to weigh without teeth: the drafts' and the highest, each once."""
+    found: list[float] = []
+    meshes = [draft.gears[0].mesh for draft in drafts]
+    for mesh in (*meshes[:_BARE], *peaks.place[np.argsort(-peaks.level)[:_BARE]]):
+        new = all(abs(mesh / other - 1.0) > _SAME_STEP for other in found)
+        if new and _LOWEST * peaks.bin_width < mesh < HIGHEST:
+            found.append(float(mesh))
+    return found
+
+
+def _with_second(
+    peaks: Peaks, first: list[_Draft], singles: list[_Draft], stated: Stated
+) -> list[_Draft]:
+    """The best of the drafts, each with a second mesh on the lines it leaves."""
+    found: dict[frozenset[tuple[int, tuple[int, ...]]], _Draft] = {}
+    for one in first:
+        beside: list[_Draft] = []
+        for other in singles:
+            if len(beside) == _SECOND:
+                break
+            if not _harmonic(one.gears[0].mesh, other.gears[0].mesh):
+                beside.append(other)
+        for other in beside:
+            mesh, teeth = other.gears[0].mesh, other.gears[0].teeth
+            both = _gear(peaks, mesh, teeth, Stated(), one)
+            key = frozenset(
+                (int(np.rint(g.mesh / peaks.bin_width / 2.0)), g.teeth) for g in both.gears
+            )
+            if both.evidence > one.evidence and (
+                key not in found or both.evidence > found[key].evidence
+            ):
+                found[key] = both
+    return sorted(found.values(), key=lambda draft: -draft.evidence)[:_FINAL_TWO]
+
+
+def _harmonic(one: float, other: float) -> bool:
+    """Whether one mesh line is the other or a multiple of it."""
+    ratio = max(one, other) / min(one, other)
+    return bool(abs(ratio / np.rint(ratio) - 1.0) < _SAME_STEP)
+
+
+def _turns(draft: _Draft, teeth: int, step: float) -> bool:
+    return abs(draft.gears[0].mesh / teeth / step - 1.0) < _SAME_STEP
+
+
+def _drafts(peaks: Peaks, stated: Stated) -> list[_Draft]:
+    """Mesh lines with one gear each, and with two of the best."""
+    drafts: dict[tuple[int, tuple[int, ...]], _Draft] = {}
+    members: dict[int, dict[int, float]] = {}
+    meshes: dict[int, float] = {}
+    for mesh, teeth in _screened(peaks, stated):
+        key = int(np.rint(mesh / peaks.bin_width / 2.0))
+        draft = _gear(peaks, meshes.setdefault(key, mesh), (teeth,), stated)
+        drafts[key, (teeth,)] = draft
+        members.setdefault(key, {})[teeth] = draft.evidence
+    for key, own in members.items():
+        best = sorted(sorted(own, key=lambda z: -own[z])[:_MEMBERS])
+        for both in itertools.combinations(best, 2):
+            if meshes[key] / both[0] - meshes[key] / both[1] < _APART * peaks.bin_width:
+                continue  # one line cannot tell of two shafts
+            drafts[key, both] = _gear(peaks, meshes[key], both, stated)
+    return list(drafts.values())
+
+
+def _beside(peaks: Peaks, draft: _Draft, orders: list[list[Comb]]) -> Hypothesis:
+    """The draft with combs on what is left: beside its sidebands, or with its shafts' lines among
+    those of the combs, so that the mesh's alone stand out."""
+    beside, told = best_background(peaks, draft.used, orders, draft.steps)
+    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, draft.steps)
+    both = draft.evidence + beside, draft.bare + bare
+    return Hypothesis(
+        gears=draft.gears,
+        evidence=mean_exp(both),
+        combs=tuple(one.step for one in (told if both[0] > both[1] else bare_told)),
+    )
+
+
+def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
+    """The pairs of mesh line and teeth with the most lines where they foretell some."""
+    if peaks.size < 3:
+        return []
+    gain = np.zeros(peaks.bins + 2)
+    centre = np.rint(peaks.place / peaks.bin_width).astype(int)
+    worth = np.clip(-np.log(peaks.density), 0.5, 8.0)
+    for shift in (-1, 0, 1):
+        np.maximum.at(gain, np.clip(centre + shift, 0, peaks.bins), worth)
+    tops = peaks.place[np.argsort(-peaks.level)[:_MESHES]]
+    tried = np.unique(np.concatenate([tops, tops / 2.0, tops / 3.0]))
+    teeth = np.arange(TEETH[0], TEETH[1] + 1, dtype=float)
+    pairs: list[tuple[float, float, int]] = []
+    told: list[tuple[float, float, int]] = []
+    for start in tried[tried > _LOWEST * peaks.bin_width]:
+        highest = min(_HARMONICS, int(HIGHEST / start))
+        if highest < 1:
+            continue
+        mesh = refined(peaks, float(start), np.arange(1, highest + 1))[0]
+        rank = np.arange(1, highest + 1)
+        there = _looked(gain, peaks, rank * mesh) > 0
+        if not np.any(there):
+            continue
+        around = rank[there][:, None, None] + np.array([-3, -2, -1, 1, 2, 3])[:, None] / teeth
+        sides = np.sum(_looked(gain, peaks, around * mesh), axis=(0, 1))
+        own = np.sum(_looked(gain, peaks, np.array([1, 2, 3])[:, None] * mesh / teeth), axis=0)
+        carriers = np.sum(_looked(gain, peaks, rank * mesh))
+        score = sides + own + 2.0 * carriers
+        score[mesh / teeth < _APART * peaks.bin_width] = -np.inf
+        best = np.argsort(-score)[:8]
+        pairs += [(float(score[i]), mesh, int(teeth[i])) for i in best]
+        if stated.teeth is not None and TEETH[0] <= stated.teeth <= TEETH[1]:
+            told.append((float(score[stated.teeth - TEETH[0]]), mesh, stated.teeth))
+    kept = [(m, z) for _, m, z in sorted(pairs, reverse=True)[:_PAIRS]]
+    kept += [(m, z) for _, m, z in sorted(told, reverse=True)[:_STATED_PAIRS]]
+    # halves and doubles of the best contradict them: they must be weighed too
+    for mesh, z in kept[:12]:
+        for k in (2, 3):
+            kept += [(mesh, z * k), (mesh * k, z * k)]
+            if z % k == 0:
+                kept += [(mesh, z // k), (mesh / k, z // k)]
+    fitting = [(m, z) for m, z in kept if TEETH[0] <= z <= TEETH[1] and m < HIGHEST]
+    return list(dict.fromkeys(fitting))
+
+
+def _looked(gain: Floats, peaks: Peaks, position: NDArray[np.floating[Any]]) -> Floats:
+    place = np.rint(position / peaks.bin_width).astype(int)
+    return np.asarray(gain[np.where((place > 2) & (place < peaks.bins), place, peaks.bins + 1)])
+
+
+def _gear(
+    peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated, first: _Draft | None = None
+) -> _Draft:
+    """Log evidence of a mesh line with these gears, without what is left of the lines; of a second
+    mesh on the lines that the ``first`` leaves."""
+    used = np.zeros(peaks.size, dtype=bool) if first is None else first.used.copy()
+    ranks = np.arange(1, min(_HARMONICS, int(HIGHEST / mesh)) + 1)
+    mesh, error = refined(peaks, mesh, ranks)
+    rank = ranks.astype(float)
+    carriers = falling(
+        peaks,
+        used,
+        position=(rank * mesh)[None, :],
+        order=ranks,
+        error=(rank * error)[None, :],
+        spread=_MESH_SPREAD,
+        trend=-np.log(rank),
+        top=np.inf,
+    )
+    evidence, seen_best = _open(carriers)
+    total = evidence + narrow(error, width=HIGHEST) + ONE_MORE
+    lines = seen_best.lines[0]
+    used[lines[lines >= 0]] = True
+    bare, mesh_lines = total, np.zeros(peaks.size, dtype=bool)
+    mesh_lines[lines[lines >= 0]] = True
+    around: list[float] = []
+    there = rank[lines >= 0]
+    tops = peaks.level[lines[lines >= 0]]
+    for z in teeth:
+        sides = falling(
+            peaks,
+            used,
+            position=(there[:, None] + _SIDES / z) * mesh,
+            order=np.abs(_SIDES),
+            error=there[:, None] * error,
+            spread=_SIDE_SPREAD,
+            trend=-_FALL * (np.abs(_SIDES) - 1.0),
+            top=tops,
+        )
+        own = falling(
+            peaks,
+            used,
+            position=(_OWN * mesh / z)[None, :],
+            order=_OWN,
+            error=(_OWN * error / z)[None, :],
+            spread=_SIDE_SPREAD,
+            trend=np.asarray(-_FALL * (_OWN - 1.0), float),
+            top=np.inf,
+        )
+        prior = _prior(mesh, z, stated)
+        bare += prior
+        # beside a line, as close as its own lobe, others are not placed well enough to count teeth
+        near = mesh / z < _TOLD_APART * peaks.bin_width
+        around.append(0.0 if near else some_of(sides[0].evidence))
+        total += prior
+        for part in (sides, own):
+            evidence, seen_best = _open(part)
+            total += evidence
+            take(used, seen_best)
+    level = float(np.max(tops, initial=-np.inf))
+    gears = Gears(mesh=mesh, level=level, teeth=teeth, sides=tuple(around))
+    if first is None:
+        return _Draft((gears,), total, used, bare, mesh_lines)
+    return _Draft(
+        (*first.gears, gears),
+        first.evidence + total,
+        used,
+        first.bare + bare,
+        first.mesh_lines | mesh_lines,
+    )
+
+
+def _open(parts: tuple[Seen, ...]) -> tuple[float, Seen]:
+    """Log evidence of groups up to an order that is open, all alike, and the best of them."""
+    each = [some_of(part.evidence) for part in parts]
+    return mean_exp(each), parts[int(np.argmax(each))]
+
+
+def _prior(mesh: float, teeth: int, stated: Stated) -> float:
+    """Log prior of a gear: any tooth number alike, or as stated; a stated speed is nominal."""
+    total = -float(np.log(TEETH[1] - TEETH[0] + 1))
+    if stated.teeth is not None:
+        own = _GIVEN if teeth == stated.teeth else 0.0
+        total = float(np.log(own + (1.0 - _GIVEN) * np.exp(total)))
+    if stated.shaft is not None:
+        away = np.log(mesh / teeth / stated.shaft) / _SPEED_SPREAD
+        # against a shaft anywhere within a factor of 30 to both sides
+        near = np.exp(-0.5 * away**2) / (_SPEED_SPREAD * np.sqrt(2 * np.pi)) * 2 * np.log(30.0)
+        total += float(np.log(_GIVEN * near + 1.0 - _GIVEN))
+    return total
