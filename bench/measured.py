@@ -137,7 +137,7 @@ def page() -> str:
             made(folder / f"r{number}.npz", LENGTH, number)
         here = len(os.sched_getaffinity(0))
         words = [str(folder), "--unit", "g", "--json"]
-        used, held, clock, both = spent(words)
+        used, _, clock, both = spent(words)
         for number in range(10, RECORDS):
             (folder / f"r{number}.npz").unlink()
         few, _, few_clock, ten = spent(words)
@@ -146,10 +146,10 @@ def page() -> str:
     lines += [
         "",
         f"A folder of {RECORDS} records of {LENGTH} samples on {here} cores: {used:.0f} processor",
-        f"s ({used / RECORDS:.1f} a record), {clock:.0f} s by the clock, at most {held:.0f} MB a",
-        f"process; {json.loads(both)['lines']} lines. Ten of them: {few:.0f} processor s,",
-        f"{few_clock:.0f} s by the clock; on one core {one:.0f} and {one_clock:.0f} s; the results",
-        f"are {same}. The clock counts what else the machine did.",
+        f"s ({used / RECORDS:.1f} a record), {clock:.0f} s by the clock,",
+        f"{json.loads(both)['lines']} lines. Ten of them: {few:.0f} processor s,",
+        f"{few_clock:.0f} s by the clock; on one core {one:.0f} and {one_clock:.0f} s; the",
+        f"results are {same}. The clock counts what else the machine did.",
         "",
     ]
     return "\n".join(lines)

@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner, Result
 from numpy.typing import NDArray
 
+from said import facts, numbers
 from thermogear.base.errors import InputError
 from thermogear.front.measure_commands import measure
 from thermogear.measured.joined import join_records, named, only
@@ -64,7 +65,7 @@ def test_channels_of_one_run_read_as_if_they_stood_in_one_file(tmp_path: Path) -
     joined = found_in(asked(one, two, "--join", "channels", "--json"))
     same = found_in(asked(whole, "--json"))
     assert joined["lines"] == same["lines"]
-    assert joined["source"] == "left.csv and right.csv"
+    assert all(file.name in str(joined["source"]) for file in (one, two))
     assert joined["teeth"] == same["teeth"] == 20
 
 
@@ -78,11 +79,11 @@ def test_pieces_of_one_run_read_as_the_run(tmp_path: Path) -> None:
     same = found_in(asked(whole, "--json"))
     whole.unlink()
     joined = found_in(asked(tmp_path, "--join", "time", "--json"))
-    assert joined["source"] == "p2.csv and 2 more"
+    assert "p2.csv" in str(joined["source"])
     for one, other in zip(joined["lines"], same["lines"], strict=True):  # type: ignore[call-overload]
         for key in ("frequency", "reading", "displacement", "half_width"):
             assert one[key] == pytest.approx(other[key], rel=1e-7)  # stamps are rounded
-    assert "time stamps go on" in json.dumps(joined["notices"])
+    assert joined["findings"] == []
 
 
 def test_a_gap_between_pieces_is_a_finding_of_the_gate(tmp_path: Path) -> None:
@@ -92,7 +93,8 @@ def test_a_gap_between_pieces_is_a_finding_of_the_gate(tmp_path: Path) -> None:
     done = found_in(asked(tmp_path, "--join", "time", "--json"))
     (finding,) = done["findings"]  # type: ignore[misc]
     assert (finding["first"], finding["last"], finding["count"]) == (3000, 3099, 100)
-    assert "100 samples (0.01953 s) are missing between a.csv and b.csv" in json.dumps(done)
+    said = [numbers(one["text"]) for one in done["notices"]]  # type: ignore[attr-defined]
+    assert [100.0, 0.01953] in said
     same = found_in(asked(tmp_path, "--join", "time", "--channel", "acc", "--json"))
     assert same["lines"] == done["lines"]
     (line,) = [one for one in done["lines"] if one["name"] == "mesh x 1"]  # type: ignore[attr-defined]
@@ -143,7 +145,8 @@ def test_other_rates_units_channels_and_equal_files_are_refused(tmp_path: Path) 
     assert asked(a, slow, "--join", "tme").exit_code == 2
     # a copy beside its own: the gate leaves it out
     copies = found_in(asked(a, twice, "--join", "channels", "--json"))
-    assert "a copy of 'a.csv::acc'" in json.dumps(copies["findings"])
+    (finding,) = copies["findings"]  # type: ignore[misc]
+    assert facts(finding["kind"]) == ["a.csv::acc"]
 
 
 def test_channels_and_tacho_are_named_across_files(tmp_path: Path) -> None:
@@ -217,4 +220,4 @@ def test_of_several_records_channels_are_named_and_files_without_them_told(tmp_p
     assert done["records"] == ["r2.csv", "r11.csv"]
     assert "no file is r3.csv" in refusal(asked(tmp_path, "--channel", "r3.csv::acc"))
     assert "did you mean 'r2.csv'" in refusal(asked(tmp_path, "--baseline", "r2.cvs"))
-    assert "--join channels reads them as one record" in asked(tmp_path).output
+    assert "--join" in asked(tmp_path).output

@@ -34,11 +34,11 @@ def join_records(records: Sequence[Record], how: str, *, names: Sequence[str] = 
     by their time stamps, or are up to 1 % shorter than the longest, are cut to the time they have
     in common. A name that two files have becomes ``FILE::CHANNEL``.
     ``how`` "time": consecutive pieces of one run in the order given, with the same channels, units
-    and rate. Where time stamps go on from file to file they are checked: a gap stands in the
-    record as samples without a number, which the gate finds
+    and rate. Where time stamps go on from file to file they are checked: a gap becomes
+    samples without a number, which the gate finds
     (:mod:`~thermogear.measured.gate`).
 
-    Raises InputError for fewer than two records, for one that stands there twice, for rates that
+    Raises InputError for fewer than two records, for one that is named twice, for rates that
     drift apart by half a sample, lengths, channels or units that differ, pieces that overlap or
     lie further apart than all are long.
     """

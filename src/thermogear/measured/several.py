@@ -173,7 +173,7 @@ def _shown(files: Sequence[Path]) -> list[str]:
 
 
 def _place(baseline: str, files: Sequence[Path], shown: Sequence[str]) -> int | None:
-    """Where the file that is named stands: by path, else by name where one alone has it."""
+    """The place of the file that is named: by path, else by name where one alone has it."""
     if Path(baseline) in files:
         return list(files).index(Path(baseline))
     name = Path(baseline).name
