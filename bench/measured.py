@@ -156,6 +156,9 @@ def page() -> str:
 
 
 def main(words: Sequence[str]) -> int:
+    if list(words) not in ([], ["--write"]):
+        print(f"error: got {' '.join(words)}; allowed nothing or --write", file=sys.stderr)
+        return 2
     text = page()
     if list(words) == ["--write"]:
         PAGE.write_text(text, "utf-8")

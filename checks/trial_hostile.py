@@ -485,6 +485,10 @@ def main(words: Sequence[str]) -> int:
         return 0
     printed = bool(words) and words[0].isdecimal()
     kinds = list(words[1:] if printed else words) or list(KINDS)
+    unknown = [kind for kind in kinds if kind not in KINDS]
+    if unknown:
+        print(f"error: kind: got {unknown[0]}; allowed {', '.join(KINDS)}", file=sys.stderr)
+        return 2
     counts = {kind: int(words[0]) if printed else COUNTS.get(kind, COUNT) for kind in kinds}
     keep = Path(tempfile.mkdtemp(prefix="hostile-"))
     parts = [
