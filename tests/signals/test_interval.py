@@ -125,3 +125,8 @@ def test_a_reading_is_the_same_in_every_unit(unit: float) -> None:
     assert other.frequency_error == pytest.approx(one.frequency_error, rel=1e-9)
     for name in ("amplitude", "amplitude_error", "noise"):
         assert getattr(other, name) == pytest.approx(unit * getattr(one, name), rel=1e-9)
+
+
+def test_a_record_of_the_smallest_numbers_is_read_without_a_warning() -> None:
+    x = 1e-310 * np.cos(0.6302 * np.arange(400))
+    assert np.isfinite(read_line(line_spectrum(x, 1.0), 0.1003).amplitude)

@@ -69,6 +69,8 @@ def main(words: list[str]) -> int:
     found: dict[str, Any]
     try:
         found = found_in(asammdf, path, folder)
+    except MemoryError:
+        found = {"error": "it states more values than the memory it may take can hold"}
     except Exception as error:  # a foreign reader's failures are of any type
         found = {"error": str(error) or type(error).__name__}
     (folder / "parts.json").write_text(json.dumps(found), "utf-8")

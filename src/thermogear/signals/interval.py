@@ -408,8 +408,11 @@ class _Fit:
 
 
 def _near(size: float) -> float:
-    """The power of two next to ``size``: numbers divided by it keep their digits."""
-    return float(2.0 ** np.rint(np.log2(size))) if size > 0.0 else 1.0
+    """The power of two next to ``size``: numbers divided by it keep their digits.
+
+    1 for sizes whose inverse is no number.
+    """
+    return float(2.0 ** np.rint(np.log2(size))) if size > 1e-290 else 1.0
 
 
 def _inverse(matrix: Floats) -> Floats:
