@@ -71,8 +71,10 @@ def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
 
     which holds where the excitation does not change with frequency there. A passage at f' [Hz/s]
     moves a peak, and a frequency read from a phase, by up to about f'/(2 pi zeta f_n): that is in
-    the interval.
+    the interval. Fewer than three steps show no peak.
     """
+    if slices.time.size < 3:
+        return ()
     peaks: list[_Peak] = []
     for c in range(len(slices.channels)):
         for k, name in enumerate(slices.names):
