@@ -36,7 +36,19 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from hostile_records import JOINED, LONG, RECORDS, SHORT, TACHO, command, forked, named, record
+
+sys.path.insert(0, str(Path(__file__).parent))
+from hostile_records import (  # noqa: E402
+    JOINED,
+    LONG,
+    RECORDS,
+    SHORT,
+    TACHO,
+    command,
+    forked,
+    named,
+    record,
+)
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "trial_hostile.md"
