@@ -38,7 +38,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
-from hostile_records import (  # noqa: E402
+from hostile_records import (
     JOINED,
     LONG,
     RECORDS,
