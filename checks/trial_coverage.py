@@ -3,7 +3,8 @@
 ``make trial-coverage`` draws 500 records for each scenario (seed fixed before the first run), gives
 each to :func:`measure`, and counts how often the interval of the mesh line's amplitude, of its
 frequency and of the shaft speed holds the truth. It writes docs/trial_coverage.md;
-``python checks/trial_coverage.py 40`` prints a table of 40 records each.
+``python checks/trial_coverage.py 40`` prints a table of 40 records each, with ``--write`` after it
+it writes the page.
 """
 
 from __future__ import annotations
@@ -289,4 +290,5 @@ def main(count: int, write: bool) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else RUNS, len(sys.argv) < 2)
+    given = [one for one in sys.argv[1:] if one != "--write"]
+    main(int(given[0]) if given else RUNS, not given or "--write" in sys.argv)

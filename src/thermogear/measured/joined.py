@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import place_of
+from thermogear.measured.parts import Joined, Part
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.units import kind_of
 
@@ -151,7 +151,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
             name = c.name if names[c.name] == 1 else f"{file}{SIGN}{c.name}"
             cut: Samples = c.samples
             if shift or len(c) > count:
-                cut = _Joined((_Part(c.samples, shift, stop=shift + count),))
+                cut = Joined((Part(c.samples, shift, stop=shift + count),))
             channels.append(replace(c, name=name, samples=cut, file=file))
             if tacho is None and c.name == one.tacho:
                 tacho = name
@@ -169,45 +169,6 @@ def _source(files: Sequence[str]) -> str:
 # --- files that are pieces of time ---------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Samples ``first``..``stop`` of a store; a store of None: so many without a number."""
-
-    samples: Any
-    first: int
-    stop: int
-
-    def __len__(self) -> int:
-        return self.stop - self.first
-
-    def values(self, start: int, *, stop: int) -> Any:
-        if self.samples is None:
-            return np.full(stop - start, np.nan)
-        if isinstance(self.samples, Channel):
-            return self.samples.values(self.first + start, stop=self.first + stop)
-        return self.samples[self.first + start : self.first + stop]
-
-
-class _Joined:
-    """Parts one after another, read slice by slice."""
-
-    def __init__(self, parts: Sequence[_Part]) -> None:
-        self._parts = tuple(parts)
-        self._edges = np.concatenate([[0], np.cumsum([len(one) for one in parts])]).tolist()
-
-    def __len__(self) -> int:
-        return int(self._edges[-1])
-
-    def __getitem__(self, key: slice) -> Any:
-        first, stop, step = key.indices(len(self))
-        found = [
-            np.asarray(part.values(max(first - edge, 0), stop=min(stop - edge, len(part))))
-            for part, edge in zip(self._parts, self._edges, strict=False)
-            if first < edge + len(part) and stop > edge
-        ]
-        return np.concatenate(found)[::step] if found else np.zeros(0)
-
-
 def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None) -> Record:
     """The pieces one after another, gaps between them as samples without a number."""
     first = records[0]
@@ -218,14 +179,14 @@ def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None)
                 why = f"it holds the same samples as {other}"
                 raise InputError("file", file, why=why, fix="name every piece once")
     gaps, notes = _gaps(records, files, rate)
-    parts: dict[str, list[_Part]] = {name: [] for name in first.names}
+    parts: dict[str, list[Part]] = {name: [] for name in first.names}
     for gap, one in zip(gaps, records, strict=True):
         for name, own in parts.items():
             if gap:
-                own.append(_Part(None, 0, stop=gap))
-            own.append(_Part(one.channel(name), 0, stop=one.samples))
+                own.append(Part(None, 0, stop=gap))
+            own.append(Part(one.channel(name), 0, stop=one.samples))
     channels = tuple(
-        replace(c, samples=_Joined(parts[c.name]), scale=1.0, offset=0.0) for c in first.channels
+        replace(c, samples=Joined(parts[c.name]), scale=1.0, offset=0.0) for c in first.channels
     )
     notes.insert(0, Notice("info", f"{len(files)} files are joined as pieces of one run"))
     return replace(first, channels=channels, source=_source(files), notices=tuple(notes))

@@ -11,6 +11,7 @@ import numpy as np
 
 from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import ReadOptions, place_of, refused
+from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
     MOST_STAMPS,
@@ -101,7 +102,8 @@ def record_of(
     channels, doubled = without_doubles(channels, path.name)
     if options.keep:
         channels = _kept(channels, options.keep)
-    start = told.start(longest)
+    start, gaps = told.start(longest)
+    channels = [with_gaps(one, gaps) for one in channels] if gaps else channels
     units = [v for k, v in common.items() if str(k).lower() in ("unit", "units")]
     of_all = unit(text_of(units[-1]) or "") if units else None
     if of_all is not None:
@@ -156,14 +158,15 @@ class _Told:
                 for index in range(min(sizes))
             ]
 
-    def start(self, longest: int) -> float:
-        """The time [s] at which the record starts, of the first time as long as the channels.
+    def start(self, longest: int) -> tuple[float, tuple[tuple[int, int], ...]]:
+        """The time [s] at which the record starts, of the first time as long as the channels, and
+        the blocks that were dropped.
 
         What it says of the rate goes to the others.
         """
         time = next((one for one in self.times if len(one) == longest), None)
         if time is None:
-            return 0.0
+            return 0.0, ()
         t = np.asarray(time.samples[0 : min(longest, MOST_STAMPS)], dtype=float)
         if t.size < longest:
             text = f"the rate is taken from the first {t.size} samples of {time.name!r}"
@@ -172,7 +175,7 @@ class _Told:
         self.notes += base.notices
         if base.rate is not None:
             self.rates.append((base.rate, base.origin))
-        return base.start
+        return base.start, base.gaps
 
 
 def _of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]:

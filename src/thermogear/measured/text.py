@@ -17,6 +17,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import ReadOptions, place_of, refused, too_large
+from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import BLOCK, Channel, Notice, Record
 from thermogear.measured.store import ColumnStore, StoredColumn
 from thermogear.measured.traps import (
@@ -277,6 +278,7 @@ def _record(
     path: Path, layout: Layout, keep: list[int], columns: Sequence[Floats | StoredColumn]
 ) -> Record:
     notes = list(layout.notices)
+    gaps: tuple[tuple[int, int], ...] = ()
     names = [layout.names[i] for i in keep]
     units = [layout.units[i] for i in keep]
     rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
@@ -288,7 +290,7 @@ def _record(
             notes.append(Notice("info", text))
         base = read_time(names[place], units[place], t, repeats=_repeats(columns, t.size))
         notes += base.notices
-        start = base.start
+        start, gaps = base.start, base.gaps
         if base.drop:
             columns = _without(columns, base.drop)
         if base.rate is not None and rate is not None and abs(base.rate / rate - 1) > 1e-3:
@@ -310,6 +312,7 @@ def _record(
         if i not in times
     ]
     channels, doubled = without_doubles(channels, path.name)
+    channels = [with_gaps(one, gaps) for one in channels] if gaps else channels
     tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
     return Record(tuple(channels), path.name, rate, origin, start, tacho, (*notes, *doubled))
 

@@ -32,6 +32,8 @@ _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 
 _LONGEST = 200  # characters of a name that are looked at and kept
 
+_FEW = 0.001  # of the steps may be jumps
+_EVEN = 0.25  # of a step: how far stamps may be off where blocks are dropped
 HUGE = 1e30
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
 
@@ -103,6 +105,7 @@ class TimeBase:
     origin: str
     drop: tuple[int, ...] = ()
     notices: tuple[Notice, ...] = ()
+    gaps: tuple[tuple[int, int], ...] = ()
 
 
 def read_time(
@@ -112,7 +115,8 @@ def read_time(
 
     ``t`` in the column's own unit; ``repeats``: of each row, whether its every value repeats the
     row before. A time without a unit gives no rate. A doubled stamp on a row that is doubled as a
-    whole is one row written twice and is dropped; any other irregularity gives no rate.
+    whole is one row written twice and is dropped. Jumps by whole numbers of steps are dropped
+    blocks: ``gaps`` (before which row, how many samples). Any other irregularity gives no rate.
     """
     notes: list[Notice] = []
     label = f"time column {name!r}"
@@ -169,7 +173,18 @@ def read_time(
     wander = float(np.max(np.abs(seconds - line))) / mean
     step = float(np.median(steps))
     bad = np.flatnonzero(np.abs(steps - step) > 0.5 * step)
-    if wander > 0.5 or (bad.size and bad.size < 0.01 * steps.size):
+    gaps = _dropped(seconds, steps, bad)
+    if gaps:
+        lost = sum(missing for _, missing in gaps)
+        mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1 + lost)
+        notes.append(
+            Notice(
+                "warning",
+                f"{label} jumps at {_count(len(gaps), 'place')} (first: row {gaps[0][0] + 1}): "
+                f"{_count(lost, 'sample')} dropped there; they are put in without a number",
+            )
+        )
+    elif wander > 0.5 or (bad.size and bad.size < 0.01 * steps.size):
         first = int(bad[0]) + 2 if bad.size else int(np.argmax(np.abs(seconds - line))) + 1
         doubled = np.flatnonzero(steps == 0.0)
         what = (
@@ -191,7 +206,29 @@ def read_time(
         origin=label,
         drop=drop,
         notices=tuple(notes),
+        gaps=gaps,
     )
+
+
+def _dropped(seconds: Floats, steps: Floats, bad: NDArray[np.intp]) -> tuple[tuple[int, int], ...]:
+    """Dropped blocks: few jumps by whole numbers of steps between stamps that are even else."""
+    few = 0 < bad.size <= max(1, _FEW * steps.size)
+    if not few or np.any(steps[bad] <= 0.0):
+        return ()
+    even = np.delete(steps, bad)
+    step = float(np.mean(even))
+    jumps = steps[bad] / step
+    missing = np.rint(jumps) - 1.0
+    whole = np.abs(jumps - np.rint(jumps)) < _EVEN
+    if not np.all(whole & (missing >= 1.0)) or missing.sum() > seconds.size:
+        return ()
+    place = np.arange(seconds.size, dtype=float)
+    for row, more in zip(bad, missing, strict=True):
+        place[row + 1 :] += more
+    slope, start = np.polyfit(place, seconds, 1)
+    if np.max(np.abs(seconds - start - slope * place)) > _EVEN * slope:
+        return ()
+    return tuple((int(row) + 1, int(more)) for row, more in zip(bad, missing, strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,62 @@
+"""Samples in parts: pieces of stores one after another, and stretches of which nothing is known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from thermogear.measured.record import Channel, Samples
+
+
+@dataclass(frozen=True)
+class Part:
+    """Samples ``first``..``stop`` of a store; a store of None: so many without a number."""
+
+    samples: Any
+    first: int
+    stop: int
+
+    def __len__(self) -> int:
+        return self.stop - self.first
+
+    def values(self, start: int, *, stop: int) -> Any:
+        if self.samples is None:
+            return np.full(stop - start, np.nan)
+        if isinstance(self.samples, Channel):
+            return self.samples.values(self.first + start, stop=self.first + stop)
+        return self.samples[self.first + start : self.first + stop]
+
+
+class Joined:
+    """Parts one after another, read slice by slice."""
+
+    def __init__(self, parts: Sequence[Part]) -> None:
+        self._parts = tuple(parts)
+        self._edges = np.concatenate([[0], np.cumsum([len(one) for one in parts])]).tolist()
+
+    def __len__(self) -> int:
+        return int(self._edges[-1])
+
+    def __getitem__(self, key: slice) -> Any:
+        first, stop, step = key.indices(len(self))
+        found = [
+            np.asarray(part.values(max(first - edge, 0), stop=min(stop - edge, len(part))))
+            for part, edge in zip(self._parts, self._edges, strict=False)
+            if first < edge + len(part) and stop > edge
+        ]
+        return np.concatenate(found)[::step] if found else np.zeros(0)
+
+
+def with_gaps(channel: Channel, gaps: Sequence[tuple[int, int]]) -> Channel:
+    """The channel with samples without a number put in: (before which sample, how many)."""
+    parts: list[Part] = []
+    first = 0
+    for place, missing in gaps:
+        parts += [Part(channel.samples, first, stop=place), Part(None, 0, stop=missing)]
+        first = place
+    parts.append(Part(channel.samples, first, stop=len(channel)))
+    samples: Samples = Joined([one for one in parts if len(one)])
+    return replace(channel, samples=samples)
