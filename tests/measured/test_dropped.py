@@ -39,6 +39,29 @@ def test_a_jump_by_no_whole_number_of_steps_gives_no_rate(jump: float) -> None:
     assert (base.rate, base.gaps) == (None, ())
 
 
+def test_pauses_of_any_length_are_no_dropped_blocks() -> None:
+    """Exact stamps: a drawn pause is a whole number of steps to 2 % in one of 25."""
+    random = np.random.default_rng(99)
+    taken = 0
+    for _ in range(200):
+        t = np.arange(3000.0)
+        t[int(random.integers(50, 2950)) :] += random.uniform(1.0, 300.0)
+        taken += bool(read_time("t", "s", t / RATE).gaps)
+    assert taken <= 20
+
+
+def test_the_row_that_is_named_is_the_files() -> None:
+    t = np.arange(3000.0)
+    t[2000:] += 5.0
+    t = np.insert(t, 100, t[100])
+    repeats = np.zeros(t.size, bool)
+    repeats[101] = True
+    base = read_time("t", "s", t / RATE, repeats=repeats)
+    assert (base.drop, base.gaps) == ((101,), ((2000, 5),))
+    jump = next(one.text for one in base.notices if "jumps" in one.text)
+    assert "row 2002)" in jump
+
+
 def test_uneven_stamps_give_no_rate() -> None:
     t = np.arange(5000) + np.random.default_rng(2).uniform(0.0, 0.9, 5000)
     t[2500:] += 40.0

@@ -151,7 +151,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
             name = c.name if names[c.name] == 1 else f"{file}{SIGN}{c.name}"
             cut: Samples = c.samples
             if shift or len(c) > count:
-                cut = Joined((Part(c.samples, shift, stop=shift + count),))
+                cut = Joined((Part(c.samples, first=shift, stop=shift + count),))
             channels.append(replace(c, name=name, samples=cut, file=file))
             if tacho is None and c.name == one.tacho:
                 tacho = name
@@ -183,8 +183,8 @@ def _pieces(records: Sequence[Record], files: Sequence[str], rate: float | None)
     for gap, one in zip(gaps, records, strict=True):
         for name, own in parts.items():
             if gap:
-                own.append(Part(None, 0, stop=gap))
-            own.append(Part(one.channel(name), 0, stop=one.samples))
+                own.append(Part(None, first=0, stop=gap))
+            own.append(Part(one.channel(name), first=0, stop=one.samples))
     channels = tuple(
         replace(c, samples=Joined(parts[c.name]), scale=1.0, offset=0.0) for c in first.channels
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ class Part:
     """Samples ``first``..``stop`` of a store; a store of None: so many without a number."""
 
     samples: Any
+    _: KW_ONLY
     first: int
     stop: int
 
@@ -55,8 +56,8 @@ def with_gaps(channel: Channel, gaps: Sequence[tuple[int, int]]) -> Channel:
     parts: list[Part] = []
     first = 0
     for place, missing in gaps:
-        parts += [Part(channel.samples, first, stop=place), Part(None, 0, stop=missing)]
+        parts += [Part(channel.samples, first=first, stop=place), Part(None, first=0, stop=missing)]
         first = place
-    parts.append(Part(channel.samples, first, stop=len(channel)))
+    parts.append(Part(channel.samples, first=first, stop=len(channel)))
     samples: Samples = Joined([one for one in parts if len(one)])
     return replace(channel, samples=samples)

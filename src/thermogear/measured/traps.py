@@ -33,7 +33,7 @@ _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 _LONGEST = 200  # characters of a name that are looked at and kept
 
 _FEW = 0.001  # of the steps may be jumps
-_EVEN = 0.25  # of a step: how far stamps may be off where blocks are dropped
+_EVEN, _EXACT = 0.25, 0.02  # of a step: how far stamps may be off where blocks are dropped
 HUGE = 1e30
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
 
@@ -177,13 +177,7 @@ def read_time(
     if gaps:
         lost = sum(missing for _, missing in gaps)
         mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1 + lost)
-        notes.append(
-            Notice(
-                "warning",
-                f"{label} jumps at {_count(len(gaps), 'place')} (first: row {gaps[0][0] + 1}): "
-                f"{_count(lost, 'sample')} dropped there; they are put in without a number",
-            )
-        )
+        notes.append(_told(label, gaps, drop))
     elif wander > 0.5 or (bad.size and bad.size < 0.01 * steps.size):
         first = int(bad[0]) + 2 if bad.size else int(np.argmax(np.abs(seconds - line))) + 1
         doubled = np.flatnonzero(steps == 0.0)
@@ -210,16 +204,31 @@ def read_time(
     )
 
 
+def _told(label: str, gaps: tuple[tuple[int, int], ...], drop: tuple[int, ...]) -> Notice:
+    """Where blocks are dropped, in rows of the file: those written twice count there."""
+    first = gaps[0][0] + 1
+    for row in drop:
+        first += row < first
+    lost = _count(sum(missing for _, missing in gaps), "sample")
+    return Notice(
+        "warning",
+        f"{label} jumps at {_count(len(gaps), 'place')} (first: row {first}): {lost} dropped "
+        "there; they are put in without a number",
+    )
+
+
 def _dropped(seconds: Floats, steps: Floats, bad: NDArray[np.intp]) -> tuple[tuple[int, int], ...]:
     """Dropped blocks: few jumps by whole numbers of steps between stamps that are even else."""
     few = 0 < bad.size <= max(1, _FEW * steps.size)
     if not few or np.any(steps[bad] <= 0.0):
         return ()
-    even = np.delete(steps, bad)
-    step = float(np.mean(even))
+    others = np.delete(steps, bad)
+    step = float(np.mean(others))
     jumps = steps[bad] / step
     missing = np.rint(jumps) - 1.0
-    whole = np.abs(jumps - np.rint(jumps)) < _EVEN
+    # as whole as the stamps are even: a pause of any length is no dropped block
+    even = min(_EVEN, max(_EXACT, 3.0 * float(np.max(np.abs(others / step - 1.0)))))
+    whole = np.abs(jumps - np.rint(jumps)) < even
     if not np.all(whole & (missing >= 1.0)) or missing.sum() > seconds.size:
         return ()
     place = np.arange(seconds.size, dtype=float)
