@@ -1,4 +1,4 @@
-"""Orders: angle from tacho and mesh line, resampling, synchronous average, Welch."""
+"""Orders: angle from tacho and mesh line, resampling, Welch."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from thermogear.signals.orders import (
     line_angle,
     resample_by_angle,
     sideband_orders,
-    synchronous_average,
     tacho_angle,
     tacho_times,
 )
@@ -60,18 +59,6 @@ def test_mesh_line_phase_gives_the_angle_without_a_tacho() -> None:
     )
     lines = order_amplitudes(y, samples_per_period=256, periods=100, orders=[24, 25, 26, 50])
     np.testing.assert_allclose(lines, [0.05, 1.0, 0.1, 0.3], atol=0.02)
-
-
-def test_synchronous_average_keeps_whole_orders_and_quiets_noise() -> None:
-    per, turns = 128, 400
-    n = np.arange(per * turns) / per
-    clean = np.cos(2 * np.pi * 3 * n)
-    noise = np.random.default_rng(5).standard_normal(n.size)
-    mean, rest = synchronous_average(clean + noise, per)
-    np.testing.assert_allclose(np.std(mean - clean[:per]), 1 / np.sqrt(turns), rtol=0.2)
-    np.testing.assert_allclose(synchronous_average(clean, per)[0], clean[:per], atol=1e-12)
-    assert rest.shape == n.shape
-    np.testing.assert_allclose(rest + np.tile(mean, turns), clean + noise, atol=1e-12)
 
 
 def test_welch_agrees_with_scipy_in_one_block_and_in_many() -> None:

@@ -1,4 +1,4 @@
-"""Orders: the angle of a shaft from a tacho or a mesh line, resampling in angle, averages."""
+"""Orders: the angle of a shaft from a tacho or a mesh line, resampling in angle."""
 
 from __future__ import annotations
 
@@ -151,28 +151,6 @@ def _finer(values: Floats, factor: int) -> Floats:
     lines = fft.rfft(closed, axis=-1)
     fine = fft.irfft(lines, n=factor * closed.shape[-1], axis=-1) * factor
     return np.asarray(fine[..., : factor * (count - 1) + 1])
-
-
-def synchronous_average(x: ArrayLike, samples_per_turn: int) -> tuple[Floats, Floats]:
-    """Mean turn of an angle-sampled record and what is left over (same length, whole turns).
-
-    ``x`` [any unit], angle last. Noise falls with the root of the number of turns; lines at whole
-    orders stay exactly.
-
-    >>> mean, rest = synchronous_average([1.0, 3.0, 2.0, 4.0], 2)
-    >>> mean, rest
-    (array([1.5, 3.5]), array([-0.5, -0.5,  0.5,  0.5]))
-    """
-    values = finite_record(x)
-    turns = values.shape[-1] // samples_per_turn
-    if turns < 1:
-        raise InputError(
-            "record", f"{values.shape[-1]} samples", allowed=f">= {samples_per_turn} (one turn)"
-        )
-    whole = values[..., : turns * samples_per_turn]
-    table = whole.reshape(*whole.shape[:-1], turns, samples_per_turn)
-    mean = table.mean(axis=-2)
-    return np.asarray(mean), np.asarray((table - mean[..., None, :]).reshape(whole.shape))
 
 
 def sideband_orders(*, centre: float, spacing: float, count: int) -> Floats:
