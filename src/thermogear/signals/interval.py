@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from thermogear.signals.left_over import NEAR, Left, noise_beside
 from thermogear.signals.lines import LineSpectrum, floor_around, hann_offset
 
 Floats = NDArray[np.float64]
@@ -30,9 +31,7 @@ Complexes = NDArray[np.complex128]
 REACH = 40
 """Bins on each side of a line from which its noise is judged."""
 
-_NEAR = 6  # bins on each side in which a neighbour is looked for
 _APART = 0.75  # bins: two lines nearer than this are one that changes
-_CLEARLY = 2.5
 _CLEAN = 60  # strong lines of a spectrum whose leakage is taken away
 _LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
 
@@ -190,41 +189,12 @@ def read_line(
     return fit.reading(left)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Left:
-    """What the fit leaves beside the line, m = 1.. bins off: powers of I and Q, of each side."""
-
-    even: Floats
-    odd: Floats
-    noise: float  # power in one bin
-    degrees: float
-    places: Floats  # of the finer grid on which a neighbour is looked for [bins from the line]
-    finer: Floats  # power there
-
-    @property
-    def near(self) -> float:
-        """Power beyond noise within the bins in which a neighbour is looked for."""
-        reach = min(_NEAR, self.even.size)
-        total = np.sum(self.even[:reach]) + np.sum(self.odd[:reach])
-        return float(max(total - 2 * reach * self.noise, 0.0))
-
-    @property
-    def shared(self) -> float:
-        """Power near the line that I and Q have in the same bins, as a further line's would be."""
-        quiet = np.minimum(self.even, self.odd)[:_NEAR] - 4.0 * self.noise
-        return float(2.0 * np.sum(np.maximum(quiet, 0.0)))
-
-    def beyond(self, which: Floats) -> float:
-        """Power of I or Q beyond noise, 0 where it is within four of its standard deviations."""
-        extra = float(np.sum(which) - which.size * self.noise)
-        return extra if extra > 4.0 * self.noise * np.sqrt(which.size) else 0.0
-
-
 @dataclass(frozen=True)
 class _Fit:
     """Lines at ``places`` [bins], the first the one that is read; ``free`` may move.
 
     ``data`` and ``amplitudes`` count in ``unit``, so that no result depends on the record's own.
+    ``taken``: strong lines taken away before.
     """
 
     spectrum: LineSpectrum
@@ -234,6 +204,7 @@ class _Fit:
     free: NDArray[np.bool_]
     amplitudes: Complexes
     unit: float
+    taken: tuple[Strong, ...]
 
     @classmethod
     def of(
@@ -254,11 +225,14 @@ class _Fit:
             if 1.2 < abs(one / width - place) < REACH and one / width > 1
         ]
         data = spectrum.lines[low : high + 1].copy()
+        taken: list[Strong] = []
         for one in strong:
             if abs(one.place - place) < _APART or any(abs(one.place - k) < 2.0 for k in known):
                 continue
             if abs(one.place - place) < 4.0:
                 continue  # too near to be told apart by the Hann window
+            if low - 1 < one.place < high + 1:
+                taken.append(one)
             data -= one.amplitude * dirichlet(one.place - bins, count)
             data -= np.conj(one.amplitude) * dirichlet(-one.place - bins, count)
         places = np.array([place, *known])
@@ -266,7 +240,7 @@ class _Fit:
         free[0] = True
         unit = _near(float(np.max(np.abs(data), initial=0.0)))
         blank = np.zeros(places.size, complex)
-        return cls(spectrum, bins, data / unit, places, free, blank, unit)._solved()
+        return cls(spectrum, bins, data / unit, places, free, blank, unit, tuple(taken))._solved()
 
     def _columns(self, places: Floats) -> tuple[Complexes, Complexes]:
         """Of each place the bins of its cosine and of its sine: (bin, place)."""
@@ -274,18 +248,42 @@ class _Fit:
         down = dirichlet(-places[None, :] - self.bins[:, None], self.spectrum.samples)
         return up + down, 1j * (up - down)
 
+    def _slopes(self, places: Floats, amplitudes: Complexes) -> Complexes:
+        """What the bins change by where each place moves by a bin: (bin, place)."""
+        step = 1e-4
+        above, below = self._columns(places + step), self._columns(places - step)
+        moved = (above[0] - below[0]) * amplitudes.real + (above[1] - below[1]) * amplitudes.imag
+        return np.asarray(moved / (2.0 * step))
+
     def _matrix(self, slopes: bool) -> Floats:
         """Real matrix of the linear problem: cosines, sines, and slopes of the free places."""
-        even, odd = self._columns(self.places)
-        columns = [even, odd]
+        columns = [*self._columns(self.places)]
         if slopes:
-            step = 1e-4
-            above, below = self._columns(self.places + step), self._columns(self.places - step)
-            a = self.amplitudes
-            moved = (above[0] - below[0]) * a.real + (above[1] - below[1]) * a.imag
-            columns.append((moved / (2.0 * step))[:, self.free])
-        whole = np.concatenate(columns, axis=1)
-        return np.concatenate([whole.real, whole.imag])
+            columns.append(self._slopes(self.places[self.free], self.amplitudes[self.free]))
+        return _real(np.concatenate(columns, axis=1))
+
+    def _shares(self, above: Complexes, below: Complexes) -> tuple[Floats, Floats]:
+        """What is left in I and Q of white noise of power 1 in a bin: (step,) each.
+
+        ``above`` and ``below``: rows by which bins are turned into R_m and R_-m. Noise loses what
+        lies in the space of the fitted lines and of those taken away, U its orthonormal base:
+        |L|^2 - |L U|^2 of each row L.
+        """
+        places = np.array([one.place for one in self.taken])
+        sizes = np.array([one.amplitude for one in self.taken], dtype=complex)
+        others = [*self._columns(places), self._slopes(places, sizes)]
+        fitted = np.concatenate([self._matrix(True), _real(np.concatenate(others, axis=1))], axis=1)
+        lengths = np.linalg.norm(fitted, axis=0)
+        base, size, _ = np.linalg.svd(fitted / np.where(lengths > 0.0, lengths, 1.0), False)
+        base = base[:, size > 1e-6 * size[0]]
+        up = np.concatenate([above, 1j * above], axis=1)
+        down = np.concatenate([below.conj(), -1j * below.conj()], axis=1)
+        rows = (up + down) / np.sqrt(2.0), (up - down) / np.sqrt(2.0)
+        even, odd = (
+            0.5 * (np.sum(np.abs(r) ** 2, axis=1) - np.sum(np.abs(r @ base) ** 2, axis=1))
+            for r in rows
+        )
+        return np.maximum(even, 0.0), np.maximum(odd, 0.0)
 
     def _model(self) -> Complexes:
         even, odd = self._columns(self.places)
@@ -313,33 +311,36 @@ class _Fit:
                 break
         return fit
 
-    def left(self, followed: float) -> _Left:
+    def left(self, followed: float) -> Left:
         """What is left beside the line, turned by its phase."""
         error = self.data - self._model()
         place, phase = float(self.places[0]), np.exp(-1j * np.angle(self.amplitudes[0]))
         reach = int(max(1, min(place - self.bins[0], self.bins[-1] - place)))
         steps = np.arange(1, reach + 1, dtype=float)
 
-        def seen(at: Floats) -> Complexes:
+        def rows(at: Floats) -> Complexes:
             shapes = dirichlet(place + at[:, None] - self.bins[None, :], self.spectrum.samples)
-            return np.asarray((np.conj(shapes) @ error) * phase)
+            return np.asarray(np.conj(shapes) * phase)
 
-        above, below = seen(steps), np.conj(seen(-steps))
+        up, down = rows(steps), rows(-steps)
+        shares = self._shares(up, down)
+        above, below = up @ error, np.conj(down @ error)
         even, odd = np.abs(above + below) ** 2 / 2.0, np.abs(above - below) ** 2 / 2.0
-        noise, degrees = _noise(even, odd, followed / self.spectrum.bin_width)
-        fine = np.arange(-_NEAR, _NEAR + 0.01, 0.125)
+        noise, degrees = noise_beside((even, odd), shares, followed / self.spectrum.bin_width)
+        fine = np.arange(-NEAR, NEAR + 0.01, 0.125)
         fine = fine[np.abs(fine) >= _APART]
         fine = fine[(place + fine > self.bins[0]) & (place + fine < self.bins[-1])]
-        return _Left(
+        return Left(
             even=even,
             odd=odd,
+            shares=shares,
             noise=noise,
             degrees=degrees,
             places=fine,
-            finer=np.abs(seen(fine)) ** 2,
+            finer=np.abs(rows(fine) @ error) ** 2,
         )
 
-    def with_neighbour(self, left: _Left) -> _Fit | None:
+    def with_neighbour(self, left: Left) -> _Fit | None:
         """The fit with a further line at the highest of what is left, where that is no noise.
 
         None also where the lines of the fit run into each other.
@@ -362,7 +363,7 @@ class _Fit:
             return None
         return fit
 
-    def reading(self, left: _Left) -> Reading:
+    def reading(self, left: Left) -> Reading:
         """Amplitude and frequency with their errors."""
         matrix, width = self._matrix(True), self.spectrum.bin_width
         count = self.places.size
@@ -372,10 +373,10 @@ class _Fit:
         way = np.zeros(matrix.shape[1])
         if size > 0.0:
             way[0], way[count] = own.real / size, own.imag / size
-        changed, turned = left.beyond(left.even), left.beyond(left.odd)
+        changed, turned = left.changed, left.turned
         # mean square of a(t): that of the mean, of the change, less what noise brings to both
         square = size**2 - float(spread[0, 0] + spread[count, count]) + turned
-        square += float(np.sum(left.even)) - left.even.size * left.noise
+        square += left.change
         amplitude = float(np.sqrt(square)) if square > left.noise else size
         hidden_power = left.shared if changed and turned else 0.0
         both = _LEAK**2 * hidden_power
@@ -425,34 +426,5 @@ def _inverse(matrix: Floats) -> Floats:
     return np.asarray(found / np.outer(sizes, sizes))
 
 
-def _noise(even: Floats, odd: Floats, followed: float) -> tuple[float, float]:
-    """Power of noise in one bin and the degrees of freedom behind it, from powers of I and Q.
-
-    Medians over bins, so that single lines count little: ln 2 of the mean where it is noise. Q of
-    bins nearer than ``followed`` has been taken away with the phase. Both together, unless one is
-    2.5 times the other: then the quieter, because a change fills one alone; likewise the outer
-    half of its bins, because a change fills the inner ones first.
-    """
-    first = 1 if even.size > 3 else 0  # the fitted place takes part of the first
-    one, two = even[first:], odd[max(first, int(np.ceil(followed))) :]
-    if two.size < 4:
-        return _outer(one)
-    if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
-        return min(_outer(one), _outer(two))
-    joined = np.concatenate([one, two])
-    far = np.concatenate([one[one.size // 2 :], two[two.size // 2 :]])
-    if far.size >= 16 and _median(joined) > 2.0 * _median(far):
-        joined = far
-    return _median(joined), float(joined.size)
-
-
-def _outer(powers: Floats) -> tuple[float, float]:
-    """Noise from all bins or, where it is clearly less, from the outer half; degrees of freedom."""
-    outer = powers[powers.size // 2 :]
-    if outer.size >= 8 and _median(powers) > _CLEARLY * _median(outer):
-        return _median(outer), float(outer.size)
-    return _median(powers), float(powers.size)
-
-
-def _median(powers: Floats) -> float:
-    return float(max(np.median(powers) / np.log(2.0), 1e-300)) if powers.size else 1e-300
+def _real(columns: Complexes) -> Floats:
+    return np.concatenate([columns.real, columns.imag])

@@ -1,0 +1,108 @@
+"""What a fitted line leaves in the bins beside it: powers of I and Q, and their noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+NEAR = 6
+"""Bins on each side in which a neighbour is looked for."""
+
+_CLEARLY = 2.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Left:
+    """What the fit leaves beside the line, m = 1.. bins off: powers of I and Q, of each side."""
+
+    even: Floats
+    odd: Floats
+    shares: tuple[Floats, Floats]  # of noise of power 1 in a bin, what the fit leaves in I and Q
+    noise: float  # power in one bin
+    degrees: float
+    places: Floats  # of the finer grid on which a neighbour is looked for [bins from the line]
+    finer: Floats  # power there
+
+    @property
+    def near(self) -> float:
+        """Power beyond noise within the bins in which a neighbour is looked for."""
+        reach = min(NEAR, self.even.size)
+        total = np.sum(self.even[:reach]) + np.sum(self.odd[:reach])
+        own = sum(float(np.sum(share[:reach])) for share in self.shares)
+        return float(max(total - own * self.noise, 0.0))
+
+    @property
+    def shared(self) -> float:
+        """Power near the line that I and Q have in the same bins, as a further line's would be."""
+        quiet = np.minimum(self.even, self.odd)[:NEAR] - 4.0 * self.noise
+        return float(2.0 * np.sum(np.maximum(quiet, 0.0)))
+
+    @property
+    def change(self) -> float:
+        """Power of I beyond noise, of either sign."""
+        return float(np.sum(self.even) - np.sum(self.shares[0]) * self.noise)
+
+    @property
+    def changed(self) -> float:
+        """Power of I beyond noise, 0 where it is within four of its standard deviations."""
+        return self._clearly(self.change, self.even.size)
+
+    @property
+    def turned(self) -> float:
+        """Power of Q beyond noise, 0 where it is within four of its standard deviations."""
+        extra = float(np.sum(self.odd) - np.sum(self.shares[1]) * self.noise)
+        return self._clearly(extra, self.odd.size)
+
+    def _clearly(self, extra: float, size: int) -> float:
+        return extra if extra > 4.0 * self.noise * np.sqrt(size) else 0.0
+
+
+def noise_beside(
+    powers: tuple[Floats, Floats], shares: tuple[Floats, Floats], followed: float
+) -> tuple[float, float]:
+    """Power of noise in one bin and the degrees of freedom behind it, from ``powers`` of I and Q.
+
+    Each is divided by the share of noise that the fit leaves there; where that is less than half
+    it is left aside. Medians over bins, so that single lines count little: ln 2 of the
+    mean where it is noise. Q of bins nearer than ``followed`` has been taken away with the phase.
+    Both together, unless one is 2.5 times the other: then the quieter, because a change fills one
+    alone; likewise the outer half of its bins, because a change fills the inner ones first.
+    """
+    first = 1 if powers[0].size > 3 else 0  # a slow change is in the first
+    starts = first, max(first, int(np.ceil(followed)))
+    one, two = (
+        _whole(power[start:], share[start:])
+        for power, share, start in zip(powers, shares, starts, strict=True)
+    )
+    if two.size < 4:
+        return _outer(one)
+    if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
+        return min(_outer(one), _outer(two))
+    joined = np.concatenate([one, two])
+    far = np.concatenate([one[one.size // 2 :], two[two.size // 2 :]])
+    if far.size >= 16 and _median(joined) > 2.0 * _median(far):
+        joined = far
+    return _median(joined), float(joined.size)
+
+
+def _whole(powers: Floats, shares: Floats) -> Floats:
+    kept = shares >= 0.5
+    if np.count_nonzero(kept) < min(4, powers.size):
+        kept = np.ones(powers.size, dtype=bool)
+    return np.asarray(powers[kept] / np.maximum(shares[kept], 0.1))
+
+
+def _outer(powers: Floats) -> tuple[float, float]:
+    """Noise from all bins or, where it is clearly less, from the outer half; degrees of freedom."""
+    outer = powers[powers.size // 2 :]
+    if outer.size >= 8 and _median(powers) > _CLEARLY * _median(outer):
+        return _median(outer), float(outer.size)
+    return _median(powers), float(powers.size)
+
+
+def _median(powers: Floats) -> float:
+    return float(max(np.median(powers) / np.log(2.0), 1e-300)) if powers.size else 1e-300
