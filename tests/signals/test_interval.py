@@ -10,6 +10,7 @@ from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.signals.following import best_followed, follow_line
 from thermogear.signals.interval import Reading, dirichlet, read_line, strong_lines, student
+from thermogear.signals.left_over import noise_beside
 from thermogear.signals.lines import line_spectrum
 
 RATE = 1000.0
@@ -130,3 +131,31 @@ def test_a_reading_is_the_same_in_every_unit(unit: float) -> None:
 def test_a_record_of_the_smallest_numbers_is_read_without_a_warning() -> None:
     x = 1e-310 * np.cos(0.6302 * np.arange(400))
     assert np.isfinite(read_line(line_spectrum(x, 1.0), 0.1003).amplitude)
+
+
+def test_noise_is_not_lost_in_the_bins_of_fitted_lines() -> None:
+    """Short records: six sidebands lie in the bins from which the noise of power 4 s^2/N is told.
+
+    Of n powers the median over ln 2 scatters by 1/(ln 2 sqrt n) of its mean.
+    """
+    rng = np.random.default_rng(81)
+    t = np.arange(320) / 2560.0
+    sides = [400.0 + 16.0 * n for n in (-3, -2, -1, 1, 2, 3)]
+    found = []
+    for _ in range(120):
+        x = np.sin(2 * np.pi * 400.0 * t) + 0.1 * rng.normal(size=t.size)
+        x += 0.1 * sum(np.cos(2 * np.pi * f * t + rng.uniform(0.0, 6.0)) for f in sides)
+        one = read_line(line_spectrum(x - x.mean(), 2560.0), 400.0, beside=sides)
+        found.append(one.noise**2 / (4.0 * 0.01 / t.size))
+    scatter = 1.0 / (np.log(2.0) * np.sqrt(70.0 * len(found)))
+    assert np.mean(found) == pytest.approx(1.0, abs=4.0 * scatter + 0.01)  # 1/(2 n) of a median
+
+
+def test_noise_at_a_line_follows_a_resonance_beside_it() -> None:
+    """Powers of noise a + c m^2 without scatter: medians lie at the middle of each half."""
+    m = np.arange(1.0, 41.0)
+    power = np.log(2.0) * (1.0 - 4e-4 * m**2)
+    whole = np.ones_like(power)
+    noise, here, _ = noise_beside((power, power), (whole, whole), 0.0)
+    assert noise < 0.85
+    assert here == pytest.approx(1.0, abs=0.03)

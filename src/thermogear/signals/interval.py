@@ -326,7 +326,7 @@ class _Fit:
         shares = self._shares(up, down)
         above, below = up @ error, np.conj(down @ error)
         even, odd = np.abs(above + below) ** 2 / 2.0, np.abs(above - below) ** 2 / 2.0
-        noise, degrees = noise_beside((even, odd), shares, followed / self.spectrum.bin_width)
+        noise, here, degrees = noise_beside((even, odd), shares, followed / self.spectrum.bin_width)
         fine = np.arange(-NEAR, NEAR + 0.01, 0.125)
         fine = fine[np.abs(fine) >= _APART]
         fine = fine[(place + fine > self.bins[0]) & (place + fine < self.bins[-1])]
@@ -335,6 +335,7 @@ class _Fit:
             odd=odd,
             shares=shares,
             noise=noise,
+            here=here,
             degrees=degrees,
             places=fine,
             finer=np.abs(rows(fine) @ error) ** 2,
@@ -367,7 +368,7 @@ class _Fit:
         """Amplitude and frequency with their errors."""
         matrix, width = self._matrix(True), self.spectrum.bin_width
         count = self.places.size
-        spread = _inverse(matrix) * (0.5 * left.noise)
+        spread = _inverse(matrix) * (0.5 * left.here)
         own = self.amplitudes[0]
         size = abs(own)
         way = np.zeros(matrix.shape[1])

@@ -22,8 +22,9 @@ class Left:
     even: Floats
     odd: Floats
     shares: tuple[Floats, Floats]  # of noise of power 1 in a bin, what the fit leaves in I and Q
-    noise: float  # power in one bin
-    degrees: float
+    noise: float  # power in one bin, typical of those beside
+    here: float  # power in one bin at the line
+    degrees: float  # of freedom behind ``here``
     places: Floats  # of the finer grid on which a neighbour is looked for [bins from the line]
     finer: Floats  # power there
 
@@ -63,14 +64,19 @@ class Left:
 
 def noise_beside(
     powers: tuple[Floats, Floats], shares: tuple[Floats, Floats], followed: float
-) -> tuple[float, float]:
-    """Power of noise in one bin and the degrees of freedom behind it, from ``powers`` of I and Q.
+) -> tuple[float, float, float]:
+    """Power of noise in one bin beside a line, in one at the line, and the latter's degrees of
+    freedom, from ``powers`` of I and Q.
 
     Each is divided by the share of noise that the fit leaves there; where that is less than half
     it is left aside. Medians over bins, so that single lines count little: ln 2 of the
     mean where it is noise. Q of bins nearer than ``followed`` has been taken away with the phase.
     Both together, unless one is 2.5 times the other: then the quieter, because a change fills one
     alone; likewise the outer half of its bins, because a change fills the inner ones first.
+
+    Noise of a resonance is not level. I and Q hold both sides alike, so a slope cancels and
+    a + c m^2 is left: of the inner and the outer half of the bins, mean m^2 (r/2)^2/3 and 7 times
+    that, the median powers p and q give a = (7 p - q)/6.
     """
     first = 1 if powers[0].size > 3 else 0  # a slow change is in the first
     starts = first, max(first, int(np.ceil(followed)))
@@ -79,14 +85,24 @@ def noise_beside(
         for power, share, start in zip(powers, shares, starts, strict=True)
     )
     if two.size < 4:
-        return _outer(one)
+        return _level(_outer(one))
     if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
-        return min(_outer(one), _outer(two))
+        return _level(min(_outer(one), _outer(two)))
     joined = np.concatenate([one, two])
     far = np.concatenate([one[one.size // 2 :], two[two.size // 2 :]])
     if far.size >= 16 and _median(joined) > 2.0 * _median(far):
-        joined = far
-    return _median(joined), float(joined.size)
+        return _level((_median(far), float(far.size)))
+    if far.size < 16:
+        return _level((_median(joined), float(joined.size)))
+    near = np.concatenate([one[: one.size // 2], two[: two.size // 2]])
+    here = (7.0 * _median(near) - _median(far)) / 6.0
+    degrees = 36.0 / (49.0 / near.size + 1.0 / far.size)
+    return _median(joined), max(here, 0.5 * _median(joined)), degrees
+
+
+def _level(found: tuple[float, float]) -> tuple[float, float, float]:
+    noise, degrees = found
+    return noise, noise, degrees
 
 
 def _whole(powers: Floats, shares: Floats) -> Floats:
