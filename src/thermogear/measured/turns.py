@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
-from thermogear.signals.following import WIDTHS, Followed, band_power, best_followed
+from thermogear.signals.following import Followed, band_power, best_followed, filter_widths
 from thermogear.signals.interval import Reading, read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 
@@ -56,7 +57,7 @@ def mesh_turns(
     beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
     strong = strong_lines(spectrum)
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
-    if _wanders(spectrum, reading, line.frequency, harmonics):
+    if _wanders(spectrum, reading, beside, harmonics):
         found = best_followed(values, spectrum, line.frequency)
         if found is not None and np.all(np.diff(found.cycles) > 0.0):
             return _followed(found, values, per_cycle, spectrum)
@@ -100,16 +101,27 @@ def clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
     return table[best], spectra[best]
 
 
-def _wanders(spectrum: LineSpectrum, reading: Reading, frequency: float, harmonics: int) -> bool:
+def _wanders(
+    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float], harmonics: int
+) -> bool:
+    """Whether the phase turns, or most of the power near the line is no steady line's.
+
+    The power is that within the narrowest filter that may hold a wandering line, less that of the
+    sidebands at ``beside`` and four standard deviations of the noise there.
+    """
     # noise that peaks beside the line changes amplitude and phase alike
     turns = reading.turning > min(1.5 * reading.changing, 0.5)
     if turns and reading.turning * harmonics > 2.0 * np.pi * _STEADY:
         return True
-    half_width = max(12.0 * spectrum.bin_width, WIDTHS[0] * frequency)
-    if half_width > 0.2 * frequency:
+    frequency, width = reading.frequency, spectrum.bin_width
+    widths = filter_widths(spectrum, frequency)
+    if not widths:
         return False
-    power = band_power(spectrum, frequency, half_width)
-    return reading.amplitude**2 + reading.beside < _KEPT * power
+    near = [one for one in beside if 3.0 * width < abs(one - frequency) < widths[0]]
+    power = band_power(spectrum, frequency, widths[0])
+    power -= sum(band_power(spectrum, one, 2.0 * width) for one in near)
+    scatter = reading.noise**2 * float(np.sqrt(4.0 * widths[0] / width))
+    return reading.amplitude**2 + reading.beside < _KEPT * (power - 4.0 * scatter)
 
 
 def _followed(found: Followed, values: Floats, per_cycle: int, spectrum: LineSpectrum) -> MeshTurns:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft, signal
+from scipy import fft, signal, stats
 
 from thermogear.base.errors import InputError
 from thermogear.signals.interval import student
@@ -25,6 +25,9 @@ STEPS = 200
 _APART = 4.0  # lines of a block: orders this far apart are told apart by the fit
 _POWERS = 3
 _BIAS = 1.25  # the bias b goes with T^4: blocks of length 1.6 to 1 differ by b - b/6 or so
+_DIFFERS = 0.55  # variance of that difference by noise, of the longer block's times T/T' - 1
+_CIRCLE = 1.5616  # -2 ln 0.05/1.96^2
+_NORMAL, _ONE = 1.959964, 1.644854  # standard deviations that hold 95 % on both sides, on one
 _FAR = 3.5 + np.arange(30.0)  # lines beside an order at which its noise may be judged
 _JUDGED = 12
 _FREE = 3.0  # lines from every order that is fitted
@@ -223,17 +226,22 @@ def _chosen(
     """Of every order at every step the block that Lepski's rule takes, and its interval."""
     size = np.stack([np.abs(a) for a, _, _ in read])
     angle = np.stack([np.angle(a) for a, _, _ in read])
-    width = np.stack(
-        [np.sqrt(v) * np.array([student(d) for d in degrees])[:, None] for _, v, degrees in read]
-    )
+    variance = np.stack([v for _, v, _ in read])
+    sure = np.stack([[student(d) for d in degrees] for _, _, degrees in read])[..., None]
+    # of a line that noise hides, its size is that of a circle: 95 % within 2.45
+    hidden = size**2 <= 12.0 * variance
+    width = sure * np.sqrt(variance * np.where(hidden, _CIRCLE, 1.0)) / _NORMAL
     bias = np.full(size.shape, np.nan)
     for place in range(1, len(blocks)):
-        bias[place] = _BIAS * _widest(
-            np.abs(size[place] - size[place - 1]), max(1, round(blocks[place] / (4 * step)))
-        )
+        ratio = blocks[place] / blocks[place - 1]
+        least = np.fmin(variance[place], variance[place - 1] / ratio)  # a change raises the longer
+        square = _differences(read[place][0], read[place - 1][0])
+        square -= _DIFFERS * (ratio - 1.0) * least
+        reach = max(1, round(blocks[place] / (2 * step)))
+        bias[place] = _BIAS * np.sqrt(np.maximum(_mean(square, reach), 0.0))
     # the shortest has none below it: a fifth of what the next longer one is off, doubled
-    bias[0] = 0.5 * np.nan_to_num(bias[1], nan=0.0) if len(blocks) > 1 else width[0]
-    total = width + bias
+    bias[0] = 0.5 * bias[1] if len(blocks) > 1 else width[0]
+    total = both(width, bias)
     low, high = np.full(size.shape[1:], -np.inf), np.full(size.shape[1:], np.inf)
     best = np.zeros(size.shape[1:], dtype=int)
     open_to = np.isfinite(total[0])
@@ -259,11 +267,38 @@ def _chosen(
     )
 
 
-def _widest(values: Floats, reach: int) -> Floats:
-    """The largest of the steps within ``reach`` of each one."""
-    padded = np.pad(np.nan_to_num(values, nan=-1.0), ((0, 0), (reach, reach)), mode="edge")
-    views = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=-1)
-    return np.where(np.isfinite(values), views.max(axis=-1), np.nan)
+def _differences(longer: Complexes, shorter: Complexes) -> Floats:
+    """Squared change of the size; of the complex amplitude where that is no longer small."""
+    whole = np.abs(longer - shorter) ** 2
+    size = (np.abs(longer) - np.abs(shorter)) ** 2
+    return np.asarray(np.where(whole > 0.25 * np.abs(longer) ** 2, whole, size))
+
+
+def both(noise: ArrayLike, bias: ArrayLike) -> Floats:
+    """Half width h about a value of normal ``noise`` (standard) and ``bias`` that holds 95 %.
+
+    P(|z + b/s| <= h/s) = 0.95: 1.96 s without bias, b + 1.645 s with much.
+
+    >>> both([1.0, 1.0], [0.0, 10.0]).round(3)
+    array([ 1.96 , 11.645])
+    """
+    scale = np.maximum(np.asarray(noise, dtype=float), 1e-300)
+    share = np.asarray(bias, dtype=float) / scale
+    grid = np.linspace(0.0, 6.0, 241)
+    known = np.sqrt(stats.ncx2.ppf(0.95, 1.0, np.maximum(grid, 1e-6) ** 2))
+    return np.asarray(scale * np.where(share < 6.0, np.interp(share, grid, known), share + _ONE))
+
+
+def _mean(values: Floats, reach: int) -> Floats:
+    """The mean of the known steps within ``reach`` of each one that is known."""
+    known = np.isfinite(values)
+    padded = np.pad(np.where(known, values, 0.0), ((0, 0), (reach, reach)))
+    counted = np.pad(known.astype(float), ((0, 0), (reach, reach)))
+    total, count = (
+        np.lib.stride_tricks.sliding_window_view(one, 2 * reach + 1, axis=-1).sum(axis=-1)
+        for one in (padded, counted)
+    )
+    return np.where(known, total / np.maximum(count, 1.0), np.nan)
 
 
 def _three(values: Floats) -> Floats:
