@@ -27,7 +27,7 @@ class MeshTurns:
 
     ``frequency`` +- ``half_width`` (95 %) [cycles/sample]; ``turning``: the angle to read lines in,
     None where the speed is steady enough; ``said`` how it was found; ``phase_noise`` [rad]: what
-    noise brings to that angle, in the mesh line's own phase.
+    noise brings to that angle and what of the turning it misses, in the mesh line's own phase.
     """
 
     frequency: float
@@ -131,6 +131,7 @@ def _followed(found: Followed, values: Floats, per_cycle: int, spectrum: LineSpe
     straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
     reading = read_line(straight, 1.0, followed=_HELD * found.last / found.frequency)
     bins = 1.2 * found.last / spectrum.bin_width  # in the filter, its noise bandwidth
+    # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))
     return MeshTurns(
         frequency=found.frequency,
@@ -138,6 +139,6 @@ def _followed(found: Followed, values: Floats, per_cycle: int, spectrum: LineSpe
         turning=turning,
         said=f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by "
         "that phase",
-        phase_noise=noise,
+        phase_noise=float(np.hypot(noise, reading.turning)),
         followed=_HELD * found.last,
     )
