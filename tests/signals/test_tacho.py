@@ -47,3 +47,21 @@ def test_a_long_gap_ends_the_count_and_a_shaft_that_stands_is_refused() -> None:
         speed_turns(np.zeros(100), rate=10.0, samples=100, sample_rate=10.0)
     with pytest.raises(InputError, match=r"^tacho: got 3 pulses; allowed >= 8 pulses"):
         numbered([0.0, 1.0, 2.0])
+
+
+def test_a_count_ends_where_the_shaft_stands_still() -> None:
+    """Down to rest, ten seconds there, up again: a tenth lost; only one side is counted, rightly.
+
+    turns = 12 t^2 on both sides of the rest, so the closed form gives every pulse's time.
+    """
+    random = np.random.default_rng(41)
+    whole = np.arange(1, 300)
+    ramp = np.sqrt(whole / 12.0)
+    times = np.concatenate([-ramp[::-1], 10.0 + ramp]) + 20.0
+    kept = np.sort(random.permutation(times.size)[: int(0.9 * times.size)])
+    found = numbered(times[kept])
+    turns = np.where(times < 20.0, -12.0 * (times - 20.0) ** 2, 12.0 * (times - 30.0) ** 2)
+    true = np.interp(found.times, times, turns)
+    np.testing.assert_allclose(found.numbers, true - true[0], atol=1e-6)
+    assert found.times.size > 200
+    assert found.times[-1] < 20.0 or found.times[0] > 30.0

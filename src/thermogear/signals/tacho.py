@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import interpolate
+from scipy import interpolate, ndimage
 
 from thermogear.base.errors import InputError
 from thermogear.signals.spectra import finite_record
@@ -21,6 +21,8 @@ _STEP = 0.03  # standard deviation of the change of ln(period) from pulse to pul
 _LOST, _EXTRA = 2.3, 3.5  # what a lost pulse and an extra one cost: -ln of their shares, 10 and 3 %
 _JUMP = 60.0  # what any change costs at most: a period that jumps ends the count
 _BROKEN = 12.0  # standard deviations of a change that no shaft makes
+_STEEP = 2.0  # standard deviations of a change beside a rest: a lost pulse still shows
+_AFTER = 40  # pulses beside a rest that are looked at
 _MOST_KNOTS = 4096
 _LEAST = 8
 
@@ -61,8 +63,8 @@ def numbered(times: ArrayLike) -> Pulses:
     e_i pulses left aside before pulse i, p_i = (t_i - t_(i-1))/k_i, m_i the mean of k_i and
     k_(i-1): a lost pulse doubles an interval, an extra one splits it, and the speed changes
     little from pulse to pulse. Then pulses that lie off the curve through their neighbours are
-    left aside as well. Up to 11 pulses in a row may be lost; where the period jumps all the same
-    the count ends, and the longest stretch is taken.
+    left aside as well. Up to 11 pulses in a row may be lost; where the period jumps all the same,
+    or the shaft may have stood still, the count ends, and the longest stretch is taken.
 
     Raises InputError where fewer than 8 pulses are left.
     Source: Viterbi 1967, IEEE Trans. Inf. Theory 13, 260-269.
@@ -76,12 +78,7 @@ def numbered(times: ArrayLike) -> Pulses:
         got = f"{edges.size} pulses"
         raise InputError("tacho", got, allowed=f">= {_LEAST} pulses in rising order")
     places, steps = _likeliest(edges)
-    periods = np.diff(edges[places]) / steps
-    weight = 0.5 * (steps[1:] + steps[:-1])
-    broken = np.abs(np.diff(np.log(periods))) > _BROKEN * _STEP * weight
-    cuts = np.concatenate([[0], np.flatnonzero(broken) + 1, [places.size - 1]])
-    longest = int(np.argmax(np.diff(cuts)))
-    kept = slice(int(cuts[longest]), int(cuts[longest + 1]) + 1)
+    kept = _longest(edges[places], steps)
     places = places[kept]
     numbers = np.concatenate([[0], np.cumsum(steps[kept.start : kept.stop - 1])])
     good = _on_the_curve(edges[places], numbers)
@@ -139,21 +136,62 @@ def _likeliest(edges: Floats) -> tuple[Ints, Ints]:
     return np.asarray(places[::-1], dtype=np.int64), np.asarray(steps[::-1], dtype=np.int64)
 
 
+def _longest(times: Floats, steps: Ints) -> slice:
+    """The longest stretch of pulses that could be counted.
+
+    It ends where the period jumps and where the shaft may have stood still. Beside a rest the
+    period changes so much from pulse to pulse that a lost one does not show: those are left out.
+    """
+    logs = np.log(np.diff(times) / steps)
+    change = np.abs(np.diff(logs)) / (0.5 * (steps[1:] + steps[:-1]) * _STEP)
+    rest = np.flatnonzero(_rests(times, steps))
+    broken = np.flatnonzero(change > _BROKEN) + 1
+    cuts = np.unique(np.concatenate([[0], broken, rest, rest + 1, [times.size - 1]]))
+    longest = int(np.argmax(np.diff(cuts)))
+    first, last = int(cuts[longest]), int(cuts[longest + 1])
+    steep = np.flatnonzero(change > _STEEP) + 1  # the pulse between both periods
+    if first in rest + 1:
+        near = steep[(steep > first) & (steep <= first + _AFTER)]
+        first = min(int(near[-1]), last) if near.size else first
+    if last in rest:
+        near = steep[(steep < last) & (steep >= max(first, last - _AFTER))]
+        last = max(int(near[0]), first) if near.size else last
+    return slice(first, last + 1)
+
+
+def _rests(times: Floats, steps: Ints) -> NDArray[np.bool_]:
+    """Between which pulses and the next the shaft may have stood still.
+
+    Where the speed of one side, its slope by the two intervals there, comes to nothing before the
+    other pulse is reached.
+    """
+    found = np.zeros(steps.size, dtype=np.bool_)
+    gaps = np.diff(times)
+    rates, middles = steps / gaps, times[:-1] + 0.5 * gaps
+    slopes = np.diff(rates) / np.diff(middles)
+    before = rates[1:-1] + slopes[:-1] * (times[3:] - middles[1:-1])
+    after = rates[1:-1] + slopes[1:] * (times[:-3] - middles[1:-1])
+    found[2:] |= before <= 0.0
+    found[:-2] |= after <= 0.0
+    return found
+
+
 def _on_the_curve(times: Floats, numbers: Ints) -> NDArray[np.bool_]:
     """Which pulses lie on the cubic through the two before and the two after them."""
     kept = np.arange(times.size)
     while kept.size > _LEAST:
         t, n = times[kept], numbers[kept].astype(float)
         at = t[2:-2]
-        around = np.stack([t[:-4], t[1:-3], t[3:-1], t[4:]])
+        beside = np.stack([t[:-4], t[1:-3], t[3:-1], t[4:]])
         values = np.stack([n[:-4], n[1:-3], n[3:-1], n[4:]])
         expected = np.zeros(at.size)
         for one in range(4):
             others = [x for x in range(4) if x != one]
-            share = np.prod([(at - around[o]) / (around[one] - around[o]) for o in others], axis=0)
+            share = np.prod([(at - beside[o]) / (beside[one] - beside[o]) for o in others], axis=0)
             expected += values[one] * share
         off = np.abs(n[2:-2] - expected)
-        limit = max(0.05, 8.0 * float(np.median(off)))
+        around = ndimage.median_filter(off, size=17, mode="nearest")
+        limit = np.maximum(0.01, 8.0 * np.maximum(around, float(np.median(off))))
         # an outlier pulls its neighbours' curves by up to two thirds of what it is off itself
         highest = off >= np.max([np.pad(off, 2)[s : s + off.size] for s in (0, 1, 3, 4)], axis=0)
         bad = np.flatnonzero((off > limit) & highest)
