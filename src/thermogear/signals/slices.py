@@ -31,6 +31,9 @@ _NORMAL, _ONE = 1.959964, 1.644854  # standard deviations that hold 95 % on both
 _FAR = 3.5 + np.arange(30.0)  # lines beside an order at which its noise may be judged
 _JUDGED = 12
 _FREE = 3.0  # lines from every order that is fitted
+_SLIPS, _AROUND, _MOST_AROUND = 0.03, 6, 40  # a wrong angle moves a line by 3 %; lines beside it
+_SPILL = 0.02  # of the power of other orders there, that their own change leaves
+_MORE = 4.0  # times what is usually left
 _RESAMPLED = (
     1e-3  # of an amplitude, that the resampling loses at 0.4 of its rate; below, as a spline
 )
@@ -162,6 +165,13 @@ class _Block:
         self._gain = square * weight.sum() ** 2 / np.sum(weight**2)
         self._fit = np.concatenate([np.arange(every.size) + k * near.size for k in range(_POWERS)])
         self._bins, self._clear = self._beside(turns, wanted, every, count)
+        judged = self._bins.shape[1]
+        around, self._near = self._around(turns, wanted, count)
+        self._bins, self._judged = np.concatenate([self._bins, around], axis=1), judged
+        reach = np.maximum(_AROUND / turns, _SLIPS * wanted)[:, None]
+        self._others = (np.abs(wanted[:, None] - every[None, :]) < reach) & (
+            wanted[:, None] != every[None, :]
+        )
         # what the fitted lines and their conjugates show in those bins
         flat = self._bins.ravel()
         self._shown = fft.fft(weighted[:, self._fit], axis=0)[flat]
@@ -184,13 +194,28 @@ class _Block:
         places = np.clip(np.take_along_axis(places, nearest, axis=1), 0, count // 2)
         return places, np.take_along_axis(clear, nearest, axis=1)
 
-    def read(self, values: Floats, centres: NDArray[np.int64]) -> tuple[Complexes, Floats, Floats]:
-        """Complex amplitude (order, step), variance of its size and degrees of freedom (order)."""
+    @staticmethod
+    def _around(
+        turns: int, wanted: Floats, count: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Bins around each wanted order where it would stand with a wrong angle; which count."""
+        reach = np.clip(np.ceil(_SLIPS * wanted * turns), _AROUND, _MOST_AROUND)
+        most = int(np.max(reach))
+        steps = np.arange(-most, most + 1)
+        places = np.rint(wanted[:, None] * turns).astype(np.int64) + steps[None, :]
+        inside = (np.abs(steps)[None, :] <= reach[:, None]) & (places > 1) & (places < count // 2)
+        return np.clip(places, 0, count // 2), inside
+
+    def read(
+        self, values: Floats, centres: NDArray[np.int64]
+    ) -> tuple[Complexes, Floats, Floats, Floats]:
+        """Complex amplitude (order, step), variance of its size, what is left around it (order,
+        step) as squared amplitude, beyond 2 % of what others have there; degrees of freedom."""
         starts = centres * self._per_turn - self._count // 2
         inside = np.flatnonzero((starts >= 0) & (starts + self._count <= values.size))
         shape = (self._own.size, centres.size)
         amplitude = np.full(shape, np.nan, dtype=complex)
-        variance = np.full(shape, np.nan)
+        variance, around = np.full(shape, np.nan), np.full(shape, np.nan)
         views = np.lib.stride_tricks.sliding_window_view(values, self._count)
         for part in np.array_split(inside, max(1, inside.size // 32)):
             if part.size == 0:
@@ -204,6 +229,10 @@ class _Block:
             left = shown - 0.5 * (self._shown @ own + self._mirror @ own.conj())
             power = np.abs(2.0 * left / self._weight.sum()) ** 2
             power = power.reshape(*self._bins.shape, part.size)
+            other = self._others @ np.abs(found[: self._others.shape[1]]) ** 2
+            near = np.sum(power[:, self._judged :] * self._near[..., None], axis=1)
+            around[:, part] = near / 1.5 - _SPILL * other  # a line's power in its Hann bins
+            power = power[:, : self._judged]
             noise = np.sum(power * self._clear[..., None], axis=1)
             noise /= np.maximum(np.sum(self._clear, axis=1), 1)[:, None]
             amplitude[:, part] = found[self._own]
@@ -211,11 +240,11 @@ class _Block:
         variance = _three(variance)
         # Hann bins a line apart are correlated by 2/3: about one and a half real numbers each
         degrees = np.maximum(1.4 * np.sum(self._clear, axis=1), 2.0)
-        return amplitude, variance, degrees
+        return amplitude, variance, around, degrees
 
 
 def _chosen(
-    read: list[tuple[Complexes, Floats, Floats]],
+    read: list[tuple[Complexes, Floats, Floats, Floats]],
     blocks: list[int],
     wanted: Floats,
     turns: Floats,
@@ -224,10 +253,10 @@ def _chosen(
     samples_per_turn: int,
 ) -> Slices:
     """Of every order at every step the block that Lepski's rule takes, and its interval."""
-    size = np.stack([np.abs(a) for a, _, _ in read])
-    angle = np.stack([np.angle(a) for a, _, _ in read])
-    variance = np.stack([v for _, v, _ in read])
-    sure = np.stack([[student(d) for d in degrees] for _, _, degrees in read])[..., None]
+    size = np.stack([np.abs(a) for a, *_ in read])
+    angle = np.stack([np.angle(a) for a, *_ in read])
+    variance = np.stack([one[1] for one in read])
+    sure = np.stack([[student(d) for d in one[3]] for one in read])[..., None]
     # of a line that noise hides, its size is that of a circle: 95 % within 2.45
     hidden = size**2 <= 12.0 * variance
     width = sure * np.sqrt(variance * np.where(hidden, _CIRCLE, 1.0)) / _NORMAL
@@ -241,7 +270,11 @@ def _chosen(
         bias[place] = _BIAS * np.sqrt(np.maximum(_mean(square, reach), 0.0))
     # the shortest has none below it: a fifth of what the next longer one is off, doubled
     bias[0] = 0.5 * bias[1] if len(blocks) > 1 else width[0]
-    total = both(width, bias)
+    # where the angle is wrong a line stands beside its order: what is left there may be its own
+    around = np.stack([one[2] for one in read])
+    usual = np.maximum(_middle(around), 0.0)
+    lost = np.maximum(around - _MORE * usual, 0.0)
+    total = both(width, bias) + np.sqrt(size**2 + lost) - size
     low, high = np.full(size.shape[1:], -np.inf), np.full(size.shape[1:], np.inf)
     best = np.zeros(size.shape[1:], dtype=int)
     open_to = np.isfinite(total[0])
@@ -265,6 +298,12 @@ def _chosen(
         half_width=taken[2] + (smear + spline)[:, None] * taken[0],
         block=np.where(np.isfinite(taken[0]), np.asarray(blocks, float)[best], np.nan),
     )
+
+
+def _middle(values: Floats) -> Floats:
+    """The median over the steps that are known, 0 where none is."""
+    known = np.any(np.isfinite(values), axis=-1, keepdims=True)
+    return np.asarray(np.nanmedian(np.where(known, values, 0.0), axis=-1, keepdims=True))
 
 
 def _differences(longer: Complexes, shorter: Complexes) -> Floats:
