@@ -18,6 +18,7 @@ from thermogear.signals.tacho import numbered, pulse_turns, speed_turns
 from thermogear.signals.tracking import (
     LINES,
     Tracked,
+    held_part,
     paths,
     samples_per_turn,
     sharpness,
@@ -264,7 +265,9 @@ def tracked_shaft(table: Floats) -> Shaft | None:
             if found.sharp >= max(_SHARPER * found.blunt, _LEAST_SHARP) and (
                 best is None or found.sharp > best.sharp
             ):
-                best, ends = found, (int(path.at[1]), int(path.at[-2]) + 1)
+                held = held_part(channel, found.cycles)
+                ends = max(int(path.at[1]), held[0]), min(int(path.at[-2]) + 1, held[1])
+                best = found
         if best is not None:
             break
     if best is None:
