@@ -154,7 +154,7 @@ trial-defects: $(STAMP)  ## records with one defect each: error before and now, 
 trial-coverage: $(STAMP)  ## do stated 95 % intervals of lines hold? 500 records a scenario, half an hour; docs/trial_coverage.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_coverage.py $(COVERAGE)
 
-trial-turning: $(STAMP)  ## orders of run-ups with lost pulses, without a tacho, with a speed channel: do intervals hold? ten minutes
+trial-turning: $(STAMP)  ## orders of runs of eight kinds (lost pulses, no tacho, a stop, ...): do intervals hold? ten minutes; docs/trial_turning.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_turning.py
 
 trial-teeth: $(STAMP)  ## 200 held-back records with known teeth or none, ten minutes; TEETH=20 for a few; docs/trial_teeth.md

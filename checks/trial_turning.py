@@ -165,7 +165,7 @@ def judged(run: Run, found: Measurement) -> Floats:
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """What came of one kind: ``off`` (order, off over half width), largest error of the speed,
-    (frequency - natural)/half width of resonances, runs not read in angle, refused ones."""
+    (frequency - natural)/half width of resonances, runs not read in angle."""
 
     kind: str
     draws: int
@@ -203,7 +203,8 @@ def run(number: int, draws: int, seed: int) -> Row:
         if found.slices is None:
             continue
         true = 2.0 * np.pi * np.interp(found.slices.time, one.time, one.speed)
-        speeds.append(float(np.max(np.abs(found.slices.speed / true - 1.0))))
+        off = np.abs(found.slices.speed - true) / np.maximum(true, 1e-3)
+        speeds.append(float(np.max(off)))
         near = [r for r in found.slices.resonances if r.kind == "resonance"]
         best = min(near, key=lambda r: abs(r.frequency - one.natural), default=None)
         if best is not None:
