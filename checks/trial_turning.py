@@ -4,9 +4,9 @@
     python checks/trial_turning.py 3            3 draws of each, printed
     python checks/trial_turning.py 20 2027      20 draws of another seed, printed
 
-Each draw is a run of a shaft with 25 teeth, an unbalance, three mesh harmonics and two sidebands, in
-noise. Amplitude and phase of mesh and sidebands follow one resonance, so that the truth is known at
-every speed. Shapes of runs and what tells the angle: KINDS.
+Each draw is a run of a shaft with 25 teeth, an unbalance, three mesh harmonics and two sidebands,
+in noise. Amplitude and phase of mesh and sidebands follow one resonance, so that the truth is known
+at every speed. Shapes of runs and what tells the angle: KINDS.
 """
 
 from __future__ import annotations
@@ -250,9 +250,9 @@ HEAD = f"""# Orders of runs whose speed changes: do the stated intervals hold?
 
 Made by `make trial-turning`. Each draw is a run of 20 s at 12 800 samples/s of a shaft of 25 teeth
 between 8..14 and 38..50 turns/s, with an unbalance (order 1), mesh lines (25, 50, 75), sidebands
-(24, 26) and noise of rms 0.05. Mesh lines and sidebands pass a resonance at 500..900 Hz with 2 to 5 %
-damping, so the truth is known at every speed. A tacho has one pulse a turn, of which 10 % are lost
-and 2 % added; a speed channel reads 0.4 % too high, that in volts is rounded to 12 bits besides;
+(24, 26) and noise of rms 0.05. Mesh lines and sidebands pass a resonance at 500..900 Hz with 2 to
+5 % damping, so the truth is known at every speed. A tacho has one pulse a turn, of which 10 % are
+lost and 2 % added; a speed channel reads 0.4 % too high, that in volts is rounded to 12 bits too;
 a free coast-down falls exponentially; a stop is at rest for a tenth of the time; a second stage has
 mesh lines at orders {SECOND:g} and {2 * SECOND:g}.
 
@@ -270,7 +270,7 @@ def page(rows: list[Row], draws: int, seed: int) -> str:
         "|---|---:|---:|---:|---:|---:|",
         *(line for row in rows for line in told(row)),
         "",
-        "| run | draws | not read in angle | speed off by at most [%] | resonance in its interval |",
+        "| run | draws | not read in angle | speed off, at most [%] | resonance in its interval |",
         "|---|---:|---:|---:|---:|",
         *(runs_told(row) for row in rows),
         "",
@@ -293,4 +293,5 @@ def main(draws: int, seed: int, write: bool) -> None:
 
 if __name__ == "__main__":
     given = [int(one) for one in sys.argv[1:]]
-    main(*(given + [DRAWS, SEED][len(given) :]), write=not given)
+    count, start = (given + [DRAWS, SEED][len(given) :])[:2]
+    main(count, start, write=not given)

@@ -287,7 +287,8 @@ def _chosen(
         low, high = np.where(open_to, low_here, low), np.where(open_to, high_here, high)
         least = np.take_along_axis(total, best[None], axis=0)[0]
         best = np.where(open_to & (here < least), place, best)
-    taken = [np.take_along_axis(table, best[None], axis=0)[0] for table in (size, angle, total)]
+    kept = [np.where(np.isfinite(total), table, np.nan) for table in (size, angle, total)]
+    taken = [np.take_along_axis(table, best[None], axis=0)[0] for table in kept]
     spline = _RESAMPLED * (wanted / (0.4 * samples_per_turn)) ** 4
     smear = 0.5 * (2.0 * np.pi * wanted * angle_noise) ** 2
     return Slices(
