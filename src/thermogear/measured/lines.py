@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
+from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, sides_of
@@ -260,6 +261,7 @@ def channel_lines(
         if turns is not None and turns.turning is not None:
             own = float(np.hypot(own, share * position))
         # damage is no random error: its share is added, not its square
+        own += turned_by(doubts.extra, samples=values.size)
         half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + doubts.extra
         found.append(
             doubts.applied(

@@ -175,6 +175,7 @@ def measure(
         )
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
+        turns = replace(turns, half_width=turns.half_width + through.turned)
     if gearing is not None:
         doubt = check_rate(record, gearing, notices, teeth=teeth, given=given[0], speed=speed)
     if doubt:

@@ -23,6 +23,8 @@ _PILE = 8.0  # times as many samples at a limit as at the levels beside
 _FAR = 12.0  # robust standard deviations of a spike's second difference
 _OUTSIDE = 8.0  # spans of all other samples
 _JUMP = 0.06  # cycles
+_PIECES = 12  # at least, to tell one step in
+_STEPS = 6.0  # standard errors of a step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,7 +205,8 @@ def phase_jumps(x: Floats, frequency: float, *, cycles: float = 24.0) -> list[in
     """Samples at which the line of ``frequency`` [cycles/sample] jumps in phase: samples lost.
 
     The phase of pieces of ``cycles``, each half over the next, less its smooth course: a jump
-    is between two that are each steady, and is far larger than their scatter. Fewer than 16
+    is between two that are each steady, and is far larger than their scatter; or the only one, in a
+    phase that is straight on both sides of it. Fewer than 16
     pieces tell nothing. Of a mesh line take three turns of the shaft, so that its sidebands do not
     turn the phase.
 
@@ -244,7 +247,36 @@ def phase_jumps(x: Floats, frequency: float, *, cycles: float = 24.0) -> list[in
             abs(at - other) > 4 * length for other in found
         ):
             found.append(at)
-    return sorted(found)
+    return sorted(found) if found else _one_step(phase[::2], starts[::2] + length // 2)
+
+
+def _one_step(phase: Floats, middles: NDArray[np.int64]) -> list[int]:
+    """The one place at which the phase [cycles] of pieces that share nothing steps, if there is.
+
+    Least squares by a straight line and a step of any height, the piece at the step left out:
+    a step of six standard errors or more, and what is left as good as white (its neighbours'
+    correlation within two standard errors), so that a speed that wanders is none.
+    """
+    count = phase.size
+    if count < _PIECES:
+        return []
+    place = np.arange(count, dtype=float)
+    best: tuple[float, int] | None = None
+    clear = False
+    for cut in range(3, count - 3):
+        kept = place != cut
+        columns = np.column_stack([np.ones(count), place - cut, place > cut])[kept]
+        fit = np.linalg.lstsq(columns, phase[kept])[0]
+        rest = phase[kept] - columns @ fit
+        power = float(rest @ rest)
+        if power <= 0.0 or (best is not None and power >= best[0]):
+            continue
+        best = power, cut
+        error = np.sqrt(power / (rest.size - 3) * np.linalg.inv(columns.T @ columns)[2, 2])
+        step = float(fit[2] - np.rint(fit[2]))
+        alike = float(rest[1:] @ rest[:-1]) / power
+        clear = abs(step) > _STEPS * float(error) and abs(alike) < 2.0 / np.sqrt(rest.size)
+    return [int(middles[best[1]])] if best is not None and clear else []
 
 
 def filled(
