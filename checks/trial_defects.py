@@ -10,6 +10,7 @@ where they are at hand, real ones. It writes docs/trial_defects.md; ``python che
 from __future__ import annotations
 
 import sys
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -29,7 +30,8 @@ Random = np.random.Generator
 
 SEED = 41_2026
 RECORDS = 12
-UNDAMAGED = 100
+UNDAMAGED = 50
+"""Undamaged records of each kind."""
 PAGE = Path(__file__).parents[1] / "docs" / "trial_defects.md"
 REAL = Path(__file__).parents[2] / "shared" / "data"
 RATE, TEETH, COUNT = 2560.0, 25, 10240
@@ -127,9 +129,90 @@ def before(x: Floats, mesh: float) -> float:
 
 def measured(x: Floats, mesh: float) -> Measurement:
     """The channel through ``measure``."""
-    record = Record((Channel("a", x, "m/s^2"),), "drawn", RATE, "made")
+    return measured_record(Record((Channel("a", x, "m/s^2"),), "drawn", RATE, "made"), mesh)
+
+
+def measured_record(record: Record, mesh: float) -> Measurement:
+    """The record through ``measure``, told its teeth and speed."""
     speed = 2.0 * np.pi * mesh / TEETH
     return measure(record, teeth=TEETH, speed=speed, sidebands=0, harmonics=2)
+
+
+def _file(time: Floats, x: Floats, rate: float | None = None) -> Record:
+    """A record read from a file with a column of time stamps."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.csv"
+        table = np.column_stack([time, x])
+        np.savetxt(path, table, "%.9g", ",", header="time (s),a (m/s^2)", comments="")
+        return read_record(path, rate=rate)
+
+
+def _stamped(x: Floats, random: Random) -> Record:
+    kept = np.arange(x.size)
+    first = int(random.integers(x.size // 4, x.size // 2))
+    kept = np.delete(kept, np.arange(first, first + int(random.integers(30, 1000))))
+    return _file(kept / RATE, x[kept])
+
+
+def _two(x: Floats, other: Floats, rate: float = RATE) -> Record:
+    channels = Channel("a", x, "m/s^2"), Channel("b", other, "m/s^2")
+    return Record(channels, "drawn", rate, "made")
+
+
+FAULTS: dict[str, tuple[str, Callable[[Floats, Random], Record]]] = {
+    "a block lost, time stamps jump": ("dropped there", _stamped),
+    "a channel is another's copy": (
+        "a copy of",
+        lambda x, r: _two(x, float(r.uniform(0.1, 10.0)) * x),
+    ),
+    "an empty channel": ("no signal", lambda x, r: _two(x, np.zeros(x.size))),
+    "a rate ten times that of the time stamps": (
+        "is not the file's",
+        lambda x, r: _file(np.arange(x.size) / RATE, x, 10.0 * RATE),
+    ),
+    "25 samples/s, a shaft's rate": (
+        "samples/s",
+        lambda x, r: _two(x, r.normal(size=x.size), 25.0),
+    ),
+}
+"""Faults around the samples: words that tell of each, and how it is made."""
+
+
+def _impacts(one: Made, random: Random) -> Floats:
+    """With impacts of a bearing, 3.57 a turn, 1 % slip, that ring at 900 Hz up to 10 amplitudes."""
+    turns = RATE * TEETH / one.mesh
+    gaps = turns / 3.57 * (1.0 + 0.01 * random.normal(size=int(4 * COUNT / turns)))
+    struck = np.zeros(COUNT)
+    places = np.cumsum(gaps).astype(int)
+    struck[places[places < COUNT]] = 1.0
+    n = np.arange(200)
+    ring = np.exp(-n / 25.0) * np.sin(2.0 * np.pi * 900.0 / RATE * n)
+    return one.values + float(random.uniform(1.0, 10.0)) * np.convolve(struck, ring)[:COUNT]
+
+
+def _run_up(random: Random) -> Floats:
+    """A run-up of the same train from half the speed on, over the record."""
+    top = float(random.uniform(300.0, 450.0))
+    speed = np.linspace(0.5 * top, top, COUNT)
+    cycles = np.cumsum(speed) / RATE
+    x = float(random.uniform(0.05, 0.3)) * random.normal(size=COUNT)
+    for rank, height in ((1, 1.0), (2, 0.4)):
+        x += height * np.cos(2 * np.pi * rank * cycles + random.uniform(0, 6.3))
+    return np.asarray(x + 0.2 * np.cos(2 * np.pi * cycles / TEETH))
+
+
+def _counts(one: Made) -> Floats:
+    """Whole numbers of a converter of 12 bits, driven to a third of its range."""
+    return np.rint(one.values / float(np.max(np.abs(one.values))) * 2047.0 / 3.0)
+
+
+UNHURT: dict[str, Callable[[Made, Random], Floats]] = {
+    "as above": lambda one, r: one.values,
+    "run-up to twice the speed": lambda one, r: _run_up(r),
+    "strong impacts of a bearing": _impacts,
+    "whole numbers of 12 bits": lambda one, r: _counts(one),
+}
+"""Undamaged records that might be taken for damaged ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,17 +235,37 @@ def run(name: str, number: int) -> Row:
     try:
         found = measured(x, one.mesh)
     except InputError:
-        return Row(
-            before=first, now=float("nan"), half_width=float("nan"), frequency_held=True, seen=True
-        )
+        return _refused(first)
+    return _row(found, one.mesh, first, seen=bool(found.findings))
+
+
+def fault(name: str, number: int) -> Row:
+    """One record with one fault around its samples."""
+    words, make = FAULTS[name]
+    random = np.random.default_rng([SEED, 2000 + list(FAULTS).index(name), number])
+    one = made(random)
+    try:
+        found = measured_record(make(one.values, random), one.mesh)
+    except InputError as error:
+        return replace(_refused(float("nan")), seen=words in str(error))
+    said = any(words in notice.text for notice in found.notices)
+    return _row(found, one.mesh, float("nan"), seen=said)
+
+
+def _refused(first: float) -> Row:
+    nan = float("nan")
+    return Row(before=first, now=nan, half_width=nan, frequency_held=True, seen=True)
+
+
+def _row(found: Measurement, mesh: float, first: float, seen: bool) -> Row:
     line = next(line for line in found.lines if line.name == "mesh x 1")
     # by the share of sidebands and a steady line the amplitude put in is 1
     return Row(
         before=first,
         now=line.reading - 1.0,
         half_width=line.half_width * line.reading,
-        frequency_held=not abs(line.frequency - one.mesh) > line.frequency_half_width,
-        seen=bool(found.findings),
+        frequency_held=not abs(line.frequency - mesh) > line.frequency_half_width,
+        seen=seen,
     )
 
 
@@ -171,12 +274,17 @@ def withheld(found: Measurement) -> bool:
     return any(one.withholds for one in found.findings)
 
 
-def undamaged(count: int) -> tuple[int, int, int]:
-    """Drawn undamaged records: how many, with a finding, with anything withheld."""
+def undamaged(kind: str, count: int, first: int = 0) -> tuple[int, int, int]:
+    """Undamaged records of a kind: how many, with a finding, with anything withheld."""
     seen = held_back = 0
-    for number in range(count):
-        one = made(np.random.default_rng([SEED, 1000, number]))
-        found = measured(one.values, one.mesh)
+    for number in range(first, first + count):
+        random = np.random.default_rng([SEED + 1, 1000 + list(UNHURT).index(kind), number])
+        one = made(random)
+        x = UNHURT[kind](one, random)
+        if kind == "run-up to twice the speed":
+            found = measure(Record((Channel("a", x, "m/s^2"),), "drawn", RATE, "made"), teeth=TEETH)
+        else:
+            found = measured(x, one.mesh)
         seen += bool(found.findings)
         held_back += withheld(found)
     return count, seen, held_back
@@ -207,8 +315,8 @@ def told(count: int, undamaged_count: int) -> list[str]:
         "|---|---:|---:|---:|---:|---:|---:|---:|",
     ]
     all_now = all_held = 0
-    for name in DEFECTS:
-        rows = [run(name, number) for number in range(count)]
+    for name in [*DEFECTS, *FAULTS]:
+        rows = [(run if name in DEFECTS else fault)(name, number) for number in range(count)]
         old = 100.0 * np.abs([row.before for row in rows])
         stands = [row for row in rows if np.isfinite(row.now)]
         now = 100.0 * np.abs([row.now for row in stands])
@@ -226,16 +334,18 @@ def told(count: int, undamaged_count: int) -> list[str]:
             f"{sum(row.frequency_held for row in rows)} of {count} |"
         )
         print(lines[-1], flush=True)
-    number, seen, kept_back = undamaged(undamaged_count)
     parts = real()
+    sound = {kind: undamaged(kind, undamaged_count) for kind in UNHURT}
     lines += [
         "",
         f"Of the amplitudes that are not withheld {all_held} of {all_now} intervals hold "
         f"({100 * all_held / max(all_now, 1):.1f} %).",
         "",
-        f"Undamaged: of {number} drawn records {seen} have a finding, {kept_back} anything "
-        "withheld. "
-        + (
+        "| undamaged records | drawn | with a finding | with anything withheld |",
+        "|---|---:|---:|---:|",
+        *(f"| {kind} | {n} | {seen} | {back} |" for kind, (n, seen, back) in sound.items()),
+        "",
+        (
             f"Of {len(parts)} parts of real records (eighths of {len(parts) // 8} files) "
             f"{sum(bool(texts) for _, texts in parts)} have a finding."
             if parts
@@ -250,7 +360,8 @@ HEAD = """# Damaged records
 Made by `make trial-defects`. Each record is a drawn gear train of 4 s (mesh line of amplitude 1 at
 300 to 450 Hz, sidebands, noise of rms 0.05 to 0.6, a converter of 12, 16 or 24 bits) with one
 defect. Before: the flat-top line of the samples as they stand, of NaN the longest piece. Now: what
-`measure` states, or that it is withheld.
+`measure` states, or that it is withheld; a frequency that is withheld counts as held. The last
+five rows are faults around the samples: seen is whether a notice or the refusal tells of it.
 """
 
 

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.measured.comparison import table_of
 from thermogear.measured.dataset import figures
+from thermogear.measured.gate import turned_by
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
-from thermogear.signals.quality import damages, filled
+from thermogear.signals.quality import damages, filled, phase_jumps
 
 RATE, TEETH, MESH, COUNT = 2560.0, 25, 401.3, 8192
 SPEED = 2.0 * np.pi * MESH / TEETH
@@ -88,6 +89,37 @@ def test_lost_samples_cut_the_record_where_the_phase_jumps() -> None:
     assert "jumps" in found.findings[0].kind
     assert (found.start, found.start + found.samples) == (0, pytest.approx(4700, abs=300))
     assert found.lines[0].frequency == pytest.approx(MESH, abs=0.01)
+
+
+def test_one_lost_block_is_found_where_the_phase_is_straight() -> None:
+    """A fifth of a cycle in much noise; nothing is found where none is lost or speed wanders."""
+    random = np.random.default_rng(93)
+    n = np.arange(9000)
+    for _ in range(20):
+        noise = 0.8 * random.normal(size=n.size)
+        whole = np.cos(2 * np.pi * 0.15 * n) + noise
+        assert phase_jumps(whole, 0.15, cycles=75.0) == []
+        first = int(random.integers(3000, 6000))
+        jumped = np.cos(2 * np.pi * (0.15 * n + 0.2 * (n > first))) + noise
+        (place,) = phase_jumps(jumped, 0.15, cycles=75.0)
+        assert abs(place - first) < 1000
+        wander = 0.3 * np.sin(2 * np.pi * n / 9000.0 + random.uniform(0.0, 6.0))
+        assert phase_jumps(np.cos(2 * np.pi * (0.15 * n + wander)) + noise, 0.15, cycles=75.0) == []
+
+
+def test_damage_turns_a_frequency_by_what_is_wrong_of_the_line_at_most() -> None:
+    """The slope that least squares give a phase of rms e: largest for a straight one."""
+    count, share = 2000, 0.03
+    n = np.arange(count)
+    centred = n - n.mean()
+    straight = share * centred / np.sqrt(np.mean(centred**2))
+    slope = float(np.polyfit(n, straight, 1)[0]) / (2.0 * np.pi)
+    assert turned_by(share, samples=count) == pytest.approx(slope, rel=1e-6)
+    random = np.random.default_rng(94)
+    for _ in range(50):
+        phase = random.normal(size=count).cumsum()
+        phase *= share / np.sqrt(np.mean(phase**2))
+        assert abs(np.polyfit(n, phase, 1)[0]) / (2.0 * np.pi) <= slope * (1.0 + 1e-9)
 
 
 def test_copies_and_means_are_named() -> None:
