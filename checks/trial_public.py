@@ -135,8 +135,10 @@ def rows(one: Said) -> list[str]:
 
 
 def _teeth(found: dict[str, Any]) -> str:
-    """The verdict with the weights of what carries any."""
-    weights = "; ".join(f"{one['words']}: {one['weight']:.3f}" for one in found["hypotheses"][:4])
+    """The verdict with the weights of gears, and of what has none."""
+    bare = [one for one in found["hypotheses"] if not any(m["teeth"] for m in one["meshes"])]
+    told = sorted([*found["gears"], *bare], key=lambda one: -float(one["weight"]))
+    weights = "; ".join(f"{one['words']}: {one['weight']:.3f}" for one in told[:4])
     return f"{found['verdict']}{f' ({weights})' if weights else ''}"
 
 
