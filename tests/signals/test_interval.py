@@ -156,6 +156,6 @@ def test_noise_at_a_line_follows_a_resonance_beside_it() -> None:
     m = np.arange(1.0, 41.0)
     power = np.log(2.0) * (1.0 - 4e-4 * m**2)
     whole = np.ones_like(power)
-    noise, here, _ = noise_beside((power, power), (whole, whole), 0.0)
+    noise, here, _ = noise_beside((power, power), shares=(whole, whole), followed=0.0)
     assert noise < 0.85
     assert here == pytest.approx(1.0, abs=0.03)

@@ -265,7 +265,7 @@ def tracked_shaft(table: Floats) -> Shaft | None:
             if found.sharp >= max(_SHARPER * found.blunt, _LEAST_SHARP) and (
                 best is None or found.sharp > best.sharp
             ):
-                held = held_part(channel, found.cycles)
+                held = held_part(channel, cycles=found.cycles)
                 ends = max(int(path.at[1]), held[0]), min(int(path.at[-2]) + 1, held[1])
                 best = found
         if best is not None:

@@ -326,7 +326,9 @@ class _Fit:
         shares = self._shares(up, down)
         above, below = up @ error, np.conj(down @ error)
         even, odd = np.abs(above + below) ** 2 / 2.0, np.abs(above - below) ** 2 / 2.0
-        noise, here, degrees = noise_beside((even, odd), shares, followed / self.spectrum.bin_width)
+        noise, here, degrees = noise_beside(
+            (even, odd), shares=shares, followed=followed / self.spectrum.bin_width
+        )
         fine = np.arange(-NEAR, NEAR + 0.01, 0.125)
         fine = fine[np.abs(fine) >= _APART]
         fine = fine[(place + fine > self.bins[0]) & (place + fine < self.bins[-1])]

@@ -63,7 +63,7 @@ class Left:
 
 
 def noise_beside(
-    powers: tuple[Floats, Floats], shares: tuple[Floats, Floats], followed: float
+    powers: tuple[Floats, Floats], *, shares: tuple[Floats, Floats], followed: float
 ) -> tuple[float, float, float]:
     """Power of noise in one bin beside a line, in one at the line, and the latter's degrees of
     freedom, from ``powers`` of I and Q.
@@ -77,6 +77,11 @@ def noise_beside(
     Noise of a resonance is not level. I and Q hold both sides alike, so a slope cancels and
     a + c m^2 is left: of the inner and the outer half of the bins, mean m^2 (r/2)^2/3 and 7 times
     that, the median powers p and q give a = (7 p - q)/6.
+
+    >>> quiet, whole = np.full(40, np.log(2.0)), np.ones(40)
+    >>> level, at_line, degrees = noise_beside((quiet, quiet), shares=(whole, whole), followed=0.0)
+    >>> round(level, 9), round(at_line, 9), round(degrees)
+    (1.0, 1.0, 27)
     """
     first = 1 if powers[0].size > 3 else 0  # a slow change is in the first
     starts = first, max(first, int(np.ceil(followed)))

@@ -274,7 +274,7 @@ def _chosen(
     around = np.stack([one[2] for one in read])
     usual = np.maximum(_middle(around), 0.0)
     lost = np.maximum(around - _MORE * usual, 0.0)
-    total = both(width, bias) + np.sqrt(size**2 + lost) - size
+    total = half_width_of(noise=width, bias=bias) + np.sqrt(size**2 + lost) - size
     low, high = np.full(size.shape[1:], -np.inf), np.full(size.shape[1:], np.inf)
     best = np.zeros(size.shape[1:], dtype=int)
     open_to = np.isfinite(total[0])
@@ -314,12 +314,12 @@ def _differences(longer: Complexes, shorter: Complexes) -> Floats:
     return np.asarray(np.where(whole > 0.25 * np.abs(longer) ** 2, whole, size))
 
 
-def both(noise: ArrayLike, bias: ArrayLike) -> Floats:
+def half_width_of(*, noise: ArrayLike, bias: ArrayLike) -> Floats:
     """Half width h about a value of normal ``noise`` (standard) and ``bias`` that holds 95 %.
 
     P(|z + b/s| <= h/s) = 0.95: 1.96 s without bias, b + 1.645 s with much.
 
-    >>> both([1.0, 1.0], [0.0, 10.0]).round(3)
+    >>> half_width_of(noise=[1.0, 1.0], bias=[0.0, 10.0]).round(3)
     array([ 1.96 , 11.645])
     """
     scale = np.maximum(np.asarray(noise, dtype=float), 1e-300)

@@ -252,15 +252,15 @@ def _judged(values: Floats, cycles: Floats, last: float) -> Tracked:
     )
 
 
-def held_part(x: ArrayLike, cycles: Floats) -> tuple[int, int]:
+def held_part(x: ArrayLike, *, cycles: Floats) -> tuple[int, int]:
     """First and last + 1 of the samples around the middle over which ``cycles`` hold the line.
 
-    In that angle the line stands at one cycle. Of the power within 6 % beside it, over 133 cycles
+    In that angle the line is at one cycle. Of the power within 6 % beside it, over 133 cycles
     each, a line that is lost leaves little within 1.5 %: less than half of the median share.
 
     >>> n = np.arange(8000)
     >>> lost = 0.1 * n + np.where(n > 6000, 0.004 * (n - 6000), 0.0)
-    >>> first, stop = held_part(np.cos(0.2 * np.pi * n), lost)
+    >>> first, stop = held_part(np.cos(0.2 * np.pi * n), cycles=lost)
     >>> first == 0 and 5500 < stop < 6500
     True
     """
