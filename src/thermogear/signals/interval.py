@@ -119,24 +119,31 @@ def strong_lines(spectrum: LineSpectrum, most: int = _CLEAN) -> tuple[Strong, ..
     """
     left = spectrum.windowed("hann").copy()
     size, count = np.abs(left), left.size
-    open_to = np.ones(count, dtype=bool)
+    open_to = size > 3.0 * _rough_floor(size)
     open_to[:3] = open_to[-3:] = False
     found: list[Strong] = []
     for _ in range(3 * most):
-        if len(found) == most or not np.any(open_to):
-            break
         peak = int(np.argmax(np.where(open_to, size, 0.0)))
-        if size[peak] <= 6.0 * floor_around(size, peak, lobe=4) or size[peak] <= 0.0:
+        if len(found) == most or not open_to[peak] or size[peak] <= 0.0:
             break
+        open_to[max(0, peak - 3) : peak + 4] = False
+        if size[peak] <= 6.0 * floor_around(size, peak, lobe=4):
+            continue  # a peak of noise: weaker lines may be clear elsewhere
         offset = hann_offset(size[peak - 1 : peak + 2])
         value = complex(left[peak]) / complex(_hann(np.array([offset]), spectrum.samples)[0])
         low, high = max(0, peak - 60), min(count, peak + 61)
         bins = np.arange(low, high, dtype=np.float64)
         left[low:high] -= value * _hann((peak + offset) - bins, spectrum.samples)
         size[low:high] = np.abs(left[low:high])
-        open_to[max(0, peak - 3) : peak + 4] = False
         found.append(Strong(peak + offset, value))
     return tuple(found)
+
+
+def _rough_floor(size: Floats, block: int = 128) -> Floats:
+    """Medians of blocks, at each bin."""
+    starts = np.arange(0, size.size, block)
+    floors = np.array([np.median(size[start : start + block]) for start in starts])
+    return np.asarray(np.repeat(floors, block)[: size.size])
 
 
 def _hann(offset: Floats, samples: int) -> Complexes:
