@@ -75,12 +75,14 @@ def order_slices(
 
     Noise: mean square of what is left 3.5 lines (1/T) beside the order and more, at the 12 nearest
     places that are free, mean of three steps. Bias: what the
-    amplitude changes when the block is made 1.6 times shorter, times 1.25 (it goes with T^4),
-    the largest within a quarter of the block. Of the blocks whose intervals all meet those of
-    the shorter ones the one of the smallest interval is taken (Lepski's rule). The half width is
-    Student's t x noise + bias + a (2 pi o s)^2/2 for the angle's noise s
-    + a 0.1 % (o/0.4 samples per turn)^4 for the resampling. Orders nearer than 4/T
-    to each other ask for longer blocks.
+    amplitude changes when the block is made 1.6 times shorter, less what noise changes, times 1.25
+    (it goes with T^4), root of the mean square within half a block. Of the blocks whose intervals
+    all meet those of the shorter ones the one of the smallest interval is taken (Lepski's rule).
+    The half width holds 95 % of noise about that bias (``half_width_of``)
+    + a (2 pi o s)^2/2 for the angle's noise s
+    + a 0.1 % (o/0.4 samples per turn)^4 for the resampling; and where far more than usual is left
+    within 3 % of the order, as a wrong angle leaves it, that power counts as the order's own.
+    Orders nearer than 4/T to each other ask for longer blocks. No interval, no amplitude.
 
     Raises InputError where the record is shorter than the shortest block that tells them apart.
     Source: Lepski 1990, Theory Probab. Appl. 35, 454-466, for the choice.
