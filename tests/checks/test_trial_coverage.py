@@ -22,6 +22,14 @@ def test_intervals_hold(name: str) -> None:
     assert np.all(cell.widths[:2] < 2.0 * TRIAL.WIDEST)  # of few runs the sd itself is loose
 
 
+def test_weighing_teeth_changes_no_digit(monkeypatch: pytest.MonkeyPatch) -> None:
+    quick = TRIAL.run(0, 3)
+    monkeypatch.setattr(TRIAL, "Mock", lambda return_value: TRIAL.weigh)
+    whole = TRIAL.run(0, 3)
+    np.testing.assert_array_equal(quick.errors, whole.errors)
+    np.testing.assert_array_equal(quick.half_widths, whole.half_widths)
+
+
 def test_drawn_records_are_what_they_say() -> None:
     random = np.random.default_rng(1)
     path = TRIAL.wandering(random, 400_000, rate=100.0, time_constant=1.0)

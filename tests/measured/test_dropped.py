@@ -91,3 +91,13 @@ def test_a_record_with_a_dropped_block_is_read_as_with_a_gap(tmp_path: Path, kin
     assert found.samples == whole.size
     assert found.lines[0].reading == pytest.approx(1.0, rel=0.1)
     assert found.findings
+
+
+def test_single_rows_lost_here_and_there_are_put_in() -> None:
+    """Up to 5 % of the rows: every gap is a whole number of steps."""
+    random = np.random.default_rng(7)
+    for share in (0.002, 0.01, 0.04):
+        kept = np.flatnonzero(random.random(20000) > share)
+        base = read_time("t", "s", kept / RATE)
+        assert base.rate == pytest.approx(RATE, rel=1e-9)
+        assert sum(lost for _, lost in base.gaps) == kept[-1] - kept[0] + 1 - kept.size

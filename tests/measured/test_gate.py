@@ -147,3 +147,21 @@ def test_a_doubtful_rate_withholds_hertz() -> None:
     assert right.lines[0].frequency == pytest.approx(MESH, rel=1e-4)
     doubted = measure(given.supplied(rate=RATE), teeth=TEETH, sidebands=0)
     assert np.isnan(doubted.lines[0].frequency)
+
+
+@pytest.mark.parametrize("away", [0.4, 0.9])
+def test_a_beat_is_no_loss(away: float) -> None:
+    """Two lines nearly as high: the phase of both together leaps where they are low."""
+    t = np.arange(16384) / RATE
+    for height in (0.6, 0.8, 0.95):
+        second = height * np.cos(2 * np.pi * (MESH + away) * t + 2.0)
+        found = measured(channel(5, t.size) + second)
+        assert not found.findings
+        assert abs(found.lines[0].reading - 1.0) < 1.5 * found.lines[0].half_width
+
+
+@pytest.mark.parametrize("step", [0.003, 0.005, 0.01])
+def test_a_step_of_the_speed_is_no_loss(step: float) -> None:
+    n = np.arange(20000)
+    pace = MESH / RATE * (1.0 + step * (n > 9000))
+    assert phase_jumps(np.cos(2 * np.pi * np.cumsum(pace)), MESH / RATE, cycles=75.0) == []

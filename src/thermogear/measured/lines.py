@@ -260,6 +260,8 @@ def channel_lines(
         own = reading.frequency_half_width * through.axis / rate
         if turns is not None and turns.turning is not None:
             own = float(np.hypot(own, share * position))
+        if reading.hidden:  # a peak of noise: the line may be anywhere it was looked for
+            own = max(own, want.half_width + abs(position - want.position))
         # damage is no random error: its share is added, not its square
         own += turned_by(doubts.extra, samples=values.size)
         half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + doubts.extra

@@ -30,6 +30,8 @@ from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.swelling import Swelling, swelling_of
 from thermogear.measured.traps import HUGE, health
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.signals.interval import read_line, strong_lines
+from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.quality import phase_jumps
 from thermogear.signals.windows import Window
 
@@ -38,6 +40,7 @@ Floats = NDArray[np.float64]
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
+_BEAT = 0.05  # of the line, that two steady lines may leave
 _JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
 
 _MOST = 64
@@ -365,10 +368,10 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     """Cut to the longest stretch between jumps of the mesh line's phase; whether there were any."""
     if gearing is None:
         return False
-    values = clearest(through.table, gearing.mesh_frequency)[0]
+    values, spectrum = clearest(through.table, gearing.mesh_frequency)
     piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
     jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
-    if not jumps:
+    if not jumps or _beats(spectrum, gearing.mesh_frequency):
         return False
     around = int(np.ceil(piece / gearing.mesh_frequency))  # a jump is placed so well
     edges = [-around, *jumps, values.size + around]
@@ -389,6 +392,13 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     )
     through.cut(first, stop=stop)
     return True
+
+
+def _beats(spectrum: LineSpectrum, mesh: float) -> bool:
+    """Whether two steady lines or more make what is near the mesh line: their beat turns the phase
+    where it is low, as lost samples would."""
+    reading = read_line(spectrum, mesh, strong=strong_lines(spectrum))
+    return bool(reading.neighbours) and max(reading.changing, reading.turning) < _BEAT
 
 
 def require_teeth(teeth: int | None) -> None:

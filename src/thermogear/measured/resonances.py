@@ -12,6 +12,7 @@ Floats = NDArray[np.float64]
 
 _ABOVE = 1.4  # times the valleys beside it a peak must be
 _SAME = 0.03  # peaks nearer than this, relative, are of one frequency, or of one speed
+_VAGUE = 0.1  # of its frequency: a peak no surer than this is none
 _SHOULDER = 0.6  # of a peak: what is fitted
 
 
@@ -164,11 +165,14 @@ def _peaks(
             place, error, damping = float(x[top]), float(x[high] - x[low]) / 4.0, float("nan")
         half_band = damping * place if np.isfinite(damping) else float(x[high] - x[low]) / 2.0
         swept = abs(float(np.interp(place, x, rate[order]))) / (2.0 * np.pi * max(half_band, 1e-9))
+        error = float(np.hypot(np.nan_to_num(error), swept / 1.96))
+        if error > _VAGUE * place:  # a single step of noise: it is anywhere
+            continue
         found.append(
             _Peak(
                 name=name,
                 frequency=place,
-                error=float(np.hypot(np.nan_to_num(error), swept / 1.96)),
+                error=error,
                 damping=damping,
                 speed=float(np.interp(place, x, s)),
                 height=float(y[top] / max(valley)),

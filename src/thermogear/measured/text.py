@@ -120,7 +120,7 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
         name = "utf-16-le" if zeros[0] >= zeros[1] else "utf-16-be"
         return name, [Notice("info", "the text is UTF-16 without its mark")]
     if b"\0" in head:
-        raise refused(path, "text", "it holds zero bytes")
+        raise refused(path, "text", "it is binary: it holds zero bytes")
     for name in ("utf-8", "gb18030", "latin-1"):
         try:
             # a character may be cut at the end of the head

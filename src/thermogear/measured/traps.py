@@ -32,7 +32,7 @@ _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 
 _LONGEST = 200  # characters of a name that are looked at and kept
 
-_FEW = 0.001  # of the steps may be jumps
+_FEW = 0.05  # of the steps may be jumps
 _EVEN, _EXACT = 0.25, 0.02  # of a step: how far stamps may be off where blocks are dropped
 HUGE = 1e30
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
@@ -303,7 +303,7 @@ def examined(record: Record) -> Record:
             record = record.noting(
                 "important",
                 f"channel {channel.name!r}: {_count(found.missing, 'sample')} missing (NaN), the "
-                f"longest gap {found.longest_gap}; nothing is filled in",
+                f"longest gap {found.longest_gap}",
             )
         if found.peak >= HUGE:
             record = record.noting(

@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
 from thermogear.signals.following import Followed, band_power, best_followed, filter_widths
-from thermogear.signals.interval import Reading, read_line, strong_lines
+from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 
 Floats = NDArray[np.float64]
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain
+_STILL = 0.1  # of a line, that no steady one explains
+_NEIGHBOURS = 5
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -57,7 +59,7 @@ def mesh_turns(
     beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
     strong = strong_lines(spectrum)
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
-    if _wanders(spectrum, reading, beside, harmonics):
+    if _wanders(spectrum, reading, beside, strong, harmonics):
         found = best_followed(values, spectrum, line.frequency)
         if found is not None and np.all(np.diff(found.cycles) > 0.0):
             return _followed(found, values, per_cycle, spectrum)
@@ -102,12 +104,17 @@ def clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
 
 
 def _wanders(
-    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float], harmonics: int
+    spectrum: LineSpectrum,
+    reading: Reading,
+    beside: Sequence[float],
+    strong: Sequence[Strong],
+    harmonics: int,
 ) -> bool:
     """Whether the phase turns, or most of the power near the line is no steady line's.
 
     The power is that within the narrowest filter that may hold a wandering line, less that of the
-    sidebands at ``beside`` and four standard deviations of the noise there.
+    sidebands at ``beside``, of ``strong`` lines that are steady as well, and four standard
+    deviations of the noise there.
     """
     # noise that peaks beside the line changes amplitude and phase alike
     turns = reading.turning > min(1.5 * reading.changing, 0.5)
@@ -120,6 +127,15 @@ def _wanders(
     near = [one for one in beside if 3.0 * width < abs(one - frequency) < widths[0]]
     power = band_power(spectrum, frequency, widths[0])
     power -= sum(band_power(spectrum, one, 2.0 * width) for one in near)
+    others = [
+        one.place * width
+        for one in strong
+        if all(abs(one.place * width - b) > 2.0 * width for b in near)
+    ]
+    for one in [o for o in others if 3.0 * width < abs(o - frequency) < widths[0]][:_NEIGHBOURS]:
+        other = read_line(spectrum, one, strong=strong)
+        if max(other.turning, other.changing) < _STILL:
+            power -= other.amplitude**2
     scatter = reading.noise**2 * float(np.sqrt(4.0 * widths[0] / width))
     return reading.amplitude**2 + reading.beside < _KEPT * (power - 4.0 * scatter)
 

@@ -32,6 +32,7 @@ REACH = 40
 """Bins on each side of a line from which its noise is judged."""
 
 _APART = 0.75  # bins: two lines nearer than this are one that changes
+_HIDDEN = 12.0  # times the power of noise in a bin
 _CLEAN = 60  # strong lines of a spectrum whose leakage is taken away
 _LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
 
@@ -62,6 +63,11 @@ class Reading:
     beside: float
     noise: float
     explained: bool
+
+    @property
+    def hidden(self) -> bool:
+        """Whether a peak of noise may be as high: 3.5 times the noise of a bin."""
+        return self.amplitude**2 <= _HIDDEN * self.noise**2
 
     @property
     def half_width(self) -> float:
@@ -393,8 +399,7 @@ class _Fit:
         variance = float(way @ spread @ way) * max(1.0, (size / amplitude) ** 2) + both
         # noise in the bins of the change
         variance += 0.25 * left.even.size * left.noise**2 / max(amplitude, 1e-150) ** 2
-        hidden = size**2 <= 12.0 * left.noise  # a peak of noise stands as high
-        if hidden:
+        if size**2 <= _HIDDEN * left.noise:  # a peak of noise may be as high
             variance += left.noise
         phase = turned / max(size, 1e-150) ** 2
         wander = 0.25 * phase + both / max(size, 1e-150) ** 2

@@ -235,6 +235,9 @@ def phase_jumps(x: Floats, frequency: float, *, cycles: float = 24.0) -> list[in
     wide = phase[4:-1] - phase[1:-4] - 1.5 * (left + right)
     wide = wide - np.rint(wide)
     scatter = 1.4826 * float(np.median(np.abs(wide - np.median(wide))))
+    # a pace that changes there, as where the speed does, makes up to half a step of its change
+    bent = np.abs(right - left)
+    bent = np.max(np.lib.stride_tricks.sliding_window_view(np.pad(bent, 2), 5), axis=-1)
     calm = size[2:-3] > 0.3 * np.median(size)
     found: list[int] = []
     threshold = max(_JUMP, 8.0 * scatter)
@@ -242,6 +245,8 @@ def phase_jumps(x: Floats, frequency: float, *, cycles: float = 24.0) -> list[in
     for place in order:
         if abs(wide[place]) <= threshold:
             break
+        if abs(wide[place]) <= threshold + bent[place]:
+            continue
         at = int(starts[place + 2] + (length + hop) // 2)
         if (calm[place] or abs(step[place]) > _JUMP) and all(
             abs(at - other) > 4 * length for other in found
