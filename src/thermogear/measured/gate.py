@@ -70,7 +70,8 @@ class Passed:
     """What came through: ``table`` (channel, sample) from sample ``start`` on, nothing missing.
 
     ``extra``: relative half width that damage adds to amplitudes, by channel (of withheld ones the
-    share of samples that are damaged); ``withheld``: why a channel's amplitudes are.
+    share of samples that are damaged), ``clipped`` that part of it
+    that counts in the channel's strongest line; ``withheld``: why a channel's amplitudes are.
     """
 
     channels: list[Channel]
@@ -78,6 +79,7 @@ class Passed:
     start: int = 0
     findings: list[Finding] = field(default_factory=list)
     extra: dict[str, float] = field(default_factory=dict)
+    clipped: dict[str, float] = field(default_factory=dict)
     withheld: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -232,7 +234,9 @@ class _Channel:
 
     def filled_in(self, kept: Sequence[tuple[Damage, int]], size: int, explained: float) -> None:
         """What filled samples may do: the share that the channel's lines do not explain, and how
-        far the line may change there; at a limit the samples are the line's own peaks."""
+        far the line may change there; at a limit the samples are the line's own peaks, and the
+        highest of them where sidebands make them so: what is wrong is wrong by a share of the
+        strongest line, in every line alike."""
         extra = 0.0
         for one, count in kept:
             if not count:
@@ -240,8 +244,13 @@ class _Channel:
             share = count / size * (2.0 if one.kind == "clipping" else 1.0)
             own = share * (_UNSURE + (1.0 - _UNSURE) * (1.0 - explained))
             extra += own
+            whole = one.kind == "clipping"
+            if whole:
+                clipped = self.through.clipped.get(self.channel.name, 0.0)
+                self.through.clipped[self.channel.name] = clipped + own
             self.say(one, "filled in by the channel's own lines",
-                     f"adds {100 * own:.2g} % to the half width of amplitudes")  # fmt: skip
+                     f"adds {100 * own:.2g} % {'of the strongest line ' if whole else ''}"
+                     "to the half width of amplitudes")  # fmt: skip
         self.through.extra[self.channel.name] = extra
 
     def say(self, one: Damage, done: str, effect: str, *, withholds: bool = False) -> None:

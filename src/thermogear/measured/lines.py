@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
@@ -72,12 +73,20 @@ class MeasuredLine:
 
 @dataclass(frozen=True, kw_only=True)
 class Doubts:
-    """What damage does to a channel's lines: ``extra`` relative half width of amplitudes, why
-    amplitudes are ``withheld``, why the ``rate`` is doubtful."""
+    """What damage does to a channel's lines: ``extra`` relative half width of amplitudes, of which
+    ``clipped`` counts in the channel's strongest line, why amplitudes are ``withheld``, why the
+    ``rate`` is doubtful."""
 
     extra: float = 0.0
+    clipped: float = 0.0
     withheld: str = ""
     rate: str = ""
+
+    def shared(self, lines: Sequence[tuple[float, float]], amplitude: float) -> float:
+        """Relative half width of a line of this ``amplitude`` beside ``lines`` (place, size)."""
+        highest = max((size for _, size in lines), default=amplitude)
+        more = max(highest / max(amplitude, 1e-300) - 1.0, 0.0)
+        return self.extra + self.clipped * more if self.clipped else self.extra
 
     def applied(self, line: MeasuredLine) -> MeasuredLine:
         """The line without what is withheld."""
@@ -230,8 +239,8 @@ def channel_lines(
     )
     strong = strong_lines(through.spectrum)
     bin_width = through.spectrum.bin_width * through.axis / rate
+    peaks = [(one.place * bin_width, abs(one.amplitude)) for one in strong]
     if gearing is not None:
-        peaks = [(one.place * bin_width, abs(one.amplitude)) for one in strong]
         others = other_lines(peaks, gearing, teeth, wanted, width=bin_width)
         wanted = [*wanted, *others]
     places = [want.position for want in wanted]
@@ -263,8 +272,9 @@ def channel_lines(
         if reading.hidden:  # a peak of noise: the line may be anywhere it was looked for
             own = max(own, want.half_width + abs(position - want.position))
         # damage is no random error: its share is added, not its square
-        own += turned_by(doubts.extra, samples=values.size)
-        half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + doubts.extra
+        damage = doubts.shared(peaks, amplitude)
+        own += turned_by(damage, samples=values.size)
+        half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + damage
         found.append(
             doubts.applied(
                 MeasuredLine(

@@ -217,6 +217,7 @@ def measure(
             turns,
             Doubts(
                 extra=through.extra.get(channel.name, 0.0),
+                clipped=through.clipped.get(channel.name, 0.0),
                 withheld=through.withheld.get(channel.name, ""),
                 rate=doubt,
             ),
