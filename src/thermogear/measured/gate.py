@@ -70,8 +70,8 @@ class Passed:
     """What came through: ``table`` (channel, sample) from sample ``start`` on, nothing missing.
 
     ``extra``: relative half width that damage adds to amplitudes, by channel (of withheld ones the
-    share of samples that are damaged), ``clipped`` that part of it
-    that counts in the channel's strongest line; ``withheld``: why a channel's amplitudes are.
+    share of samples that are damaged), ``clipped`` that part of it that counts in the
+    channel's strongest line; ``withheld``: why a channel's amplitudes are.
     """
 
     channels: list[Channel]

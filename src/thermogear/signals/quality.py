@@ -235,7 +235,7 @@ def phase_jumps(x: Floats, frequency: float, *, cycles: float = 24.0) -> list[in
     wide = phase[4:-1] - phase[1:-4] - 1.5 * (left + right)
     wide = wide - np.rint(wide)
     scatter = 1.4826 * float(np.median(np.abs(wide - np.median(wide))))
-    # a pace that changes there, as where the speed does, makes up to half a step of its change
+    # where the speed changes so does the pace: that makes up to its whole change between hops
     bent = np.abs(right - left)
     bent = np.max(np.lib.stride_tricks.sliding_window_view(np.pad(bent, 2), 5), axis=-1)
     calm = size[2:-3] > 0.3 * np.median(size)
