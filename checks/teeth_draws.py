@@ -16,9 +16,9 @@ Floats = NDArray[np.float64]
 Random = np.random.Generator
 
 DEVELOPMENT = 11_2026
-HELD_BACK = 74_2026
-"""Held back for the finder as it is; 292026 and 532026 were for earlier ones."""
-GEARED = ("pinion", "wheel", "both", "first harmonic", "two stages", "product")
+HELD_BACK = 95_2026
+"""Held back for the finder as it is; 292026, 532026 and 742026 were for earlier ones."""
+GEARED = ("pinion", "wheel", "both", "first harmonic", "two stages", "product", "swing")
 BEARINGS = ("periodic impacts", "slipping impacts", "motor")
 RATES = (25_600.0, 12_800.0, 5120.0)
 MOST = 400_000  # samples of a record
@@ -62,7 +62,7 @@ class Made:
 def made(kind: str, number: int, seed: int) -> Made:
     """Record ``number`` of a kind."""
     random = np.random.default_rng([seed, number])
-    own = {"product": _product, "motor": _motor}
+    own = {"product": _product, "swing": _product, "motor": _motor}
     if kind in own:
         return own[kind](kind, number, random)
     return _bearing(kind, number, random) if kind in BEARINGS else _geared(kind, number, random)
@@ -98,6 +98,16 @@ def _wandering(random: Random, count: int) -> tuple[Floats, float]:
         turn = 2 * np.pi * rank / count
         slow += random.normal() / turn * np.sin(turn * place + random.uniform(0, 2 * np.pi))
     return place + slow * rms / np.std(np.diff(slow)), rms
+
+
+def _swinging(random: Random, count: int, rate: float) -> tuple[Floats, float]:
+    """Samples of a time that swings by 0.05 to 2 % (amplitude) at 0.2 to 3 Hz, as a speed control
+    or a slow torsional mode makes it."""
+    place = np.arange(count, dtype=float)
+    size = _between(random, 5e-4, 2e-2)
+    turn = 2 * np.pi * _between(random, 0.2, 3.0) / rate
+    swing = size / turn * np.sin(turn * place + random.uniform(0, 2 * np.pi))
+    return place + swing, size / float(np.sqrt(2.0))
 
 
 def _transfer(random: Random, channels: int) -> list[list[tuple[float, float, complex]]]:
@@ -288,12 +298,15 @@ def _bearing(kind: str, number: int, random: Random) -> Made:
 
 def _product(kind: str, number: int, random: Random) -> Made:
     """The textbook's gear: harmonics times (1 + m cos) of one shaft or of both, nothing else but
-    shaft lines in half of the records and white noise."""
+    shaft lines in half of the records and white noise. "Swing": its speed swings."""
     rate, count = _clock(random)
     teeth = _teeth(random)
     shaft = min(random.uniform(10.0, 50.0), 0.2 * rate / teeth[0]) / rate
     mesh, slow = shaft * teeth[0], shaft * teeth[0] / teeth[1]
-    angle, wander = _wandering(random, count)
+    if kind == "swing":
+        angle, wander = _swinging(random, count, rate)
+    else:
+        angle, wander = _wandering(random, count)
     depth = _between(random, 0.01, 0.20)
     other = depth * _between(random, 0.1, 1.0) if random.uniform() < 0.5 else 0.0
     depths = [depth, other] if random.uniform() < 0.5 else [other, depth]

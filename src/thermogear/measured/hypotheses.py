@@ -168,7 +168,7 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
         ]
     orders = orders_of(peaks, combs)
     mains = stated.mains
-    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders, (), mains)
+    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders, mains=mains)
     none = Hypothesis(gears=(), evidence=max(0.0, alone), combs=tuple(one.step for one in told))
     found = [(_beside(peaks, draft, orders, mains), draft) for draft in drafts]
     found.sort(key=lambda pair: -pair[0].evidence)
@@ -276,8 +276,8 @@ def _beside(
 ) -> Hypothesis:
     """The draft with combs on what is left: beside its sidebands, or with its shafts' lines among
     those of the combs, so that the mesh's alone stand out."""
-    beside, told = best_background(peaks, draft.used, orders, draft.steps, mains)
-    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, draft.steps, mains)
+    beside, told = best_background(peaks, draft.used, orders, draft.steps, mains=mains)
+    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, draft.steps, mains=mains)
     both = draft.evidence + beside, draft.bare + bare
     return Hypothesis(
         gears=draft.gears,
@@ -297,7 +297,8 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
         np.maximum.at(gain, np.clip(centre + shift, 0, peaks.bins), worth)
     tops = peaks.place[np.argsort(-peaks.level)[:_MESHES]]
     tried = np.unique(np.concatenate([tops, tops / 2.0, tops / 3.0]))
-    teeth = np.arange(TEETH[0], TEETH[1] + 1, dtype=float)
+    allowed = {*range(TEETH[0], TEETH[1] + 1), stated.teeth or TEETH[0]}
+    teeth = np.array(sorted(allowed), dtype=float)
     pairs: list[tuple[float, float, int]] = []
     told: list[tuple[float, float, int]] = []
     for start in tried[tried > _LOWEST * peaks.bin_width]:
@@ -317,8 +318,9 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
         score[mesh / teeth < _APART * peaks.bin_width] = -np.inf
         best = np.argsort(-score)[:8]
         pairs += [(float(score[i]), mesh, int(teeth[i])) for i in best]
-        if stated.teeth is not None and TEETH[0] <= stated.teeth <= TEETH[1]:
-            told.append((float(score[stated.teeth - TEETH[0]]), mesh, stated.teeth))
+        if stated.teeth is not None:
+            own = float(score[np.searchsorted(teeth, stated.teeth)])
+            told.append((own, mesh, stated.teeth))
     kept = [(m, z) for _, m, z in sorted(pairs, reverse=True)[:_PAIRS]]
     kept += [(m, z) for _, m, z in sorted(told, reverse=True)[:_STATED_PAIRS]]
     # halves and doubles of the best contradict them: they must be weighed too
@@ -327,7 +329,7 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
             kept += [(mesh, z * k), (mesh * k, z * k)]
             if z % k == 0:
                 kept += [(mesh, z // k), (mesh / k, z // k)]
-    fitting = [(m, z) for m, z in kept if TEETH[0] <= z <= TEETH[1] and m < HIGHEST]
+    fitting = [(m, z) for m, z in kept if z in allowed and m < HIGHEST]
     return list(dict.fromkeys(fitting))
 
 

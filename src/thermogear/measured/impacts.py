@@ -128,6 +128,7 @@ def background(
     used: Flags,
     combs: list[Comb],
     fixed: tuple[float, ...] = (),
+    *,
     mains: tuple[float, ...] = (),
 ) -> tuple[float, tuple[Comb, ...]]:
     """Log evidence of the combs on the lines not used, each with its sidebands, and those seen.
@@ -164,10 +165,11 @@ def best_background(
     used: Flags,
     orders: list[list[Comb]],
     fixed: tuple[float, ...] = (),
+    *,
     mains: tuple[float, ...] = (),
 ) -> tuple[float, tuple[Comb, ...]]:
     """``background`` in the order of combs that explains most."""
-    found = [background(peaks, used, order, fixed, mains) for order in orders]
+    found = [background(peaks, used, order, fixed, mains=mains) for order in orders]
     return max(found, key=lambda one: one[0])
 
 
