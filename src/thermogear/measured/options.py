@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, meant
 
 LEAST_DECODED = 256 << 20
 """Bytes that any packed file may become."""
@@ -16,6 +17,9 @@ UNPACKED = 32
 """How many times its own size a packed file may become: records of sensors, which hold noise,
 become 1.1 to 10 times as large."""
 MOST_LIMIT = 1 << 50
+
+_NAMED, _NAMED_LETTERS = 12, 40
+"""Channels that a refusal names, and letters of one that is not there."""
 
 
 def decoded_limit(size: int) -> int:
@@ -54,6 +58,18 @@ def place_of(key: str, count: int) -> int | None:
     if not (key.isascii() and key.isdigit() and len(key) <= 9):
         return None
     return int(key) - 1 if 1 <= int(key) <= count else None
+
+
+def no_channel(key: str, names: Sequence[str], field: str = "channel") -> InputError:
+    """The refusal of a channel ``key`` that none of ``names`` is, with the nearest of them."""
+    shown = ", ".join(sorted(names)[:_NAMED]) + (", ..." if len(names) > _NAMED else "")
+    return InputError(
+        field,
+        repr(key[:_NAMED_LETTERS]),
+        allowed=f"1..{len(names)} or a name",
+        why=f"known: {shown}",
+        fix=meant(key, names, cutoff=0.5),
+    )
 
 
 def refused(path: Path, as_what: str, reason: object) -> InputError:

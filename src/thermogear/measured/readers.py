@@ -96,6 +96,13 @@ def read_record(
     if not path.is_file():
         raise InputError("file", str(file), why="there is no such file")
     most = decoded_limit(path.stat().st_size) if limit is None else int(limit)
-    options = ReadOptions(decimal, tuple(str(c) for c in channels), most)
-    record = READERS[format_of(path)](path, options)
+    keep = [str(c) for c in channels]
+    if keep and tacho is not None:
+        keep.append(str(tacho))
+    options = ReadOptions(decimal, tuple(keep), most)
+    try:
+        record = READERS[format_of(path)](path, options)
+    except InputError as error:
+        told = error.field == "channel" and keep[len(channels) :] and error.got == repr(keep[-1])
+        raise (error.named("tacho") if told else error) from error
     return examined(record.supplied(rate, unit, scale, tacho))

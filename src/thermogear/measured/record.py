@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.bounds import FULL_SCALE, RATE
-from thermogear.base.errors import InputError, nearest
-from thermogear.measured.options import place_of
+from thermogear.base.errors import InputError
+from thermogear.measured.options import no_channel, place_of
 from thermogear.measured.units import factor_of, kind_of, known_unit
 
 Floats = NDArray[np.float64]
@@ -141,9 +141,7 @@ class Record:
         place = place_of(str(name), len(self.channels))
         if place is not None:
             return self.channels[place]
-        if isinstance(name, int) or name.isdigit():
-            raise InputError("channel", str(name)[:40], allowed=f"1..{len(self.channels)}")
-        raise InputError("channel", repr(name), fix=nearest(name, self.names))
+        raise no_channel(str(name), self.names)
 
     def vibrating(self) -> tuple[Channel, ...]:
         """The channels that are not the tacho, time, speed, torque or temperature; may be none."""
@@ -174,7 +172,11 @@ class Record:
         kept as the user says, with an important notice."""
         record = self
         if tacho is not None:
-            record = replace(record, tacho=record.channel(tacho).name)
+            try:
+                named = record.channel(tacho).name
+            except InputError as error:
+                raise error.named("tacho") from error
+            record = replace(record, tacho=named)
         if rate is not None:
             RATE.require("rate", rate)
             if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3:

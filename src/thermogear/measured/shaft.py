@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import is_tacho_name
-from thermogear.measured.units import kind_of
+from thermogear.measured.units import counts_turns
 from thermogear.signals.following import band_power
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle, tacho_times
@@ -121,7 +121,7 @@ def _sources(record: Record, tacho: Record | None) -> list[tuple[Record, Channel
 
 
 def _is_speed(channel: Channel) -> bool:
-    return channel.unit is not None and kind_of(channel.unit) in ("speed", "frequency")
+    return counts_turns(channel.unit)
 
 
 def _missing(shaft: Shaft, samples: int) -> list[Notice]:

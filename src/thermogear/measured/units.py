@@ -119,6 +119,15 @@ def kind_of(name: str) -> str:
     return _TABLE[name][0]
 
 
+def counts_turns(name: str | None) -> bool:
+    """Whether a known unit counts turns of a shaft in time.
+
+    >>> counts_turns("rpm"), counts_turns("V"), counts_turns(None)
+    (True, False, False)
+    """
+    return name is not None and kind_of(name) in ("speed", "frequency")
+
+
 def factor_of(name: str) -> float:
     """SI units (turns per second for rpm, turns for angles) in one of a known unit.
 
