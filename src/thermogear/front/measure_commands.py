@@ -41,6 +41,12 @@ def supplies(command: Any) -> Any:
         ),
         click.option("--pulses", type=float, help="Tacho pulses per turn."),
         click.option(
+            "--tacho-scale",
+            type=float,
+            metavar="RPM",
+            help="The tacho channel is a speed in another unit, as volts: rpm in one of them.",
+        ),
+        click.option(
             "--orders",
             type=float,
             multiple=True,

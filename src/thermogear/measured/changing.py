@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
+from thermogear.measured.contradictions import of_pulses, of_teeth
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
-from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.quantities import quantities
+from thermogear.measured.record import Notice, Record
 from thermogear.measured.resonances import Resonance, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
@@ -156,6 +158,12 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
     z = teeth or (gearing.teeth if gearing else None)
+    decided = [one.teeth for one in gearing.shafts] if gearing else []
+    contradicted = [of_teeth(teeth, decided)]
+    if mesh is not None:
+        known = decided or ([teeth] if teeth else [])
+        contradicted.append(of_pulses(shaft.pulses, known, mesh))
+    notices += [one for one in contradicted if one is not None]
     factor = 1.0
     if shaft.line:
         factor = (mesh or 1.0) / (z or _MESHES)
@@ -417,16 +425,6 @@ def order_lines(
     ]
 
 
-def of_velocity(line: MeasuredLine, channel: Channel) -> MeasuredLine:
-    """A line of a velocity with its acceleration and displacement; any other line as it is."""
-    known = channel.unit is not None and not channel.needs_scale
-    if not known or channel.unit is None or kind_of(channel.unit) != "velocity":
-        return line
-    omega = 2.0 * np.pi * line.frequency
-    speed = line.reading * channel.si_factor
-    return replace(line, acceleration=speed * omega, displacement=speed / omega)
-
-
 def _apart(beside: Sequence[float]) -> list[float]:
     kept: list[float] = []
     for one in beside:
@@ -486,11 +484,3 @@ def _lines(
                 )
             )
     return tuple(found)
-
-
-def quantities(amplitude: Floats, *, omega: Floats, kind: str) -> tuple[Floats, Floats]:
-    """Acceleration and displacement of lines of a known kind of quantity, else nan."""
-    power = {"acceleration": 0, "velocity": 1, "displacement": 2}.get(kind)
-    if power is None:
-        return np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
-    return amplitude * omega**power, amplitude * omega ** (power - 2)

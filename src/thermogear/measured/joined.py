@@ -275,9 +275,7 @@ def only(record: Record, wanted: Sequence[str]) -> Record:
     kept = tuple(
         c
         for c in record.channels
-        if c.name in names
-        or c.name == record.tacho
-        or counts_turns(c.unit)
+        if c.name in names or c.name == record.tacho or counts_turns(c.unit)
     )
     return replace(record, channels=kept)
 

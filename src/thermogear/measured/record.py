@@ -16,6 +16,8 @@ from thermogear.measured.units import factor_of, kind_of, known_unit
 
 Floats = NDArray[np.float64]
 
+_MOST_RPM = 1e9  # in one unit of a speed channel
+
 BLOCK = 1 << 20
 """Samples read at once from a channel that stays on disk."""
 
@@ -213,6 +215,16 @@ class Record:
                     f"the unit given, {name}, replaces the file's of {', '.join(contradicted)}",
                 )
         return record
+
+    def with_speed(self, name: str, rpm: float) -> Record:
+        """The record with the channel ``name`` as a speed, ``rpm`` in one of its units."""
+        if not 0.0 < rpm <= _MOST_RPM:
+            got = f"{rpm:g} rpm"
+            fix = "give the rpm in one unit of the channel, as 300 for 300 rpm/V"
+            raise InputError("tacho_scale", got, allowed=f"> 0 .. {_MOST_RPM:g} rpm", fix=fix)
+        speed = self.channel(name)
+        scaled = replace(speed, unit="rpm", scale=speed.scale * rpm, offset=speed.offset * rpm)
+        return replace(self, channels=tuple(scaled if c is speed else c for c in self.channels))
 
     def noting(self, level: str, text: str) -> Record:
         """The record with one more notice."""

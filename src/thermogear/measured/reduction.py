@@ -16,14 +16,15 @@ from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
     Changing,
     OrderSlices,
-    of_velocity,
     order_lines,
     read_in_angle,
 )
+from thermogear.measured.contradictions import of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
+from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
@@ -162,7 +163,7 @@ def measure(
     else:
         gearing = _gearing(through.table, notices, expected, stated)
     if changing is not None and changing.slices is not None:
-        return replace(_of_slices(record, through, chain, changing, tuple(notices)), given=given)
+        return _of_slices(record, through, chain, changing, notices, given)
     if changing is None and _whole_turns(through, gearing, teeth):
         gearing = _gearing(through.table, [], expected, stated)
     chosen, start, table = through.channels, through.start, through.table
@@ -184,8 +185,9 @@ def measure(
     if doubt:
         through.findings.append(
             Finding(
-                kind=f"the rate is doubtful: {doubt}",
-                done="frequencies, speed and displacements are withheld",
+                kind=f"rate or speed is doubtful: {doubt}",
+                done="frequencies, speed and displacements are withheld (correct what is wrong, "
+                "or leave it out, to have them)",
                 effect="they would be wrong by the rate's factor; orders and accelerations stand",
                 withholds=True,
             )
@@ -286,9 +288,14 @@ def _of_slices(
     through: Passed,
     chain: Chain | None,
     found: Changing,
-    notices: tuple[Notice, ...],
+    notices: list[Notice],
+    given: tuple[int | None, float | None],
 ) -> Measurement:
     """The measurement of a run whose speed changes: its lines are means of the slices."""
+    run = found.slices
+    if run is not None and not run.of_mesh and record.rate is not None:
+        said = of_speed(given[1], float(run.speed.min()), float(run.speed.max()))
+        notices += [said] if said is not None else []
     return Measurement(
         record,
         tuple(c.name for c in through.channels),
@@ -301,7 +308,8 @@ def _of_slices(
         through.start,
         tuple(through.findings),
         through.table,
-        found.slices,
+        run,
+        given,
     )
 
 
@@ -451,15 +459,6 @@ def _gearing(
 def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
     if gearing is None:
         return teeth
-    seen = [shaft.teeth for shaft in gearing.shafts]
-    if teeth is None:
-        return gearing.teeth
-    if seen and teeth not in seen:
-        notices.append(
-            Notice(
-                "important",
-                f"the lines say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
-                "mesh line over shaft line must be a whole number of teeth",
-            )
-        )
-    return teeth
+    if (said := of_teeth(teeth, [shaft.teeth for shaft in gearing.shafts])) is not None:
+        notices.append(said)
+    return gearing.teeth if teeth is None else teeth

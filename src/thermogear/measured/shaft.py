@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import is_tacho_name
-from thermogear.measured.units import counts_turns
+from thermogear.measured.units import counts_turns, kind_of
 from thermogear.signals.following import band_power
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle, tacho_times
@@ -40,7 +40,8 @@ class Shaft:
     """``turns`` of a shaft at samples ``first`` on of the stretch, with rms ``noise`` [turns].
 
     ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
-    what; ``sure``: pulses per turn are known. ``told`` what should be known of it.
+    what; ``sure``: pulses per turn are known, ``pulses`` those given. ``told`` what should be
+    known of it.
     """
 
     turns: Floats
@@ -49,6 +50,7 @@ class Shaft:
     origin: str
     line: bool = False
     sure: bool = True
+    pulses: float | None = None
     told: tuple[Notice, ...] = ()
 
     @property
@@ -87,7 +89,8 @@ def given_shaft(
                 else _by_pulses(channel, source.rate, record.rate, samples, at, pulses_per_turn)
             )
         except InputError as error:
-            told.append(Notice("important", f"tacho {channel.name!r} is not used: {error}"))
+            text = f"tacho {channel.name!r} is not used: {error}{'' if speed else _meant(channel)}"
+            told.append(Notice("important", text))
             continue
         if found.turns.size < 0.2 * samples:
             share = 100.0 * found.turns.size / samples
@@ -122,6 +125,16 @@ def _sources(record: Record, tacho: Record | None) -> list[tuple[Record, Channel
 
 def _is_speed(channel: Channel) -> bool:
     return counts_turns(channel.unit)
+
+
+def _meant(channel: Channel) -> str:
+    """What to give where a channel without pulses is a speed."""
+    unit = channel.unit or "one of its units (none is stated)"
+    return (
+        f"; if it is a speed, give the rpm in one {unit}: --tacho-scale RPM"
+        if (channel.unit is None or kind_of(channel.unit) == "voltage")
+        else ""
+    )
 
 
 def _missing(shaft: Shaft, samples: int) -> list[Notice]:
@@ -161,6 +174,7 @@ def _by_pulses(
         noise=turns.noise,
         origin=f"tacho {channel.name!r}",
         sure=pulses_per_turn is not None,
+        pulses=pulses_per_turn,
         told=tuple(told),
     )
 

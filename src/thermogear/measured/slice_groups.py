@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermogear.base.vocabulary import label
-from thermogear.measured.changing import OrderSlices, quantities
+from thermogear.measured.changing import OrderSlices
+from thermogear.measured.quantities import quantities
 
 if TYPE_CHECKING:
     import xarray as xr

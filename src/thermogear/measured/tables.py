@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.errors import InputError
 from thermogear.measured.options import ReadOptions, no_channel, place_of, refused
 from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import Channel, Notice, Record, Samples

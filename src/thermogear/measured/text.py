@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
-from thermogear.base.errors import InputError
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import ReadOptions, no_channel, place_of, refused, too_large
@@ -162,7 +161,9 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
         else:
             raise no_channel(key, names)
     named = zip(layout.names, layout.units, strict=True)
-    special = {i for i, (name, unit) in enumerate(named) if is_tacho_name(name) or counts_turns(unit)}
+    special = {
+        i for i, (name, unit) in enumerate(named) if is_tacho_name(name) or counts_turns(unit)
+    }
     return sorted(wanted | times | special)
 
 
