@@ -18,6 +18,8 @@ UNPACKED = 32
 become 1.1 to 10 times as large."""
 MOST_LIMIT = 1 << 50
 
+_SAVE_ANEW = "save it anew, or export it as text"
+_FIXES = {"text": "a text holds a row of numbers for each sample, 256 or more, below their names"}
 _NAMED, _NAMED_LETTERS = 12, 40
 """Channels that a refusal names, and letters of one that is not there."""
 
@@ -75,7 +77,8 @@ def no_channel(key: str, names: Sequence[str], field: str = "channel") -> InputE
 def refused(path: Path, as_what: str, reason: object) -> InputError:
     """A file that does not hold what its kind promises."""
     text = " ".join(str(reason).split())[:200] or type(reason).__name__
-    return InputError("file", path.name, why=f"cannot be read as {as_what}: {text}")
+    why = f"cannot be read as {as_what}: {text}"
+    return InputError("file", path.name, why=why, fix=_FIXES.get(as_what, _SAVE_ANEW))
 
 
 def too_large(path: Path, *, becomes: int, limit: int) -> InputError:

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import FULL_SCALE, RATE
 from thermogear.base.errors import InputError
 from thermogear.measured.options import no_channel, place_of
-from thermogear.measured.units import factor_of, kind_of, known_unit
+from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
 Floats = NDArray[np.float64]
 
+OTHER = {"time", "speed", "torque", "temperature", "angle", "frequency"}
+"""Kinds of quantity that are no vibration."""
 _MOST_RPM = 1e9  # in one unit of a speed channel
 
 BLOCK = 1 << 20
@@ -147,11 +149,10 @@ class Record:
 
     def vibrating(self) -> tuple[Channel, ...]:
         """The channels that are not the tacho, time, speed, torque or temperature; may be none."""
-        other = {"time", "speed", "torque", "temperature", "angle", "frequency"}
         return tuple(
             c
             for c in self.channels
-            if c.name != self.tacho and (c.unit is None or kind_of(c.unit) not in other)
+            if c.name != self.tacho and (c.unit is None or kind_of(c.unit) not in OTHER)
         )
 
     def signals(self) -> tuple[Channel, ...]:
@@ -192,6 +193,9 @@ class Record:
             record = replace(record, rate=float(rate), rate_origin="given")
         if unit is not None or scale is not None:
             name = None if unit is None else known_unit(unit)
+            if name is not None and kind_of(name) in OTHER:
+                why = f"it counts {kind_of(name)}, which does not vibrate"
+                raise InputError("unit", repr(unit), why=why, fix=f"one of {UNITS}")
             vibrating = {c.name for c in record.signals()}
             new, contradicted = [], []
             for c in record.channels:

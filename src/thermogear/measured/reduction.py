@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, short
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
     Changing,
@@ -20,7 +20,7 @@ from thermogear.measured.changing import (
     read_in_angle,
 )
 from thermogear.measured.contradictions import of_speed, of_teeth
-from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
+from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
@@ -29,8 +29,9 @@ from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.swelling import Swelling, swelling_of
-from thermogear.measured.traps import HUGE, health
+from thermogear.measured.traps import HUGE, health, unknown_unit
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.quality import phase_jumps
@@ -134,6 +135,7 @@ def measure(
     if not isinstance(record, Record):
         record = read_record(record)
     require_sampling_rate(record)
+    require_samples(record)
     _require(harmonics, sidebands, orders, sensor_tolerance, pulses_per_turn)
     require_teeth(teeth)
     notices = list(record.notices)
@@ -270,13 +272,16 @@ def _require(
     pulses_per_turn: float | None,
 ) -> None:
     """Refuse numbers that ask for nothing, or for more than a record can hold."""
-    if not (1 <= harmonics <= _MOST and 0 <= sidebands <= _MOST):
-        got = f"{harmonics}, {sidebands}"
-        raise InputError("harmonics, sidebands", got, allowed=f"1..{_MOST}, 0..{_MOST}")
+    for name, number, least in (("harmonics", harmonics, 1), ("sidebands", sidebands, 0)):
+        if not least <= number <= _MOST:
+            fix = f"as --{name} {least + 1}, or leave it out"
+            raise InputError(name, short(number), allowed=f"{least}..{_MOST}", fix=fix)
     wrong = [o for o in orders if not 0.0 < o <= _HIGHEST_ORDER]
     if wrong or len(orders) > _MOST:
         got = f"{wrong[0]:g}" if wrong else f"{len(orders)} of them"
-        raise InputError("orders", got, allowed=f"> 0 .. {_HIGHEST_ORDER:g}, at most {_MOST}")
+        allowed = f"> 0 .. {_HIGHEST_ORDER:g}, at most {_MOST}"
+        fix = "an order counts per turn of the first shaft, as --orders 1"
+        raise InputError("orders", got, allowed=allowed, fix=fix)
     if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
         raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
     if pulses_per_turn is not None:
@@ -332,7 +337,9 @@ def _untold(
     if record.rate is None:
         yield Notice("important", "no rate is known: lines are in orders and cycles per sample")
     if any(c.unit is None for c in channels):
-        yield Notice("important", "no unit is known: amplitudes are the file's own numbers")
+        strange = next((u for c in channels if c.unit is None and (u := unknown_unit(c.name))), "")
+        what = f"the unit {strange!r} is not one of {UNITS}" if strange else "no unit is known"
+        yield Notice("important", f"{what}: amplitudes are the file's own numbers (give --unit)")
     if sensor_tolerance is None:
         yield Notice("info", "no sensor tolerance is stated: u_D holds noise and scatter alone")
 

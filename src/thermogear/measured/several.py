@@ -94,7 +94,10 @@ def files_of(named: Sequence[str | Path]) -> list[Path]:
             found += sorted(inside, key=_counted)
         else:
             found.append(one)
-    if not 1 <= len(found) <= MOST:
+    if not found:
+        where = ", ".join(map(str, named))
+        raise InputError("file", where, why="no file is in it", fix="name files, or their folder")
+    if len(found) > MOST:
         raise InputError("file", f"{len(found)} files", allowed=f"1..{MOST}")
     twice = [str(path) for path, count in Counter(found).items() if count > 1]
     if twice:

@@ -36,6 +36,9 @@ _TABLE: dict[str, tuple[str, float]] = {
     "deg": ("angle", 1.0 / 360.0),
     "rad": ("angle", 0.15915494309189535),
 }
+_VIBRATES = ("acceleration", "velocity", "displacement", "voltage")
+UNITS = ", ".join(name for name, (kind, _) in _TABLE.items() if kind in _VIBRATES)
+"""Known units of what vibrates, in words."""
 _SPELLINGS = {
     "m/s2": "m/s^2",
     "m/s**2": "m/s^2",
