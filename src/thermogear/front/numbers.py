@@ -10,7 +10,7 @@ import click
 from thermogear.base.errors import InputError, short
 
 
-class Number(click.ParamType):
+class Number(click.ParamType[float | int]):
     """A number, or a whole one; ``allowed`` in words, ``example`` of one."""
 
     def __init__(self, allowed: str, example: str, *, whole: bool = False) -> None:

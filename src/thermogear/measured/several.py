@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 
 MOST = 10_000
 _HALF = 1.959964
+_REASONS = 3  # files that a refusal tells of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,7 +124,8 @@ def several(
     """Measure ``files`` by ``read``; a file that is refused is told and left out.
 
     ``baseline``: "first", "last", or the name of a file. Readings are in each record's own unit;
-    records of another unit than the baseline's are refused. ``cores``: processes to measure in;
+    records of another unit than the baseline's are refused. Raises InputError where none is left to
+    compare with the baseline. ``cores``: processes to measure in;
     with more than one ``read`` must be a function that a new process can import, and a script
     needs its ``if __name__ == "__main__":``.
     """
@@ -157,6 +159,9 @@ def several(
     blank = (float("nan"), float("nan"))
     table = np.array([[row.readings.get(key, blank) for key in keys] for row in kept])
     table = table.reshape(len(kept), len(keys), 2)
+    both = np.isfinite(table[kept.index(good[place]), :, 0]) & np.isfinite(table[..., 0])
+    if int(np.sum(both.any(axis=1))) < 2:
+        raise _nothing_compared(names[good[place].file], refused, len(files))
     return Several(
         names=tuple(names[row.file] for row in kept),
         keys=keys,
@@ -166,6 +171,19 @@ def several(
         refused=tuple(refused),
         unit=unit,
         hint=_hint(good),
+    )
+
+
+def _nothing_compared(baseline: str, refused: Sequence[tuple[str, str]], files: int) -> InputError:
+    """No other record has a line of the baseline: why."""
+    why = "; ".join(f"{name} is left out: {reason}" for name, reason in refused[:_REASONS])
+    why += f"; and {len(refused) - _REASONS} more" if len(refused) > _REASONS else ""
+    return InputError(
+        "file",
+        f"{files} file{'s' if files != 1 else ''}",
+        allowed="two records or more with a line of the same channel and name",
+        why=f"nothing can be compared with {baseline}" + (f": {why}" if why else ""),
+        fix="name records of one unit whose channels are named alike; a record alone by its file",
     )
 
 
