@@ -161,7 +161,7 @@ def several(
     table = table.reshape(len(kept), len(keys), 2)
     both = np.isfinite(table[kept.index(good[place]), :, 0]) & np.isfinite(table[..., 0])
     if int(np.sum(both.any(axis=1))) < 2:
-        raise _nothing_compared(names[good[place].file], refused, len(files))
+        raise _nothing_compared(names[good[place].file], refused, len(files), _hint(good))
     return Several(
         names=tuple(names[row.file] for row in kept),
         keys=keys,
@@ -174,7 +174,9 @@ def several(
     )
 
 
-def _nothing_compared(baseline: str, refused: Sequence[tuple[str, str]], files: int) -> InputError:
+def _nothing_compared(
+    baseline: str, refused: Sequence[tuple[str, str]], files: int, hint: str
+) -> InputError:
     """No other record has a line of the baseline: why."""
     why = "; ".join(f"{name} is left out: {reason}" for name, reason in refused[:_REASONS])
     why += f"; and {len(refused) - _REASONS} more" if len(refused) > _REASONS else ""
@@ -183,7 +185,7 @@ def _nothing_compared(baseline: str, refused: Sequence[tuple[str, str]], files: 
         f"{files} file{'s' if files != 1 else ''}",
         allowed="two records or more with a line of the same channel and name",
         why=f"nothing can be compared with {baseline}" + (f": {why}" if why else ""),
-        fix="name records of one unit whose channels are named alike; a record alone by its file",
+        fix=hint or "name records of one unit whose channels are named alike, or one file alone",
     )
 
 
