@@ -150,10 +150,11 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     per_turn = samples_per_turn(turns)
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
-    gearing = _found(straight, None if near is None else near / per_turn)
+    told_as = per_turn * float((turns[-1] - turns[0]) / (turns.size - 1))
+    gearing = _found(straight, None if near is None else near / per_turn, told_as)
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if near is not None and gearing is None:
-        gearing = _found(straight, None)
+        gearing = _found(straight, None, told_as)
         mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
@@ -200,9 +201,9 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     )
 
 
-def _found(straight: list[Floats], near: float | None) -> Gearing | None:
+def _found(straight: list[Floats], near: float | None, told_as: float) -> Gearing | None:
     try:
-        return find_gearing(straight, near)
+        return find_gearing(straight, near, told_as=told_as)
     except InputError:
         return None
 

@@ -102,16 +102,18 @@ def _evidence(found: Measurement) -> list[str]:
 def _found(gearing: Gearing | None) -> dict[str, Any]:
     """The verdict on the teeth, with the hypotheses that carry weight."""
     if gearing is None:
+        nothing: list[object] = []
         return {
             "verdict": "no gear found",
-            "teeth": [],
-            "gears": [],
-            "hypotheses": [],
-            "envelope": None,
+            "teeth": nothing,
+            "gears": nothing,
+            "hypotheses": nothing,
+            "rest": 0.0,
         }
     return {
         "verdict": gearing.weighed.verdict,
         "teeth": [shaft.teeth for shaft in gearing.shafts],
+        "rest": gearing.weighed.rest,
         "gears": [
             {
                 "mesh_position": one.mesh,

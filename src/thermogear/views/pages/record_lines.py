@@ -8,6 +8,9 @@ from typing import Any
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.results.result import Result
 
+_TOLD = 5e-4
+"""Weight that three digits show."""
+
 
 def measured(result: Result) -> list[str]:
     """Notices, evidence, settings, and a row for each line."""
@@ -62,19 +65,27 @@ def given_and_found(figures: Mapping[str, Any]) -> list[str]:
     said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
     said += [f"{given['speed'] / RPM:.6g} rpm"] if given["speed"] is not None else []
     told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
-    teeth = " and ".join(map(str, found["teeth"]))
-    told.append(f"found: {teeth} teeth, decided" if teeth else f"found: {_open(found['verdict'])}")
-    weighed = list(found.get("gears", []))
-    weighed += [one for one in found["hypotheses"] if not weighed or _without_teeth(one)]
-    if teeth:
-        # what is decided leaves no alternative that carries weight
-        weighed = [one for one in weighed if one.get("teeth") in found["teeth"]]
-    weighed.sort(key=lambda one: -float(one["weight"]))
-    return told + [f"weight {one['weight']:.3f}: {one['words']}" for one in weighed]
+    if found["teeth"]:
+        return [*told, f"found: {_decided(found)}"]
+    told.append(f"found: {_open(found['verdict'])}")
+    told += [f"weight {one['weight']:.3f}: {one['words']}" for one in found["hypotheses"]]
+    if found.get("rest", 0.0) >= _TOLD:
+        told.append(f"weight {found['rest']:.3f}: all other readings")
+    return told
 
 
-def _without_teeth(one: Mapping[str, Any]) -> bool:
-    return not any(mesh["teeth"] for mesh in one.get("meshes", []))
+def _decided(found: Mapping[str, Any]) -> str:
+    """Teeth with the weight of all readings that have them, and what is left for the others."""
+    gears = reversed(found.get("gears", []))
+    weights = {one["teeth"]: one["weight"] for one in gears}
+    told = [
+        f"{z} teeth, decided (weight {weights[z]:.4f}, of all readings without them "
+        f"{1.0 - weights[z]:.4f})"
+        if z in weights
+        else f"{z} teeth, decided"
+        for z in found["teeth"]
+    ]
+    return "; ".join(told)
 
 
 def _open(verdict: str) -> str:
