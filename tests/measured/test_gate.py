@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.measured.comparison import table_of
-from thermogear.measured.dataset import figures
+from thermogear.measured.figures import figures
 from thermogear.measured.gate import turned_by
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure

@@ -478,7 +478,7 @@ def _lines(
                     uncertainty=relative / _NORMAL,
                     bin_offset=float("nan"),
                     prominence=1.0 / max(relative, 1e-6),
-                    shaft_speed=float(np.mean(slices.speed))
+                    shaft_speed=2.0 * np.pi * mean * rate
                     if in_hertz and not angle.of_mesh
                     else float("nan"),
                     half_width=relative,

@@ -76,7 +76,8 @@ def find_gearing(
 
     ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
     user says, evidence like the lines; ``told_as``: of places in words and weights, where these
-    arrays are resampled: samples of theirs in one of the record. Raises InputError when no line is clear.
+    arrays are resampled: samples of theirs in one of the record. Raises InputError when no line is
+    clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -109,8 +110,8 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float
     text = ", ".join(f"{np.exp(h):.1f}" for h in family.heights)
     heights = tuple(float(np.exp(h)) for h in family.heights)
     evidence = [
-        f"mesh line near {family.line * told_as:.6f} cycles/sample: harmonics 1..{len(heights)} stand "
-        f"{text} times over the floor (mean of channels)",
+        f"mesh line near {family.line * told_as:.6f} cycles/sample: harmonics 1..{len(heights)} "
+        f"stand {text} times over the floor (mean of channels)",
     ]
     same = weighed.teeth and abs(mesh / weighed.mesh - 1.0) < _SAME
     teeth = dict(zip(weighed.teeth, weighed.weights, strict=True)) if same else {}

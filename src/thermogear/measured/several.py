@@ -262,11 +262,11 @@ def figures_of_several(found: Several) -> dict[str, Any]:
                     "name": name,
                     "reading": float(found.reading[i, k]),
                     "change": float(change[i, k]),
-                    "half_width": float(width[i, k]),
+                    "change_half_width": float(width[i, k]),
                 }
             )
     trends = [
-        {"channel": c, "name": n, "trend": float(slope[k]), "half_width": float(half[k])}
+        {"channel": c, "name": n, "trend": float(slope[k]), "trend_half_width": float(half[k])}
         for k, (c, n) in enumerate(found.keys)
         if np.isfinite(slope[k]) and abs(slope[k]) > half[k]
     ]
@@ -278,4 +278,9 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "changed": rows,
         "trends": trends,
         "refused": [list(pair) for pair in found.refused],
+        "units": {
+            "reading": found.unit,
+            **dict.fromkeys(("change", "change_half_width", "lines", "compared"), "1"),
+            **dict.fromkeys(("trend", "trend_half_width"), "1/record"),
+        },
     }
