@@ -1,6 +1,6 @@
 """What a user says and what the lines say, where these cannot both be: told apart, in one line.
 
-What is given is never called wrong alone: every other reading that would fit stands beside it.
+What is given is never called wrong alone: every other reading that would fit is told with it.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def of_pulses(given: float | None, found: Sequence[int], mesh: float) -> Notice 
     )
 
 
-def of_speed(given: float | None, lowest: float, highest: float) -> Notice | None:
+def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | None:
     """A speed ``given`` [rad/s] that the first shaft, from ``lowest`` to ``highest``, never has."""
     if given is None or (1.0 - NEAR) * lowest <= given <= (1.0 + NEAR) * highest:
         return None

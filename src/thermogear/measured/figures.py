@@ -126,7 +126,7 @@ def _slices(run: OrderSlices, record: Record) -> dict[str, Any]:
     told = []
     for c, channel in enumerate(run.channels):
         for k, name in enumerate(run.names):
-            top = greatest(run.reading[c, k], run.half_width[c, k])
+            top = greatest(run.reading[c, k], half_width=run.half_width[c, k])
             if top is None:
                 continue
             told.append(

@@ -299,7 +299,7 @@ def _of_slices(
     """The measurement of a run whose speed changes: its lines are means of the slices."""
     run = found.slices
     if run is not None and not run.of_mesh and record.rate is not None:
-        said = of_speed(given[1], float(run.speed.min()), float(run.speed.max()))
+        said = of_speed(given[1], lowest=float(run.speed.min()), highest=float(run.speed.max()))
         notices += [said] if said is not None else []
     return Measurement(
         record,

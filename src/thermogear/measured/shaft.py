@@ -198,20 +198,21 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     """The shaft of a speed channel, its angle corrected by the phase of the clearest line.
 
     A speed is read with errors that add up over the turns. Where a line of a whole order (``teeth``
-    or what is highest) can be followed by its own phase, that phase is the angle, and
-    how far the speed channel reads off is told. A line within 2 % of a whole order is taken for
-    that order.
+    or, where that shows nothing, what is highest) can be followed by its own phase, that phase is
+    the angle, and how far the speed channel reads off is told. A line within 2 % of a whole order
+    is taken for that order.
     """
     inside = table[:, shaft.first : shaft.first + shaft.turns.size]
     rough = shaft.turns
-    orders = [float(teeth)] if teeth else _broad_orders(inside, rough)
-    best: tuple[float, Tracked] | None = None
-    for order in orders:
-        for channel in inside[: 2 if len(inside) > 1 else 1]:
-            found = track(channel, cycles=order * rough)
-            if found is not None and (best is None or found.sharp > best[1].sharp):
-                best = order, found
     before = _sharp_by(inside[0], rough)
+    best = _sharpest(inside, rough, [float(teeth)]) if teeth else None
+    if (
+        best is None or best[1].sharp < before
+    ):  # no line is there, or it tells less than the channel
+        other = _sharpest(inside, rough, _broad_orders(inside, rough))
+        best = max(
+            (one for one in (best, other) if one), key=lambda one: one[1].sharp, default=None
+        )
     if best is None or best[1].sharp < _AS_SHARP * before:
         text = (
             f"{shaft.origin}: no line's phase can be followed; high orders are as sharp as that "
@@ -221,8 +222,8 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     order, found = best
     cycles = found.cycles
     # cycles per turn: whole teeth, else so that the mean speed is the channel's
-    if teeth:
-        ratio = float(teeth)
+    if teeth and order == teeth:
+        ratio = order
     else:
         ratio = float(cycles[-1] / (rough[-1] - rough[0]))
         if abs(ratio - round(ratio)) < 0.02 * ratio:
@@ -239,6 +240,17 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
         noise=found.noise / ratio,
         told=(*shaft.told, Notice("info", text)),
     )
+
+
+def _sharpest(inside: Floats, rough: Floats, orders: list[float]) -> tuple[float, Tracked] | None:
+    """Of lines at these orders of a rough angle the one whose phase is the sharpest angle."""
+    best: tuple[float, Tracked] | None = None
+    for order in orders:
+        for channel in inside[:2]:
+            found = track(channel, cycles=order * rough)
+            if found is not None and (best is None or found.sharp > best[1].sharp):
+                best = order, found
+    return best
 
 
 def _sharp_by(values: Floats, turns: Floats) -> float:

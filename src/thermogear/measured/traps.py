@@ -97,7 +97,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
 
 
 def unknown_unit(name: str) -> str:
-    """What stands in brackets behind a channel's name as its unit and is none; "" where nothing.
+    """What is in brackets behind a channel's name as its unit and is none; "" where nothing.
 
     >>> unknown_unit("acc [furlong]"), unknown_unit("acc"), unknown_unit("a[2]")
     ('furlong', '', '')

@@ -366,7 +366,7 @@ class Greatest:
     high: float
 
 
-def greatest(amplitude: ArrayLike, half_width: ArrayLike) -> Greatest | None:
+def greatest(amplitude: ArrayLike, *, half_width: ArrayLike) -> Greatest | None:
     """The greatest amplitude (step,) of an order over a run, by all steps; None where none is read.
 
     The greatest of n readings is too large by noise alone: its own interval h, which holds 95 % of
@@ -380,7 +380,7 @@ def greatest(amplitude: ArrayLike, half_width: ArrayLike) -> Greatest | None:
     ``half_width`` (step,) in the amplitude's unit, nan where nothing is read. Source: Miller 1981,
     Simultaneous Statistical Inference, section 1.1.
 
-    >>> found = greatest([1.0, 1.2, 1.1], [0.1, 0.1, 0.1])
+    >>> found = greatest([1.0, 1.2, 1.1], half_width=[0.1, 0.1, 0.1])
     >>> found.step, f"{found.low:.3f} {found.high:.3f}"
     (1, '1.074 1.326')
     """
