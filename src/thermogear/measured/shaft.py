@@ -32,6 +32,7 @@ VARIES = 1.03
 
 _SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
 _LEAST_SHARP = 0.05
+_POWER = 1e-3  # of the highest order's: less is no line to follow
 _AS_SHARP = 0.8  # of the sharpness before: then a line's own phase is as good an angle
 
 
@@ -205,14 +206,7 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     inside = table[:, shaft.first : shaft.first + shaft.turns.size]
     rough = shaft.turns
     before = _sharp_by(inside[0], rough)
-    best = _sharpest(inside, rough, [float(teeth)]) if teeth else None
-    if (
-        best is None or best[1].sharp < before
-    ):  # no line is there, or it tells less than the channel
-        other = _sharpest(inside, rough, _broad_orders(inside, rough))
-        best = max(
-            (one for one in (best, other) if one), key=lambda one: one[1].sharp, default=None
-        )
+    best = _sharpest(inside, rough, _broad_orders(inside, rough, teeth))
     if best is None or best[1].sharp < _AS_SHARP * before:
         text = (
             f"{shaft.origin}: no line's phase can be followed; high orders are as sharp as that "
@@ -258,8 +252,9 @@ def _sharp_by(values: Floats, turns: Floats) -> float:
     return sharpness(resample_by_angle(values, turns, samples_per_turn=per_turn))
 
 
-def _broad_orders(table: Floats, turns: Floats) -> list[float]:
-    """Orders around which the power is highest, a per cent wide: three at most."""
+def _broad_orders(table: Floats, turns: Floats, teeth: int | None) -> list[float]:
+    """The order of ``teeth`` where power is around it; else those around which it is highest, a
+    per cent wide: three at most."""
     per_turn = samples_per_turn(turns)
     spectrum = line_spectrum(
         resample_by_angle(table[0], turns, samples_per_turn=per_turn), float(per_turn)
@@ -267,6 +262,10 @@ def _broad_orders(table: Floats, turns: Floats) -> list[float]:
     top = min(0.4 * per_turn, 400.0)
     orders = np.arange(4.0, top, 1.0)
     powers = np.array([band_power(spectrum, o, max(0.015 * o, 0.1)) for o in orders])
+    if teeth:
+        own = band_power(spectrum, float(teeth), max(0.015 * teeth, 0.1))
+        if own > _POWER * float(powers.max()):
+            return [float(teeth)]
     return [float(o) for o in orders[np.argsort(-powers)[:3]]]
 
 
