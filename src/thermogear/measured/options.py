@@ -18,8 +18,8 @@ UNPACKED = 32
 become 1.1 to 10 times as large."""
 MOST_LIMIT = 1 << 50
 
-_SAVE_ANEW = "save it anew, or export it as text"
-_FIXES = {"text": "a text holds a row of numbers for each sample, 256 or more, below their names"}
+A_TEXT = "a text holds a row of numbers for each sample, 256 or more, below their names"
+"""What to say of a text that holds no record."""
 _NAMED, _NAMED_LETTERS = 12, 40
 """Channels that a refusal names, and letters of one that is not there."""
 
@@ -74,11 +74,11 @@ def no_channel(key: str, names: Sequence[str], field: str = "channel") -> InputE
     )
 
 
-def refused(path: Path, as_what: str, reason: object) -> InputError:
+def refused(path: Path, as_what: str, reason: object, fix: str | None = None) -> InputError:
     """A file that does not hold what its kind promises."""
     text = " ".join(str(reason).split())[:200] or type(reason).__name__
     why = f"cannot be read as {as_what}: {text}"
-    return InputError("file", path.name, why=why, fix=_FIXES.get(as_what, _SAVE_ANEW))
+    return InputError("file", path.name, why=why, fix=fix)
 
 
 def too_large(path: Path, *, becomes: int, limit: int) -> InputError:

@@ -15,7 +15,14 @@ from numpy.typing import NDArray
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.layout import Layout, find_layout
-from thermogear.measured.options import ReadOptions, no_channel, place_of, refused, too_large
+from thermogear.measured.options import (
+    A_TEXT,
+    ReadOptions,
+    no_channel,
+    place_of,
+    refused,
+    too_large,
+)
 from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import BLOCK, Channel, Notice, Record
 from thermogear.measured.store import ColumnStore, StoredColumn
@@ -62,7 +69,7 @@ def read_text(path: Path, options: ReadOptions) -> Record:
             store.append(table[:, keep])
     columns = store.columns()
     if store.rows == 0:
-        raise refused(path, "text", "it holds no row of numbers")
+        raise refused(path, "text", "it holds no row of numbers", A_TEXT)
     return _record(path, layout, keep, columns)
 
 
@@ -120,7 +127,7 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
         name = "utf-16-le" if zeros[0] >= zeros[1] else "utf-16-be"
         return name, [Notice("info", "the text is UTF-16 without its mark")]
     if b"\0" in head:
-        raise refused(path, "text", "it is binary: it holds zero bytes")
+        raise refused(path, "text", "it is binary: it holds zero bytes", A_TEXT)
     for name in ("utf-8", "gb18030", "latin-1"):
         try:
             # a character may be cut at the end of the head
