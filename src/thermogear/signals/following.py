@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +19,7 @@ from thermogear.signals.spectra import finite_record, positive_rate
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
-WIDTHS = (0.006, 0.012, 0.025, 0.05)
+WIDTHS = (0.006, 0.012, 0.025, 0.05, 0.1)
 """Half widths of the filter over a line, relative to its frequency, the narrowest first."""
 
 _GAIN = 1.1  # a wider filter must bring a tenth more power
@@ -75,22 +77,29 @@ def _bins(spectrum: LineSpectrum, frequency: float, half_width: float) -> tuple[
 
 
 def filter_widths(
-    spectrum: LineSpectrum, frequency: float, widths: Sequence[float] = WIDTHS
+    spectrum: LineSpectrum,
+    frequency: float,
+    widths: Sequence[float] = WIDTHS,
+    *,
+    narrow: bool = False,
 ) -> tuple[float, ...]:
     """Half widths to try on a wandering line, the narrowest that may hold it first.
 
-    Twelve bins at least; a wider one than the first brings less than a tenth more power. None where
-    twelve bins are more than a fifth of ``frequency``.
+    Twelve bins at least; a wider one than the first brings less than a tenth more power. With
+    ``narrow`` it is all of them, however little the narrowest holds. None where twelve bins are
+    more than a fifth of ``frequency``.
 
     >>> from thermogear.signals.lines import line_spectrum
     >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
     >>> filter_widths(line_spectrum(x, 1.0), 0.1)
-    (0.006,)
+    (0.006, 0.01)
     """
     least = 12.0 * spectrum.bin_width
     if least > 0.2 * frequency:
         return ()
-    steps = [*dict.fromkeys(max(least, w * frequency) for w in widths)]
+    steps = [*dict.fromkeys(max(least, round(w * frequency, 15)) for w in widths)]
+    if narrow:
+        return tuple(steps)
     powers = [band_power(spectrum, frequency, one) for one in steps]
     first = next(i for i in range(len(steps)) if max(powers[i:]) <= _GAIN * powers[i])
     return tuple(steps[first:])
@@ -183,46 +192,80 @@ def _envelope(values: Floats, cycles: Floats, length: float) -> tuple[Complexes,
     return base[place], place
 
 
+@dataclass(frozen=True)
+class _Smoother:
+    """A kernel over a record of ``count`` samples, cut at its ends.
+
+    There its centre of weight is inside: what it finds, value and slope, is carried to the place.
+    """
+
+    kernel: Floats
+    count: int
+
+    @functools.cached_property
+    def _moments(self) -> tuple[Floats, Floats, Floats]:
+        """Weight, its centre from the place, and its variance [samples], at each place."""
+        weight, first, second = (self._sum(np.ones(self.count), power) for power in (0, 1, 2))
+        centre = first / weight
+        return weight, centre, second / weight - centre**2
+
+    def _sum(self, x: NDArray[Any], power: int) -> NDArray[Any]:
+        reach = self.kernel.size // 2
+        away = -np.arange(-reach, reach + 1.0)  # a convolution turns the kernel round
+        return np.asarray(signal.oaconvolve(x, away**power * self.kernel, mode="same"))
+
+    def means(self, x: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Weighted mean and slope [1/sample] of ``x`` at each place."""
+        weight, centre, spread = self._moments
+        mean = self._sum(x, 0) / weight
+        return mean, (self._sum(x, 1) / weight - centre * mean) / spread
+
+    def phase(self, envelope: Complexes) -> tuple[Floats, Floats]:
+        """Unwrapped phase of the mean [rad], and its size."""
+        mean, slope = self.means(envelope)
+        size = np.abs(mean)
+        turning = np.imag(slope * np.conj(mean)) / np.maximum(size, 1e-300) ** 2
+        return np.unwrap(np.angle(mean)) - turning * self._moments[1], size
+
+    def values(self, x: Floats) -> Floats:
+        """A real curve, smoothed."""
+        mean, slope = self.means(x)
+        return np.asarray(mean - slope * self._moments[1])
+
+
 def _smoothed(envelope: Complexes, kernel: Floats, passes: int) -> tuple[Floats, Floats]:
     """Unwrapped phase of the smoothed envelope [rad], and the envelope's size at first."""
-    weight = signal.oaconvolve(np.ones(envelope.size), kernel, mode="same")
-    phase = np.zeros(envelope.size)
-    size = np.zeros(0)
-    for _ in range(passes):
-        turned = envelope * np.exp(-1j * phase)
-        base = signal.oaconvolve(turned, kernel, mode="same") / weight
-        phase = phase + np.unwrap(np.angle(base))
-        size = np.abs(base) if size.size == 0 else size
-    return np.asarray(phase), size
+    smoother = _Smoother(kernel, envelope.size)
+    phase, size = smoother.phase(envelope)
+    for _ in range(1, passes):
+        phase = phase + smoother.phase(envelope * np.exp(-1j * phase))[0]
+    return phase, size
 
 
 def _path(values: Floats, frequency: float, length: float, *, last: float) -> tuple[Floats, bool]:
     """Cycles of the line at each sample, and whether it stayed within the filter.
 
     Caught by a kernel of ``length``, then followed by the longer ``last``, which the line no longer
-    leaves and which lets less of other lines in.
+    leaves and which lets less of other lines in. Sidebands that a filter takes unevenly, because
+    the line is not in its middle, turn the phase: it is smoothed and followed once more.
     """
     grid = np.arange(values.size)
-    cycles = np.asarray(frequency * grid, float)
-    whole = True
-    for kernel_length, passes in ((length, 1), (last, _PASSES)):
-        # the envelope's own filter has cut kernels at the ends as well, so it is made twice
-        envelope, place = _envelope(values, cycles, kernel_length)
-        kernel = _hann_kernel(kernel_length * (place.size - 1) / (values.size - 1))
-        phase, size = _smoothed(envelope, kernel, passes)
-        if passes == 1:
+    even = np.asarray(frequency * grid, float)
+    cycles, whole = even, True
+    for stage in ("caught", "followed", "followed again"):
+        caught = stage == "caught"
+        envelope, place = _envelope(values, cycles, length if caught else last)
+        finer = (place.size - 1) / (values.size - 1)
+        kernel = _hann_kernel((length if caught else last) * finer)
+        phase, size = _smoothed(envelope, kernel, 1 if caught else _PASSES)
+        turned = (cycles - even)[place] + phase / (2.0 * np.pi)
+        if caught:
             whole = bool(np.min(size) > 0.5 * np.median(size))
-            phase = _quiet(phase, _hann_kernel(kernel.size * last / length))
-        cycles = cycles + interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
+        if stage != "followed again":
+            quiet = _Smoother(_hann_kernel(last * finer), place.size)
+            turned = quiet.values(quiet.values(turned))
+        cycles = even + interpolate.CubicSpline(place, turned)(grid)
     return cycles, whole
-
-
-def _quiet(phase: Floats, kernel: Floats) -> Floats:
-    """The phase, its straight line kept, smoothed by a kernel that is cut at the ends."""
-    grid = np.arange(phase.size)
-    line = np.polyval(np.polyfit(grid, phase, 1), grid)
-    weight = signal.oaconvolve(np.ones(phase.size), kernel, mode="same")
-    return np.asarray(line + signal.oaconvolve(phase - line, kernel, mode="same") / weight)
 
 
 def _cut_errors(
