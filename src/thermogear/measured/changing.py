@@ -187,7 +187,10 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
         )
     elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
         z = round(mesh)
-        told.append(f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth")
+        sure = "" if not decided or z in decided else ", if its gear is one of this mesh"
+        told.append(
+            f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth{sure}"
+        )
     notices += [Notice("important" if "taken" in t else "info", f"tacho: {t}") for t in told]
     own = turns * factor
     return _Angle(
