@@ -18,6 +18,7 @@ from thermogear.measured.evidence import Evidence
 from thermogear.measured.hypotheses import Gears, Hypothesis
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
+from thermogear.measured.shaft import given_shaft
 from thermogear.results.files import json_text
 from thermogear.signals.slices import greatest, order_slices
 from thermogear.views.write import page_of
@@ -82,9 +83,13 @@ def test_teeth_that_contradict_a_run_are_told_and_a_tacho_in_volts_is_a_speed() 
 
 
 def test_a_speed_in_volts_without_its_scale_asks_for_it() -> None:
-    told = important(measure(run_up().supplied(tacho="n"), harmonics=1, sidebands=0), "tacho")
-    assert facts(told)[0] == "n"
-    assert "--tacho-scale" in told
+    record = run_up().supplied(tacho="n")
+    shaft = given_shaft(record, samples=record.samples, start=0, pulses_per_turn=None)
+    assert shaft is not None
+    (told,) = shaft.told
+    assert shaft.turns.size == 0
+    assert (told.level, facts(told.text)[0]) == ("important", "n")
+    assert "--tacho-scale" in told.text
 
 
 def test_a_wrong_speed_is_told_before_the_rate_and_a_right_one_blames_the_teeth() -> None:
