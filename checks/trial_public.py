@@ -146,7 +146,7 @@ def _sidebands(lines: list[dict[str, Any]]) -> str:
     own = [line for line in lines if line["kind"] == "sideband"]
     if not own:
         return "none read: no shaft is decided, and none is given"
-    clear = [line for line in own if line["half_width"] is not None and line["half_width"] < _CLEAR]
+    clear = [line for line in own if (line["relative_half_width"] or _CLEAR) < _CLEAR]
     text = f"{len(clear)} of {len(own)} read to better than {100 * _CLEAR:.0f} %"
     return f"{text}; strongest {_strongest(clear)}" if clear else text
 
@@ -159,7 +159,8 @@ def _strongest(lines: list[dict[str, Any]]) -> str:
         if line["reading"] is not None and (held is None or line["reading"] > held["reading"]):
             best[line["channel"]] = line
     return "; ".join(
-        f"{channel}: {line['name']}, {line['reading']:.4g} ± {100 * line['half_width']:.2g} %"
+        f"{channel}: {line['name']}, {line['reading']:.4g} ± "
+        f"{100 * line['relative_half_width']:.2g} %"
         for channel, line in list(best.items())[:4]
     )
 

@@ -103,11 +103,59 @@ def test_compare_as_json() -> None:
         (measure, ["FILE", "--speed", "1e308"], r"^--speed: got 1e\+308 rpm; allowed > 0 \.\. 5"),
         (measure, ["FILE", "--pulses", "1e308"], r"^pulses_per_turn: got 1e\+308 pulses"),
         (measure, ["FILE", "--teeth", 10**20], r"^teeth: got a number of more than twelve digits"),
-        (measure, ["FILE", "--channel", "²"], r"^channel: got '²'; known: "),
+        (
+            measure,
+            ["FILE", "--channel", "²"],
+            r"^channel: got '²'; allowed 1..1 or a name; known: ",
+        ),
         (measure, ["FILE", "--channel", "9" * 5000], r"^channel: got '99999"),
-        (measure, ["FILE", "--channel", "z"], r"^channel: got 'z'; known: "),
+        (
+            measure,
+            ["FILE", "--channel", "z"],
+            r"^channel: got 'z'; allowed 1..1 or a name; known: ",
+        ),
         (measure, ["FILE", "--method", "magic"], r"^method: got 'magic'; "),
         (measure, ["FILE", "--teeth", "0"], r"^teeth: got 0; allowed 1\.\.2000$"),
+        (
+            measure,
+            ["FILE", "--teeth", "seventeen"],
+            r"^--teeth: got 'seventeen'; allowed a whole n",
+        ),
+        (measure, ["FILE", "--rate", "fast"], r"^--rate: got 'fast'; allowed > 0 .*; as --rate "),
+        (
+            measure,
+            ["FILE", "--harmonics", 0],
+            r"^harmonics: got 0; allowed 1\.\.64; as --harmonics",
+        ),
+        (measure, ["FILE", "--sidebands", -1], r"^sidebands: got -1; allowed 0\.\.64; as --sideb"),
+        (
+            measure,
+            ["FILE", "--orders", -1],
+            r"^orders: got -1; allowed > 0 \.\. 10000.*; as|an order",
+        ),
+        (
+            measure,
+            ["FILE", "--channel", 99],
+            r"^channel: got '99'; allowed 1\.\.1 or a name; known: ",
+        ),
+        (measure, ["FILE", "--unit", "rpm"], r"^unit: got 'rpm'; .*; one of m/s\^2, "),
+        (measure, ["FILE", "--tacho", "ac"], r"^tacho: got 'ac'; .*known: acc; did you mean 'acc'"),
+        (
+            measure,
+            ["FILE", "--channel", "acc", "--tacho", "ac"],
+            r"^tacho: got 'ac'; .*known: acc; did you mean 'acc'",
+        ),
+        (
+            measure,
+            ["FILE", "--tacho-scale", 300],
+            r"^--tacho-scale: got 300 rpm; no tacho is named",
+        ),
+        (
+            measure,
+            ["FILE", "nowhere.csv"],
+            r"^file: got 2 files; .*compared with rig\.csv: nowhere",
+        ),
+        (measure, ["FOLDER"], r"^file: got .*folder; no file is in it; name files"),
         (compare, ["thesis-5.2", "--tolerance", "x"], r"^--tolerance: got 'x'; allowed FIELD="),
         (
             compare,
@@ -130,8 +178,41 @@ def test_compare_as_json() -> None:
 def test_refusals_are_one_line(
     record: Path, command: click.Command, words: list[object], message: str
 ) -> None:
-    done = call(command, *[str(record) if word == "FILE" else word for word in words])
+    (record.parent / "folder").mkdir()
+    places = {"FILE": record, "FOLDER": record.parent / "folder"}
+    done = call(command, *[places.get(str(word), word) for word in words])
     assert isinstance(done.exception, InputError)
     assert "\n" not in str(done.exception)
     with pytest.raises(InputError, match=message):
         raise done.exception
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "it is empty; a text holds a row of numbers for each sample"),
+        (b"time [s],acc [g]\n", "no row of numbers in its first lines; a text holds a row"),
+        (b"\0\1\2" * 4000, "it is binary: it holds zero bytes; a text holds a row"),
+        (b"time [s],acc [g]\n0,1\n", "got 1 sample of bad.csv; allowed >= 256 samples; record lon"),
+        (b"time [s],acc [g]\n0,1\n0.1,2\n", "got 2 samples of bad.csv; allowed >= 256 samples"),
+    ],
+)
+def test_files_without_a_record_say_what_one_is(tmp_path: Path, content: bytes, said: str) -> None:
+    (tmp_path / "bad.csv").write_bytes(content)
+    done = call(measure, tmp_path / "bad.csv")
+    assert isinstance(done.exception, InputError)
+    assert said in str(done.exception)
+
+
+def test_a_file_named_wrongly_is_answered_with_the_one_beside_it(record: Path) -> None:
+    done = call(measure, record.with_name("rigg.csv"))
+    assert str(done.exception).endswith("there is no such file; did you mean 'rig.csv'?")
+
+
+def test_a_unit_that_is_none_is_told_with_those_that_are(record: Path) -> None:
+    text = record.read_text(encoding="utf-8").replace("[m/s^2]", "[furlong]")
+    record.write_text(text, encoding="utf-8")
+    words = ("--teeth", TEETH, "--harmonics", 1, "--sidebands", 0, "--channel", 1)
+    done = call(measure, record, *words)
+    assert done.exit_code == 0, done.output
+    assert "'furlong'" in done.output

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.measured.comparison import table_of
-from thermogear.measured.dataset import figures
+from thermogear.measured.figures import figures
 from thermogear.measured.gate import turned_by
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
@@ -42,6 +43,26 @@ def test_undamaged_records_pass_without_a_word() -> None:
     for at in range(500, COUNT - 100, 900):  # impacts of a damaged tooth
         ringing[at : at + 60] += 15.0 * np.exp(-np.arange(60) / 12.0) * np.cos(np.arange(60))
     assert [one.kind for one in damages(ringing)] == []
+
+
+def test_every_limit_of_a_channel_is_found() -> None:
+    """Both signs, limits of a part of the record alone, limits that a spike is beyond."""
+    x = 2.0 * channel()
+    half = COUNT // 2
+
+    def found(values: NDArray[np.float64]) -> list[float | None]:
+        return sorted(one.value for one in damages(values) if one.kind == "clipping")
+
+    assert found(np.clip(x, -1.15, 2.0)) == [-1.15, 2.0]
+    parts = np.clip(x[:half], -1.15, np.inf), np.clip(x[half:], -np.inf, 2.0)
+    assert found(np.concatenate(parts)) == [-1.15, 2.0]
+    parts = np.clip(x[:half], -1.9, 1.2), np.clip(x[half:], -1.9, 2.0)
+    assert found(np.concatenate(parts)) == [-1.9, 1.2, 2.0]
+    beyond = np.clip(x, -1.15, 2.0)
+    beyond[4000] = 7.0
+    assert found(beyond) == [-1.15, 2.0]
+    told = measured(np.clip(x, -2.2, 2.1)).findings
+    assert [numbers(one.kind) for one in told] == [[2.1], [-2.2]]
 
 
 @pytest.mark.parametrize("kind", ["missing", "sentinel", "zeros", "held", "spikes"])

@@ -83,7 +83,7 @@ def test_pieces_of_one_run_read_as_the_run(tmp_path: Path) -> None:
     joined = found_in(asked(tmp_path, "--join", "time", "--json"))
     assert "p2.csv" in str(joined["source"])
     for one, other in zip(joined["lines"], same["lines"], strict=True):  # type: ignore[call-overload]
-        for key in ("frequency", "reading", "displacement", "half_width"):
+        for key in ("frequency", "reading", "displacement", "reading_half_width"):
             assert one[key] == pytest.approx(other[key], rel=1e-7)  # stamps are rounded
     assert joined["findings"] == []
 
@@ -100,7 +100,7 @@ def test_a_gap_between_pieces_is_a_finding_of_the_gate(tmp_path: Path) -> None:
     same = found_in(asked(tmp_path, "--join", "time", "--channel", "acc", "--json"))
     assert same["lines"] == done["lines"]
     (line,) = [one for one in done["lines"] if one["name"] == "mesh x 1"]  # type: ignore[attr-defined]
-    assert abs(line["reading"] - 1.0) < line["half_width"] * line["reading"]
+    assert abs(line["reading"] - 1.0) < line["reading_half_width"]
 
 
 @pytest.mark.parametrize(
@@ -218,8 +218,9 @@ def test_of_several_records_channels_are_named_and_files_without_them_told(tmp_p
     assert done["records"] == ["r2.csv", "r10.csv"]
     assert [name for name, _ in done["refused"]] == ["r11.csv"]  # type: ignore[attr-defined]
     words = ["--channel", "r2.csv::acc", "--channel", "r11.csv::vib", "--json"]
-    done = found_in(asked(tmp_path, *words))
-    assert done["records"] == ["r2.csv", "r11.csv"]
+    assert "nothing can be compared with r2.csv" in refusal(asked(tmp_path, *words))
+    done = found_in(asked(tmp_path, *words, "--channel", "r10.csv::acc"))
+    assert done["records"] == ["r2.csv", "r10.csv", "r11.csv"]
     assert "no file is r3.csv" in refusal(asked(tmp_path, "--channel", "r3.csv::acc"))
     assert "did you mean 'r2.csv'" in refusal(asked(tmp_path, "--baseline", "r2.cvs"))
     assert "--join" in asked(tmp_path).output

@@ -182,9 +182,9 @@ def test_records_refuse_the_impossible() -> None:
     one, two = Channel("a", np.zeros(5)), Channel("b", np.zeros(6))
     with pytest.raises(InputError, match=r"^record: got channels of \[5, 6\] samples; allowed one"):
         Record((one, two), "x")
-    with pytest.raises(InputError, match=r"^channel: got 'c'; known: a$"):
+    with pytest.raises(InputError, match=r"^channel: got 'c'; allowed 1..1 or a name; known: a$"):
         Record((one,), "x").channel("c")
-    with pytest.raises(InputError, match=r"^channel: got 2; allowed 1\.\.1$"):
+    with pytest.raises(InputError, match=r"^channel: got '2'; allowed 1\.\.1 or a name; known: a$"):
         Record((one,), "x").channel(2)
     with pytest.raises(InputError, match=r"^unit: got 'm/s\^3'; did you mean 'm/s\^2'\?$"):
         Record((one,), "x").supplied(unit="m/s^3")

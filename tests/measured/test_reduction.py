@@ -104,7 +104,7 @@ def test_without_rate_and_unit_there_are_orders_and_no_hertz() -> None:
         (0.1, "the rate looks ten times too low"),
         (10.0, "the rate looks ten times too high"),
         (2.0, "the rate looks twice too high"),
-        (5.3, r"rate, teeth or speed is wrong by a factor 5\.3"),
+        (5.3, r"the rate is wrong by a factor 5\.3"),
     ],
 )
 def test_a_wrong_rate_is_said_with_the_one_that_fits(factor: float, said: str) -> None:
@@ -126,7 +126,7 @@ def test_nothing_is_said_of_the_right_rate() -> None:
 def test_a_wrong_tooth_number_is_said() -> None:
     record = Record((Channel("a", mesh_train(1 << 15)[0], "g"),), "x", RATE, "given")
     found = measure(record, teeth=25)
-    assert numbers(important(found)) == [32.0, 80.0, 25.0]
+    assert numbers(important(found)) == [25.0, 32.0, 80.0, 25.0, 25.0]
 
 
 def test_a_twin_of_the_real_rig_with_a_wrong_rate() -> None:

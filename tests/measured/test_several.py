@@ -20,8 +20,8 @@ from thermogear.measured.reduction import Measurement
 
 RATE = 5120.0
 WORDS = (
-    "rate", "unit", "scale", "teeth", "speed", "tacho", "pulses", "harmonics", "sidebands",
-    "decimal", "limit", "sensor_tolerance",
+    "rate", "unit", "scale", "teeth", "speed", "tacho", "tacho_scale", "pulses", "harmonics",
+    "sidebands", "decimal", "limit", "sensor_tolerance",
 )  # fmt: skip
 
 

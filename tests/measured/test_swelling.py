@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from thermogear.measured.dataset import figures
+from thermogear.measured.figures import figures
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 

@@ -92,7 +92,7 @@ def test_a_swinging_speed_hides_no_teeth(number: int) -> None:
     made = swing(np.random.default_rng([25112028, number]))
     found = weigh(sharp_peaks(made.values[None, :]), Stated())
     assert found.teeth in ((), (made.teeth,))
-    assert found.verdict != "no gear found"
+    assert found.verdict in ("decided", "undecided")
     assert abs(found.mesh / (made.teeth * np.ptp(made.turns) / made.turns.size) - 1.0) < 2e-3
 
 

@@ -12,6 +12,7 @@ from thermogear.base.progress import Progress
 from thermogear.base.units import RPM
 from thermogear.front import delivery
 from thermogear.front.measuring import measured_by, measured_files
+from thermogear.front.numbers import number
 
 if TYPE_CHECKING:
     from thermogear.results.result import Result
@@ -20,13 +21,15 @@ if TYPE_CHECKING:
 def supplies(command: Any) -> Any:
     """The options that supply what a file does not state."""
     for option in (
-        click.option("--rate", type=float, metavar="HZ", help="Samples per second."),
+        number("--rate", "Samples per second.", "> 0 samples/s", "25600", metavar="HZ"),
         click.option(
             "--unit", metavar="UNIT", help="Unit of the vibration channels: g, m/s^2, ..."
         ),
-        click.option("--scale", type=float, help="Units at full scale, for integer samples."),
-        click.option("--teeth", type=int, help="Teeth of the pinion."),
-        click.option("--speed", type=float, metavar="RPM", help="Nominal speed of the pinion."),
+        number("--scale", "Units at full scale, for integer samples.", "a number of units", "50"),
+        number("--teeth", "Teeth of the pinion.", "a whole number 1..2000", "25", whole=True),
+        number(
+            "--speed", "Nominal speed of the pinion.", "> 0 .. 500000 rpm", "1500", metavar="RPM"
+        ),
         click.option(
             "--channel",
             "channels",
@@ -39,27 +42,39 @@ def supplies(command: Any) -> Any:
             help="Channel of pulses or of speed (name or number), or a file that has it; of "
             "several channels of a file FILE::CHANNEL.",
         ),
-        click.option("--pulses", type=float, help="Tacho pulses per turn."),
-        click.option(
+        number("--pulses", "Tacho pulses per turn.", "1e-6..1e7 pulses per turn", "1"),
+        number(
+            "--tacho-scale",
+            "The tacho channel is a speed in another unit, as volts: rpm in one of them.",
+            "> 0 rpm",
+            "300",
+            metavar="RPM",
+        ),
+        number(
             "--orders",
-            type=float,
+            "Order of the first shaft to read too. May be repeated.",
+            "> 0 .. 10000",
+            "1",
             multiple=True,
             metavar="ORDER",
-            help="Order of the first shaft to read too. May be repeated.",
         ),
-        click.option("--harmonics", type=int, help="Mesh harmonics to read [3]."),
-        click.option("--sidebands", type=int, help="Sidebands on each side to read [2]."),
+        number("--harmonics", "Mesh harmonics to read [3].", "1..64", "3", whole=True),
+        number("--sidebands", "Sidebands on each side to read [2].", "0..64", "2", whole=True),
         click.option(
             "--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file."
         ),
-        click.option(
+        number(
             "--limit",
-            type=float,
+            "Most GiB that a packed file may become [32 times its size, 0.25..8].",
+            "> 0 GiB",
+            "4",
             metavar="GIB",
-            help="Most GiB that a packed file may become [32 times its size, 0.25..8].",
         ),
-        click.option(
-            "--sensor-tolerance", type=float, help="Relative standard uncertainty of the sensor."
+        number(
+            "--sensor-tolerance",
+            "Relative standard uncertainty of the sensor.",
+            "0 .. below 1",
+            "0.03",
         ),
         click.option(
             "--method",

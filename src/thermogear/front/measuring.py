@@ -158,7 +158,9 @@ def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> M
     from thermogear.measured.chain import Chain
     from thermogear.measured.reduction import measure as reduce
 
-    speed = options["speed"]
+    speed, scale = options["speed"], options["tacho_scale"]
+    if scale is not None:
+        record, other = _as_speed(record, other, scale)
     return reduce(
         record,
         teeth=options["teeth"],
@@ -171,6 +173,16 @@ def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> M
         harmonics=3 if options["harmonics"] is None else options["harmonics"],
         sidebands=2 if options["sidebands"] is None else options["sidebands"],
     )
+
+
+def _as_speed(record: Record, other: Record | None, rpm: float) -> tuple[Record, Record | None]:
+    """The records with the tacho, this one's or the ``other``'s, as a speed."""
+    if other is not None:
+        return record, other.with_speed(other.tacho or other.names[0], rpm)
+    if record.tacho is None:
+        why = "no tacho is named"
+        raise InputError("--tacho-scale", f"{rpm:g} rpm", why=why, fix="--tacho CHANNEL")
+    return record.with_speed(record.tacho, rpm), None
 
 
 def _limit(options: dict[str, Any]) -> int | None:

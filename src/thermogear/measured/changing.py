@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
+from thermogear.measured.contradictions import of_pulses, of_teeth
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
-from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.quantities import quantities
+from thermogear.measured.record import Notice, Record
 from thermogear.measured.resonances import Resonance, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
@@ -148,14 +150,21 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     per_turn = samples_per_turn(turns)
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
-    gearing = _found(straight, None if near is None else near / per_turn)
+    told_as = per_turn * float((turns[-1] - turns[0]) / (turns.size - 1))
+    gearing = _found(straight, None if near is None else near / per_turn, told_as)
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if near is not None and gearing is None:
-        gearing = _found(straight, None)
+        gearing = _found(straight, None, told_as)
         mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
     z = teeth or (gearing.teeth if gearing else None)
+    decided = [one.teeth for one in gearing.shafts] if gearing else []
+    contradicted = [of_teeth(teeth, decided)]
+    if mesh is not None:
+        known = decided or ([teeth] if teeth else [])
+        contradicted.append(of_pulses(shaft.pulses, known, mesh))
+    notices += [one for one in contradicted if one is not None]
     factor = 1.0
     if shaft.line:
         factor = (mesh or 1.0) / (z or _MESHES)
@@ -178,7 +187,10 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
         )
     elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
         z = round(mesh)
-        told.append(f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth")
+        sure = "" if not decided or z in decided else ", if its gear is one of this mesh"
+        told.append(
+            f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth{sure}"
+        )
     notices += [Notice("important" if "taken" in t else "info", f"tacho: {t}") for t in told]
     own = turns * factor
     return _Angle(
@@ -192,9 +204,9 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     )
 
 
-def _found(straight: list[Floats], near: float | None) -> Gearing | None:
+def _found(straight: list[Floats], near: float | None, told_as: float) -> Gearing | None:
     try:
-        return find_gearing(straight, near)
+        return find_gearing(straight, near, told_as=told_as)
     except InputError:
         return None
 
@@ -417,16 +429,6 @@ def order_lines(
     ]
 
 
-def of_velocity(line: MeasuredLine, channel: Channel) -> MeasuredLine:
-    """A line of a velocity with its acceleration and displacement; any other line as it is."""
-    known = channel.unit is not None and not channel.needs_scale
-    if not known or channel.unit is None or kind_of(channel.unit) != "velocity":
-        return line
-    omega = 2.0 * np.pi * line.frequency
-    speed = line.reading * channel.si_factor
-    return replace(line, acceleration=speed * omega, displacement=speed / omega)
-
-
 def _apart(beside: Sequence[float]) -> list[float]:
     kept: list[float] = []
     for one in beside:
@@ -479,18 +481,10 @@ def _lines(
                     uncertainty=relative / _NORMAL,
                     bin_offset=float("nan"),
                     prominence=1.0 / max(relative, 1e-6),
-                    shaft_speed=float(np.mean(slices.speed))
+                    shaft_speed=2.0 * np.pi * mean * rate
                     if in_hertz and not angle.of_mesh
                     else float("nan"),
                     half_width=relative,
                 )
             )
     return tuple(found)
-
-
-def quantities(amplitude: Floats, *, omega: Floats, kind: str) -> tuple[Floats, Floats]:
-    """Acceleration and displacement of lines of a known kind of quantity, else nan."""
-    power = {"acceleration": 0, "velocity": 1, "displacement": 2}.get(kind)
-    if power is None:
-        return np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
-    return amplitude * omega**power, amplitude * omega ** (power - 2)

@@ -113,9 +113,34 @@ class Evidence:
 
     @property
     def told(self) -> tuple[Hypothesis, ...]:
-        """The hypotheses that carry any weight, best first."""
-        kept = [one for one in self.hypotheses if one.weight >= _TOLD]
-        return tuple(kept[:_MOST_TOLD])
+        """The readings that carry any weight, of which one at most is true, best first: of the
+        hypotheses of one reading (the same gears, or none) the best, with the weight of all."""
+        found: dict[str, Hypothesis] = {}
+        for one in self.hypotheses:
+            key = one.words if one.gears else one.kind
+            best = found.get(key, replace(one, weight=0.0))
+            found[key] = replace(best, weight=best.weight + one.weight)
+        heavy = sorted(found.values(), key=lambda one: -one.weight)
+        return tuple(one for one in heavy[:_MOST_TOLD] if one.weight >= _TOLD)
+
+    @property
+    def rest(self) -> float:
+        """Weight of all readings that are not told; with theirs it adds up to one."""
+        return max(0.0, 1.0 - sum(one.weight for one in self.told)) if self.hypotheses else 0.0
+
+    def scaled(self, factor: float) -> Evidence:
+        """The same with every place times ``factor``: counted in samples of another length."""
+        return Evidence(
+            hypotheses=tuple(
+                replace(
+                    one,
+                    gears=tuple(replace(g, mesh=g.mesh * factor) for g in one.gears),
+                    combs=tuple(step * factor for step in one.combs),
+                )
+                for one in self.hypotheses
+            ),
+            named=tuple(replace(one, mesh=one.mesh * factor) for one in self.named),
+        )
 
     def fits(self, shaft: float, *, teeth: int | None, tolerance: float) -> bool:
         """Whether a reading with some weight has a shaft that turns so [turns/sample]."""
@@ -131,14 +156,10 @@ class Evidence:
         if self.named:
             return "decided: " + "; ".join(one.words for one in self.named)
         if self.verdict == "no gear found":
-            best = self.hypotheses[0]
-            return f"no gear found: {best.words} (weight {best.weight:.3f})"
-        told = [(one.weight, one.words) for one in self.gears]
-        told += [
-            (one.weight, one.words) for one in self.told if not any(g.teeth for g in one.gears)
-        ]
-        listed = "; ".join(f"{words} (weight {weight:.3f})" for weight, words in sorted(told)[::-1])
-        return f"teeth undecided: {listed or 'nothing carries weight'}"
+            return f"no gear found: {self.told[0].words} (weight {self.told[0].weight:.3f})"
+        told = [f"{one.words} (weight {one.weight:.3f})" for one in self.told]
+        told += [f"others (weight {self.rest:.3f})"] if self.rest >= _TOLD else []
+        return f"teeth undecided: {'; '.join(told) or 'nothing carries weight'}"
 
     @property
     def verdict(self) -> str:

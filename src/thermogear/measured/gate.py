@@ -118,6 +118,14 @@ def require_sampling_rate(record: Record) -> None:
         )
 
 
+def require_samples(record: Record) -> None:
+    """Refuse a record in which no line can be told from its noise."""
+    if record.samples < _SHORTEST:
+        fix = f"record longer: {_SHORTEST} rows or more, one for each sample"
+        got = f"{record.samples} sample{'s' if record.samples != 1 else ''} of {record.source}"
+        raise InputError("record", got, allowed=f">= {_SHORTEST} samples", fix=fix)
+
+
 def passed(channels: Sequence[Channel], longest: int) -> Passed:
     """The first ``longest`` samples of the channels through the gate.
 
@@ -146,7 +154,9 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
         through.cut(first, stop=stop)
     if through.table.shape[-1] < _SHORTEST:
         size = through.table.shape[-1]
-        raise InputError("record", f"{size} samples without a gap", allowed=f">= {_SHORTEST}")
+        fix = "record it anew, or name the channels that are whole by --channel"
+        got = f"{size} samples without a gap"
+        raise InputError("record", got, allowed=f">= {_SHORTEST}", fix=fix)
     _proportions(through)
     return through
 

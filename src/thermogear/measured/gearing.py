@@ -56,7 +56,11 @@ class Gearing:
 
 
 def find_gearing(
-    channels: Sequence[Floats], near: float | None = None, stated: Stated | None = None
+    channels: Sequence[Floats],
+    near: float | None = None,
+    stated: Stated | None = None,
+    *,
+    told_as: float = 1.0,
 ) -> Gearing:
     """Mesh line, shafts, tooth numbers and further meshes of one record.
 
@@ -71,7 +75,9 @@ def find_gearing(
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
     ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
-    user says, evidence like the lines. Raises InputError when no line is clear.
+    user says, evidence like the lines; ``told_as``: of places in words and weights, where these
+    arrays are resampled: samples of theirs in one of the record. Raises InputError when no line is
+    clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -85,7 +91,7 @@ def find_gearing(
     likely = weighed.mesh_weight >= _LIKELY
     if likely and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
         family = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
-    return _of_family(table, family, weighed)
+    return _of_family(table, family, weighed, told_as)
 
 
 @dataclass(frozen=True)
@@ -98,15 +104,14 @@ class _Family:
     score: float
 
 
-def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
+def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float) -> Gearing:
     """The gearing with this family as the mesh line's, and the teeth decided for it."""
     mesh = family.mesh
     text = ", ".join(f"{np.exp(h):.1f}" for h in family.heights)
     heights = tuple(float(np.exp(h)) for h in family.heights)
     evidence = [
-        weighed.words,
-        f"mesh line near {family.line:.6f} cycles/sample: harmonics 1..{len(heights)} stand "
-        f"{text} times over the floor (mean of channels)",
+        f"mesh line near {family.line * told_as:.6f} cycles/sample: harmonics 1..{len(heights)} "
+        f"stand {text} times over the floor (mean of channels)",
     ]
     same = weighed.teeth and abs(mesh / weighed.mesh - 1.0) < _SAME
     teeth = dict(zip(weighed.teeth, weighed.weights, strict=True)) if same else {}
@@ -128,6 +133,7 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
             f"them over 3 times the floor: a gear of {shaft.teeth} teeth, shaft order "
             f"{shaft.order:.4f}"
             for shaft in shafts
+            if shaft.lines
         ]
         if len(shafts) > 1:
             meshes = second_mesh(sharp, shafts, top, evidence)
@@ -140,7 +146,7 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
         shafts=shafts,
         meshes=meshes,
         evidence=tuple(evidence),
-        weighed=weighed,
+        weighed=weighed.scaled(told_as),
     )
 
 

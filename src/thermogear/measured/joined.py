@@ -14,7 +14,7 @@ from thermogear.base.errors import InputError, nearest
 from thermogear.measured.options import place_of
 from thermogear.measured.parts import Joined, Part
 from thermogear.measured.record import Channel, Notice, Record, Samples
-from thermogear.measured.units import kind_of
+from thermogear.measured.units import counts_turns
 
 Floats = NDArray[np.float64]
 
@@ -275,9 +275,7 @@ def only(record: Record, wanted: Sequence[str]) -> Record:
     kept = tuple(
         c
         for c in record.channels
-        if c.name in names
-        or c.name == record.tacho
-        or (c.unit is not None and kind_of(c.unit) in ("speed", "frequency"))
+        if c.name in names or c.name == record.tacho or counts_turns(c.unit)
     )
     return replace(record, channels=kept)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
 from thermogear.measured.clock import comment_column, labelled
-from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
 from thermogear.measured.traps import is_possible_rate, is_rate_name, is_time_name, split_unit
 from thermogear.measured.units import factor_of, kind_of, unit
@@ -52,7 +52,7 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
     """The layout of the file that starts with these lines; what is ambiguous is refused."""
     body = [line for line in head if line.strip()]
     if not body:
-        raise refused(path, "text", "it is empty")
+        raise refused(path, "text", "it is empty", A_TEXT)
     separator, decimal = _separator(body, options, path)
     swap = decimal == "," and separator != ","
     table = [cells_of(line.replace(",", ".") if swap else line, separator) for line in head]
@@ -71,7 +71,7 @@ def find_layout(head: list[str], path: Path, options: ReadOptions) -> Layout:
         None,
     )
     if start is None:
-        raise refused(path, "text", "no row of numbers in its first lines")
+        raise refused(path, "text", "no row of numbers in its first lines", A_TEXT)
     width = len(table[start])
     above = [line for line in head[:start] if line.strip()]
     if comment is not None and comment[0] < start:

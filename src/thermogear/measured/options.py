@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, meant
 
 LEAST_DECODED = 256 << 20
 """Bytes that any packed file may become."""
@@ -16,6 +17,11 @@ UNPACKED = 32
 """How many times its own size a packed file may become: records of sensors, which hold noise,
 become 1.1 to 10 times as large."""
 MOST_LIMIT = 1 << 50
+
+A_TEXT = "a text holds a row of numbers for each sample, 256 or more, below their names"
+"""What to say of a text that holds no record."""
+_NAMED, _NAMED_LETTERS = 12, 40
+"""Channels that a refusal names, and letters of one that is not there."""
 
 
 def decoded_limit(size: int) -> int:
@@ -56,10 +62,23 @@ def place_of(key: str, count: int) -> int | None:
     return int(key) - 1 if 1 <= int(key) <= count else None
 
 
-def refused(path: Path, as_what: str, reason: object) -> InputError:
+def no_channel(key: str, names: Sequence[str], field: str = "channel") -> InputError:
+    """The refusal of a channel ``key`` that none of ``names`` is, with the nearest of them."""
+    shown = ", ".join(sorted(names)[:_NAMED]) + (", ..." if len(names) > _NAMED else "")
+    return InputError(
+        field,
+        repr(key[:_NAMED_LETTERS]),
+        allowed=f"1..{len(names)} or a name",
+        why=f"known: {shown}",
+        fix=meant(key, names, cutoff=0.5),
+    )
+
+
+def refused(path: Path, as_what: str, reason: object, fix: str | None = None) -> InputError:
     """A file that does not hold what its kind promises."""
     text = " ".join(str(reason).split())[:200] or type(reason).__name__
-    return InputError("file", path.name, why=f"cannot be read as {as_what}: {text}")
+    why = f"cannot be read as {as_what}: {text}"
+    return InputError("file", path.name, why=why, fix=fix)
 
 
 def too_large(path: Path, *, becomes: int, limit: int) -> InputError:

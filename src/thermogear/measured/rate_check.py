@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermogear.measured.contradictions import NEAR
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Notice, Record
 
-_NEAR = 0.1  # a stated speed is nominal: motors slip
 _SURE = 0.9
 """Weight of all that has one line, from which that line is beyond doubt."""
 _FACTORS = {
@@ -38,8 +38,9 @@ def check_rate(
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
     A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
-    blamed only where the teeth are decided, or are ``given`` and the mesh line is beyond doubt, and
-    no reading of the lines with any weight fits the speed (and the teeth ``given``).
+    doubted, beside the speed, only where the teeth are decided, or are ``given`` and the mesh line
+    is beyond doubt, and no reading of the lines with any weight fits the speed (and the teeth
+    ``given``, or those decided).
     """
     if teeth is None:
         return record.rate_doubt
@@ -70,11 +71,13 @@ def check_rate(
         return record.rate_doubt
     shaft = speed / (2 * np.pi)
     ratio = implied / shaft
-    if abs(ratio - 1.0) <= _NEAR:
+    if abs(ratio - 1.0) <= NEAR:
         return ""
     weighed = gearing.weighed
-    if weighed.fits(shaft / record.rate, teeth=given, tolerance=_NEAR):
+    if weighed.fits(shaft / record.rate, teeth=given, tolerance=NEAR):
         return record.rate_doubt
+    if any(abs(implied * teeth / z / shaft - 1.0) <= NEAR for z in weighed.teeth):
+        return record.rate_doubt  # the speed given is that of the teeth found: others are told of
     sure = given is not None and weighed.line_weight >= _SURE
     if weighed.verdict != "decided" and not sure:
         # what the mesh line is, is open: it contradicts nobody
@@ -90,15 +93,17 @@ def check_rate(
     named = min(_FACTORS, key=lambda factor: abs(np.log(ratio / factor)))
     what = (
         f"the rate looks {_FACTORS[named]}"
-        if abs(ratio / named - 1.0) <= _NEAR
-        else f"rate, teeth or speed is wrong by a factor {ratio:.4g}"
+        if abs(ratio / named - 1.0) <= NEAR
+        else f"the rate is wrong by a factor {ratio:.4g}"
     )
+    both = f"speed given: {speed * 30 / np.pi:.6g} rpm; found: {60 * implied:.6g} rpm"
+    or_teeth = "" if given in (None, *weighed.teeth) else ", the teeth given"
     notices.append(
         Notice(
             "important",
-            f"{what}: the mesh line at {gearing.mesh_frequency:.6f} cycles/sample over {teeth} "
-            f"teeth makes {60 * implied:.6g} rpm at {record.rate:g} samples/s, the speed given is "
-            f"{speed * 30 / np.pi:.6g} rpm (a rate of {record.rate / ratio:.6g} would fit)",
+            f"{both} (mesh line at {gearing.mesh_frequency:.6f} cycles/sample over {teeth} teeth, "
+            f"{record.rate:g} samples/s). The speed given may be wrong{or_teeth}, or {what}: a "
+            f"rate of {record.rate / ratio:.6g} would fit",
         )
     )
-    return what
+    return both

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, meant
 from thermogear.measured.hdf import read_hdf
 from thermogear.measured.matlab import read_mat
 from thermogear.measured.optional import read_mdf, read_tdms, read_uff
@@ -30,6 +31,7 @@ READERS: dict[str, Reader] = {
     "WAV": read_wave,
     "text": read_text,
 }
+_LOOKED_AT = 1000  # files of a folder, for one that is named alike
 _SUFFIXES = {
     ".h5": "HDF5",
     ".hdf5": "HDF5",
@@ -68,6 +70,14 @@ def format_of(path: Path) -> str:
     return _SUFFIXES.get(path.suffix.lower(), "text")
 
 
+def _beside(path: Path) -> str | None:
+    """The file that may be meant, where there is one named alike."""
+    if not path.parent.is_dir():
+        return f"there is no folder {path.parent}"
+    names = [one.name for one in itertools.islice(path.parent.iterdir(), _LOOKED_AT)]
+    return meant(path.name, names, cutoff=0.6)
+
+
 def read_record(
     file: str | Path,
     *,
@@ -94,8 +104,15 @@ def read_record(
     if path.is_dir():
         raise InputError("file", str(file), why="it is a directory", fix="name a file in it")
     if not path.is_file():
-        raise InputError("file", str(file), why="there is no such file")
+        raise InputError("file", str(file), why="there is no such file", fix=_beside(path))
     most = decoded_limit(path.stat().st_size) if limit is None else int(limit)
-    options = ReadOptions(decimal, tuple(str(c) for c in channels), most)
-    record = READERS[format_of(path)](path, options)
+    keep = [str(c) for c in channels]
+    if keep and tacho is not None:
+        keep.append(str(tacho))
+    options = ReadOptions(decimal, tuple(keep), most)
+    try:
+        record = READERS[format_of(path)](path, options)
+    except InputError as error:
+        told = error.field == "channel" and keep[len(channels) :] and error.got == repr(keep[-1])
+        raise (error.named("tacho") if told else error) from error
     return examined(record.supplied(rate, unit, scale, tacho))

@@ -10,11 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.bounds import FULL_SCALE, RATE
-from thermogear.base.errors import InputError, nearest
-from thermogear.measured.options import place_of
-from thermogear.measured.units import factor_of, kind_of, known_unit
+from thermogear.base.errors import InputError
+from thermogear.measured.options import no_channel, place_of
+from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
 Floats = NDArray[np.float64]
+
+OTHER = {"time", "speed", "torque", "temperature", "angle", "frequency"}
+"""Kinds of quantity that are no vibration."""
+_MOST_RPM = 1e9  # in one unit of a speed channel
 
 BLOCK = 1 << 20
 """Samples read at once from a channel that stays on disk."""
@@ -141,17 +145,14 @@ class Record:
         place = place_of(str(name), len(self.channels))
         if place is not None:
             return self.channels[place]
-        if isinstance(name, int) or name.isdigit():
-            raise InputError("channel", str(name)[:40], allowed=f"1..{len(self.channels)}")
-        raise InputError("channel", repr(name), fix=nearest(name, self.names))
+        raise no_channel(str(name), self.names)
 
     def vibrating(self) -> tuple[Channel, ...]:
         """The channels that are not the tacho, time, speed, torque or temperature; may be none."""
-        other = {"time", "speed", "torque", "temperature", "angle", "frequency"}
         return tuple(
             c
             for c in self.channels
-            if c.name != self.tacho and (c.unit is None or kind_of(c.unit) not in other)
+            if c.name != self.tacho and (c.unit is None or kind_of(c.unit) not in OTHER)
         )
 
     def signals(self) -> tuple[Channel, ...]:
@@ -174,7 +175,11 @@ class Record:
         kept as the user says, with an important notice."""
         record = self
         if tacho is not None:
-            record = replace(record, tacho=record.channel(tacho).name)
+            try:
+                named = record.channel(tacho).name
+            except InputError as error:
+                raise error.named("tacho") from error
+            record = replace(record, tacho=named)
         if rate is not None:
             RATE.require("rate", rate)
             if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3:
@@ -188,6 +193,9 @@ class Record:
             record = replace(record, rate=float(rate), rate_origin="given")
         if unit is not None or scale is not None:
             name = None if unit is None else known_unit(unit)
+            if name is not None and kind_of(name) in OTHER:
+                why = f"it counts {kind_of(name)}, which does not vibrate"
+                raise InputError("unit", repr(unit), why=why, fix=f"one of {UNITS}")
             vibrating = {c.name for c in record.signals()}
             new, contradicted = [], []
             for c in record.channels:
@@ -211,6 +219,16 @@ class Record:
                     f"the unit given, {name}, replaces the file's of {', '.join(contradicted)}",
                 )
         return record
+
+    def with_speed(self, name: str, rpm: float) -> Record:
+        """The record with the channel ``name`` as a speed, ``rpm`` in one of its units."""
+        if not 0.0 < rpm <= _MOST_RPM:
+            got = f"{rpm:g} rpm"
+            fix = "give the rpm in one unit of the channel, as 300 for 300 rpm/V"
+            raise InputError("tacho_scale", got, allowed=f"> 0 .. {_MOST_RPM:g} rpm", fix=fix)
+        speed = self.channel(name)
+        scaled = replace(speed, unit="rpm", scale=speed.scale * rpm, offset=speed.offset * rpm)
+        return replace(self, channels=tuple(scaled if c is speed else c for c in self.channels))
 
     def noting(self, level: str, text: str) -> Record:
         """The record with one more notice."""

@@ -11,25 +11,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
-from thermogear.base.errors import InputError
+from thermogear.base.errors import InputError, short
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
     Changing,
     OrderSlices,
-    of_velocity,
     order_lines,
     read_in_angle,
 )
-from thermogear.measured.gate import Finding, Passed, passed, require_sampling_rate
+from thermogear.measured.contradictions import of_speed, of_teeth
+from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
+from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.swelling import Swelling, swelling_of
-from thermogear.measured.traps import HUGE, health
+from thermogear.measured.traps import HUGE, health, unknown_unit
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
+from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.quality import phase_jumps
@@ -134,6 +136,7 @@ def measure(
     if not isinstance(record, Record):
         record = read_record(record)
     require_sampling_rate(record)
+    require_samples(record)
     _require(harmonics, sidebands, orders, sensor_tolerance, pulses_per_turn)
     require_teeth(teeth)
     notices = list(record.notices)
@@ -163,7 +166,7 @@ def measure(
     else:
         gearing = _gearing(through.table, notices, expected, stated)
     if changing is not None and changing.slices is not None:
-        return replace(_of_slices(record, through, chain, changing, tuple(notices)), given=given)
+        return _of_slices(record, through, chain, changing, notices, given)
     if changing is None and _whole_turns(through, gearing, teeth):
         gearing = _gearing(through.table, [], expected, stated)
     chosen, start, table = through.channels, through.start, through.table
@@ -185,8 +188,9 @@ def measure(
     if doubt:
         through.findings.append(
             Finding(
-                kind=f"the rate is doubtful: {doubt}",
-                done="frequencies, speed and displacements are withheld",
+                kind=f"rate or speed is doubtful: {doubt}",
+                done="frequencies, speed and displacements are withheld (correct what is wrong, "
+                "or leave it out, to have them)",
                 effect="they would be wrong by the rate's factor; orders and accelerations stand",
                 withholds=True,
             )
@@ -269,13 +273,16 @@ def _require(
     pulses_per_turn: float | None,
 ) -> None:
     """Refuse numbers that ask for nothing, or for more than a record can hold."""
-    if not (1 <= harmonics <= _MOST and 0 <= sidebands <= _MOST):
-        got = f"{harmonics}, {sidebands}"
-        raise InputError("harmonics, sidebands", got, allowed=f"1..{_MOST}, 0..{_MOST}")
+    for name, number, least in (("harmonics", harmonics, 1), ("sidebands", sidebands, 0)):
+        if not least <= number <= _MOST:
+            fix = f"as --{name} {least + 1}, or leave it out"
+            raise InputError(name, short(number), allowed=f"{least}..{_MOST}", fix=fix)
     wrong = [o for o in orders if not 0.0 < o <= _HIGHEST_ORDER]
     if wrong or len(orders) > _MOST:
         got = f"{wrong[0]:g}" if wrong else f"{len(orders)} of them"
-        raise InputError("orders", got, allowed=f"> 0 .. {_HIGHEST_ORDER:g}, at most {_MOST}")
+        allowed = f"> 0 .. {_HIGHEST_ORDER:g}, at most {_MOST}"
+        fix = "an order counts per turn of the first shaft, as --orders 1"
+        raise InputError("orders", got, allowed=allowed, fix=fix)
     if sensor_tolerance is not None and not 0 <= sensor_tolerance < 1:
         raise InputError("sensor_tolerance", sensor_tolerance, allowed="0..1 (relative)")
     if pulses_per_turn is not None:
@@ -287,9 +294,14 @@ def _of_slices(
     through: Passed,
     chain: Chain | None,
     found: Changing,
-    notices: tuple[Notice, ...],
+    notices: list[Notice],
+    given: tuple[int | None, float | None],
 ) -> Measurement:
     """The measurement of a run whose speed changes: its lines are means of the slices."""
+    run = found.slices
+    if run is not None and not run.of_mesh and record.rate is not None:
+        said = of_speed(given[1], lowest=float(run.speed.min()), highest=float(run.speed.max()))
+        notices += [said] if said is not None else []
     return Measurement(
         record,
         tuple(c.name for c in through.channels),
@@ -302,7 +314,8 @@ def _of_slices(
         through.start,
         tuple(through.findings),
         through.table,
-        found.slices,
+        run,
+        given,
     )
 
 
@@ -325,7 +338,9 @@ def _untold(
     if record.rate is None:
         yield Notice("important", "no rate is known: lines are in orders and cycles per sample")
     if any(c.unit is None for c in channels):
-        yield Notice("important", "no unit is known: amplitudes are the file's own numbers")
+        strange = next((u for c in channels if c.unit is None and (u := unknown_unit(c.name))), "")
+        what = f"the unit {strange!r} is not one of {UNITS}" if strange else "no unit is known"
+        yield Notice("important", f"{what}: amplitudes are the file's own numbers (give --unit)")
     if sensor_tolerance is None:
         yield Notice("info", "no sensor tolerance is stated: u_D holds noise and scatter alone")
 
@@ -453,15 +468,6 @@ def _gearing(
 def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
     if gearing is None:
         return teeth
-    seen = [shaft.teeth for shaft in gearing.shafts]
-    if teeth is None:
-        return gearing.teeth
-    if seen and teeth not in seen:
-        notices.append(
-            Notice(
-                "important",
-                f"the lines say {' and '.join(map(str, seen))} teeth, not the {teeth} given: "
-                "mesh line over shaft line must be a whole number of teeth",
-            )
-        )
-    return teeth
+    if (said := of_teeth(teeth, [shaft.teeth for shaft in gearing.shafts])) is not None:
+        notices.append(said)
+    return gearing.teeth if teeth is None else teeth

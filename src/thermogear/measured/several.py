@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 
 MOST = 10_000
 _HALF = 1.959964
+_REASONS = 3  # files that a refusal tells of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +95,10 @@ def files_of(named: Sequence[str | Path]) -> list[Path]:
             found += sorted(inside, key=_counted)
         else:
             found.append(one)
-    if not 1 <= len(found) <= MOST:
+    if not found:
+        where = ", ".join(map(str, named))
+        raise InputError("file", where, why="no file is in it", fix="name files, or their folder")
+    if len(found) > MOST:
         raise InputError("file", f"{len(found)} files", allowed=f"1..{MOST}")
     twice = [str(path) for path, count in Counter(found).items() if count > 1]
     if twice:
@@ -120,7 +124,8 @@ def several(
     """Measure ``files`` by ``read``; a file that is refused is told and left out.
 
     ``baseline``: "first", "last", or the name of a file. Readings are in each record's own unit;
-    records of another unit than the baseline's are refused. ``cores``: processes to measure in;
+    records of another unit than the baseline's are refused. Raises InputError where none is left to
+    compare with the baseline. ``cores``: processes to measure in;
     with more than one ``read`` must be a function that a new process can import, and a script
     needs its ``if __name__ == "__main__":``.
     """
@@ -154,6 +159,9 @@ def several(
     blank = (float("nan"), float("nan"))
     table = np.array([[row.readings.get(key, blank) for key in keys] for row in kept])
     table = table.reshape(len(kept), len(keys), 2)
+    both = np.isfinite(table[kept.index(good[place]), :, 0]) & np.isfinite(table[..., 0])
+    if int(np.sum(both.any(axis=1))) < 2:
+        raise _nothing_compared(names[good[place].file], refused, len(files), _hint(good))
     return Several(
         names=tuple(names[row.file] for row in kept),
         keys=keys,
@@ -163,6 +171,21 @@ def several(
         refused=tuple(refused),
         unit=unit,
         hint=_hint(good),
+    )
+
+
+def _nothing_compared(
+    baseline: str, refused: Sequence[tuple[str, str]], files: int, hint: str
+) -> InputError:
+    """No other record has a line of the baseline: why."""
+    why = "; ".join(f"{name} is left out: {reason}" for name, reason in refused[:_REASONS])
+    why += f"; and {len(refused) - _REASONS} more" if len(refused) > _REASONS else ""
+    return InputError(
+        "file",
+        f"{files} file{'s' if files != 1 else ''}",
+        allowed="two records or more with a line of the same channel and name",
+        why=f"nothing can be compared with {baseline}" + (f": {why}" if why else ""),
+        fix=hint or "name records of one unit whose channels are named alike, or one file alone",
     )
 
 
@@ -239,11 +262,11 @@ def figures_of_several(found: Several) -> dict[str, Any]:
                     "name": name,
                     "reading": float(found.reading[i, k]),
                     "change": float(change[i, k]),
-                    "half_width": float(width[i, k]),
+                    "change_half_width": float(width[i, k]),
                 }
             )
     trends = [
-        {"channel": c, "name": n, "trend": float(slope[k]), "half_width": float(half[k])}
+        {"channel": c, "name": n, "trend": float(slope[k]), "trend_half_width": float(half[k])}
         for k, (c, n) in enumerate(found.keys)
         if np.isfinite(slope[k]) and abs(slope[k]) > half[k]
     ]
@@ -255,4 +278,9 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "changed": rows,
         "trends": trends,
         "refused": [list(pair) for pair in found.refused],
+        "units": {
+            "reading": found.unit,
+            **dict.fromkeys(("change", "change_half_width", "lines", "compared"), "1"),
+            **dict.fromkeys(("trend", "trend_half_width"), "1/record"),
+        },
     }

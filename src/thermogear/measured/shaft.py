@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import is_tacho_name
-from thermogear.measured.units import kind_of
+from thermogear.measured.units import counts_turns, kind_of
 from thermogear.signals.following import band_power
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle, tacho_times
@@ -32,6 +32,7 @@ VARIES = 1.03
 
 _SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
 _LEAST_SHARP = 0.05
+_POWER = 1e-3  # of the highest order's: less is no line to follow
 _AS_SHARP = 0.8  # of the sharpness before: then a line's own phase is as good an angle
 
 
@@ -40,7 +41,8 @@ class Shaft:
     """``turns`` of a shaft at samples ``first`` on of the stretch, with rms ``noise`` [turns].
 
     ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
-    what; ``sure``: pulses per turn are known. ``told`` what should be known of it.
+    what; ``sure``: pulses per turn are known, ``pulses`` those given. ``told`` what should be
+    known of it.
     """
 
     turns: Floats
@@ -49,6 +51,7 @@ class Shaft:
     origin: str
     line: bool = False
     sure: bool = True
+    pulses: float | None = None
     told: tuple[Notice, ...] = ()
 
     @property
@@ -87,7 +90,8 @@ def given_shaft(
                 else _by_pulses(channel, source.rate, record.rate, samples, at, pulses_per_turn)
             )
         except InputError as error:
-            told.append(Notice("important", f"tacho {channel.name!r} is not used: {error}"))
+            text = f"tacho {channel.name!r} is not used: {error}{'' if speed else _meant(channel)}"
+            told.append(Notice("important", text))
             continue
         if found.turns.size < 0.2 * samples:
             share = 100.0 * found.turns.size / samples
@@ -121,7 +125,17 @@ def _sources(record: Record, tacho: Record | None) -> list[tuple[Record, Channel
 
 
 def _is_speed(channel: Channel) -> bool:
-    return channel.unit is not None and kind_of(channel.unit) in ("speed", "frequency")
+    return counts_turns(channel.unit)
+
+
+def _meant(channel: Channel) -> str:
+    """What to give where a channel without pulses is a speed."""
+    unit = channel.unit or "one of its units (none is stated)"
+    return (
+        f"; if it is a speed, give the rpm in one {unit}: --tacho-scale RPM"
+        if (channel.unit is None or kind_of(channel.unit) == "voltage")
+        else ""
+    )
 
 
 def _missing(shaft: Shaft, samples: int) -> list[Notice]:
@@ -161,6 +175,7 @@ def _by_pulses(
         noise=turns.noise,
         origin=f"tacho {channel.name!r}",
         sure=pulses_per_turn is not None,
+        pulses=pulses_per_turn,
         told=tuple(told),
     )
 
@@ -184,20 +199,14 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     """The shaft of a speed channel, its angle corrected by the phase of the clearest line.
 
     A speed is read with errors that add up over the turns. Where a line of a whole order (``teeth``
-    or what is highest) can be followed by its own phase, that phase is the angle, and
-    how far the speed channel reads off is told. A line within 2 % of a whole order is taken for
-    that order.
+    or, where that shows nothing, what is highest) can be followed by its own phase, that phase is
+    the angle, and how far the speed channel reads off is told. A line within 2 % of a whole order
+    is taken for that order.
     """
     inside = table[:, shaft.first : shaft.first + shaft.turns.size]
     rough = shaft.turns
-    orders = [float(teeth)] if teeth else _broad_orders(inside, rough)
-    best: tuple[float, Tracked] | None = None
-    for order in orders:
-        for channel in inside[: 2 if len(inside) > 1 else 1]:
-            found = track(channel, cycles=order * rough)
-            if found is not None and (best is None or found.sharp > best[1].sharp):
-                best = order, found
     before = _sharp_by(inside[0], rough)
+    best = _sharpest(inside, rough, _broad_orders(inside, rough, teeth))
     if best is None or best[1].sharp < _AS_SHARP * before:
         text = (
             f"{shaft.origin}: no line's phase can be followed; high orders are as sharp as that "
@@ -207,8 +216,8 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     order, found = best
     cycles = found.cycles
     # cycles per turn: whole teeth, else so that the mean speed is the channel's
-    if teeth:
-        ratio = float(teeth)
+    if teeth and order == teeth:
+        ratio = order
     else:
         ratio = float(cycles[-1] / (rough[-1] - rough[0]))
         if abs(ratio - round(ratio)) < 0.02 * ratio:
@@ -227,13 +236,25 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
     )
 
 
+def _sharpest(inside: Floats, rough: Floats, orders: list[float]) -> tuple[float, Tracked] | None:
+    """Of lines at these orders of a rough angle the one whose phase is the sharpest angle."""
+    best: tuple[float, Tracked] | None = None
+    for order in orders:
+        for channel in inside[:2]:
+            found = track(channel, cycles=order * rough)
+            if found is not None and (best is None or found.sharp > best[1].sharp):
+                best = order, found
+    return best
+
+
 def _sharp_by(values: Floats, turns: Floats) -> float:
     per_turn = samples_per_turn(turns)
     return sharpness(resample_by_angle(values, turns, samples_per_turn=per_turn))
 
 
-def _broad_orders(table: Floats, turns: Floats) -> list[float]:
-    """Orders around which the power is highest, a per cent wide: three at most."""
+def _broad_orders(table: Floats, turns: Floats, teeth: int | None) -> list[float]:
+    """The order of ``teeth`` where power is around it; else those around which it is highest, a
+    per cent wide: three at most."""
     per_turn = samples_per_turn(turns)
     spectrum = line_spectrum(
         resample_by_angle(table[0], turns, samples_per_turn=per_turn), float(per_turn)
@@ -241,6 +262,10 @@ def _broad_orders(table: Floats, turns: Floats) -> list[float]:
     top = min(0.4 * per_turn, 400.0)
     orders = np.arange(4.0, top, 1.0)
     powers = np.array([band_power(spectrum, o, max(0.015 * o, 0.1)) for o in orders])
+    if teeth:
+        own = band_power(spectrum, float(teeth), max(0.015 * teeth, 0.1))
+        if own > _POWER * float(powers.max()):
+            return [float(teeth)]
     return [float(o) for o in orders[np.argsort(-powers)[:3]]]
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thermogear.base.vocabulary import label
-from thermogear.measured.changing import OrderSlices, quantities
+from thermogear.measured.changing import OrderSlices
+from thermogear.measured.quantities import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,39 +70,3 @@ def slice_groups(found: OrderSlices) -> dict[str, xr.Dataset]:
             seen=("resonance", [", ".join(one.seen) for one in found.resonances]),
         )
     return groups
-
-
-def slice_figures(found: OrderSlices) -> dict[str, Any]:
-    """In plain figures: range of speed, greatest amplitude of every order, resonances."""
-
-    def plain(value: float) -> float | None:
-        return float(value) if math.isfinite(value) else None
-
-    greatest = []
-    for c, channel in enumerate(found.channels):
-        for k, name in enumerate(found.names):
-            a = found.reading[c, k]
-            if not np.isfinite(a).any():
-                continue
-            top = int(np.nanargmax(a))
-            greatest.append(
-                {
-                    "channel": channel,
-                    "name": name,
-                    "order": float(found.orders[k]),
-                    "reading": plain(a[top]),
-                    "half_width": plain(found.half_width[c, k, top]),
-                    "speed": plain(found.speed[top]),
-                    "frequency": plain(found.frequency[k, top]),
-                }
-            )
-    return {
-        "of_mesh": found.of_mesh,
-        "steps": int(found.time.size),
-        "speed": [float(found.speed.min()), float(found.speed.max())],
-        "greatest": greatest,
-        "resonances": [
-            {k: plain(v) if isinstance(v, float) else v for k, v in vars(one).items()}
-            for one in found.resonances
-        ],
-    }

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.base.errors import InputError, nearest
-from thermogear.measured.options import ReadOptions, place_of, refused
+from thermogear.measured.options import ReadOptions, no_channel, place_of, refused
 from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
@@ -24,7 +23,7 @@ from thermogear.measured.traps import (
     split_unit,
     without_doubles,
 )
-from thermogear.measured.units import factor_of, kind_of, unit
+from thermogear.measured.units import counts_turns, factor_of, kind_of, unit
 
 MOST_CHANNELS = 512
 MOST_IN_ALL = 4096
@@ -229,6 +228,6 @@ def _kept(channels: list[Channel], keep: tuple[str, ...]) -> list[Channel]:
         elif (place := place_of(key, len(names))) is not None:
             wanted.add(place)
         else:
-            raise InputError("channel", repr(key), fix=nearest(key, names))
-    special = {i for i, name in enumerate(names) if is_tacho_name(name)}
+            raise no_channel(key, names)
+    special = {i for i, c in enumerate(channels) if is_tacho_name(c.name) or counts_turns(c.unit)}
     return [channels[i] for i in sorted(wanted | special)]

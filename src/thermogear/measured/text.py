@@ -13,10 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
-from thermogear.base.errors import InputError, nearest
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.layout import Layout, find_layout
-from thermogear.measured.options import ReadOptions, place_of, refused, too_large
+from thermogear.measured.options import (
+    A_TEXT,
+    ReadOptions,
+    no_channel,
+    place_of,
+    refused,
+    too_large,
+)
 from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import BLOCK, Channel, Notice, Record
 from thermogear.measured.store import ColumnStore, StoredColumn
@@ -27,6 +33,7 @@ from thermogear.measured.traps import (
     read_time,
     without_doubles,
 )
+from thermogear.measured.units import counts_turns
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +69,7 @@ def read_text(path: Path, options: ReadOptions) -> Record:
             store.append(table[:, keep])
     columns = store.columns()
     if store.rows == 0:
-        raise refused(path, "text", "it holds no row of numbers")
+        raise refused(path, "text", "it holds no row of numbers", A_TEXT)
     return _record(path, layout, keep, columns)
 
 
@@ -120,7 +127,7 @@ def _encoding(path: Path) -> tuple[str, list[Notice]]:
         name = "utf-16-le" if zeros[0] >= zeros[1] else "utf-16-be"
         return name, [Notice("info", "the text is UTF-16 without its mark")]
     if b"\0" in head:
-        raise refused(path, "text", "it is binary: it holds zero bytes")
+        raise refused(path, "text", "it is binary: it holds zero bytes", A_TEXT)
     for name in ("utf-8", "gb18030", "latin-1"):
         try:
             # a character may be cut at the end of the head
@@ -149,16 +156,22 @@ def _head(lines: io.TextIOWrapper) -> list[str]:
 def _kept(layout: Layout, options: ReadOptions) -> list[int]:
     if not options.keep:
         return list(range(layout.columns))
+    times = {i for i, name in enumerate(layout.names) if is_time_name(name)}
+    channels = [i for i in range(layout.columns) if i not in times]
+    names = [layout.names[i] for i in channels]
     wanted = set()
     for key in options.keep:
-        if key in layout.names:
-            wanted.add(layout.names.index(key))
-        elif (place := place_of(key, layout.columns)) is not None:
-            wanted.add(place)
+        if key in names:
+            wanted.add(channels[names.index(key)])
+        elif (place := place_of(key, len(channels))) is not None:
+            wanted.add(channels[place])
         else:
-            raise InputError("channel", repr(key), fix=nearest(key, layout.names))
-    special = {i for i, n in enumerate(layout.names) if is_time_name(n) or is_tacho_name(n)}
-    return sorted(wanted | special)
+            raise no_channel(key, names)
+    named = zip(layout.names, layout.units, strict=True)
+    special = {
+        i for i, (name, unit) in enumerate(named) if is_tacho_name(name) or counts_turns(unit)
+    }
+    return sorted(wanted | times | special)
 
 
 # --- rows ----------------------------------------------------------------------------------------

@@ -96,6 +96,17 @@ def split_unit(name: str) -> tuple[str, str | None]:
     return text, None
 
 
+def unknown_unit(name: str) -> str:
+    """What is in brackets behind a channel's name as its unit and is none; "" where nothing.
+
+    >>> unknown_unit("acc [furlong]"), unknown_unit("acc"), unknown_unit("a[2]")
+    ('furlong', '', '')
+    """
+    found = re.search(r"[\[(（]([^\])）]{1,20})[\])）]\s*$", name[:_LONGEST])
+    text = found.group(1).strip() if found else ""
+    return text if re.search(r"[^\W\d]", text) and unit(text) is None else ""
+
+
 @dataclass(frozen=True, kw_only=True)
 class TimeBase:
     """What a time column says: rate [1/s] (None: it cannot be told), start, rows to drop."""

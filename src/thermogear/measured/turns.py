@@ -125,7 +125,7 @@ def _wandering(
     """The power that a followed line must hold to be believed; None: the line is steady.
 
     It wanders where its phase turns, or most of the power near it is no steady line's. Where steady
-    neighbours explain that power, they may be its own: a line that swings has a comb about it.
+    neighbours explain that power, they may be its own: a line that wanders has a comb about it.
     Then the line followed must have three quarters of their power besides; of a neighbour it gets
     half, of two that swell and fade together nothing.
 

@@ -36,6 +36,9 @@ _TABLE: dict[str, tuple[str, float]] = {
     "deg": ("angle", 1.0 / 360.0),
     "rad": ("angle", 0.15915494309189535),
 }
+_VIBRATES = ("acceleration", "velocity", "displacement", "voltage")
+UNITS = ", ".join(name for name, (kind, _) in _TABLE.items() if kind in _VIBRATES)
+"""Known units of what vibrates, in words."""
 _SPELLINGS = {
     "m/s2": "m/s^2",
     "m/s**2": "m/s^2",
@@ -117,6 +120,15 @@ def kind_of(name: str) -> str:
     'displacement'
     """
     return _TABLE[name][0]
+
+
+def counts_turns(name: str | None) -> bool:
+    """Whether a known unit counts turns of a shaft in time.
+
+    >>> counts_turns("rpm"), counts_turns("V"), counts_turns(None)
+    (True, False, False)
+    """
+    return name is not None and kind_of(name) in ("speed", "frequency")
 
 
 def factor_of(name: str) -> float:

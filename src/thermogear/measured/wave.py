@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from thermogear.measured.options import ReadOptions, refused
+from thermogear.measured.options import ReadOptions, no_channel, place_of, refused
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.store import FileTable
 from thermogear.measured.tables import MOST_CHANNELS, Column
@@ -56,6 +56,9 @@ def read_wave(path: Path, options: ReadOptions) -> Record:
         raise refused(path, "WAV", "it holds no samples")
     data, scale, shift, integer = _samples(path, code, bits, offset, frames, channels)
     names = [f"channel {i + 1}" for i in range(channels)]
+    for key in options.keep:
+        if key not in names and place_of(key, channels) is None:
+            raise no_channel(key, names)
     found = tuple(
         Channel(name, Column(data, i, axis=0), None, scale=scale, offset=shift, needs_scale=integer)
         for i, name in enumerate(names)

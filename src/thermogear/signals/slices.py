@@ -30,6 +30,8 @@ _CIRCLE = 1.5616  # -2 ln 0.05/1.96^2
 _NORMAL, _ONE = 1.959964, 1.644854  # standard deviations that hold 95 % on both sides, on one
 _FAR = 3.5 + np.arange(30.0)  # lines beside an order at which its noise may be judged
 _JUDGED = 12
+_PER_BIN = 1.4  # real numbers in a Hann bin that is a line apart from the next
+_DEGREES = _PER_BIN * _JUDGED
 _FREE = 3.0  # lines from every order that is fitted
 _SLIPS, _AROUND, _MOST_AROUND = 0.03, 6, 40  # a wrong angle moves a line by 3 %; lines beside it
 _SPILL = 0.02  # of the power of other orders there, that their own change leaves
@@ -241,7 +243,7 @@ class _Block:
             variance[:, part] = 0.5 * noise * self._gain[:, None]
         variance = _three(variance)
         # Hann bins a line apart are correlated by 2/3: about one and a half real numbers each
-        degrees = np.maximum(1.4 * np.sum(self._clear, axis=1), 2.0)
+        degrees = np.maximum(_PER_BIN * np.sum(self._clear, axis=1), 2.0)
         return amplitude, variance, around, degrees
 
 
@@ -350,3 +352,50 @@ def _three(values: Floats) -> Floats:
     known = np.isfinite(three)
     count = np.maximum(known.sum(axis=0), 1)
     return np.where(np.isfinite(values), np.where(known, three, 0.0).sum(axis=0) / count, np.nan)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Greatest:
+    """The greatest of ``steps`` amplitudes: the ``step`` at which it was read, the ``amplitude``
+    read there, and ``low`` and ``high``, the 95 % interval of the greatest true one."""
+
+    step: int
+    steps: int
+    amplitude: float
+    low: float
+    high: float
+
+
+def greatest(amplitude: ArrayLike, *, half_width: ArrayLike) -> Greatest | None:
+    """The greatest amplitude (step,) of an order over a run, by all steps; None where none is read.
+
+    The greatest of n readings is too large by noise alone: its own interval h, which holds 95 % of
+    the readings at one step that is chosen before, does not hold it. The half widths of all steps
+    are made wider so that together they hold with 95 % or more, whatever steps share (Bonferroni's
+    inequality); where they do the greatest true amplitude is
+
+        max(a - c h) .. max(a + c h),  c = t(1 - 0.025/n)/t(0.975),
+
+    with Student's t of as many degrees as the noise beside an order is judged by (16.8).
+    ``half_width`` (step,) in the amplitude's unit, nan where nothing is read. Source: Miller 1981,
+    Simultaneous Statistical Inference, section 1.1.
+
+    >>> found = greatest([1.0, 1.2, 1.1], half_width=[0.1, 0.1, 0.1])
+    >>> found.step, f"{found.low:.3f} {found.high:.3f}"
+    (1, '1.074 1.326')
+    """
+    a, h = np.asarray(amplitude, dtype=float), np.asarray(half_width, dtype=float)
+    good = np.isfinite(a) & np.isfinite(h)
+    count = int(np.count_nonzero(good))
+    if count == 0:
+        return None
+    wider = float(stats.t.isf(0.025 / count, _DEGREES) / stats.t.isf(0.025, _DEGREES))
+    a, h = np.where(good, a, -np.inf), np.where(good, h, 0.0)
+    step = int(np.argmax(a))
+    return Greatest(
+        step=step,
+        steps=count,
+        amplitude=float(a[step]),
+        low=max(0.0, float(np.max(a - wider * h))),
+        high=float(np.max(a + wider * h)),
+    )

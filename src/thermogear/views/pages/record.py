@@ -42,7 +42,7 @@ def page(result: Result) -> Page:
         result,
         result.text("conclusion") or _summary(result),
         [section for make in made if (section := make(result)) is not None],
-        numbers=lambda: result.table("figures"),
+        numbers=lambda: record_slices.numbers(result),
         lines=lambda: LINES[result.kind](result),
     )
 

@@ -8,6 +8,9 @@ from typing import Any
 from thermogear.base.units import RPM, STANDARD_GRAVITY
 from thermogear.results.result import Result
 
+_TOLD = 5e-4
+"""Weight that three digits show."""
+
 
 def measured(result: Result) -> list[str]:
     """Notices, evidence, settings, and a row for each line."""
@@ -17,9 +20,7 @@ def measured(result: Result) -> list[str]:
     told += [f"evidence: {text}" for text in found["evidence"]]
     told += [f"{name}: {value}" for name, value in found["settings"].items()]
     if found.get("shaft_speed") is not None:
-        speed, half = found["shaft_speed"] / RPM, found["shaft_speed_half_width"]
-        around = f" +- {half / RPM:.3g} rpm (95 %)" if half is not None else ""
-        told.append(f"shaft speed: {speed:.8g} rpm{around}")
+        told.append(_shaft(found))
     head = f"{'channel':12} {'line':22} {'order':>9} {'cyc/sample':>11} {'Hz':>10} {'+- Hz':>9}"
     told.append(f"{head} {'reading':>10} {'g':>9} {'um':>9} {'u_D %':>7} {'+- %':>7}")
     told += [_line(one) for one in found["lines"]]
@@ -31,20 +32,42 @@ def slices(found: Mapping[str, Any] | None) -> list[str]:
     if found is None:
         return []
     what = "the mesh line" if found["of_mesh"] else "the first shaft"
-    told = [f"orders of {what} over speed, {found['steps']} steps; the greatest amplitude of each:"]
-    for one in found["greatest"]:
-        told.append(
-            f"{one['channel'][:12]:12} {one['name'][:22]:22} order {one['order']:9.3f}: "
-            f"{one['reading']:.5g} +- {one['half_width']:.2g} at {one['speed'] / RPM:.5g} rpm, "
-            f"{one['frequency']:.5g} Hz"
-        )
+    told = [
+        f"orders of {what} over speed, {found['steps']} steps; where each reads highest, and the "
+        "95 % interval of the greatest true amplitude of all its steps (one step alone is known "
+        "better, but the highest of many is high by noise too):"
+    ]
+    told += [_greatest(one) for one in found["greatest"]]
     return told + [resonance(one) for one in found["resonances"]]
+
+
+def _greatest(one: Mapping[str, Any]) -> str:
+    interval = ""
+    if "greatest_low" in one:  # not stored by older versions
+        low, high = one["greatest_low"], one["greatest_high"]
+        interval = f"; greatest of {one['steps']} steps {low:.5g}..{high:.5g}"
+    return (
+        f"{one['channel'][:12]:12} {one['name'][:22]:22} order {one['order']:9.3f}: "
+        f"{one['reading']:.5g} at {one['speed'] / RPM:.5g} rpm, {one['frequency']:.5g} Hz{interval}"
+    )
+
+
+def _shaft(found: Mapping[str, Any]) -> str:
+    """The shaft's speed with its interval, or as a mean with its range."""
+    speed, half = found["shaft_speed"] / RPM, found["shaft_speed_half_width"]
+    span = found.get("shaft_speed_range")
+    if span is not None:
+        low, high = (one / RPM for one in span)
+        return f"mean shaft speed over the record: {speed:.6g} rpm (from {low:.5g} to {high:.5g})"
+    around = f" +- {half / RPM:.3g} rpm (95 %)" if half is not None else ""
+    return f"shaft speed: {speed:.8g} rpm{around}"
 
 
 def resonance(one: Mapping[str, Any]) -> str:
     """A peak of orders in a sentence."""
     seen = ", ".join(one["seen"])
-    place = f"{one['frequency']:.5g} +- {one['half_width']:.2g} Hz"
+    half = one.get("frequency_half_width", one.get("half_width"))
+    place = f"{one['frequency']:.5g} +- {half:.2g} Hz"
     damping = "" if one["damping"] is None else f", damping ratio {one['damping']:.3g}"
     if one["kind"] == "resonance":
         return f"resonance at {place}{damping}: {seen} peak there at different speeds"
@@ -62,19 +85,27 @@ def given_and_found(figures: Mapping[str, Any]) -> list[str]:
     said = [f"{given['teeth']} teeth"] if given["teeth"] is not None else []
     said += [f"{given['speed'] / RPM:.6g} rpm"] if given["speed"] is not None else []
     told = [f"given: {', '.join(said) if said else 'neither teeth nor speed'}"]
-    teeth = " and ".join(map(str, found["teeth"]))
-    told.append(f"found: {teeth} teeth, decided" if teeth else f"found: {_open(found['verdict'])}")
-    weighed = list(found.get("gears", []))
-    weighed += [one for one in found["hypotheses"] if not weighed or _without_teeth(one)]
-    if teeth:
-        # what is decided leaves no alternative that carries weight
-        weighed = [one for one in weighed if one.get("teeth") in found["teeth"]]
-    weighed.sort(key=lambda one: -float(one["weight"]))
-    return told + [f"weight {one['weight']:.3f}: {one['words']}" for one in weighed]
+    if found["teeth"]:
+        return [*told, f"found: {_decided(found)}"]
+    told.append(f"found: {_open(found['verdict'])}")
+    told += [f"weight {one['weight']:.3f}: {one['words']}" for one in found["hypotheses"]]
+    if found.get("rest", 0.0) >= _TOLD:
+        told.append(f"weight {found['rest']:.3f}: all other readings")
+    return told
 
 
-def _without_teeth(one: Mapping[str, Any]) -> bool:
-    return not any(mesh["teeth"] for mesh in one.get("meshes", []))
+def _decided(found: Mapping[str, Any]) -> str:
+    """Teeth with the weight of all readings that have them, and what is left for the others."""
+    gears = reversed(found.get("gears", []))
+    weights = {one["teeth"]: one["weight"] for one in gears}
+    told = [
+        f"{z} teeth, decided (weight {weights[z]:.4f}, of all readings without them "
+        f"{1.0 - weights[z]:.4f})"
+        if z in weights
+        else f"{z} teeth, decided"
+        for z in found["teeth"]
+    ]
+    return "; ".join(told)
 
 
 def _open(verdict: str) -> str:
@@ -87,9 +118,16 @@ def _line(one: Mapping[str, Any]) -> str:
         f"{_cell(one['position'], 11, 6)} {_cell(one['frequency'], 10, 3)} "
         f"{_cell(one['frequency_half_width'], 9, 5)} "
         f"{_cell(one['reading'], 10, 4)} {_cell(one['acceleration'], 9, 3, 1 / STANDARD_GRAVITY)} "
-        f"{_cell(one['displacement'], 9, 3, 1e6)} {_cell(one['uncertainty'], 7, 2, 100.0)} "
-        f"{_cell(one['half_width'], 7, 2, 100.0)}"
+        f"{_cell(one['displacement'], 9, 3, 1e6)} "
+        f"{_cell(_share(one, 'standard_uncertainty', 'uncertainty'), 7, 2, 100.0)} "
+        f"{_cell(_share(one, 'half_width', 'half_width'), 7, 2, 100.0)}"
     )
+
+
+def _share(one: Mapping[str, Any], name: str, before: str) -> float | None:
+    """A relative figure of a line; results of older versions call it otherwise."""
+    found: float | None = one[f"relative_{name}" if f"relative_{name}" in one else before]
+    return found
 
 
 def _cell(value: float | None, width: int, digits: int, factor: float = 1.0) -> str:

@@ -3,11 +3,40 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from thermogear.results.result import Result
 from thermogear.views.page import Pictures, Section, Text
 from thermogear.views.pages import record_lines
 from thermogear.views.plots import slices as plots
+
+
+def numbers(results: Result) -> dict[str, Any]:
+    """The figures, with every order at every step of a run over speed."""
+    found, data = results.table("figures"), results.group("slices")
+    if data is None or not isinstance(found.get("slices"), dict):
+        return found
+    steps = {
+        name: data[f"slice_{name}"].values.tolist() for name in ("time", "speed", "speed_rate")
+    }
+    orders = []
+    for channel in data["channel"].values:
+        for k, name in enumerate(data["name"].values):
+            one = data.sel(channel=channel).isel(slice=k)
+            share = one["slice_half_width"].values
+            rows = {
+                "frequency": one["slice_frequency"].values,
+                "reading": one["slice_reading"].values,
+                "reading_half_width": one["slice_reading_half_width"].values,
+                "phase": one["slice_phase"].values,
+                "turns": one["slice_turns"].values,
+            }
+            for moved in ("acceleration", "displacement"):
+                rows[moved] = one[f"slice_{moved}"].values
+                rows[f"{moved}_half_width"] = share * rows[moved]
+            told = {"channel": str(channel), "name": str(name), "order": float(one["slice_order"])}
+            orders.append(told | {key: values.tolist() for key, values in rows.items()})
+    return {**found, "slices": {**found["slices"], **steps, "orders": orders}}
 
 
 def section(results: Result) -> Section | None:

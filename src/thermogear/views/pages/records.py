@@ -37,7 +37,7 @@ def page(result: Result) -> Page:
             one["name"],
             f"{one['reading']:.5g}",
             f"{100 * one['change']:+.2f}",
-            f"{100 * one['half_width']:.2f}",
+            f"{100 * _half(one, 'change'):.2f}",
         ]
         for one in found.get("changed", [])[:_SHOWN]
     ]
@@ -53,6 +53,11 @@ def page(result: Result) -> Page:
         numbers=lambda: found,
         lines=lambda: lines(result),
     )
+
+
+def _half(one: dict[str, Any], name: str) -> float:
+    """The half width of a change or a trend; results of older versions call it otherwise."""
+    return float(one.get(f"{name}_half_width", one.get("half_width", 0.0)))
 
 
 def summary(found: dict[str, Any]) -> str:
@@ -72,11 +77,12 @@ def lines(result: Result) -> list[str]:
     for one in found["changed"]:
         told.append(
             f"{one['record'][:24]:24} {one['channel'][:12]:12} {one['name'][:22]:22} "
-            f"{one['reading']:10.5g} {100 * one['change']:+8.2f} % +- {100 * one['half_width']:.2f}"
+            f"{one['reading']:10.5g} {100 * one['change']:+8.2f} % +- "
+            f"{100 * _half(one, 'change'):.2f}"
         )
     for one in found["trends"]:
         told.append(
             f"trend of {one['channel']}, {one['name']}: {100 * one['trend']:+.3g} % a record +- "
-            f"{100 * one['half_width']:.2g}"
+            f"{100 * _half(one, 'trend'):.2g}"
         )
     return [*told, summary(found)]

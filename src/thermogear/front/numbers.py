@@ -1,0 +1,36 @@
+"""Numbers as options: what is no number is refused like any other value, with what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from thermogear.base.errors import InputError, short
+
+
+class Number(click.ParamType[float | int]):
+    """A number, or a whole one; ``allowed`` in words, ``example`` of one."""
+
+    def __init__(self, allowed: str, example: str, *, whole: bool = False) -> None:
+        self.name = "integer" if whole else "float"
+        self._allowed, self._example, self._whole = allowed, example, whole
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float | int:
+        """The number; InputError where the text is none."""
+        try:
+            return int(value) if self._whole else float(value)
+        except ValueError:
+            option = param.opts[0] if param is not None else "number"
+            fix = f"as {option} {self._example}"
+            raise InputError(option, short(value), allowed=self._allowed, fix=fix) from None
+
+
+def number(
+    option: str, words: str, allowed: str, example: str, *, whole: bool = False, **more: Any
+) -> Callable[[Any], Any]:
+    """A click option that takes a :class:`Number`; ``words`` of its help."""
+    return click.option(option, type=Number(allowed, example, whole=whole), help=words, **more)

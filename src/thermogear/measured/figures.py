@@ -1,0 +1,198 @@
+"""A measurement as plain figures, for scripts: every number by a name, every name with its unit.
+
+``NAME_half_width`` is the half width of the 95 % interval, in the unit of ``NAME``; what is a share
+of ``NAME`` says relative.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from thermogear.measured.changing import OrderSlices
+from thermogear.measured.gearing import Gearing
+from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.record import Record
+from thermogear.measured.reduction import Measurement
+from thermogear.signals.slices import greatest
+
+_PLAIN = (
+    "teeth ratio ratio_error order score lines weight margin next_order rest powers chance share "
+    "relative_half_width relative_standard_uncertainty bin_offset prominence steps damping turns"
+)
+UNITS: dict[str, str] = {
+    **dict.fromkeys(_PLAIN.split(), "1"),
+    **dict.fromkeys(("first", "last", "count"), "samples"),
+    **dict.fromkeys(("position", "mesh_position", "combs", "low", "high"), "cycles/sample"),
+    **dict.fromkeys(("shaft_speed", "speed", "shaft_speed_range", "speed_range"), "rad/s"),
+    "rate": "samples/s",
+    "frequency": "Hz",
+    "acceleration": "m/s^2",
+    "displacement": "m",
+    "speed_rate": "rad/s^2",
+    "phase": "rad",
+    "time": "s",
+}
+"""Unit of every number of the figures by its name, readings apart; ``_half_width`` has its own."""
+_READINGS = ("reading", "greatest_low", "greatest_high")
+_WITH_INTERVAL = ("position", "frequency", "shaft_speed", "acceleration", "displacement", "reading")
+
+
+def figures(found: Measurement) -> dict[str, Any]:
+    """The measurement as plain figures with their ``units``; what is not known is None."""
+    gearing, run = found.gearing, found.slices
+    first = found.lines[0] if found.lines else None
+    turning = run is not None and not run.of_mesh and found.record.rate is not None
+    return {
+        "source": found.record.source,
+        "rate": found.record.rate,
+        "settings": found.settings,
+        "teeth": found.teeth,
+        "mesh_position": gearing.mesh_frequency if gearing else None,
+        "shaft_speed": _known(first.shaft_speed) if first else None,
+        "shaft_speed_half_width": _known(first.speed_half_width) if first else None,
+        "shaft_speed_range": _range(run) if turning and run is not None else None,
+        "shafts": [vars(shaft) for shaft in gearing.shafts] if gearing else [],
+        "meshes": [vars(mesh) for mesh in gearing.meshes] if gearing else [],
+        "evidence": evidence(found),
+        "given": {"teeth": found.given[0], "speed": found.given[1]},
+        "found": _found(gearing),
+        "swelling": vars(found.swelling) if found.swelling else None,
+        "findings": [{**vars(one), "text": one.text} for one in found.findings],
+        "lines": [_line(line, found.record) for line in found.lines],
+        "slices": None if run is None else _slices(run, found.record),
+        "notices": [vars(notice) for notice in found.notices],
+        "units": units(found.record, found.channels),
+    }
+
+
+def units(record: Record, channels: tuple[str, ...]) -> dict[str, str]:
+    """The unit of every number by its name; a reading's is "" where channels have several (then
+    ``unit`` beside it says) or none is known."""
+    own = {record.channel(name).unit or "" for name in channels}
+    of_readings = dict.fromkeys(_READINGS, own.pop() if len(own) == 1 else "")
+    every = UNITS | of_readings
+    return every | {f"{name}_half_width": every[name] for name in _WITH_INTERVAL}
+
+
+def evidence(found: Measurement) -> list[str]:
+    """What was seen, in sentences."""
+    told = list(found.gearing.evidence) if found.gearing else []
+    return told + ([found.swelling.words] if found.swelling else [])
+
+
+def _known(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _range(run: OrderSlices) -> list[float]:
+    return [float(run.speed.min()), float(run.speed.max())]
+
+
+def _line(line: MeasuredLine, record: Record) -> dict[str, Any]:
+    """A line; its half widths in the unit of the value."""
+    share = line.half_width
+    numbers = {
+        "order": line.order,
+        "position": line.position,
+        "position_half_width": line.position_half_width,
+        "frequency": line.frequency,
+        "frequency_half_width": line.frequency_half_width,
+        "reading": line.reading,
+        "reading_half_width": share * line.reading,
+        "acceleration": line.acceleration,
+        "acceleration_half_width": share * line.acceleration,
+        "displacement": line.displacement,
+        "displacement_half_width": share * line.displacement,
+        "relative_half_width": share,
+        "relative_standard_uncertainty": line.uncertainty,
+        "bin_offset": line.bin_offset,
+        "prominence": line.prominence,
+        "shaft_speed": line.shaft_speed,
+        "shaft_speed_half_width": line.speed_half_width,
+    }
+    return {
+        "channel": line.channel,
+        "kind": line.kind,
+        "name": line.name,
+        "unit": record.channel(line.channel).unit or "",
+        **{name: _known(value) for name, value in numbers.items()},
+        "withheld": line.withheld,
+    }
+
+
+def _slices(run: OrderSlices, record: Record) -> dict[str, Any]:
+    """Of a run over speed: range of speed, the greatest amplitude of every order, resonances."""
+    told = []
+    for c, channel in enumerate(run.channels):
+        for k, name in enumerate(run.names):
+            top = greatest(run.reading[c, k], half_width=run.half_width[c, k])
+            if top is None:
+                continue
+            told.append(
+                {
+                    "channel": channel,
+                    "name": name,
+                    "unit": record.channel(channel).unit or "",
+                    "order": float(run.orders[k]),
+                    "reading": top.amplitude,
+                    "reading_half_width": float(run.half_width[c, k, top.step]),
+                    "greatest_low": top.low,
+                    "greatest_high": top.high,
+                    "steps": top.steps,
+                    "speed": _known(run.speed[top.step]),
+                    "frequency": _known(run.frequency[k, top.step]),
+                }
+            )
+    return {
+        "of_mesh": run.of_mesh,
+        "steps": int(run.time.size),
+        "speed_range": _range(run),
+        "greatest": told,
+        "resonances": [
+            {
+                "kind": one.kind,
+                "frequency": _known(one.frequency),
+                "frequency_half_width": _known(one.half_width),
+                "damping": _known(one.damping),
+                "speed": _known(one.speed),
+                "seen": list(one.seen),
+            }
+            for one in run.resonances
+        ],
+    }
+
+
+def _found(gearing: Gearing | None) -> dict[str, Any]:
+    """The verdict on the teeth, with the readings that carry weight; those and the rest are one."""
+    if gearing is None:
+        nothing: list[object] = []
+        open_to = {"teeth": nothing, "gears": nothing, "hypotheses": nothing, "rest": 0.0}
+        return {"verdict": "no gear found", **open_to}
+    weighed = gearing.weighed
+    return {
+        "verdict": weighed.verdict,
+        "teeth": [shaft.teeth for shaft in gearing.shafts],
+        "gears": [
+            {
+                "mesh_position": one.mesh,
+                "teeth": one.teeth,
+                "weight": one.weight,
+                "words": one.words,
+            }
+            for one in weighed.gears
+        ],
+        "hypotheses": [
+            {
+                "kind": one.kind,
+                "weight": one.weight,
+                "meshes": [
+                    {"mesh_position": gears.mesh, "teeth": list(gears.teeth)} for gears in one.gears
+                ],
+                "combs": list(one.combs),
+                "words": one.words,
+            }
+            for one in weighed.told
+        ],
+        "rest": weighed.rest,
+    }

@@ -1,0 +1,221 @@
+"""What a measurement says: given beside found, weights, figures with units, greatest of many."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from said import facts, numbers
+from thermogear.base.units import RPM
+from thermogear.measured.contradictions import of_pulses, of_speed, of_teeth
+from thermogear.measured.dataset import result_of
+from thermogear.measured.evidence import Evidence
+from thermogear.measured.hypotheses import Gears, Hypothesis
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import Measurement, measure
+from thermogear.measured.shaft import given_shaft
+from thermogear.results.files import json_text
+from thermogear.signals.slices import greatest, order_slices
+from thermogear.views.write import page_of
+
+TEETH, PULSES, RATE, SECONDS = 20, 2, 2000.0, 5.0
+FIRST, LAST = 600.0, 1320.0  # rpm
+
+
+def run_up() -> Record:
+    """A gear of 20 teeth on the tacho's shaft, 600 to 1320 rpm, and its speed at 300 rpm/V."""
+    t = np.arange(int(RATE * SECONDS)) / RATE
+    rpm = FIRST + (LAST - FIRST) * t / SECONDS
+    turns = (FIRST * t + (LAST - FIRST) * t**2 / 2.0 / SECONDS) / 60.0
+    x = np.cos(2 * np.pi * TEETH * turns) + 0.4 * np.cos(4 * np.pi * TEETH * turns + 1)
+    x = (1.0 + 0.1 * np.cos(2 * np.pi * turns)) * x
+    x += 0.05 * np.random.default_rng(11).standard_normal(t.size)
+    pulses = 5.0 * (PULSES * turns % 1.0 < 0.3)
+    channels = Channel("acc", x, "g"), Channel("tacho", pulses, "V"), Channel("n", rpm / 300, "V")
+    return Record(channels, "run", RATE, "made", tacho="tacho")
+
+
+def steady(rate: float = 2560.0) -> Record:
+    """A gear of 25 teeth at 1200 rpm."""
+    turns = 20.0 * np.arange(10_000) / 2560.0
+    swing = 1.0 + 0.2 * np.cos(2 * np.pi * turns)
+    x = swing * (np.cos(50 * np.pi * turns) + 0.5 * np.cos(100 * np.pi * turns + 1))
+    x += 0.2 * np.cos(2 * np.pi * turns) + 0.05 * np.random.default_rng(12).standard_normal(x.size)
+    return Record((Channel("acc", x, "m/s^2"),), "steady", rate, "made")
+
+
+@pytest.fixture(scope="module")
+def run() -> Measurement:
+    return measure(run_up(), pulses_per_turn=3.0, speed=5000.0 * RPM, harmonics=2, sidebands=1)
+
+
+def important(found: Measurement, word: str) -> str:
+    """The important notice that begins with ``word``; empty where there is none."""
+    texts = [one.text for one in found.notices if one.level == "important"]
+    return next((text for text in texts if text.startswith(word)), "")
+
+
+# --- given and found -----------------------------------------------------------------------------
+
+
+def test_pulses_and_speed_that_contradict_a_run_are_told_with_what_fits(run: Measurement) -> None:
+    # three given, 20 teeth found, the mesh line at order 30: two would fit, or a mate of 30 teeth
+    assert numbers(important(run, "pulses")) == [3.0, 20.0, 30.0, 2.0, 20.0, 3.0, 30.0]
+    assert run.slices is not None
+    ends = run.slices.speed.min() / RPM, run.slices.speed.max() / RPM
+    assert numbers(important(run, "speed")) == pytest.approx([5000.0, *ends], rel=1e-3)
+
+
+def test_teeth_that_contradict_a_run_are_told_and_a_tacho_in_volts_is_a_speed() -> None:
+    named = run_up().supplied(tacho="n")
+    found = measure(named.with_speed("n", 300.0), teeth=10, harmonics=1, sidebands=0)
+    assert numbers(important(found, "teeth"))[:2] == [10.0, 20.0]
+    assert found.slices is not None
+    assert "n" not in found.channels
+    # the ten given count the turns: twice those of the shaft
+    true = FIRST + (LAST - FIRST) * found.slices.time / SECONDS
+    assert found.slices.speed / RPM == pytest.approx(2.0 * true, rel=0.01)
+
+
+def test_a_speed_in_volts_without_its_scale_asks_for_it() -> None:
+    record = run_up().supplied(tacho="n")
+    shaft = given_shaft(record, samples=record.samples, start=0, pulses_per_turn=None)
+    assert shaft is not None
+    (told,) = shaft.told
+    assert shaft.turns.size == 0
+    assert (told.level, facts(told.text)[0]) == ("important", "n")
+    assert "--tacho-scale" in told.text
+
+
+def test_a_wrong_speed_is_told_before_the_rate_and_a_right_one_blames_the_teeth() -> None:
+    told = important(measure(steady(), speed=3100.0 * RPM, harmonics=1, sidebands=0), "speed")
+    assert numbers(told)[:2] == [3100.0, 1200.0]
+    blamed = told.partition(".")[2]
+    assert 0 <= blamed.index("speed") < blamed.index("rate")
+    found = measure(steady(), teeth=30, speed=1200.0 * RPM, harmonics=1, sidebands=0)
+    assert numbers(important(found, "teeth"))[:2] == [30.0, 25.0]
+    assert important(found, "speed") == important(found, "rate") == ""
+    assert np.isfinite(found.lines[0].frequency)
+
+
+def test_what_agrees_or_is_open_is_no_contradiction() -> None:
+    assert of_teeth(20, [20, 41]) is None
+    assert of_teeth(20, []) is None
+    assert of_teeth(None, [20]) is None
+    assert of_pulses(2.0, [20], 20.0) is None
+    assert of_pulses(None, [20], 30.0) is None
+    assert of_speed(1000.0, lowest=1090.0, highest=2000.0) is None
+    both = of_pulses(1.0, [20, 41], 7.3)
+    assert both is not None
+    assert numbers(both.text) == [1.0, 20.0, 41.0, 7.3, 1.0]
+
+
+# --- weights -------------------------------------------------------------------------------------
+
+
+def test_weights_told_are_of_readings_that_exclude_each_other_and_add_up_to_one() -> None:
+    random = np.random.default_rng(3)
+    weights = random.dirichlet(np.full(30, 0.4))
+    found = Evidence(
+        hypotheses=tuple(
+            Hypothesis(
+                gears=() if k % 5 == 0 else (Gears(mesh=0.1, level=1.0, teeth=(20 + k % 12,)),),
+                evidence=0.0,
+                weight=float(w),
+                combs=(0.01 * k,),
+            )
+            for k, w in enumerate(weights)
+        )
+    )
+    told = [one.weight for one in found.told]
+    assert sum(told) + found.rest == pytest.approx(1.0, abs=1e-12)
+    assert told == sorted(told, reverse=True)
+    assert len({one.words for one in found.told}) == len(told)
+    (none,) = [one for one in found.told if not one.gears]
+    assert none.weight == pytest.approx(weights[::5].sum())
+    assert sum(numbers(found.words.replace(";", "\n"))[-1:]) <= 1.0
+
+
+def test_the_terminal_tells_every_weight_once_and_no_evidence_of_nothing(
+    run: Measurement,
+) -> None:
+    lines = page_of(result_of(run)).lines()
+    (found,) = [line for line in lines if line.startswith("found: ")]
+    has, has_not = numbers(found)[1:]
+    assert has + has_not == pytest.approx(1.0, abs=2e-4)
+    assert not [line for line in lines if line.startswith("evidence") and "weight" in line]
+    (mean,) = [line for line in lines if "shaft speed" in line]
+    # three pulses said where there are two: two thirds of the true speed
+    assert numbers(mean) == pytest.approx([640.0, 400.0, 880.0], rel=0.09)
+
+
+# --- figures -------------------------------------------------------------------------------------
+
+
+def leaves(value: Any, name: str = "") -> Iterator[tuple[str, float]]:
+    """Every number with the name it has."""
+    if isinstance(value, dict):
+        for key, one in value.items():
+            yield from leaves(one, key) if key not in ("units", "settings", "notices") else ()
+    elif isinstance(value, list):
+        for one in value:
+            yield from leaves(one, name)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield name, value
+
+
+def test_every_number_of_the_json_has_a_unit_and_half_widths_are_absolute(
+    run: Measurement,
+) -> None:
+    told = json.loads(json_text(page_of(result_of(run)).numbers()))
+    units = told["units"]
+    assert {name for name, _ in leaves(told)} <= set(units)
+    assert units["reading"] == units["reading_half_width"] == "g"
+    assert not [name for name, _ in leaves(told) if name in ("half_width", "uncertainty")]
+    for line in told["lines"]:
+        share = line["relative_half_width"]
+        for name in ("reading", "acceleration", "displacement"):
+            assert line[f"{name}_half_width"] == pytest.approx(share * line[name])
+    slices = told["slices"]
+    (first, *_) = [one for one in slices["orders"] if one["name"] == "mesh x 1"]
+    assert run.slices is not None
+    assert np.array(first["reading"], float) == pytest.approx(run.slices.reading[0, 0], nan_ok=True)
+    half = np.array(first["reading_half_width"], float)
+    assert half == pytest.approx(run.slices.half_width[0, 0], nan_ok=True)
+    assert len(slices["speed"]) == len(slices["time"]) == len(first["frequency"])
+    moved = np.array(first["acceleration"], float)
+    ratio = np.array(first["acceleration_half_width"], float) / moved
+    assert ratio == pytest.approx(half / np.array(first["reading"], float), nan_ok=True)
+
+
+# --- the greatest of many ------------------------------------------------------------------------
+
+
+def test_the_greatest_of_many_steps_is_held_where_one_steps_interval_is_not() -> None:
+    """A steady order in strong noise: of some 80 readings the highest is high by noise."""
+    random = np.random.default_rng(20)
+    theta = np.arange(90 * 32) / 32.0
+    held = one_step = 0
+    for _ in range(60):
+        x = np.cos(2 * np.pi * 5 * theta + random.uniform(0, 6))
+        x += 0.6 * random.standard_normal(theta.size)
+        found = order_slices(x, samples_per_turn=32, first=0.0, orders=[5.0])
+        top = greatest(found.amplitude[0], half_width=found.half_width[0])
+        assert top is not None
+        held += top.low <= 1.0 <= top.high
+        one_step += abs(top.amplitude - 1.0) <= found.half_width[0, top.step]
+    assert held >= stats.binom.ppf(1e-4, 60, 0.95)
+    assert one_step < stats.binom.ppf(1e-4, 60, 0.95)
+
+
+def test_the_greatest_of_one_step_is_that_step() -> None:
+    found = greatest([np.nan, 2.0, np.nan], half_width=[0.1, 0.25, 0.1])
+    assert found is not None
+    assert (found.step, found.steps) == (1, 1)
+    assert (found.low, found.high) == pytest.approx((1.75, 2.25))
+    assert greatest([np.nan], half_width=[np.nan]) is None
