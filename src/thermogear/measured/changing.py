@@ -14,7 +14,7 @@ from thermogear.measured.chain import Turning
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
+from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.resonances import Resonance, resonances_of
@@ -277,6 +277,7 @@ def _sliced(
     kept = np.array([np.nan if c.name in through.withheld else 1.0 for c in chosen])
     seen = seen * kept[:, None, None]
     damage = np.array([through.extra.get(c.name, 0.0) for c in chosen])[:, None, None]
+    damage = damage + 2.0 * record.rate_share + jittered(frequency / rate, record.jitter)
     amplitude = np.stack([s.amplitude for s in read])
     unit = 1.0 if not angle.of_mesh else 1.0 / _MESHES
     known = [c.unit is not None and not c.needs_scale for c in chosen]
@@ -316,7 +317,7 @@ def _sliced(
         ),
     )
     if record.rate is not None:
-        slices = replace(slices, resonances=resonances_of(slices))
+        slices = replace(slices, resonances=resonances_of(slices, record.rate_share))
     low, high = shafts_speed.min(), shafts_speed.max()
     what = "the mesh line" if angle.of_mesh else "the shaft"
     span = (

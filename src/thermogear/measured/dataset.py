@@ -76,6 +76,7 @@ def figures(found: Measurement) -> dict[str, Any]:
     return {
         "source": found.record.source,
         "rate": found.record.rate,
+        "rate_half_width": found.record.rate_half_width if found.record.rate else None,
         "settings": found.settings,
         "teeth": found.teeth,
         "mesh_position": gearing.mesh_frequency if gearing else None,

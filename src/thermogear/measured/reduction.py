@@ -85,7 +85,7 @@ class Measurement:
         unit = "cycles/sample" if rate is None else "Hz"
         band, taps = self.chain.band, self.chain.taps
         return {
-            "rate": "unknown" if rate is None else f"{rate:g} /s ({self.record.rate_origin})",
+            "rate": "unknown" if rate is None else f"{rate:.9g} /s ({self.record.rate_origin})",
             "samples": str(self.samples),
             "bin width": f"{(rate or 1.0) / self.samples:.6g} {unit}",
             "window": f"{window.name}, noise bandwidth {window.noise_bandwidth:.4g} bins, "

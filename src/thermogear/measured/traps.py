@@ -43,7 +43,7 @@ MOST_STAMPS = 1 << 23
 """Rows of a time column that its rate is taken from."""
 
 _OFF = 0.5  # of a step: farthest of a stamp from an even clock, beside rounding
-_JITTER = 0.02  # of a step: jitter that is told
+_JITTER = 0.02  # of a step: jitter, or rounding, that is told
 _EXACTLY = 1e-8  # relative half width that is not told
 
 
@@ -221,7 +221,7 @@ def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
     half = max(high - rate, rate - low) if usual is None else 0.0
     width = max(high - rate, rate - low) / rate
     said = ""
-    if width > _EXACTLY:
+    if width > _EXACTLY or pace.grain > _JITTER * pace.step:
         allow = f"stamps of {pace.grain:.3g} s allow +- {width * rate:.2g}"
         said = f"{label}, {allow}" + ("" if usual is None else ": the usual rate there is taken")
     return replace(

@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 
 _LOOKED_AT = 1 << 14  # stamps whose digits are counted
 _MOST_DIGITS = 1e14  # beyond, a float holds no decimal
+_SINGLE = 1e30  # a float of 32 bits holds it
 _NORMAL = 1.959964
 _ROUNDS = 60  # of Newton's method; a few are needed
 _BLOCKS = 16  # least number of blocks whose means are compared
@@ -83,10 +84,10 @@ def grain_of(stamps: Floats) -> Floats:
         exact = np.abs(shifted - np.rint(shifted)) <= 4.0 * np.finfo(float).eps * shifted
         decimals[(decimals < 0) & exact & (shifted < _MOST_DIGITS)] = k
     least = 2.0 * np.spacing(size)
-    if np.array_equal(chosen.astype(np.float32), chosen):
+    if chosen.max(initial=0.0) < _SINGLE and np.array_equal(chosen.astype(np.float32), chosen):
         least = np.maximum(least, np.spacing(size.astype(np.float32)).astype(float))
     if np.any(decimals < 0):
-        return least
+        return np.asarray(least)
     digits = float(np.max(np.where(chosen > 0.0, decimals + scale + 1.0, 1.0)))
     of_digits = np.floor(np.log10(np.where(size > 0.0, size, 1.0))) + 1.0 - digits
     fixed = 10.0 ** -float(decimals.max())
