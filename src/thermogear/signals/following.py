@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -183,17 +185,54 @@ def _envelope(values: Floats, cycles: Floats, length: float) -> tuple[Complexes,
     return base[place], place
 
 
+@dataclass(frozen=True)
+class _Smoother:
+    """A kernel over a record of ``count`` samples, cut at its ends.
+
+    There its centre of weight is inside: what it finds, value and slope, is carried to the place.
+    """
+
+    kernel: Floats
+    count: int
+
+    @functools.cached_property
+    def _moments(self) -> tuple[Floats, Floats, Floats]:
+        """Weight, its centre from the place, and its variance [samples], at each place."""
+        weight, first, second = (self._sum(np.ones(self.count), power) for power in (0, 1, 2))
+        centre = first / weight
+        return weight, centre, second / weight - centre**2
+
+    def _sum(self, x: NDArray[Any], power: int) -> NDArray[Any]:
+        reach = self.kernel.size // 2
+        away = -np.arange(-reach, reach + 1.0)  # a convolution turns the kernel round
+        return np.asarray(signal.oaconvolve(x, away**power * self.kernel, mode="same"))
+
+    def means(self, x: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Weighted mean and slope [1/sample] of ``x`` at each place."""
+        weight, centre, spread = self._moments
+        mean = self._sum(x, 0) / weight
+        return mean, (self._sum(x, 1) / weight - centre * mean) / spread
+
+    def phase(self, envelope: Complexes) -> tuple[Floats, Floats]:
+        """Unwrapped phase of the mean [rad], and its size."""
+        mean, slope = self.means(envelope)
+        size = np.abs(mean)
+        turning = np.imag(slope * np.conj(mean)) / np.maximum(size, 1e-300) ** 2
+        return np.unwrap(np.angle(mean)) - turning * self._moments[1], size
+
+    def values(self, x: Floats) -> Floats:
+        """A real curve, smoothed."""
+        mean, slope = self.means(x)
+        return np.asarray(mean - slope * self._moments[1])
+
+
 def _smoothed(envelope: Complexes, kernel: Floats, passes: int) -> tuple[Floats, Floats]:
     """Unwrapped phase of the smoothed envelope [rad], and the envelope's size at first."""
-    weight = signal.oaconvolve(np.ones(envelope.size), kernel, mode="same")
-    phase = np.zeros(envelope.size)
-    size = np.zeros(0)
-    for _ in range(passes):
-        turned = envelope * np.exp(-1j * phase)
-        base = signal.oaconvolve(turned, kernel, mode="same") / weight
-        phase = phase + np.unwrap(np.angle(base))
-        size = np.abs(base) if size.size == 0 else size
-    return np.asarray(phase), size
+    smoother = _Smoother(kernel, envelope.size)
+    phase, size = smoother.phase(envelope)
+    for _ in range(1, passes):
+        phase = phase + smoother.phase(envelope * np.exp(-1j * phase))[0]
+    return phase, size
 
 
 def _path(values: Floats, frequency: float, length: float, *, last: float) -> tuple[Floats, bool]:
@@ -212,17 +251,9 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
         phase, size = _smoothed(envelope, kernel, passes)
         if passes == 1:
             whole = bool(np.min(size) > 0.5 * np.median(size))
-            phase = _quiet(phase, _hann_kernel(kernel.size * last / length))
+            phase = _Smoother(_hann_kernel(kernel.size * last / length), phase.size).values(phase)
         cycles = cycles + interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
     return cycles, whole
-
-
-def _quiet(phase: Floats, kernel: Floats) -> Floats:
-    """The phase, its straight line kept, smoothed by a kernel that is cut at the ends."""
-    grid = np.arange(phase.size)
-    line = np.polyval(np.polyfit(grid, phase, 1), grid)
-    weight = signal.oaconvolve(np.ones(phase.size), kernel, mode="same")
-    return np.asarray(line + signal.oaconvolve(phase - line, kernel, mode="same") / weight)
 
 
 def _cut_errors(
