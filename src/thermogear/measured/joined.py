@@ -167,6 +167,7 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
         tacho=tacho,
         notices=tuple(notes),
         rate_half_width=records[0].rate_half_width,
+        rate_note=records[0].rate_note,
         jitter=max(one.jitter for one in records),
     )
 

@@ -96,7 +96,7 @@ class Record:
     ``rate_origin`` says where the rate is from; ``start`` [s] is the time of the first sample;
     ``tacho`` names the tacho channel; ``notices`` are the traps met while reading; ``rate_doubt``:
     what contradicts the rate; ``rate_half_width`` [samples/s] of its 95 % interval, 0 where it is
-    stated, ``jitter`` [rms, steps] of the time stamps that it is taken from.
+    stated, ``rate_note``: how well time stamps tell it, and their ``jitter`` [rms, steps].
     """
 
     channels: tuple[Channel, ...]
@@ -108,6 +108,7 @@ class Record:
     notices: tuple[Notice, ...] = ()
     rate_doubt: str = ""
     rate_half_width: float = 0.0
+    rate_note: str = ""
     jitter: float = 0.0
 
     def __post_init__(self) -> None:
@@ -193,7 +194,8 @@ class Record:
                 )
                 text = f"{rate:g}/s is given, the file says {self.rate:g}/s"
                 record = replace(record, rate_doubt=text)
-            record = replace(record, rate=float(rate), rate_origin="given", rate_half_width=0.0)
+            record = replace(record, rate=float(rate), rate_origin="given")
+            record = replace(record, rate_half_width=0.0, rate_note="")
         if unit is not None or scale is not None:
             name = None if unit is None else known_unit(unit)
             vibrating = {c.name for c in record.signals()}

@@ -110,6 +110,7 @@ def record_of(
     if of_all is not None:
         channels = [c if c.unit else Channel(c.name, c.samples, of_all) for c in channels]
     rate, origin = agreed(told.rates, notes)
+    by_stamps = rate is not None and origin == base.origin
     tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
     return Record(
         tuple(channels),
@@ -119,7 +120,8 @@ def record_of(
         base.start,
         tacho,
         (*notes, *doubled),
-        rate_half_width=base.half_width if origin == base.said else 0.0,
+        rate_half_width=base.half_width if by_stamps else 0.0,
+        rate_note=base.note if by_stamps else "",
         jitter=base.jitter,
     )
 
@@ -184,7 +186,7 @@ class _Told:
         base = read_time(time.name, time.unit, t)
         self.notes += base.notices
         if base.rate is not None:
-            self.rates.append((base.rate, base.said))
+            self.rates.append((base.rate, base.origin))
         return base
 
 

@@ -279,7 +279,7 @@ def _record(
 ) -> Record:
     notes = list(layout.notices)
     gaps: tuple[tuple[int, int], ...] = ()
-    half, jitter = 0.0, 0.0
+    half, note, jitter = 0.0, "", 0.0
     names = [layout.names[i] for i in keep]
     units = [layout.units[i] for i in keep]
     rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
@@ -304,7 +304,8 @@ def _record(
             )
             rate, origin = None, ""
         elif base.rate is not None and (rate is None or abs(base.rate - rate) > base.half_width):
-            rate, origin, half = base.rate, base.said, base.half_width
+            rate, origin = base.rate, base.origin
+            half, note = base.half_width, base.note
     if len(times) > 1:
         notes.append(Notice("warning", f"{len(times)} time columns; the first is used"))
     channels = [
@@ -324,6 +325,7 @@ def _record(
         tacho,
         (*notes, *doubled),
         rate_half_width=half,
+        rate_note=note,
         jitter=jitter,
     )
 

@@ -105,7 +105,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
 class TimeBase:
     """What a time column says: rate [1/s] (None: it cannot be told) and the half width of its 95 %
     interval, 0 where it is a usual rate; start, rows to drop, the stamps' ``jitter`` [steps rms];
-    ``said``: where the rate is from, and how well the stamps tell it."""
+    ``note``: how well they tell the rate."""
 
     rate: float | None
     start: float
@@ -115,7 +115,7 @@ class TimeBase:
     gaps: tuple[tuple[int, int], ...] = ()
     half_width: float = 0.0
     jitter: float = 0.0
-    said: str = ""
+    note: str = ""
 
 
 def read_time(
@@ -220,17 +220,17 @@ def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
     rate = 1.0 / pace.step if usual is None else usual
     half = max(high - rate, rate - low) if usual is None else 0.0
     width = max(high - rate, rate - low) / rate
-    said = ""
+    note = ""
     if width > _EXACTLY or pace.grain > _JITTER * pace.step:
-        allow = f"stamps of {pace.grain:.3g} s allow +- {width * rate:.2g}"
-        said = f"{label}, {allow}" + ("" if usual is None else ": the usual rate there is taken")
+        note = f"stamps of {pace.grain:.3g} s allow +- {width * rate:.2g}"
+        note += "" if usual is None else ": the usual rate there is taken"
     return replace(
         base,
         rate=rate,
         half_width=half,
         jitter=pace.jitter,
         origin=label,
-        said=said or label,
+        note=note,
     )
 
 
