@@ -14,6 +14,7 @@ from thermogear.measured.chain import Turning
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
 from thermogear.measured.record import Channel, Notice, Record
@@ -148,10 +149,11 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     per_turn = samples_per_turn(turns)
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
-    gearing = _found(straight, None if near is None else near / per_turn)
+    stated = Stated(teeth=teeth)
+    gearing = _found(straight, None if near is None else near / per_turn, stated, shaft.width)
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if near is not None and gearing is None:
-        gearing = _found(straight, None)
+        gearing = _found(straight, None, stated)
         mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
@@ -192,9 +194,11 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     )
 
 
-def _found(straight: list[Floats], near: float | None) -> Gearing | None:
+def _found(
+    table: list[Floats], near: float | None, stated: Stated, width: float = 0.0
+) -> Gearing | None:
     try:
-        return find_gearing(straight, near)
+        return find_gearing(table, near, stated, followed=width)
     except InputError:
         return None
 

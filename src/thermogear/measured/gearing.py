@@ -56,7 +56,11 @@ class Gearing:
 
 
 def find_gearing(
-    channels: Sequence[Floats], near: float | None = None, stated: Stated | None = None
+    channels: Sequence[Floats],
+    near: float | None = None,
+    stated: Stated | None = None,
+    *,
+    followed: float = 0.0,
 ) -> Gearing:
     """Mesh line, shafts, tooth numbers and further meshes of one record.
 
@@ -71,7 +75,9 @@ def find_gearing(
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
     ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
-    user says, evidence like the lines. Raises InputError when no line is clear.
+    user says, evidence like the lines; ``followed``: where the record is in the angle of the line
+    ``near``, the half width of the filter that followed it, over its frequency: what is nearer to
+    the line and its harmonics says nothing of teeth. Raises InputError when no line is clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -81,7 +87,10 @@ def find_gearing(
         raise InputError("record", f"{table.shape[-1]} samples", allowed=">= 256, not constant")
     raw = prominence(table, 1.0)
     family = _clearest_family(raw, near)
-    weighed = weigh(sharp_peaks(table), stated)
+    peaks = sharp_peaks(table)
+    if near is not None and followed > 0.0:
+        peaks = peaks.without_skirts(near, followed)
+    weighed = weigh(peaks, stated)
     likely = weighed.mesh_weight >= _LIKELY
     if likely and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
         family = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)

@@ -40,7 +40,8 @@ class Shaft:
     """``turns`` of a shaft at samples ``first`` on of the stretch, with rms ``noise`` [turns].
 
     ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
-    what; ``sure``: pulses per turn are known. ``told`` what should be known of it.
+    what; ``sure``: pulses per turn are known. ``width`` of the filter that followed the line, over
+    its frequency. ``told`` what should be known of it.
     """
 
     turns: Floats
@@ -49,6 +50,7 @@ class Shaft:
     origin: str
     line: bool = False
     sure: bool = True
+    width: float = 0.0
     told: tuple[Notice, ...] = ()
 
     @property
@@ -223,6 +225,7 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
         shaft,
         turns=cycles / ratio,
         noise=found.noise / ratio,
+        width=found.width,
         told=(*shaft.told, Notice("info", text)),
     )
 
@@ -288,5 +291,6 @@ def tracked_shaft(table: Floats) -> Shaft | None:
         noise=best.noise,
         origin="the tracked line",
         line=True,
+        width=best.width,
     )
     return replace(shaft, told=(told, *_missing(shaft, table.shape[-1])))
