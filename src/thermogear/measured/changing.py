@@ -149,11 +149,11 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     per_turn = samples_per_turn(turns)
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
-    stated = Stated(teeth=teeth)
-    gearing = _found(straight, None if near is None else near / per_turn, stated, shaft.width)
+    at, stated = None if near is None else near / per_turn, Stated(teeth=teeth)
+    gearing = _found(straight, at, stated, shaft.width)
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if near is not None and gearing is None:
-        gearing = _found(straight, None, stated)
+        gearing = _found(straight, None, stated, 0.0)
         mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
@@ -194,9 +194,7 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     )
 
 
-def _found(
-    table: list[Floats], near: float | None, stated: Stated, width: float = 0.0
-) -> Gearing | None:
+def _found(table: list[Floats], near: float | None, stated: Stated, width: float) -> Gearing | None:
     try:
         return find_gearing(table, near, stated, followed=width)
     except InputError:

@@ -141,7 +141,10 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence) -> Gearing:
         if len(shafts) > 1:
             meshes = second_mesh(sharp, shafts, top, evidence)
     if not shafts:
-        evidence.append("no tooth number is decided: it may be a shaft's own line and no mesh line")
+        any_fits = "" if weighed.gears else ", any fits"
+        evidence.append(
+            f"no tooth number is decided{any_fits}: it may be a shaft's own line and no mesh line"
+        )
     return Gearing(
         mesh_frequency=mesh,
         mesh_frequency_error=error,
