@@ -25,13 +25,13 @@ _NORMAL = 1.959964
 _ROUNDS = 60  # of Newton's method; a few are needed
 _BLOCKS = 16  # least number of blocks whose means are compared
 _TILT = 1.5  # errors within +-A tilt the line of least squares of N samples by 3 A/N at most
-_HIDDEN = 0.1  # of a step, that stamps may jitter unseen where each stands for several samples
 _OUTLIES = 4.5  # standard deviations
 _FEW = 0.05  # of the steps
 _ALIKE = 0.9  # of the steps, from which stamps are even
 _RULE = 3  # jumps that rounding can make: that many lost samples would not lie so
 _SIDES = 8.0  # times the square of samples in a tick: samples whose mean is sure to 1/16
 _AWAY = 0.25  # of a step
+_NO_LOSS = 0.8  # of a step: rounding that no lost sample looks like
 _FINE = 0.01  # of a step: rounding or jitter that a single stamp may be read with
 _NARROW = 1e-3  # relative width of an interval in which a usual rate is no coincidence
 
@@ -101,7 +101,7 @@ def pace_of(stamps: Floats, grain: Floats, place: Floats | None = None) -> Pace:
 
     1. All lines that pass within grain/2 of every stamp, by Newton's method from outside: g(h) =
        min(t + r/2 - h p) - max(t - r/2 - h p) is concave and is >= 0 for them alone. Where stamps
-       repeat a tenth of a step is added at both ends, which could jitter unseen.
+       repeat, jitter could go unseen: the interval holds that of 2. without its last part as well.
     2. Where there is none: least squares, 1.96 standard errors with the noise's power by the means
        of blocks of 1, 2, 4, ... samples, the largest; and 1.5 r/N, what rounding that does not
        change from sample to sample can tilt the line by. Of stamps that repeat the first of each
@@ -121,18 +121,23 @@ def pace_of(stamps: Floats, grain: Floats, place: Floats | None = None) -> Pace:
     t = t - t[0]
     step, left = _line(t, p)
     ends = _allowed(left, p, held)
-    if ends is not None:
-        hidden = 2.0 * _HIDDEN * step / float(p[-1] - p[0]) if float(grain.max()) > step else 0.0
-        low, high = step + ends[0] - hidden, step + ends[1] + hidden
-        return Pace(step=0.5 * (low + high), low=low, high=high, grain=float(grain.max()))
+    allowed = None if ends is None else (step + ends[0], step + ends[1])
+    coarse = float(grain.max()) > step > 0.0
+    if allowed is not None and not coarse:
+        return Pace(
+            step=0.5 * sum(allowed), low=allowed[0], high=allowed[1], grain=float(grain.max())
+        )
     ticks = np.flatnonzero(np.diff(t) > 0.0) + 1
-    if float(grain.max()) > step > 0.0 and ticks.size >= 3:
+    if coarse and ticks.size >= 3:
         # the first sample of each tick lies within one step of the tick's begin
         p, grain = p[ticks], np.minimum(grain[ticks], step)
         step, left = _line(t[ticks], p)
-    beyond = np.abs(left - 0.5 * (left.max() + left.min())) - 0.5 * grain
     middle = p - p.mean()
-    half = _NORMAL * np.sqrt(_power(left) / float(np.dot(middle, middle)))
+    half = _NORMAL * float(np.sqrt(_power(left) / float(np.dot(middle, middle))))
+    if allowed is not None:  # jitter could go unseen: both are held
+        low, high = min(allowed[0], step - half), max(allowed[1], step + half)
+        return Pace(step=0.5 * (low + high), low=low, high=high, grain=float(held.max()))
+    beyond = np.abs(left - 0.5 * (left.max() + left.min())) - 0.5 * grain
     half += _TILT * float(grain.max()) / float(p[-1] - p[0])
     power = float(np.mean(left**2) - np.mean(grain**2) / 12.0)
     farthest = max(float(beyond.max()), 0.0) / step if step > 0.0 else np.inf
@@ -215,6 +220,8 @@ def jumps_of(stamps: Floats, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
     if not even and coarse < step:
         spread = 0.5 * float(np.subtract(*np.percentile(steps, (84.1, 15.9))))
     bound = 0.5 * step if even else max(0.5 * step + own, _OUTLIES * spread)
+    if coarse < _NO_LOSS * step:  # one rounding step more or less is none
+        bound = max(bound, 1.2 * coarse)
     rows = np.flatnonzero(far > bound) + 1
     if rows.size >= _RULE and pace_of(t, grain).even:
         rows = rows[:0]
