@@ -25,7 +25,7 @@ def test_the_ends_are_those_of_a_linear_program() -> None:
             ).fun
             for sign in (1.0, -1.0)
         ]
-        pace = pace_of(t, np.full(t.size, grain))
+        pace = pace_of(t, grain=np.full(t.size, grain))
         assert pace.even
         assert (pace.low, pace.high) == pytest.approx(ends, rel=1e-7)
         assert pace.low <= step <= pace.high
@@ -40,7 +40,7 @@ def test_rates_of_drawn_columns_are_in_their_intervals() -> None:
         count, jitter = int(random.integers(2000, 9000)), random.choice([0.0, 0.1, 0.2])
         place = np.arange(count) + random.uniform(-jitter, jitter, count)
         t = np.round(place / rate + random.uniform(0.0, 1.0), decimals)
-        pace = pace_of(t, grain_of(t))
+        pace = pace_of(t, grain=grain_of(t))
         held.append(pace.low <= 1.0 / rate <= pace.high)
         assert jitter or (held[-1] and pace.even)
         assert pace.high / pace.low - 1.0 < 4.0 / count * max(1.0, 10.0**-decimals * rate)
@@ -52,7 +52,7 @@ def test_slow_errors_widen_the_interval() -> None:
     """A clock that goes to and fro within a third of a step, 2 turns in the record."""
     place = np.arange(4000)
     t = place + 0.3 * np.sin(np.pi * 4.0 * place / place.size + 1.0)
-    pace = pace_of(t, np.full(t.size, 1e-9))
+    pace = pace_of(t, grain=np.full(t.size, 1e-9))
     assert not pace.even
     assert pace.low < 1.0 < pace.high
     assert pace.jitter == pytest.approx(0.3 / np.sqrt(2.0), rel=0.2)
@@ -70,9 +70,9 @@ def test_rounding_steps_of_decimals_digits_and_floats() -> None:
 
 
 def test_a_clock_that_is_not_usual_stays_itself() -> None:
-    assert usual_rate(51_199.7, 51_199.9) is None
-    assert usual_rate(4_950.0, 5_050.0) is None  # so wide that any may lie there
-    assert usual_rate(2048.0, 2048.0) == 2048.0
+    assert usual_rate(51_199.7, high=51_199.9) is None
+    assert usual_rate(4_950.0, high=5_050.0) is None  # so wide that any may lie there
+    assert usual_rate(2048.0, high=2048.0) == 2048.0
     assert np.all(np.diff(np.log(USUAL_RATES)) > 1e-3)
 
 
@@ -80,13 +80,13 @@ def test_a_lost_block_is_found_where_stamps_repeat() -> None:
     """5 kHz, stamps of a millisecond: 400 samples lost, beside none."""
     place = np.arange(20_000)
     t = np.round(place / 5000.0, 3)
-    assert jumps_of(t, np.full(t.size, 1e-3))[0].size == 0
+    assert jumps_of(t, grain=np.full(t.size, 1e-3))[0].size == 0
     t = np.round((place + 400 * (place >= 9000)) / 5000.0, 3)
-    rows, ahead = jumps_of(t, np.full(t.size, 1e-3))
+    rows, ahead = jumps_of(t, grain=np.full(t.size, 1e-3))
     assert rows.tolist() == [9000]
     assert ahead == pytest.approx([400.0], abs=0.2)
 
 
 def test_two_stamps_have_no_pace() -> None:
     with pytest.raises(InputError, match=r"stamps.*allowed >= 3"):
-        pace_of(np.array([0.0, 1.0]), np.full(2, 0.1))
+        pace_of(np.array([0.0, 1.0]), grain=np.full(2, 0.1))

@@ -186,12 +186,12 @@ def _paced(found: TimeBase, label: str, seconds: Floats, grain: Floats, unit_nam
     """What rising stamps [s], rounded to ``grain``, say: gaps, jitter and the rate, or none."""
     steps = np.diff(seconds)
     notes = list(found.notices)
-    jumps, ahead = jumps_of(seconds, grain)
+    jumps, ahead = jumps_of(seconds, grain=grain)
     gaps = _dropped(jumps, ahead, steps)
     place = np.arange(seconds.size, dtype=float)
     for row, missing in gaps:
         place[row:] += missing
-    pace = pace_of(seconds, grain, place)
+    pace = pace_of(seconds, grain=grain, place=place)
     uneven = pace.farthest > max(_OFF, 6.0 * pace.jitter) or pace.jitter > 0.5 * _OFF
     if uneven or (not gaps and 0 < jumps.size <= max(_SOME, _FEW * steps.size)):
         first = int(jumps[0]) + 1 if jumps.size else pace.place + 1
@@ -216,7 +216,7 @@ def _paced(found: TimeBase, label: str, seconds: Floats, grain: Floats, unit_nam
 def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
     """The rate by a pace [s]: the usual rate that alone fits it, else with its half width."""
     low, high = 1.0 / pace.high, 1.0 / pace.low
-    usual = usual_rate(low, high)
+    usual = usual_rate(low, high=high)
     rate = 1.0 / pace.step if usual is None else usual
     half = max(high - rate, rate - low) if usual is None else 0.0
     width = max(high - rate, rate - low) / rate

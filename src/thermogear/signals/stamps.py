@@ -94,7 +94,7 @@ def grain_of(stamps: Floats) -> Floats:
     return np.asarray(np.maximum(least, np.where(size > 0.0, 10.0**of_digits, 0.0).clip(fixed)))
 
 
-def pace_of(stamps: Floats, grain: Floats, place: Floats | None = None) -> Pace:
+def pace_of(stamps: Floats, *, grain: Floats, place: Floats | None = None) -> Pace:
     """The pace of ``stamps`` (sample,) that are rounded to ``grain`` (sample,), in one unit.
 
     ``place``: numbers of the samples, rising, where some between are lost; default 0, 1, 2, ...
@@ -107,7 +107,7 @@ def pace_of(stamps: Floats, grain: Floats, place: Floats | None = None) -> Pace:
        change from sample to sample can tilt the line by. Of stamps that repeat the first of each
        tick count, which are sure to a step.
 
-    >>> pace = pace_of(np.round(np.arange(4000) / 2048, 4), np.full(4000, 1e-4))
+    >>> pace = pace_of(np.round(np.arange(4000) / 2048, 4), grain=np.full(4000, 1e-4))
     >>> pace.even, bool(1 / pace.high < 2048 < 1 / pace.low), f"{1 / pace.step:.4f}"
     (True, True, '2048.0000')
 
@@ -195,7 +195,7 @@ def _power(left: Floats) -> float:
     return best
 
 
-def jumps_of(stamps: Floats, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
+def jumps_of(stamps: Floats, *, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
     """Where stamps (sample,) rounded to ``grain`` (sample,) jump: number of the sample after it,
     and how many steps more than one they jump by (less than 0: they stand).
 
@@ -205,7 +205,7 @@ def jumps_of(stamps: Floats, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
     the means of samples on both sides, unless the others are even.
 
     >>> t = np.delete(np.arange(100.0), [50, 51])
-    >>> [found.tolist() for found in jumps_of(t, np.full(98, 1e-9))]
+    >>> [found.tolist() for found in jumps_of(t, grain=np.full(98, 1e-9))]
     [[50], [2.0]]
     """
     t = np.asarray(stamps, dtype=float)
@@ -223,7 +223,7 @@ def jumps_of(stamps: Floats, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
     if coarse < _NO_LOSS * step:  # one rounding step more or less is none
         bound = max(bound, 1.2 * coarse)
     rows = np.flatnonzero(far > bound) + 1
-    if rows.size >= _RULE and pace_of(t, grain).even:
+    if rows.size >= _RULE and pace_of(t, grain=grain).even:
         rows = rows[:0]
     others = np.delete(steps, rows - 1)
     step = float(others.mean()) if others.size else step
@@ -249,11 +249,11 @@ def jumps_of(stamps: Floats, grain: Floats) -> tuple[NDArray[np.intp], Floats]:
     return rows[real], ahead[real]
 
 
-def usual_rate(low: float, high: float) -> float | None:
+def usual_rate(low: float, *, high: float) -> float | None:
     """The one usual rate between ``low`` and ``high`` [1/s]; None where there is none, there are
     several, or the interval is so wide (0.1 %) that any might lie in it by chance.
 
-    >>> usual_rate(2047.99, 2048.02), usual_rate(2048.01, 2048.02)
+    >>> usual_rate(2047.99, high=2048.02), usual_rate(2048.01, high=2048.02)
     (2048.0, None)
     """
     if not 0.0 < high - low <= _NARROW * low:
