@@ -25,7 +25,6 @@ _NEAR = 200  # bins to each side in which the density of lines is counted
 _LOBE = 3  # bins beside a line in which a lower one cannot be told
 _ITSELF = 1.0  # bins
 _PLACE = 0.01  # bins: what is left of a place's error
-_BANDS = 16
 _LOBE_BINS = np.arange(-2, 3)
 
 
@@ -35,10 +34,7 @@ class Peaks:
 
     ``place`` [cycles/sample] with standard deviation ``error``; ``level``: natural logarithm of
     amplitude over the floor's rms; ``density``: other lines per bin around each; ``least``: the
-    level that a line must have to be seen; ``bin_width`` [cycles/sample]. ``sharpness``: logarithm
-    of the highest bin's share in the power of its band, summed over bands. A wrong clock, which
-    turns with the sidebands of its own reference, takes power from the lines and gives it to new
-    ones: it makes the spectrum less sharp.
+    level that a line must have to be seen; ``bin_width`` [cycles/sample].
     """
 
     place: Floats
@@ -48,7 +44,6 @@ class Peaks:
     least: float
     bin_width: float
     bins: int
-    sharpness: float = 0.0
 
     @property
     def size(self) -> int:
@@ -97,11 +92,10 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
     bin_width = rate / samples
     power = np.maximum(np.abs(spectrum), 1e-300) ** 2
     logs = np.log(power)
-    # a sharp resonance needs a short window, lines that stand close a long one
-    floor = np.maximum(running_median(logs, 301), running_median(logs, 61))
+    floor = floor_of(logs)
     total = np.sum(power / np.exp(floor) * np.log(2.0), axis=0)
     number = total.size
-    least = float(stats.gamma.isf(_FALSE / number, count))
+    least = least_seen(number, channels=count)
     highest = ndimage.maximum_filter1d(total, 3)
     inside = np.arange(number)
     clear = (total == highest) & (total > least)
@@ -126,13 +120,18 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
         least=0.5 * float(np.log(least / count)),
         bin_width=bin_width,
         bins=number,
-        sharpness=_sharpness(total),
     )
 
 
-def _sharpness(power: Floats) -> float:
-    edge = np.linspace(0, power.size, _BANDS + 1).astype(int)[:-1]
-    return float(np.sum(np.log(np.maximum.reduceat(power, edge) / np.add.reduceat(power, edge))))
+def floor_of(logs: Floats) -> Floats:
+    """Running median of the logarithm of power (channel, bin), lines left out."""
+    # a sharp resonance needs a short window, lines that stand close a long one
+    return np.maximum(running_median(logs, 301), running_median(logs, 61))
+
+
+def least_seen(bins: int, *, channels: int) -> float:
+    """Sum of normalised powers that noise passes in a tenth of a bin of the whole spectrum."""
+    return float(stats.gamma.isf(_FALSE / bins, channels))
 
 
 def _in_lobe(lobes: NDArray[np.complex128], window: Window) -> tuple[Floats, Floats]:

@@ -2,50 +2,53 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, interpolate
 
-from thermogear.measured.peaks import Peaks, peaks_of
+from thermogear.measured.peaks import Peaks, floor_of, least_seen, peaks_of
 
 Floats = NDArray[np.float64]
 
 _REFERENCES = 4
-_WIDTHS = ((0.004, 0.015), (0.001, 0.004))
+_WIDTHS = ((0.004, 0.015, 0.045, 0.12), (0.001, 0.004))
 """Half widths of the filter over a reference, of its frequency, in the first and second pass."""
 _LEAST = 12.0  # bins of that half width
 _STEADY = 0.03  # cycles of wander at the highest frequency
 _HIGHEST = 0.3
 _FINER = 4
 _NEAR, _AROUND = 20, 300  # bins: to each side of a line, and of its floor
+_GAIN = 5.0, 0.1  # of the sum of logarithms, and a share of it: less is chance
+_FLOOR = np.log(4.0)  # change of the floor: a clock takes half of the noise beside its own line
 
 
 def sharp_peaks(channels: Floats) -> Peaks:
-    """Lines of ``channels`` (channel, sample), where the speed wanders in the clock of the line
-    that makes the spectrum sharpest, the steady clock of the record among them. In the new clock it
-    is tried once more, with narrower filters.
+    """Lines of ``channels`` (channel, sample), where the speed wanders in the clock of a line.
+
+    It is the clock that leaves the least of lines and noise, that of the record among them. In the
+    new clock it is tried once more, with narrower filters.
     """
     best = peaks_of(channels)
     for widths in _WIDTHS:
-        found = _straighter(channels, best, widths)
-        if found is None:
+        straight = _straighter(channels, best, widths)
+        if straight is None:
             break
-        channels, best = found
+        channels, best = straight, peaks_of(straight)
     return best
 
 
-def _straighter(
-    channels: Floats, peaks: Peaks, widths: tuple[float, ...]
-) -> tuple[Floats, Peaks] | None:
-    """The record in a better clock and its lines; None: there is none."""
-    best, score = None, peaks.sharpness
+def _straighter(channels: Floats, peaks: Peaks, widths: tuple[float, ...]) -> Floats | None:
+    """The record in a better clock; None: there is none."""
+    best, gain = None, 0.0
     spectra = np.fft.rfft(channels - channels.mean(axis=-1, keepdims=True), axis=-1)
     count = channels.shape[-1]
     fine: Floats | None = None
+    floor, before = _Floor.of(channels), dict[int, float]()
     for reference in _references(peaks):
         lines = spectra[_clearest(np.abs(spectra), reference * count)]
-        for width in widths:
-            half_width = max(width * reference, _LEAST / count)
+        for half_width in sorted({max(width * reference, _LEAST / count) for width in widths}):
             if half_width > 0.2 * reference:
                 continue
             cycles, start = _cycles(lines, count, reference, half_width)
@@ -53,13 +56,51 @@ def _straighter(
                 continue
             steady = np.linspace(cycles[0], cycles[-1], cycles.size)
             if float(np.std(cycles - steady)) * _HIGHEST / reference < _STEADY:
-                return best
+                continue
             fine = _finer(channels) if fine is None else fine
             turned = _warped(fine, cycles, start)
-            found = peaks_of(turned)
-            if found.sharpness > score:
-                best, score = (turned, found), found.sharpness
+            if start not in before:  # a shorter record has less of both
+                before[start] = floor.cost(channels[:, start : count - start])
+            gained = before[start] - floor.cost(turned)
+            if gained > max(gain, _GAIN[0], _GAIN[1] * abs(before[start])):
+                best, gain = turned, gained
     return best
+
+
+@dataclass(frozen=True)
+class _Floor:
+    """Level of noise of a record (channel, bin), of Hann's spectrum: logarithm of power."""
+
+    logs: Floats
+    samples: int
+
+    @classmethod
+    def of(cls, channels: Floats) -> _Floor:
+        return cls(floor_of(np.log(np.maximum(_power(channels), 1e-300))), channels.shape[-1])
+
+    def cost(self, channels: Floats) -> float:
+        """How much a record has of lines and, against this floor, of noise: sums of logarithms.
+
+        Of each line the power over the least seen, of the floor what changed fourfold or
+        more. In the right clock the lines are few, and what a line smeared over the floor is gone
+        from it. A wrong clock, which turns with the sidebands of its own reference, makes new ones.
+        """
+        power = _power(channels)
+        bins = np.linspace(0.0, self.logs.shape[-1] - 1.0, power.shape[-1])
+        grid = np.arange(self.logs.shape[-1])
+        scale = np.log(self.samples / channels.shape[-1])
+        floor = np.stack([np.interp(bins, grid, row) for row in self.logs]) - scale
+        total = np.sum(power * np.exp(-floor), axis=0) * np.log(2.0)
+        over = total / least_seen(total.size, channels=channels.shape[0])
+        own = np.mean(floor_of(np.log(np.maximum(power, 1e-300))) - floor, axis=0)
+        changed = own[np.abs(own) > _FLOOR]
+        return float(np.sum(np.log(over[over > 1.0])) + np.sum(changed))
+
+
+def _power(channels: Floats) -> Floats:
+    centred = channels - channels.mean(axis=-1, keepdims=True)
+    hann = np.hanning(centred.shape[-1])
+    return np.asarray(np.abs(fft.rfft(centred * hann, axis=-1)) ** 2)
 
 
 def _clearest(size: Floats, place: float) -> int:

@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
-from thermogear.signals.following import Followed, band_power, best_followed, filter_widths
+from thermogear.signals.following import (
+    Followed,
+    band_power,
+    best_followed,
+    filter_widths,
+    follow_line,
+)
 from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 
@@ -18,8 +24,9 @@ Floats = NDArray[np.float64]
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain
+_MISSED = 0.002  # of the line's power: a tenth of a per cent of its amplitude
+_BROUGHT = 0.75
 _STILL = 0.1  # of a line, that no steady one explains
-_NEIGHBOURS = 5
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -38,6 +45,7 @@ class MeshTurns:
     said: str = ""
     phase_noise: float = 0.0
     followed: float = 0.0
+    power: float = 0.0
 
 
 def mesh_turns(
@@ -59,10 +67,14 @@ def mesh_turns(
     beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
     strong = strong_lines(spectrum)
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
-    if _wanders(spectrum, reading, beside, strong, harmonics):
-        found = best_followed(values, spectrum, line.frequency)
-        if found is not None and np.all(np.diff(found.cycles) > 0.0):
-            return _followed(found, values, per_cycle, spectrum)
+    least = _wandering(spectrum, reading, beside, strong, harmonics)
+    turns: MeshTurns | None = None
+    if least == 0.0:
+        turns = _followed(best_followed(values, spectrum, line.frequency), values, per_cycle)
+    elif least is not None:
+        turns = _fullest(values, spectrum, line.frequency, per_cycle)
+    if turns is not None and least is not None and turns.power >= least:
+        return turns
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
         if 2.56 * rank * reading.frequency > 1.0:
@@ -103,52 +115,96 @@ def clearest(table: Floats, mesh: float) -> tuple[Floats, LineSpectrum]:
     return table[best], spectra[best]
 
 
-def _wanders(
+def _wandering(
     spectrum: LineSpectrum,
     reading: Reading,
     beside: Sequence[float],
     strong: Sequence[Strong],
     harmonics: int,
-) -> bool:
-    """Whether the phase turns, or most of the power near the line is no steady line's.
+) -> float | None:
+    """The power that a followed line must hold to be believed; None: the line is steady.
 
-    The power is that within the narrowest filter that may hold a wandering line, less that of the
-    sidebands at ``beside``, of ``strong`` lines that are steady as well, and four standard
-    deviations of the noise there.
+    It wanders where its phase turns, or most of the power near it is no steady line's. Where steady
+    neighbours explain that power, they may be its own: a line that swings has a comb about it.
+    Then the line followed must have three quarters of their power besides; of a neighbour it gets
+    half, of two that swell and fade together nothing.
+
+    The power is that within a filter that may hold a wandering line, less that of the sidebands at
+    ``beside`` and four standard deviations of the noise there.
     """
     # noise that peaks beside the line changes amplitude and phase alike
     turns = reading.turning > min(1.5 * reading.changing, 0.5)
     if turns and reading.turning * harmonics > 2.0 * np.pi * _STEADY:
-        return True
+        return 0.0
     frequency, width = reading.frequency, spectrum.bin_width
     widths = filter_widths(spectrum, frequency)
     if not widths:
-        return False
-    near = [one for one in beside if 3.0 * width < abs(one - frequency) < widths[0]]
-    power = band_power(spectrum, frequency, widths[0])
+        return None
+    own = reading.amplitude**2
+    missing = _missing(spectrum, reading, beside, widths[0])
+    others = [0.0]
+    for one in [o.place * width for o in strong if not _is_side(o, beside, width)]:
+        if 3.0 * width < abs(one - frequency) < widths[0]:
+            other = read_line(spectrum, one, strong=strong)
+            if max(other.turning, other.changing) < _STILL:
+                others.append(other.amplitude**2)
+    if own + reading.beside < _KEPT * (own + missing) - sum(others):
+        return 0.0
+    missing = max(_missing(spectrum, reading, beside, one) for one in widths)
+    highest = max(own, *others)
+    if missing < _MISSED * own:
+        return None
+    return (1.0 - _BROUGHT) * highest + _BROUGHT * (own + missing)
+
+
+def _missing(
+    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float], half_width: float
+) -> float:
+    """Power within ``half_width`` of the line that neither it nor its sidebands have."""
+    width, frequency = spectrum.bin_width, reading.frequency
+    near = [one for one in beside if 3.0 * width < abs(one - frequency) < half_width]
+    power = band_power(spectrum, frequency, half_width) - reading.amplitude**2
     power -= sum(band_power(spectrum, one, 2.0 * width) for one in near)
-    others = [
-        one.place * width
-        for one in strong
-        if all(abs(one.place * width - b) > 2.0 * width for b in near)
-    ]
-    for one in [o for o in others if 3.0 * width < abs(o - frequency) < widths[0]][:_NEIGHBOURS]:
-        other = read_line(spectrum, one, strong=strong)
-        if max(other.turning, other.changing) < _STILL:
-            power -= other.amplitude**2
-    scatter = reading.noise**2 * float(np.sqrt(4.0 * widths[0] / width))
-    return reading.amplitude**2 + reading.beside < _KEPT * (power - 4.0 * scatter)
+    return power - 4.0 * reading.noise**2 * float(np.sqrt(4.0 * half_width / width))
 
 
-def _followed(found: Followed, values: Floats, per_cycle: int, spectrum: LineSpectrum) -> MeshTurns:
-    turning = Turning(cycles=found.cycles, dropped=0, per_cycle=per_cycle)
-    steady = np.linspace(found.cycles[0], found.cycles[-1], found.cycles.size)
-    wander = float(np.std(found.cycles - steady))
+def _is_side(one: Strong, beside: Sequence[float], width: float) -> bool:
+    return any(abs(one.place * width - side) < 2.0 * width for side in beside)
+
+
+def _fullest(
+    values: Floats,
+    spectrum: LineSpectrum,
+    frequency: float,
+    per_cycle: int,
+) -> MeshTurns | None:
+    """The line followed by the filter that gathers most of it."""
+    best: MeshTurns | None = None
+    for half_width in filter_widths(spectrum, frequency, narrow=True):
+        if spectrum.samples * half_width < 4.0 * spectrum.rate:
+            continue
+        found = follow_line(values, spectrum.rate, frequency=frequency, half_width=half_width)
+        turns = _followed(found, values, per_cycle)
+        if turns is not None and (best is None or turns.power > best.power):
+            best = turns
+    return best
+
+
+def _followed(found: Followed | None, values: Floats, per_cycle: int) -> MeshTurns | None:
+    if found is None:
+        return None
+    cycles = found.cycles
+    if np.any(np.diff(cycles) <= 0.0):
+        return None
+    turning = Turning(cycles=cycles, dropped=0, per_cycle=per_cycle)
+    wander = float(np.std(cycles - np.linspace(cycles[0], cycles[-1], cycles.size)))
     straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
     reading = read_line(straight, 1.0, followed=_HELD * found.last / found.frequency)
-    bins = 1.2 * found.last / spectrum.bin_width  # in the filter, its noise bandwidth
+    bins = 1.2 * found.last * values.size  # in the filter, its noise bandwidth
     # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))
+    hann = np.hanning(values.size)
+    line = 2.0 * abs(np.sum(hann * values * np.exp(-2j * np.pi * cycles))) / np.sum(hann)
     return MeshTurns(
         frequency=found.frequency,
         half_width=found.frequency_half_width,
@@ -157,4 +213,5 @@ def _followed(found: Followed, values: Floats, per_cycle: int, spectrum: LineSpe
         "that phase",
         phase_noise=float(np.hypot(noise, reading.turning)),
         followed=_HELD * found.last,
+        power=float(line**2) * max(0.0, 1.0 - 2.0 * noise**2),
     )

@@ -19,7 +19,7 @@ from thermogear.signals.spectra import finite_record, positive_rate
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
-WIDTHS = (0.006, 0.012, 0.025, 0.05)
+WIDTHS = (0.006, 0.012, 0.025, 0.05, 0.1)
 """Half widths of the filter over a line, relative to its frequency, the narrowest first."""
 
 _GAIN = 1.1  # a wider filter must bring a tenth more power
@@ -77,22 +77,29 @@ def _bins(spectrum: LineSpectrum, frequency: float, half_width: float) -> tuple[
 
 
 def filter_widths(
-    spectrum: LineSpectrum, frequency: float, widths: Sequence[float] = WIDTHS
+    spectrum: LineSpectrum,
+    frequency: float,
+    widths: Sequence[float] = WIDTHS,
+    *,
+    narrow: bool = False,
 ) -> tuple[float, ...]:
     """Half widths to try on a wandering line, the narrowest that may hold it first.
 
-    Twelve bins at least; a wider one than the first brings less than a tenth more power. None where
-    twelve bins are more than a fifth of ``frequency``.
+    Twelve bins at least; a wider one than the first brings less than a tenth more power. With
+    ``narrow`` it is all of them, however little the narrowest holds. None where twelve bins are
+    more than a fifth of ``frequency``.
 
     >>> from thermogear.signals.lines import line_spectrum
     >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
     >>> filter_widths(line_spectrum(x, 1.0), 0.1)
-    (0.006,)
+    (0.006, 0.01)
     """
     least = 12.0 * spectrum.bin_width
     if least > 0.2 * frequency:
         return ()
-    steps = [*dict.fromkeys(max(least, w * frequency) for w in widths)]
+    steps = [*dict.fromkeys(max(least, round(w * frequency, 15)) for w in widths)]
+    if narrow:
+        return tuple(steps)
     powers = [band_power(spectrum, frequency, one) for one in steps]
     first = next(i for i in range(len(steps)) if max(powers[i:]) <= _GAIN * powers[i])
     return tuple(steps[first:])
@@ -239,20 +246,25 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
     """Cycles of the line at each sample, and whether it stayed within the filter.
 
     Caught by a kernel of ``length``, then followed by the longer ``last``, which the line no longer
-    leaves and which lets less of other lines in.
+    leaves and which lets less of other lines in. Sidebands that a filter takes unevenly, because
+    the line is not in its middle, turn the phase: it is smoothed and followed once more.
     """
     grid = np.arange(values.size)
-    cycles = np.asarray(frequency * grid, float)
-    whole = True
-    for kernel_length, passes in ((length, 1), (last, _PASSES)):
-        # the envelope's own filter has cut kernels at the ends as well, so it is made twice
-        envelope, place = _envelope(values, cycles, kernel_length)
-        kernel = _hann_kernel(kernel_length * (place.size - 1) / (values.size - 1))
-        phase, size = _smoothed(envelope, kernel, passes)
-        if passes == 1:
+    even = np.asarray(frequency * grid, float)
+    cycles, whole = even, True
+    for stage in ("caught", "followed", "followed again"):
+        caught = stage == "caught"
+        envelope, place = _envelope(values, cycles, length if caught else last)
+        finer = (place.size - 1) / (values.size - 1)
+        kernel = _hann_kernel((length if caught else last) * finer)
+        phase, size = _smoothed(envelope, kernel, 1 if caught else _PASSES)
+        turned = (cycles - even)[place] + phase / (2.0 * np.pi)
+        if caught:
             whole = bool(np.min(size) > 0.5 * np.median(size))
-            phase = _Smoother(_hann_kernel(kernel.size * last / length), phase.size).values(phase)
-        cycles = cycles + interpolate.CubicSpline(place, phase / (2.0 * np.pi))(grid)
+        if stage != "followed again":
+            quiet = _Smoother(_hann_kernel(last * finer), place.size)
+            turned = quiet.values(quiet.values(turned))
+        cycles = even + interpolate.CubicSpline(place, turned)(grid)
     return cycles, whole
 
 
