@@ -113,3 +113,12 @@ def test_a_run_up_that_tells_no_teeth_says_any() -> None:
     assert found.gearing.weighed.gears == ()
     assert found.gearing.weighed.verdict == "undecided"
     assert "fits" in found.gearing.evidence[-1]
+
+
+def test_pieces_of_one_run_with_coarse_stamps_join_without_a_gap() -> None:
+    """Their starts are those of the lines through all stamps."""
+    place = np.arange(9000)
+    t = np.round(place / 5000.0 + 0.0003, 3)
+    bases = [read_time("t", "s", part) for part in (t[:4001], t[4001:])]
+    assert [base.rate for base in bases] == [5000.0, 5000.0]
+    assert (bases[1].start - bases[0].start) * 5000.0 == pytest.approx(4001.0, abs=0.2)

@@ -217,16 +217,18 @@ def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
     """The rate by a pace [s]: the usual rate that alone fits it, else with its half width."""
     low, high = 1.0 / pace.high, 1.0 / pace.low
     usual = usual_rate(low, high=high)
+    rounded = pace.grain > _JITTER * pace.step
     rate = 1.0 / pace.step if usual is None else usual
     half = max(high - rate, rate - low) if usual is None else 0.0
     width = max(high - rate, rate - low) / rate
     note = ""
-    if width > _EXACTLY or pace.grain > _JITTER * pace.step:
+    if width > _EXACTLY or rounded:
         note = f"stamps of {pace.grain:.3g} s allow +- {width * rate:.2g}"
         note += "" if usual is None else ": the usual rate there is taken"
     return replace(
         base,
         rate=rate,
+        start=base.start + (pace.begin if rounded else 0.0),
         half_width=half,
         jitter=pace.jitter,
         origin=label,

@@ -50,7 +50,8 @@ about eleven in a factor of e."""
 @dataclass(frozen=True, kw_only=True)
 class Pace:
     """The line of stamps: one step lasts ``step``, between ``low`` and ``high`` (95 %, or all that
-    rounding allows where ``even``); ``grain`` the largest rounding step, all in the stamps' unit.
+    rounding allows where ``even``); ``begin``: the line at the first sample, from its stamp on;
+    ``grain`` the largest rounding step, all in the stamps' unit.
 
     ``jitter``: rms of what is off the line beyond rounding, ``farthest`` the farthest stamp beyond
     half a rounding step, and ``place`` its number; both in steps.
@@ -60,6 +61,7 @@ class Pace:
     low: float
     high: float
     grain: float
+    begin: float = 0.0
     even: bool = True
     jitter: float = 0.0
     farthest: float = 0.0
@@ -122,13 +124,14 @@ def pace_of(stamps: Floats, *, grain: Floats, place: Floats | None = None) -> Pa
     step, left = _line(t, p)
     ends = _allowed(left, p, held)
     allowed = None if ends is None else (step + ends[0], step + ends[1])
-    coarse = float(grain.max()) > step > 0.0
-    if allowed is not None and not coarse:
-        return Pace(
-            step=0.5 * sum(allowed), low=allowed[0], high=allowed[1], grain=float(grain.max())
-        )
+    largest, begin = float(grain.max()), float(t.mean() - step * (p.mean() - p[0]))
+    if allowed is not None and largest <= step:
+        low, high = allowed
+        return Pace(step=0.5 * (low + high), low=low, high=high, grain=largest, begin=begin)
     ticks = np.flatnonzero(np.diff(t) > 0.0) + 1
-    if coarse and ticks.size >= 3:
+    if largest <= step or ticks.size < 3:
+        ticks = np.arange(t.size)
+    else:
         # the first sample of each tick lies within one step of the tick's begin
         p, grain = p[ticks], np.minimum(grain[ticks], step)
         step, left = _line(t[ticks], p)
@@ -136,7 +139,7 @@ def pace_of(stamps: Floats, *, grain: Floats, place: Floats | None = None) -> Pa
     half = _NORMAL * float(np.sqrt(_power(left) / float(np.dot(middle, middle))))
     if allowed is not None:  # jitter could go unseen: both are held
         low, high = min(allowed[0], step - half), max(allowed[1], step + half)
-        return Pace(step=0.5 * (low + high), low=low, high=high, grain=float(held.max()))
+        return Pace(step=0.5 * (low + high), low=low, high=high, grain=largest, begin=begin)
     beyond = np.abs(left - 0.5 * (left.max() + left.min())) - 0.5 * grain
     half += _TILT * float(grain.max()) / float(p[-1] - p[0])
     power = float(np.mean(left**2) - np.mean(grain**2) / 12.0)
@@ -145,11 +148,12 @@ def pace_of(stamps: Floats, *, grain: Floats, place: Floats | None = None) -> Pa
         step=step,
         low=step - half,
         high=step + half,
-        grain=float(grain.max()),
+        grain=largest,
+        begin=begin,
         even=False,
         jitter=min(float(np.sqrt(max(power, 0.0))) / step, farthest) if step > 0.0 else np.inf,
         farthest=farthest,
-        place=int(p[np.argmax(beyond)]),
+        place=int(ticks[np.argmax(beyond)]),
     )
 
 
