@@ -157,7 +157,7 @@ trial-coverage: $(STAMP)  ## do stated 95 % intervals of lines hold? 500 records
 trial-turning: $(STAMP)  ## orders of runs of eight kinds (lost pulses, no tacho, a stop, ...): do intervals hold? ten minutes; docs/trial_turning.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_turning.py
 
-trial-stamps: $(STAMP)  ## rates of rounded and jittering time stamps: do their intervals hold? five minutes; docs/trial_stamps.md
+trial-stamps: $(STAMP)  ## rates of rounded and jittering time stamps: do their intervals hold? a minute; docs/trial_stamps.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_stamps.py $(STAMPS)
 
 trial-teeth: $(STAMP)  ## 200 held-back records with known teeth or none, ten minutes; TEETH=20 for a few; docs/trial_teeth.md
