@@ -5,7 +5,8 @@ harmonic sidebands up to the first, second or third of each of its gears' shafts
 lines; perhaps a second mesh with the like; and combs of impacts or shaft harmonics on all that is
 left. "No gear" has the combs alone, and a mesh whose teeth do not show has no sidebands. The log
 evidence of each is that of its groups of lines over chance (:mod:`thermogear.measured.groups`),
-with the prior of its free numbers: mesh line anywhere, teeth one of 12..250 for each gear.
+with the prior of its free numbers: mesh line anywhere, teeth one of 12..250 for each gear. Where
+the shaft would turn at a multiple of the mains' frequency, an inverter is weighed against it.
 """
 
 from __future__ import annotations
@@ -29,7 +30,14 @@ from thermogear.measured.groups import (
     some_of,
     take,
 )
-from thermogear.measured.impacts import Comb, best_background, combs_of, orders_of, standing_out
+from thermogear.measured.impacts import (
+    TIMES,
+    Comb,
+    best_background,
+    combs_of,
+    orders_of,
+    standing_out,
+)
 from thermogear.measured.peaks import Peaks
 
 Floats = NDArray[np.float64]
@@ -55,16 +63,19 @@ _BARE = 4  # mesh lines without teeth
 _APART = 3.0  # bins between a line and its sidebands, and between the lines of two shafts
 _TOLD_APART = 6.0  # bins between a line and its sidebands where teeth can be named
 _SAME_STEP = 1e-4
+_SAME_RATE = 2e-4  # of two clocks: an inverter's and the recorder's
 _GIVEN = 0.9  # how far a stated tooth number or speed is trusted
 _SPEED_SPREAD = 0.05  # a stated speed is nominal
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stated:
-    """What a user says: teeth of a gear, and its shaft's turns per sample."""
+    """What a user says, teeth of a gear and its shaft's turns per sample; and the frequencies that
+    ``mains`` may have [cycles/sample]."""
 
     teeth: int | None = None
     shaft: float | None = None
+    mains: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,12 +99,14 @@ class Gears:
 @dataclass(frozen=True, kw_only=True)
 class Hypothesis:
     """``gears`` of one mesh or of two, none for "no gear"; ``evidence`` its logarithm over chance,
-    ``weight``, ``combs``: steps of the combs beside them [cycles/sample]."""
+    ``weight``, ``combs``: steps of the combs beside them [cycles/sample], the first about an
+    inverter's ``carrier`` if there is one."""
 
     gears: tuple[Gears, ...]
     evidence: float
     weight: float = 0.0
     combs: tuple[float, ...] = ()
+    carrier: float | None = None
 
     @property
     def kind(self) -> str:
@@ -116,6 +129,11 @@ class Hypothesis:
         if self.gears:
             return " and ".join(gears.words for gears in self.gears)
         beside = ", ".join(f"{step:.6f}" for step in self.combs)
+        if self.carrier is not None:
+            return (
+                f"no gear: an inverter's carrier {self.carrier:.6f} cycles/sample, lines every "
+                f"{beside}"
+            )
         return "no gear" + (f": lines every {beside} cycles/sample" if beside else "")
 
 
@@ -149,15 +167,43 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
             if z not in known
         ]
     orders = orders_of(peaks, combs)
-    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders)
+    mains = stated.mains
+    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders, (), mains)
     none = Hypothesis(gears=(), evidence=max(0.0, alone), combs=tuple(one.step for one in told))
-    found = [(_beside(peaks, draft, orders), draft) for draft in drafts]
+    found = [(_beside(peaks, draft, orders, mains), draft) for draft in drafts]
     found.sort(key=lambda pair: -pair[0].evidence)
     best = [draft for _, draft in found[:_FIRST]]
     bare = [_gear(peaks, mesh, (), stated) for mesh in _bare_lines(peaks, drafts)]
     twos = _with_second(peaks, best, singles, stated)
-    others = [_beside(peaks, draft, orders) for draft in (*bare, *twos)]
-    return [none, *(one for one, _ in found), *others]
+    others = [_beside(peaks, draft, orders, mains) for draft in (*bare, *twos)]
+    carriers = [
+        _carrier(one, draft, stated) for one, draft in found if _exact_mains(draft, stated.mains)
+    ]
+    return [none, *(one for one, _ in found), *others, *carriers]
+
+
+def _exact_mains(draft: _Draft, mains: tuple[float, ...]) -> bool:
+    """Whether the one shaft turns at a multiple of the mains' nominal frequency."""
+    if len(draft.steps) != 1:
+        return False
+    ratios = [draft.steps[0] / line for line in mains]
+    return any(
+        1 <= np.rint(ratio) <= TIMES and abs(ratio / np.rint(ratio) - 1.0) < _SAME_RATE
+        for ratio in ratios
+    )
+
+
+def _carrier(one: Hypothesis, draft: _Draft, stated: Stated) -> Hypothesis:
+    """The same lines without a gear: an inverter set to the mains' nominal frequency. Its carrier,
+    by the same clock, is any whole multiple of its steps as well."""
+    (gears,) = draft.gears
+    choice = float(np.log(TIMES * len(stated.mains)))
+    return Hypothesis(
+        gears=(),
+        evidence=one.evidence - _prior(gears.mesh, gears.teeth[0], stated) - choice,
+        combs=(draft.steps[0], *one.combs),
+        carrier=gears.mesh,
+    )
 
 
 def _bare_lines(peaks: Peaks, drafts: list[_Draft]) -> list[float]:
@@ -225,11 +271,13 @@ def _drafts(peaks: Peaks, stated: Stated) -> list[_Draft]:
     return list(drafts.values())
 
 
-def _beside(peaks: Peaks, draft: _Draft, orders: list[list[Comb]]) -> Hypothesis:
+def _beside(
+    peaks: Peaks, draft: _Draft, orders: list[list[Comb]], mains: tuple[float, ...]
+) -> Hypothesis:
     """The draft with combs on what is left: beside its sidebands, or with its shafts' lines among
     those of the combs, so that the mesh's alone stand out."""
-    beside, told = best_background(peaks, draft.used, orders, draft.steps)
-    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, draft.steps)
+    beside, told = best_background(peaks, draft.used, orders, draft.steps, mains)
+    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, draft.steps, mains)
     both = draft.evidence + beside, draft.bare + bare
     return Hypothesis(
         gears=draft.gears,

@@ -28,6 +28,9 @@ from thermogear.measured.peaks import Peaks
 
 Floats = NDArray[np.float64]
 
+TIMES = 6
+"""Multiples of the mains that are looked for: those of poles, rectifiers, inverters."""
+
 _STRONG = 14
 _STEPS = 10
 _KEPT = 6
@@ -36,6 +39,7 @@ _BESIDE = 4
 _WHOLE = 12
 _RATIOS = len({Fraction(p, q) for p in range(1, _WHOLE + 1) for q in range(1, _WHOLE + 1)})
 _OUTSTANDING = 3
+_MAINS = 2e-3  # how far the mains are off at most
 _HIGHEST_RATIO = 250.0  # of a step to the distance of its sidebands
 _SAME = 1e-4  # two steps are one
 _NEAR = 0.1  # bins: a step that teeth foretell
@@ -120,12 +124,18 @@ def standing_out(peaks: Peaks, step: float, *, fewest: int, most: int) -> list[i
 
 
 def background(
-    peaks: Peaks, used: Flags, combs: list[Comb], fixed: tuple[float, ...] = ()
+    peaks: Peaks,
+    used: Flags,
+    combs: list[Comb],
+    fixed: tuple[float, ...] = (),
+    mains: tuple[float, ...] = (),
 ) -> tuple[float, tuple[Comb, ...]]:
     """Log evidence of the combs on the lines not used, each with its sidebands, and those seen.
 
     The step of a shaft in ``fixed`` [cycles/sample] is no free number. One that is p/q of a step
-    seen before, p and q up to 12, is one of so many ratios: shafts of one train turn so.
+    seen before, p and q up to 12, is one of so many ratios: shafts of one train turn so. One that
+    is a multiple of the ``mains`` [cycles/sample], as of a motor or its inverter, is free within
+    what the mains deviate by.
     """
     total, told = 0.0, []
     used = used.copy()
@@ -136,6 +146,8 @@ def background(
             evidence -= narrow(one.error, width=0.1)
         elif any(_in_ratio(one, step) for step in known):
             evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, width=0.1))
+        else:
+            evidence += _of_mains(one, mains)
         evidence += ONE_MORE
         if evidence <= 0.0:
             continue
@@ -148,10 +160,14 @@ def background(
 
 
 def best_background(
-    peaks: Peaks, used: Flags, orders: list[list[Comb]], fixed: tuple[float, ...] = ()
+    peaks: Peaks,
+    used: Flags,
+    orders: list[list[Comb]],
+    fixed: tuple[float, ...] = (),
+    mains: tuple[float, ...] = (),
 ) -> tuple[float, tuple[Comb, ...]]:
     """``background`` in the order of combs that explains most."""
-    found = [background(peaks, used, order, fixed) for order in orders]
+    found = [background(peaks, used, order, fixed, mains) for order in orders]
     return max(found, key=lambda one: one[0])
 
 
@@ -164,6 +180,18 @@ def orders_of(peaks: Peaks, combs: list[Comb]) -> list[list[Comb]]:
         return [combs]
     best = max(orders, key=lambda order: background(peaks, none, order)[0])
     return [orders[0]] if best is orders[0] else [orders[0], best]
+
+
+def _of_mains(one: Comb, mains: tuple[float, ...]) -> float:
+    """What the prior of a step gains where it is a multiple of the mains, logarithm."""
+    for line in mains:
+        ratio = one.step / line
+        times = int(np.rint(ratio))
+        if 1 <= times <= TIMES and abs(ratio / times - 1.0) < _MAINS:
+            known = narrow(one.error, width=2.0 * _MAINS * one.step)
+            choice = -float(np.log(TIMES * len(mains)))
+            return max(0.0, known + choice - narrow(one.error, width=0.1))
+    return 0.0
 
 
 def _in_ratio(one: Comb, step: float) -> bool:

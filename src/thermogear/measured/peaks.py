@@ -25,6 +25,7 @@ _NEAR = 200  # bins to each side in which the density of lines is counted
 _LOBE = 3  # bins beside a line in which a lower one cannot be told
 _ITSELF = 1.0  # bins
 _PLACE = 0.01  # bins: what is left of a place's error
+_SAME_NUMBER = 1e-9  # of the range: two values that a unit's factor has made of one
 _LOBE_BINS = np.arange(-2, 3)
 
 
@@ -78,12 +79,14 @@ class Peaks:
         return np.asarray((np.abs(off) < _LOBE) | edge)
 
 
-def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
+def peaks_of(channels: Floats, rate: float = 1.0, *, resolution: Floats | None = None) -> Peaks:
     """The lines of ``channels`` (channel, sample), ``rate`` samples for each unit of frequency.
 
     ``rate`` is 1 for a record in time; for one resampled in angle, samples per sample of the
-    mean clock. A peak counts where the sum of normalised powers is one that noise alone would
-    pass in a tenth of a bin of the whole spectrum.
+    mean clock. ``resolution``: the step of each channel's numbers (0: none), whose noise is the
+    least floor: in a record that repeats itself there may be nothing else. A peak counts where the
+    sum of normalised powers is one that noise alone would pass in a tenth of a bin of the whole
+    spectrum.
     """
     count, samples = channels.shape
     hann = Window("hann")
@@ -93,6 +96,9 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
     power = np.maximum(np.abs(spectrum), 1e-300) ** 2
     logs = np.log(power)
     floor = floor_of(logs)
+    if resolution is not None:
+        rounding = np.sum(hann.samples(samples) ** 2) * np.square(resolution) / 12.0
+        floor = np.maximum(floor, np.log(np.maximum(rounding * np.log(2.0), 1e-300))[:, None])
     total = np.sum(power / np.exp(floor) * np.log(2.0), axis=0)
     number = total.size
     least = least_seen(number, channels=count)
@@ -121,6 +127,20 @@ def peaks_of(channels: Floats, rate: float = 1.0) -> Peaks:
         bin_width=bin_width,
         bins=number,
     )
+
+
+def resolution_of(channels: Floats) -> Floats:
+    """Smallest step between the numbers of each channel: that of its digits or of its converter.
+
+    >>> float(resolution_of(np.array([[0.3, 0.1, 0.1, 0.2]]))[0].round(12))
+    0.1
+    """
+    steps = np.zeros(len(channels))
+    for number, values in enumerate(channels):
+        apart = np.diff(np.unique(values))
+        apart = apart[apart > _SAME_NUMBER * np.ptp(values)]
+        steps[number] = apart.min() if apart.size else 0.0
+    return steps
 
 
 def floor_of(logs: Floats) -> Floats:

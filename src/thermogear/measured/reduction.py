@@ -40,6 +40,7 @@ Floats = NDArray[np.float64]
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
+_MAINS = (50.0, 60.0)  # Hz
 _BEAT = 0.05  # of the line, that two steady lines may leave
 _JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
 
@@ -421,9 +422,10 @@ def _expected(record: Record, teeth: int | None, speed: float | None) -> float |
 
 
 def _stated(record: Record, teeth: int | None, speed: float | None) -> Stated:
-    if speed is None or record.rate is None:
+    if record.rate is None:
         return Stated(teeth=teeth)
-    return Stated(teeth=teeth, shaft=speed / (2.0 * np.pi) / record.rate)
+    shaft = None if speed is None else speed / (2.0 * np.pi) / record.rate
+    return Stated(teeth=teeth, shaft=shaft, mains=tuple(f / record.rate for f in _MAINS))
 
 
 def _gearing(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, interpolate
 
-from thermogear.measured.peaks import Peaks, floor_of, least_seen, peaks_of
+from thermogear.measured.peaks import Peaks, floor_of, least_seen, peaks_of, resolution_of
 
 Floats = NDArray[np.float64]
 
@@ -30,12 +30,13 @@ def sharp_peaks(channels: Floats) -> Peaks:
     It is the clock that leaves the least of lines and noise, that of the record among them. In the
     new clock it is tried once more, with narrower filters.
     """
-    best = peaks_of(channels)
+    resolution = resolution_of(channels)
+    best = peaks_of(channels, resolution=resolution)
     for widths in _WIDTHS:
         straight = _straighter(channels, best, widths)
         if straight is None:
             break
-        channels, best = straight, peaks_of(straight)
+        channels, best = straight, peaks_of(straight, resolution=resolution)
     return best
 
 

@@ -72,8 +72,8 @@ def mesh_turns(
     if least == 0.0:
         turns = _followed(best_followed(values, spectrum, line.frequency), values, per_cycle)
     elif least is not None:
-        turns = _fullest(values, spectrum, line.frequency, per_cycle)
-    if turns is not None and least is not None and turns.power >= least:
+        turns = _fullest(values, spectrum, line.frequency, per_cycle, least)
+    if turns is not None:
         return turns
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
@@ -177,17 +177,23 @@ def _fullest(
     spectrum: LineSpectrum,
     frequency: float,
     per_cycle: int,
+    least: float,
 ) -> MeshTurns | None:
-    """The line followed by the filter that gathers most of it."""
-    best: MeshTurns | None = None
+    """The line followed by the filter that gathers most of it, if that is ``least``."""
+    best, most = 0.0, 0.0
     for half_width in filter_widths(spectrum, frequency, narrow=True):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue
-        found = follow_line(values, spectrum.rate, frequency=frequency, half_width=half_width)
+        found = follow_line(
+            values, spectrum.rate, frequency=frequency, half_width=half_width, cut=False
+        )
         turns = _followed(found, values, per_cycle)
-        if turns is not None and (best is None or turns.power > best.power):
-            best = turns
-    return best
+        if turns is not None and turns.power > most:
+            best, most = half_width, turns.power
+    if most < least:
+        return None
+    found = follow_line(values, spectrum.rate, frequency=frequency, half_width=best)
+    return _followed(found, values, per_cycle)
 
 
 def _followed(found: Followed | None, values: Floats, per_cycle: int) -> MeshTurns | None:

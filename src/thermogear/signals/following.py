@@ -105,7 +105,9 @@ def filter_widths(
     return tuple(steps[first:])
 
 
-def follow_line(x: ArrayLike, rate: float, *, frequency: float, half_width: float) -> Followed:
+def follow_line(
+    x: ArrayLike, rate: float, *, frequency: float, half_width: float, cut: bool = True
+) -> Followed:
     """The phase of the line near ``frequency`` in a filter of +-``half_width``, unwrapped.
 
     The record, shifted by -``frequency``, is smoothed by a Hann kernel of 2/half_width, which is
@@ -113,7 +115,8 @@ def follow_line(x: ArrayLike, rate: float, *, frequency: float, half_width: floa
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
     caught a filter of half the width follows it (not narrower than the first of WIDTHS).
     The mean frequency is (cycles at the last sample - cycles at the first)/(time between). Its
-    error is seen where the record is cut inside: phase at the cut from one side against both.
+    error is seen where the record is cut inside: phase at the cut from one side against both. With
+    ``cut`` False this is left out, the error is that of half a turn.
 
     ``x`` [any unit] one channel; ``rate``, ``frequency`` and ``half_width`` in one unit. Range: the
     line outweighs the noise within the filter, and no line of half its height is there; where
@@ -134,7 +137,9 @@ def follow_line(x: ArrayLike, rate: float, *, frequency: float, half_width: floa
         raise InputError("half_width", half_width, allowed=f"above {least:.3g} for {count} samples")
     last = min(length * 2.0, max(length, 2.0 / (WIDTHS[0] * frequency) * per_second))
     cycles, whole = _path(values, frequency / per_second, length, last=last)
-    errors = _cut_errors(values, cycles, frequency / per_second, length, last)
+    errors = np.zeros(0)
+    if cut:
+        errors = _cut_errors(values, cycles, frequency / per_second, length, last)
     # what the path from both sides misses is in neither: counted as large again
     edge = float(np.sqrt(2.0 * np.mean(errors**2))) if errors.size else 0.5
     edge = edge if whole else max(edge, 0.5)  # a turn may be lost
@@ -212,7 +217,7 @@ class _Smoother:
     def _sum(self, x: NDArray[Any], power: int) -> NDArray[Any]:
         reach = self.kernel.size // 2
         away = -np.arange(-reach, reach + 1.0)  # a convolution turns the kernel round
-        return np.asarray(signal.oaconvolve(x, away**power * self.kernel, mode="same"))
+        return np.convolve(x, away**power * self.kernel)[reach : reach + x.size]
 
     def means(self, x: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
         """Weighted mean and slope [1/sample] of ``x`` at each place."""
