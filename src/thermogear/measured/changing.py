@@ -15,7 +15,8 @@ from thermogear.measured.contradictions import of_pulses, of_teeth
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.lines import MeasuredLine, Wanted, wanted_lines
+from thermogear.measured.hypotheses import Stated
+from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
 from thermogear.measured.order_map import OrderMap, order_map
 from thermogear.measured.quantities import quantities
 from thermogear.measured.record import Notice, Record
@@ -151,10 +152,11 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
     near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
     told_as = per_turn * float((turns[-1] - turns[0]) / (turns.size - 1))
-    gearing = _found(straight, None if near is None else near / per_turn, told_as)
+    at, stated = None if near is None else near / per_turn, Stated(teeth=teeth)
+    gearing = _found(straight, at, stated, shaft.width, told_as)
     mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if near is not None and gearing is None:
-        gearing = _found(straight, None, told_as)
+        gearing = _found(straight, None, stated, 0.0, told_as)
         mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
@@ -204,9 +206,11 @@ def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]
     )
 
 
-def _found(straight: list[Floats], near: float | None, told_as: float) -> Gearing | None:
+def _found(
+    table: list[Floats], near: float | None, stated: Stated, width: float, told_as: float
+) -> Gearing | None:
     try:
-        return find_gearing(straight, near, told_as=told_as)
+        return find_gearing(table, near, stated, followed=width, told_as=told_as)
     except InputError:
         return None
 
@@ -289,6 +293,7 @@ def _sliced(
     kept = np.array([np.nan if c.name in through.withheld else 1.0 for c in chosen])
     seen = seen * kept[:, None, None]
     damage = np.array([through.extra.get(c.name, 0.0) for c in chosen])[:, None, None]
+    damage = damage + 2.0 * record.rate_share + jittered(frequency / rate, record.jitter)
     amplitude = np.stack([s.amplitude for s in read])
     unit = 1.0 if not angle.of_mesh else 1.0 / _MESHES
     known = [c.unit is not None and not c.needs_scale for c in chosen]
@@ -328,7 +333,7 @@ def _sliced(
         ),
     )
     if record.rate is not None:
-        slices = replace(slices, resonances=resonances_of(slices))
+        slices = replace(slices, resonances=resonances_of(slices, record.rate_share))
     low, high = shafts_speed.min(), shafts_speed.max()
     what = "the mesh line" if angle.of_mesh else "the shaft"
     span = (

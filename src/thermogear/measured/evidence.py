@@ -71,7 +71,7 @@ class Evidence:
         """Mesh line [cycles/sample] of the gears named, else of the heaviest; nan: none."""
         if self.named or self.gears:
             return self.named[0].mesh if self.named else self.gears[0].mesh
-        return self.hypotheses[0].mesh if self.hypotheses else float("nan")
+        return next((one.mesh for one in self.hypotheses if one.gears), float("nan"))
 
     @property
     def teeth(self) -> tuple[int, ...]:
@@ -136,6 +136,7 @@ class Evidence:
                     one,
                     gears=tuple(replace(g, mesh=g.mesh * factor) for g in one.gears),
                     combs=tuple(step * factor for step in one.combs),
+                    carrier=None if one.carrier is None else one.carrier * factor,
                 )
                 for one in self.hypotheses
             ),
@@ -168,9 +169,8 @@ class Evidence:
             return "decided"
         if not self.hypotheses:
             return "undecided"
-        best = self.hypotheses[0]
-        clear = best.kind == "no gear" and best.weight >= CLEAR
-        return "no gear found" if clear else "undecided"
+        without = sum(one.weight for one in self.hypotheses if one.kind == "no gear")
+        return "no gear found" if without >= CLEAR else "undecided"
 
 
 def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
@@ -187,10 +187,26 @@ def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
     weighed.sort(key=lambda one: -one.weight)
     meshes = sorted(weighed[0].gears, key=lambda one: (stated.teeth in one.teeth, one.level))
     named = [_named(gears, weighed) for gears in reversed(meshes)]
-    return Evidence(
+    evidence = Evidence(
         hypotheses=tuple(weighed),
         named=tuple(one for one in named if one.teeth),
     )
+    if evidence.named or any(one.weight >= _PLAIN for one in evidence.gears):
+        return evidence
+    return Evidence(hypotheses=_untold(weighed))
+
+
+def _untold(weighed: list[Hypothesis]) -> tuple[Hypothesis, ...]:
+    """The hypotheses where no tooth number has a tenth of the weight: numbers that the lines do not
+    tell are put together as teeth that are not seen, any number."""
+    found: dict[tuple[str, tuple[int, ...]], Hypothesis] = {}
+    for one in weighed:
+        gears = tuple(replace(own, teeth=(), sides=()) for own in one.gears)
+        places = tuple(round(np.log(own.mesh) / _ALIKE) for own in gears)
+        key = "" if gears else one.words, places
+        best = found.get(key, replace(one, gears=gears, weight=0.0))
+        found[key] = replace(best, weight=best.weight + one.weight)
+    return tuple(sorted(found.values(), key=lambda one: -one.weight))
 
 
 def _on(one: Hypothesis, mesh: float) -> bool:

@@ -23,7 +23,9 @@ _PLAIN = (
 UNITS: dict[str, str] = {
     **dict.fromkeys(_PLAIN.split(), "1"),
     **dict.fromkeys(("first", "last", "count"), "samples"),
-    **dict.fromkeys(("position", "mesh_position", "combs", "low", "high"), "cycles/sample"),
+    **dict.fromkeys(
+        ("position", "mesh_position", "combs", "carrier", "low", "high"), "cycles/sample"
+    ),
     **dict.fromkeys(("shaft_speed", "speed", "shaft_speed_range", "speed_range"), "rad/s"),
     "rate": "samples/s",
     "frequency": "Hz",
@@ -35,7 +37,15 @@ UNITS: dict[str, str] = {
 }
 """Unit of every number of the figures by its name, readings apart; ``_half_width`` has its own."""
 _READINGS = ("reading", "greatest_low", "greatest_high")
-_WITH_INTERVAL = ("position", "frequency", "shaft_speed", "acceleration", "displacement", "reading")
+_WITH_INTERVAL = (
+    "rate",
+    "position",
+    "frequency",
+    "shaft_speed",
+    "acceleration",
+    "displacement",
+    "reading",
+)
 
 
 def figures(found: Measurement) -> dict[str, Any]:
@@ -46,6 +56,7 @@ def figures(found: Measurement) -> dict[str, Any]:
     return {
         "source": found.record.source,
         "rate": found.record.rate,
+        "rate_half_width": found.record.rate_half_width if found.record.rate else None,
         "settings": found.settings,
         "teeth": found.teeth,
         "mesh_position": gearing.mesh_frequency if gearing else None,
@@ -190,6 +201,7 @@ def _found(gearing: Gearing | None) -> dict[str, Any]:
                     {"mesh_position": gears.mesh, "teeth": list(gears.teeth)} for gears in one.gears
                 ],
                 "combs": list(one.combs),
+                "carrier": one.carrier,
                 "words": one.words,
             }
             for one in weighed.told

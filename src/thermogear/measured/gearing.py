@@ -61,6 +61,7 @@ def find_gearing(
     stated: Stated | None = None,
     *,
     told_as: float = 1.0,
+    followed: float = 0.0,
 ) -> Gearing:
     """Mesh line, shafts, tooth numbers and further meshes of one record.
 
@@ -75,9 +76,11 @@ def find_gearing(
        both, with 17 teeth or more (fewer are undercut as standard gears).
 
     ``channels``: one array each, equal lengths; ``stated``: teeth and shaft's turns per sample as a
-    user says, evidence like the lines; ``told_as``: of places in words and weights, where these
-    arrays are resampled: samples of theirs in one of the record. Raises InputError when no line is
-    clear.
+    user says, evidence like the lines; ``followed``: where the record is in the angle of the line
+    ``near``, the half width of the filter that followed it, over its frequency: what is nearer to
+    the line and its harmonics says nothing of teeth; ``told_as``: of places in words and weights,
+    where these arrays are resampled: samples of theirs in one of the record. Raises InputError when
+    no line is clear.
     """
     table = np.stack([np.asarray(c, dtype=float)[:LONGEST] for c in channels])
     if not np.all(np.isfinite(table)):
@@ -87,7 +90,10 @@ def find_gearing(
         raise InputError("record", f"{table.shape[-1]} samples", allowed=">= 256, not constant")
     raw = prominence(table, 1.0)
     family = _clearest_family(raw, near)
-    weighed = weigh(sharp_peaks(table), stated)
+    peaks = sharp_peaks(table)
+    if near is not None and followed > 0.0:
+        peaks = peaks.without_skirts(near, followed)
+    weighed = weigh(peaks, stated)
     likely = weighed.mesh_weight >= _LIKELY
     if likely and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
         family = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
@@ -138,7 +144,10 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float
         if len(shafts) > 1:
             meshes = second_mesh(sharp, shafts, top, evidence)
     if not shafts:
-        evidence.append("no tooth number is decided: it may be a shaft's own line and no mesh line")
+        any_fits = "" if weighed.gears else ", any fits"
+        evidence.append(
+            f"no tooth number is decided{any_fits}: it may be a shaft's own line and no mesh line"
+        )
     return Gearing(
         mesh_frequency=mesh,
         mesh_frequency_error=error,

@@ -92,7 +92,8 @@ def _one_rate(records: Sequence[Record], files: Sequence[str]) -> float | None:
             mute = file if one.rate is None else files[0]
             why = f"it states no rate, {files[0] if mute == file else file} states {known[0]:g}/s"
             raise InputError("file", mute, why=why, fix=f"--rate {known[0]:g} if that is its own")
-        if abs(known[1] / known[0] - 1.0) * max(one.samples, records[0].samples) > 0.5:
+        unsure = records[0].rate_share + one.rate_share
+        if (abs(known[1] / known[0] - 1.0) - unsure) * max(one.samples, records[0].samples) > 0.5:
             raise InputError(
                 "file",
                 file,
@@ -158,7 +159,16 @@ def _channels(records: Sequence[Record], files: Sequence[str], rate: float | Non
     origin = next((one.rate_origin for one in records if one.rate is not None), "")
     notes.insert(0, Notice("info", f"{len(files)} files are joined as channels of one run"))
     return Record(
-        tuple(channels), _source(files), rate, origin, begin, tacho=tacho, notices=tuple(notes)
+        tuple(channels),
+        _source(files),
+        rate,
+        origin,
+        begin,
+        tacho=tacho,
+        notices=tuple(notes),
+        rate_half_width=records[0].rate_half_width,
+        rate_note=records[0].rate_note,
+        jitter=max(one.jitter for one in records),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
@@ -38,11 +38,13 @@ class MeasuredLine:
     amplitude in the file's unit, ``acceleration`` [m/s^2], ``displacement`` [m].
 
     What is measured: the amplitude over the stretch, root of the mean square of the line's own
-    a(t) in Re[a(t) exp(i phase)], and the mean frequency, the line's turns over their time (rate
-    taken as exact). ``uncertainty``: relative standard uncertainty u_D of the amplitude from
+    a(t) in Re[a(t) exp(i phase)], and the mean frequency, the line's turns over their time.
+    ``uncertainty``: relative standard uncertainty u_D of the amplitude from
     noise, lines beside, what damage of the record may do (Student's t counted in) and the
     sensor; ``half_width`` = 1.96 u_D, the 95 % interval's; ``frequency_half_width`` [Hz],
-    ``position_half_width`` [cycles/sample] and ``speed_half_width`` [rad/s] likewise.
+    ``position_half_width`` [cycles/sample] and ``speed_half_width`` [rad/s] likewise. A rate from
+    rounded time stamps adds its own half width to those in time (1/s), twice its share to
+    amplitudes (displacement goes with 1/f^2), jitter of the samples what it may take from a line.
     ``bin_offset`` [bins]; ``prominence`` over the floor beside; ``withheld``: why numbers are.
     """
 
@@ -275,6 +277,7 @@ def channel_lines(
         damage = doubts.shared(peaks, amplitude)
         own += turned_by(damage, samples=values.size)
         half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + damage
+        half_width += 2.0 * record.rate_share + float(jittered(position, record.jitter))
         found.append(
             doubts.applied(
                 MeasuredLine(
@@ -297,12 +300,24 @@ def channel_lines(
                     shaft_speed=speed,
                     half_width=half_width,
                     position_half_width=own,
-                    frequency_half_width=own * rate if in_hertz else float("nan"),
-                    speed_half_width=share * speed,
+                    frequency_half_width=own * rate + position * record.rate_half_width
+                    if in_hertz
+                    else float("nan"),
+                    speed_half_width=(share + record.rate_share) * speed,
                 )
             )
         )
     return found
+
+
+def jittered(position: ArrayLike, jitter: float) -> Floats:
+    """Share that samples off an even clock by ``jitter`` [rms, steps] take from a line at
+    ``position`` [cycles/sample]: (2 pi position jitter)^2/2.
+
+    >>> f"{jittered(0.1, 0.1):.5f}"
+    '0.00197'
+    """
+    return np.asarray(0.5 * (2.0 * np.pi * jitter * np.asarray(position, dtype=float)) ** 2)
 
 
 def _nearby(strong: tuple[Strong, ...], position: float, bin_width: float) -> list[float]:

@@ -6,7 +6,7 @@ around it is exponential (Gaussian noise), channels independent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ MOST = 600
 _FALSE = 0.1  # peaks of noise alone expected in a whole spectrum
 _NEAR = 200  # bins to each side in which the density of lines is counted
 _LOBE = 3  # bins beside a line in which a lower one cannot be told
+_ITSELF = 1.0  # bins
 _PLACE = 0.01  # bins: what is left of a place's error
 _SAME_NUMBER = 1e-9  # of the range: two values that a unit's factor has made of one
 _LOBE_BINS = np.arange(-2, 3)
@@ -60,6 +61,16 @@ class Peaks:
         first = np.abs(self.place[before] - position) <= np.abs(self.place[after] - position)
         index = np.where(first, before, after)
         return index, np.asarray((self.place[index] - position) / self.bin_width)
+
+    def without_skirts(self, line: float, width: float) -> Peaks:
+        """The lines but those within ``width`` (relative) of a multiple of ``line``
+        [cycles/sample], itself kept: what is left there of a line that was followed by its phase,
+        through a filter of that half width, is no sideband."""
+        rank = np.maximum(np.rint(self.place / line), 1.0)
+        off = np.abs(self.place - rank * line)
+        kept = (off > width * rank * line) | (off < _ITSELF * self.bin_width)
+        parts = {name: getattr(self, name)[kept] for name in ("place", "error", "level", "density")}
+        return replace(self, **parts)
 
     def hidden(self, position: Floats) -> NDArray[np.bool_]:
         """Whether a line at each position could not be told, beside a line or outside."""

@@ -99,7 +99,8 @@ class Record:
 
     ``rate_origin`` says where the rate is from; ``start`` [s] is the time of the first sample;
     ``tacho`` names the tacho channel; ``notices`` are the traps met while reading; ``rate_doubt``:
-    what contradicts the rate.
+    what contradicts the rate; ``rate_half_width`` [samples/s] of its 95 % interval, 0 where it is
+    stated, ``rate_note``: how well time stamps tell it, and their ``jitter`` [rms, steps].
     """
 
     channels: tuple[Channel, ...]
@@ -110,6 +111,9 @@ class Record:
     tacho: str | None = None
     notices: tuple[Notice, ...] = ()
     rate_doubt: str = ""
+    rate_half_width: float = 0.0
+    rate_note: str = ""
+    jitter: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.channels:
@@ -122,6 +126,11 @@ class Record:
             object.__setattr__(self, "rate", float(self.rate))
         if self.tacho is not None:
             self.channel(self.tacho)
+
+    @property
+    def rate_share(self) -> float:
+        """Half width of the rate's 95 % interval over the rate; 0 while it is unknown."""
+        return 0.0 if self.rate is None else self.rate_half_width / self.rate
 
     @property
     def samples(self) -> int:
@@ -191,6 +200,7 @@ class Record:
                 text = f"{rate:g}/s is given, the file says {self.rate:g}/s"
                 record = replace(record, rate_doubt=text)
             record = replace(record, rate=float(rate), rate_origin="given")
+            record = replace(record, rate_half_width=0.0, rate_note="")
         if unit is not None or scale is not None:
             name = None if unit is None else known_unit(unit)
             if name is not None and kind_of(name) in OTHER:

@@ -87,8 +87,9 @@ class Measurement:
         rate, window = self.record.rate, Window(self.chain.window)
         unit = "cycles/sample" if rate is None else "Hz"
         band, taps = self.chain.band, self.chain.taps
+        origin = ", ".join(t for t in (self.record.rate_origin, self.record.rate_note) if t)
         return {
-            "rate": "unknown" if rate is None else f"{rate:g} /s ({self.record.rate_origin})",
+            "rate": "unknown" if rate is None else f"{rate:.9g} /s ({origin})",
             "samples": str(self.samples),
             "bin width": f"{(rate or 1.0) / self.samples:.6g} {unit}",
             "window": f"{window.name}, noise bandwidth {window.noise_bandwidth:.4g} bins, "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -62,7 +62,7 @@ class _Peak:
     height: float
 
 
-def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
+def resonances_of(slices: _Slices, rate_share: float = 0.0) -> tuple[Resonance, ...]:
     """Peaks of all orders and channels, sorted into resonances, speeds and single peaks.
 
     A peak is 1.4 times the valleys on both sides, intervals counted off. Around it, down
@@ -72,7 +72,8 @@ def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
 
     which holds where the excitation does not change with frequency there. A passage at f' [Hz/s]
     moves a peak, and a frequency read from a phase, by up to about f'/(2 pi zeta f_n): that is in
-    the interval. Fewer than three steps show no peak.
+    the interval, and so is ``rate_share``, by how much the sampling rate may be off. Fewer than
+    three steps show no peak.
     """
     if slices.time.size < 3:
         return ()
@@ -107,7 +108,9 @@ def resonances_of(slices: _Slices) -> tuple[Resonance, ...]:
     for one in left:
         by_name.setdefault((one.name, round(np.log(one.frequency) / _SAME)), []).append(one)
     found += [_of("one order", group) for group in by_name.values()]
-    return tuple(found)
+    return tuple(
+        replace(one, half_width=one.half_width + rate_share * one.frequency) for one in found
+    )
 
 
 def _told_apart(group: list[_Peak], kind: str) -> bool:

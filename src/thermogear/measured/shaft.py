@@ -41,8 +41,8 @@ class Shaft:
     """``turns`` of a shaft at samples ``first`` on of the stretch, with rms ``noise`` [turns].
 
     ``line``: the turns are cycles of a line that was tracked and no shaft's; ``origin`` says by
-    what; ``sure``: pulses per turn are known, ``pulses`` those given. ``told`` what should be
-    known of it.
+    what; ``sure``: pulses per turn are known, ``pulses`` those given. ``width`` of the filter that
+    followed the line, over its frequency. ``told`` what should be known of it.
     """
 
     turns: Floats
@@ -52,6 +52,7 @@ class Shaft:
     line: bool = False
     sure: bool = True
     pulses: float | None = None
+    width: float = 0.0
     told: tuple[Notice, ...] = ()
 
     @property
@@ -232,6 +233,7 @@ def locked(shaft: Shaft, table: Floats, teeth: int | None) -> Shaft:
         shaft,
         turns=cycles / ratio,
         noise=found.noise / ratio,
+        width=found.width,
         told=(*shaft.told, Notice("info", text)),
     )
 
@@ -313,5 +315,6 @@ def tracked_shaft(table: Floats) -> Shaft | None:
         noise=best.noise,
         origin="the tracked line",
         line=True,
+        width=best.width,
     )
     return replace(shaft, told=(told, *_missing(shaft, table.shape[-1])))

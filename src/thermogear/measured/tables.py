@@ -14,6 +14,7 @@ from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import Channel, Notice, Record, Samples
 from thermogear.measured.traps import (
     MOST_STAMPS,
+    TimeBase,
     is_possible_rate,
     is_rate_name,
     is_step_name,
@@ -101,15 +102,27 @@ def record_of(
     channels, doubled = without_doubles(channels, path.name)
     if options.keep:
         channels = _kept(channels, options.keep)
-    start, gaps = told.start(longest)
-    channels = [with_gaps(one, gaps) for one in channels] if gaps else channels
+    base = told.time_base(longest)
+    channels = [with_gaps(one, base.gaps) for one in channels] if base.gaps else channels
     units = [v for k, v in common.items() if str(k).lower() in ("unit", "units")]
     of_all = unit(text_of(units[-1]) or "") if units else None
     if of_all is not None:
         channels = [c if c.unit else Channel(c.name, c.samples, of_all) for c in channels]
     rate, origin = agreed(told.rates, notes)
+    by_stamps = rate is not None and origin == base.origin
     tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
-    return Record(tuple(channels), path.name, rate, origin, start, tacho, (*notes, *doubled))
+    return Record(
+        tuple(channels),
+        path.name,
+        rate,
+        origin,
+        base.start,
+        tacho,
+        (*notes, *doubled),
+        rate_half_width=base.half_width if by_stamps else 0.0,
+        rate_note=base.note if by_stamps else "",
+        jitter=base.jitter,
+    )
 
 
 @dataclass
@@ -157,15 +170,14 @@ class _Told:
                 for index in range(min(sizes))
             ]
 
-    def start(self, longest: int) -> tuple[float, tuple[tuple[int, int], ...]]:
-        """The time [s] at which the record starts, of the first time as long as the channels, and
-        the blocks that were dropped.
+    def time_base(self, longest: int) -> TimeBase:
+        """What the first time as long as the channels says; nothing where there is none.
 
         What it says of the rate goes to the others.
         """
         time = next((one for one in self.times if len(one) == longest), None)
         if time is None:
-            return 0.0, ()
+            return TimeBase(rate=None, start=0.0, origin="")
         t = np.asarray(time.samples[0 : min(longest, MOST_STAMPS)], dtype=float)
         if t.size < longest:
             text = f"the rate is taken from the first {t.size} samples of {time.name!r}"
@@ -174,7 +186,7 @@ class _Told:
         self.notes += base.notices
         if base.rate is not None:
             self.rates.append((base.rate, base.origin))
-        return base.start, base.gaps
+        return base
 
 
 def _of_one_length(channels: list[Channel], notes: list[Notice]) -> list[Channel]:

@@ -292,6 +292,7 @@ def _record(
 ) -> Record:
     notes = list(layout.notices)
     gaps: tuple[tuple[int, int], ...] = ()
+    half, note, jitter = 0.0, "", 0.0
     names = [layout.names[i] for i in keep]
     units = [layout.units[i] for i in keep]
     rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
@@ -303,7 +304,7 @@ def _record(
             notes.append(Notice("info", text))
         base = read_time(names[place], units[place], t, repeats=_repeats(columns, t.size))
         notes += base.notices
-        start, gaps = base.start, base.gaps
+        start, gaps, jitter = base.start, base.gaps, base.jitter
         if base.drop:
             columns = _without(columns, base.drop)
         if base.rate is not None and rate is not None and abs(base.rate / rate - 1) > 1e-3:
@@ -315,8 +316,9 @@ def _record(
                 )
             )
             rate, origin = None, ""
-        elif base.rate is not None:
+        elif base.rate is not None and (rate is None or abs(base.rate - rate) > base.half_width):
             rate, origin = base.rate, base.origin
+            half, note = base.half_width, base.note
     if len(times) > 1:
         notes.append(Notice("warning", f"{len(times)} time columns; the first is used"))
     channels = [
@@ -327,7 +329,18 @@ def _record(
     channels, doubled = without_doubles(channels, path.name)
     channels = [with_gaps(one, gaps) for one in channels] if gaps else channels
     tacho = next((c.name for c in channels if is_tacho_name(c.name)), None)
-    return Record(tuple(channels), path.name, rate, origin, start, tacho, (*notes, *doubled))
+    return Record(
+        tuple(channels),
+        path.name,
+        rate,
+        origin,
+        start,
+        tacho,
+        (*notes, *doubled),
+        rate_half_width=half,
+        rate_note=note,
+        jitter=jitter,
+    )
 
 
 def _repeats(columns: Sequence[Floats | StoredColumn], count: int) -> NDArray[np.bool_]:

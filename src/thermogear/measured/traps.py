@@ -12,6 +12,7 @@ from thermogear.base.bounds import RATE
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.units import factor_of, kind_of, unit
+from thermogear.signals.stamps import Pace, grain_of, jumps_of, pace_of, usual_rate
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 
 _LONGEST = 200  # characters of a name that are looked at and kept
 
-_FEW = 0.05  # of the steps may be jumps
+_FEW, _SOME = 0.05, 3  # of the steps may be jumps; so many are few in any record
 _EVEN, _EXACT = 0.25, 0.02  # of a step: how far stamps may be off where blocks are dropped
 HUGE = 1e30
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
@@ -40,6 +41,10 @@ HUGE = 1e30
 
 MOST_STAMPS = 1 << 23
 """Rows of a time column that its rate is taken from."""
+
+_OFF = 0.5  # of a step: farthest of a stamp from an even clock, beside rounding
+_JITTER = 0.02  # of a step: jitter, or rounding, that is told
+_EXACTLY = 1e-8  # relative half width that is not told
 
 
 def is_time_name(name: str) -> bool:
@@ -109,7 +114,9 @@ def unknown_unit(name: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeBase:
-    """What a time column says: rate [1/s] (None: it cannot be told), start, rows to drop."""
+    """What a time column says: rate [1/s] (None: it cannot be told) and the half width of its 95 %
+    interval, 0 where it is a usual rate; start, rows to drop, the stamps' ``jitter`` [steps rms];
+    ``note``: how well they tell the rate."""
 
     rate: float | None
     start: float
@@ -117,6 +124,9 @@ class TimeBase:
     drop: tuple[int, ...] = ()
     notices: tuple[Notice, ...] = ()
     gaps: tuple[tuple[int, int], ...] = ()
+    half_width: float = 0.0
+    jitter: float = 0.0
+    note: str = ""
 
 
 def read_time(
@@ -127,7 +137,9 @@ def read_time(
     ``t`` in the column's own unit; ``repeats``: of each row, whether its every value repeats the
     row before. A time without a unit gives no rate. A doubled stamp on a row that is doubled as a
     whole is one row written twice and is dropped. Jumps by whole numbers of steps are dropped
-    blocks: ``gaps`` (before which row, how many samples). Any other irregularity gives no rate.
+    blocks: ``gaps`` (before which row, how many samples). Stamps may be rounded, also so that they
+    repeat, and may jitter by half a step; any other irregularity gives no rate. The rate is that
+    of :func:`~thermogear.signals.stamps.pace_of`, or the one usual rate in its interval.
     """
     notes: list[Notice] = []
     label = f"time column {name!r}"
@@ -149,14 +161,19 @@ def read_time(
     if what:
         notes.append(Notice("important", f"{label} {what}: no rate is taken from it (give --rate)"))
         return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
+    grain = grain_of(t) * factor_of(unit_name)
     steps = np.diff(seconds)
+    mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
     twice = np.flatnonzero(steps == 0.0) + 1
-    drop = tuple(int(i) for i in twice[repeats[twice]]) if repeats is not None else ()
+    # stamps of few digits repeat by themselves
+    single = twice.size <= _FEW * steps.size
+    drop = tuple(int(i) for i in twice[repeats[twice]]) if repeats is not None and single else ()
     if drop:
         keep = np.ones(seconds.size, bool)
         keep[list(drop)] = False
-        seconds = seconds[keep]
+        seconds, grain = seconds[keep], grain[keep]
         steps = np.diff(seconds)
+        mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
         notes.append(
             Notice(
                 "warning",
@@ -164,54 +181,80 @@ def read_time(
                 "the repetition dropped",
             )
         )
-    mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1)
+    found = TimeBase(rate=None, start=float(seconds[0]), origin="", drop=drop)
+    what = ""
     if mean <= 0.0 or np.any(steps < 0):
-        place = int(np.argmax(steps < 0)) + 2
-        notes.append(
-            Notice("important", f"{label} does not rise (row {place}): no rate is taken from it")
-        )
-        return TimeBase(
-            rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
-        )
-    if not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
-        notes.append(Notice("important", f"{label}: steps of {mean:.3g} s give no rate"))
-        return TimeBase(
-            rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
-        )
-    # stamps written with few digits wander by half a digit around a straight line; anything
-    # more than half a step off is a missing, extra or irregular sample
-    line = seconds[0] + mean * np.arange(seconds.size)
-    wander = float(np.max(np.abs(seconds - line))) / mean
-    step = float(np.median(steps))
-    bad = np.flatnonzero(np.abs(steps - step) > 0.5 * step)
-    gaps = _dropped(seconds, steps, bad)
-    if gaps:
-        lost = sum(missing for _, missing in gaps)
-        mean = float(seconds[-1] - seconds[0]) / (seconds.size - 1 + lost)
-        notes.append(_told(label, gaps, drop))
-    elif wander > 0.5 or (bad.size and bad.size < 0.01 * steps.size):
-        first = int(bad[0]) + 2 if bad.size else int(np.argmax(np.abs(seconds - line))) + 1
+        what = f"{label} does not rise (row {int(np.argmax(steps < 0)) + 2}): no rate is taken"
+        what += " from it"
+    elif not RATE.least <= 1.0 / max(mean, 1e-300) <= RATE.most:
+        what = f"{label}: steps of {mean:.3g} s give no rate"
+    if what:
+        return replace(found, notices=(*notes, Notice("important", what)))
+    return _paced(replace(found, notices=tuple(notes)), label, seconds, grain, unit_name)
+
+
+def _paced(found: TimeBase, label: str, seconds: Floats, grain: Floats, unit_name: str) -> TimeBase:
+    """What rising stamps [s], rounded to ``grain``, say: gaps, jitter and the rate, or none."""
+    steps = np.diff(seconds)
+    notes = list(found.notices)
+    jumps, ahead = jumps_of(seconds, grain=grain)
+    gaps = _dropped(jumps, ahead, steps)
+    place = np.arange(seconds.size, dtype=float)
+    for row, missing in gaps:
+        place[row:] += missing
+    pace = pace_of(seconds, grain=grain, place=place)
+    uneven = pace.farthest > max(_OFF, 6.0 * pace.jitter) or pace.jitter > 0.5 * _OFF
+    if uneven or (not gaps and 0 < jumps.size <= max(_SOME, _FEW * steps.size)):
+        first = int(jumps[0]) + 1 if jumps.size else pace.place + 1
         doubled = np.flatnonzero(steps == 0.0)
+        far = max(pace.farthest, float(np.max(np.abs(ahead), initial=0.0)))
         what = (
             f"a time stamp appears twice (row {int(doubled[0]) + 2}) with other values"
-            if doubled.size
-            else f"steps are not uniform (row {first}: off by up to {wander:.3g} steps)"
+            if 0 < doubled.size <= _FEW * steps.size
+            else f"steps are not uniform (row {first}: off by up to {far:.3g} steps)"
         )
-        notes.append(
-            Notice("important", f"{label}: {what}; no rate is taken from it (give --rate)")
-        )
-        return TimeBase(
-            rate=None, start=float(seconds[0]), origin="", drop=drop, notices=tuple(notes)
-        )
+        text = f"{label}: {what}; no rate is taken from it (give --rate)"
+        return replace(found, notices=(*notes, Notice("important", text)))
+    if gaps:
+        notes.append(_told(label, gaps, found.drop))
+    if pace.jitter > _JITTER:
+        notes.append(_jitters(label, pace))
     if unit_name != "s":
         notes.append(Notice("info", f"{label} is in {unit_name}"))
-    return TimeBase(
-        rate=1.0 / mean,
-        start=float(seconds[0]),
+    return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), label, pace)
+
+
+def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
+    """The rate by a pace [s]: the usual rate that alone fits it, else with its half width."""
+    low, high = 1.0 / pace.high, 1.0 / pace.low
+    usual = usual_rate(low, high=high)
+    rounded = pace.grain > _JITTER * pace.step
+    rate = 1.0 / pace.step if usual is None else usual
+    half = max(high - rate, rate - low) if usual is None else 0.0
+    width = max(high - rate, rate - low) / rate
+    note = ""
+    if width > _EXACTLY or rounded:
+        note = f"stamps of {pace.grain:.3g} s allow +- {width * rate:.2g}"
+        note += "" if usual is None else ": the usual rate there is taken"
+    return replace(
+        base,
+        rate=rate,
+        start=base.start + (pace.begin if rounded else 0.0),
+        half_width=half,
+        jitter=pace.jitter,
         origin=label,
-        drop=drop,
-        notices=tuple(notes),
-        gaps=gaps,
+        note=note,
+    )
+
+
+def _jitters(label: str, pace: Pace) -> Notice:
+    """How far stamps are off an even clock, and what that does if the samples are as well."""
+    lost = 0.5 * (2.0 * np.pi * 0.1 * pace.jitter) ** 2
+    return Notice(
+        "warning",
+        f"{label} jitters: stamps are off an even clock by {pace.jitter:.2g} steps rms (up to "
+        f"{pace.farthest:.2g}) beside rounding; samples are taken as even; if they were not, a "
+        f"line at a tenth of the rate reads {100 * lost:.2g} % low, which its half width holds",
     )
 
 
@@ -228,27 +271,20 @@ def _told(label: str, gaps: tuple[tuple[int, int], ...], drop: tuple[int, ...]) 
     )
 
 
-def _dropped(seconds: Floats, steps: Floats, bad: NDArray[np.intp]) -> tuple[tuple[int, int], ...]:
+def _dropped(jumps: NDArray[np.intp], ahead: Floats, steps: Floats) -> tuple[tuple[int, int], ...]:
     """Dropped blocks: few jumps by whole numbers of steps between stamps that are even else."""
-    few = 0 < bad.size <= max(1, _FEW * steps.size)
-    if not few or np.any(steps[bad] <= 0.0):
+    if not 0 < jumps.size <= max(1, _FEW * steps.size) or np.any(steps[jumps - 1] <= 0.0):
         return ()
-    others = np.delete(steps, bad)
-    step = float(np.mean(others))
-    jumps = steps[bad] / step
-    missing = np.rint(jumps) - 1.0
+    missing = np.rint(ahead)
+    others = np.delete(steps, jumps - 1)
     # as whole as the stamps are even: a pause of any length is no dropped block
-    even = min(_EVEN, max(_EXACT, 3.0 * float(np.max(np.abs(others / step - 1.0)))))
-    whole = np.abs(jumps - np.rint(jumps)) < even
-    if not np.all(whole & (missing >= 1.0)) or missing.sum() > seconds.size:
+    uneven = float(np.max(np.abs(others / np.mean(others) - 1.0)))
+    even = min(_EVEN, max(_EXACT, 3.0 * uneven))
+    if not np.all((np.abs(ahead - missing) < even) & (missing >= 1.0)):
         return ()
-    place = np.arange(seconds.size, dtype=float)
-    for row, more in zip(bad, missing, strict=True):
-        place[row + 1 :] += more
-    slope, start = np.polyfit(place, seconds, 1)
-    if np.max(np.abs(seconds - start - slope * place)) > _EVEN * slope:
+    if missing.sum() > steps.size + 1:
         return ()
-    return tuple((int(row) + 1, int(more)) for row, more in zip(bad, missing, strict=True))
+    return tuple((int(row), int(more)) for row, more in zip(jumps, missing, strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
