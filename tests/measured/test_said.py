@@ -73,13 +73,13 @@ def test_pulses_and_speed_that_contradict_a_run_are_told_with_what_fits(run: Mea
 
 def test_teeth_that_contradict_a_run_are_told_and_a_tacho_in_volts_is_a_speed() -> None:
     named = run_up().supplied(tacho="n")
-    found = measure(named.with_speed("n", 300.0), teeth=10, harmonics=1, sidebands=0)
-    assert numbers(important(found, "teeth"))[:2] == [10.0, 20.0]
+    found = measure(named.with_speed("n", 300.0), teeth=15, harmonics=1, sidebands=0)
+    assert numbers(important(found, "teeth"))[:2] == [15.0, 20.0]
     assert found.slices is not None
     assert "n" not in found.channels
-    # the ten given count the turns: twice those of the shaft
+    # the fifteen given count the turns: four thirds of those of the shaft
     true = FIRST + (LAST - FIRST) * found.slices.time / SECONDS
-    assert found.slices.speed / RPM == pytest.approx(2.0 * true, rel=0.01)
+    assert found.slices.speed / RPM == pytest.approx(4.0 / 3.0 * true, rel=0.01)
 
 
 def test_a_speed_in_volts_without_its_scale_asks_for_it() -> None:
