@@ -125,9 +125,9 @@ noise.
 
 Earlier finders had sets of their own, each scored once: seed 292026, 5 of 200 wrong; seed 532026, 1
 of 200 wrong; seed 742026, 0 of 220 wrong and 57 of 65 clear ones right. None had a speed that
-swings: of 15 such records of seed 332026 the last of them named two wrongly. The finder as it is was
-built on that seed (0 of 135 wrong, 29 of 41 clear ones right, 2 of 7 of "product"); the set below was
-drawn after that and scored once.
+swings: of 15 such records of seed 332026 the last of them named two wrongly. The finder as it is
+was built on that seed (0 of 135 wrong, 29 of 41 clear ones right, 2 of 7 of "product"); the set
+below was drawn after that and scored once.
 """
 
 

@@ -145,3 +145,36 @@ def test_no_line_no_gear() -> None:
     found = weigh(peaks_of(np.random.default_rng(3).normal(size=(1, 2048))))
     assert found.teeth == ()
     assert not found.hypotheses[0].teeth
+
+
+def test_rounding_that_repeats_each_turn_is_no_comb() -> None:
+    """17 teeth at 20 turns/s, five decimals, no noise: it was no gear, weight 1."""
+    turns = 20.0 * np.arange(8_000) / 4_000.0
+    by = 1.0 + 0.1 * np.cos(2 * np.pi * turns)
+    values = by * (np.cos(34 * np.pi * turns) + 0.3 * np.cos(68 * np.pi * turns))
+    assert weigh(sharp_peaks(np.round(values, 5)[None, :]), Stated()).teeth == (17,)
+
+
+def test_an_inverter_is_no_gear_of_twenty_teeth() -> None:
+    """2 kHz +- 100, +- 200 Hz: 20 teeth at 100 turns/s or an inverter at 50 Hz."""
+    rng = np.random.default_rng(25112029)
+    t = np.arange(25_000) / 10_000.0
+    lines = {2000.0: 1.0, 1900.0: 0.3, 2100.0: 0.3, 1800.0: 0.1, 2200.0: 0.1, 24.7: 0.3}
+    values = sum(
+        (a * np.cos(2 * np.pi * f * t + rng.uniform(0.0, 6.0)) for f, a in lines.items()),
+        0.05 * rng.standard_normal(t.size),
+    )
+    found = weigh(sharp_peaks(values[None, :]), Stated(mains=(0.005, 0.006)))
+    assert found.verdict == "undecided"
+    assert any(one.carrier is not None for one in found.told)
+    assert weigh(sharp_peaks(values[None, :]), Stated()).teeth == (20,)  # of what lines alone say
+
+
+def test_a_gear_of_few_teeth_is_found_where_it_is_stated() -> None:
+    rng = np.random.default_rng(25112030)
+    turns = 30.0 * np.arange(12_000) / 4_000.0
+    by = 1.0 + 0.1 * np.cos(2 * np.pi * turns)
+    values = by * (np.cos(22 * np.pi * turns) + 0.3 * np.cos(44 * np.pi * turns))
+    peaks = sharp_peaks((values + 0.05 * rng.standard_normal(turns.size))[None, :])
+    assert weigh(peaks, Stated(teeth=11)).teeth == (11,)
+    assert 11 not in weigh(peaks, Stated()).teeth

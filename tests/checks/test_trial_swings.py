@@ -1,0 +1,64 @@
+"""Speeds that swing a few times in a record: the angle, the amplitudes, the teeth. A few of the
+trial's law; `make trial-swings` runs it whole."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scripts import script
+
+from thermogear.measured.evidence import weigh
+from thermogear.measured.hypotheses import Stated
+from thermogear.measured.reduction import measure
+from thermogear.measured.straight import sharp_peaks
+from thermogear.signals.following import best_followed
+from thermogear.signals.lines import line_spectrum
+
+TRIAL = script("trial_swings")
+
+
+def slow(seed: int) -> Any:
+    """The first record drawn that swings slower than a fourth of its shaft."""
+    random = np.random.default_rng(seed)
+    return next(one for one in iter(lambda: TRIAL.drawn(random), None) if one.kind == 0)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_the_angle_of_a_followed_line_holds_to_the_ends_of_the_record(number: int) -> None:
+    made = slow(25_112_026 + number)
+    cycles = made.teeth * (made.turns - made.turns[0])
+    spectrum = line_spectrum(made.values, TRIAL.RATE)
+    found = best_followed(made.values, spectrum, made.teeth * made.shaft)
+    assert found is not None
+    off = 2 * np.pi * (found.cycles - cycles)
+    off -= off.mean()
+    print(np.std(off), off[[0, -1]])
+    assert np.abs(off[[0, -1]]).max() < 0.2  # it was 0.5 rad and more for a swing of 2 %
+    assert np.std(off) < 0.05
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_amplitudes_of_a_speed_that_swings_are_in_their_intervals(number: int) -> None:
+    made = slow(25_112_126 + number)
+    off = TRIAL.errors(made)
+    lines = np.abs(off["mesh line"] + off["sidebands"])
+    print(off)
+    assert lines.size == 6
+    assert lines.max() < 2.0
+    assert np.mean(lines < 1.0) > 0.6
+    assert max(np.abs(off["frequency"]), default=0.0) < 2.0
+
+
+def test_a_swing_is_told() -> None:
+    said = [one.text for one in measure(slow(25_112_126).record).notices]
+    assert any("wanders" in text or "tracked" in text for text in said)
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_a_swinging_speed_hides_no_teeth(number: int) -> None:
+    made = slow(25_112_226 + number)
+    found = weigh(sharp_peaks(made.values[None, :]), Stated())
+    assert found.teeth in ((), (made.teeth,))
+    assert abs(found.mesh / (made.teeth * made.shaft / TRIAL.RATE) - 1.0) < made.size
