@@ -13,7 +13,6 @@ from thermogear.measured.gearing import Gearing
 from thermogear.signals.following import (
     Followed,
     band_power,
-    best_followed,
     filter_widths,
     follow_line,
 )
@@ -26,6 +25,8 @@ _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain
 _MISSED = 0.002  # of the line's power: a tenth of a per cent of its amplitude
 _BROUGHT = 0.75
+_TOLD = 0.01  # of its power
+_ALIKE = 1.5  # of the phase's noise
 _STILL = 0.1  # of a line, that no steady one explains
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
 
@@ -69,10 +70,12 @@ def mesh_turns(
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
     least = _wandering(spectrum, reading, beside, strong, harmonics)
     turns: MeshTurns | None = None
-    if least == 0.0:
-        turns = _followed(best_followed(values, spectrum, line.frequency), values, per_cycle)
-    elif least is not None:
-        turns = _fullest(values, spectrum, line.frequency, per_cycle, least)
+    away = [abs(one - line.frequency) for one in beside]
+    narrowest = min(away, default=np.inf)
+    if least is not None:
+        turns = _follow(
+            values, spectrum, line.frequency, per_cycle, least=least, narrowest=narrowest
+        )
     if turns is not None:
         return turns
     best = reading.frequency, reading.frequency_half_width
@@ -87,7 +90,20 @@ def mesh_turns(
         )
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
-    return MeshTurns(frequency=best[0], half_width=best[1])
+    return MeshTurns(frequency=best[0], half_width=best[1], said=_beside(reading, least))
+
+
+def _beside(reading: Reading, least: float | None) -> str:
+    """What is said of power near a line that is read as a steady one."""
+    own = reading.amplitude**2
+    share = 0.0 if not least or own <= 0.0 else (least / own - 1.0) / _BROUGHT
+    if share < _TOLD:
+        return ""
+    return (
+        f"lines beside the mesh line that are no sidebands of its shafts hold {100 * share:.2g} % "
+        "of its power: neighbours, or a speed that swings too fast to be followed; it is read as a "
+        "steady line"
+    )
 
 
 def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
@@ -172,28 +188,47 @@ def _is_side(one: Strong, beside: Sequence[float], width: float) -> bool:
     return any(abs(one.place * width - side) < 2.0 * width for side in beside)
 
 
-def _fullest(
+def _follow(
     values: Floats,
     spectrum: LineSpectrum,
     frequency: float,
     per_cycle: int,
+    *,
     least: float,
+    narrowest: float,
 ) -> MeshTurns | None:
-    """The line followed by the filter that gathers most of it, if that is ``least``."""
-    best, most = 0.0, 0.0
+    """The line followed by the narrowest filter that leaves hardly more of noise and of turning in
+    its phase than any; None: then its power is less than ``least``, or it cannot be followed."""
+    tried: list[tuple[Followed, MeshTurns]] = []
     for half_width in filter_widths(spectrum, frequency, narrow=True):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue
-        found = follow_line(
-            values, spectrum.rate, frequency=frequency, half_width=half_width, cut=False
+        one = follow_line(
+            values,
+            spectrum.rate,
+            frequency=frequency,
+            half_width=half_width,
+            narrowest=narrowest,
+            cut=False,
         )
-        turns = _followed(found, values, per_cycle)
-        if turns is not None and turns.power > most:
-            best, most = half_width, turns.power
-    if most < least:
+        turns = _followed(one, values, per_cycle)
+        if turns is not None:
+            tried.append((one, turns))
+    held = [pair for pair in tried if pair[0].whole] or tried
+    if not held:
         return None
-    found = follow_line(values, spectrum.rate, frequency=frequency, half_width=best)
-    return _followed(found, values, per_cycle)
+    bound = _ALIKE * min(turns.phase_noise for _, turns in held)
+    best, turns = next(pair for pair in held if pair[1].phase_noise <= bound)
+    if turns.power < least:
+        return None
+    whole = follow_line(
+        values,
+        spectrum.rate,
+        frequency=frequency,
+        half_width=best.half_width,
+        narrowest=narrowest,
+    )
+    return _followed(whole, values, per_cycle)
 
 
 def _followed(found: Followed | None, values: Floats, per_cycle: int) -> MeshTurns | None:

@@ -106,14 +106,22 @@ def filter_widths(
 
 
 def follow_line(
-    x: ArrayLike, rate: float, *, frequency: float, half_width: float, cut: bool = True
+    x: ArrayLike,
+    rate: float,
+    *,
+    frequency: float,
+    half_width: float,
+    narrowest: float = np.inf,
+    cut: bool = True,
 ) -> Followed:
     """The phase of the line near ``frequency`` in a filter of +-``half_width``, unwrapped.
 
     The record, shifted by -``frequency``, is smoothed by a Hann kernel of 2/half_width, which is
     cut at the record's ends, where nothing is dropped; the phase found is taken away and what is
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
-    caught a filter of half the width follows it (not narrower than the first of WIDTHS).
+    caught a filter of half the width follows it (not narrower than the first of WIDTHS), or one of
+    ``narrowest`` if that is less: its zeros are at once and twice that, where sidebands keep their
+    own phase.
     The mean frequency is (cycles at the last sample - cycles at the first)/(time between). Its
     error is seen where the record is cut inside: phase at the cut from one side against both. With
     ``cut`` False this is left out, the error is that of half a turn.
@@ -136,6 +144,7 @@ def follow_line(
         least = 4.0 * per_second / count
         raise InputError("half_width", half_width, allowed=f"above {least:.3g} for {count} samples")
     last = min(length * 2.0, max(length, 2.0 / (WIDTHS[0] * frequency) * per_second))
+    last = min(max(last, 2.0 / narrowest * per_second), 0.25 * count)
     cycles, whole = _path(values, frequency / per_second, length, last=last)
     errors = np.zeros(0)
     if cut:
@@ -154,7 +163,9 @@ def follow_line(
     )
 
 
-def best_followed(x: ArrayLike, spectrum: LineSpectrum, frequency: float) -> Followed | None:
+def best_followed(
+    x: ArrayLike, spectrum: LineSpectrum, frequency: float, narrowest: float = np.inf
+) -> Followed | None:
     """``follow_line`` by the filter that leaves the smallest error; None: the record is too short.
 
     ``spectrum``: that of ``x``. A filter too narrow loses the wander, one too wide lets noise in.
@@ -168,11 +179,14 @@ def best_followed(x: ArrayLike, spectrum: LineSpectrum, frequency: float) -> Fol
     for half_width in filter_widths(spectrum, frequency):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue
-        found = follow_line(x, spectrum.rate, frequency=frequency, half_width=half_width)
+        follow = functools.partial(
+            follow_line, x, spectrum.rate, half_width=half_width, narrowest=narrowest
+        )
+        found = follow(frequency=frequency)
         if abs(found.frequency - frequency) > 0.2 * half_width and (
             half_width <= found.frequency < 0.45 * spectrum.rate
         ):
-            found = follow_line(x, spectrum.rate, frequency=found.frequency, half_width=half_width)
+            found = follow(frequency=found.frequency)
         if best is not None and best.whole and found.frequency_error >= best.frequency_error:
             break
         best = found
