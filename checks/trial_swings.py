@@ -158,7 +158,9 @@ double, with sidebands of its shaft, while the speed swings as a sine: a control
 torsional mode. Nothing but the teeth is stated. Drawn are 12 to 80 teeth, a mesh line of 200 to
 900 Hz, 2 to 8 s at 5000 samples/s, a swing of 0.1 to 3 % at 0.05 to 8 Hz, sidebands of 1 to 7.5 %
 and noise of 0.3 to 16 % of the mesh line. The truth of the amplitudes is that in the gear's own
-angle; that of the frequency is turns over time.
+angle; that of the frequency is turns over time. A swing faster than half of the shaft is not told
+from the shaft's own sidebands and is not followed: the lines are then those of the spectrum, and
+`measure` says what power lies beside them.
 """
 
 
