@@ -163,9 +163,7 @@ def follow_line(
     )
 
 
-def best_followed(
-    x: ArrayLike, spectrum: LineSpectrum, frequency: float, narrowest: float = np.inf
-) -> Followed | None:
+def best_followed(x: ArrayLike, spectrum: LineSpectrum, frequency: float) -> Followed | None:
     """``follow_line`` by the filter that leaves the smallest error; None: the record is too short.
 
     ``spectrum``: that of ``x``. A filter too narrow loses the wander, one too wide lets noise in.
@@ -179,9 +177,7 @@ def best_followed(
     for half_width in filter_widths(spectrum, frequency):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue
-        follow = functools.partial(
-            follow_line, x, spectrum.rate, half_width=half_width, narrowest=narrowest
-        )
+        follow = functools.partial(follow_line, x, spectrum.rate, half_width=half_width)
         found = follow(frequency=frequency)
         if abs(found.frequency - frequency) > 0.2 * half_width and (
             half_width <= found.frequency < 0.45 * spectrum.rate
