@@ -100,9 +100,7 @@ def errors(made: Swing) -> dict[str, list[float]]:
     told: dict[str, list[float]] = {name: [] for name in LINES}
     for name, truth in made.amplitudes.items():
         line = found.get(name)
-        off = np.inf if line is None else (line.reading / truth - 1.0) / line.half_width
-        if line is not None:
-            off *= truth / line.reading
+        off = np.inf if line is None else (1.0 - truth / line.reading) / line.half_width
         told["mesh line" if name in ("mesh x 1", "mesh x 2") else "sidebands"].append(float(off))
     line = found.get("mesh x 1")
     if line is not None and np.isfinite(line.frequency_half_width):
@@ -159,8 +157,9 @@ torsional mode. Nothing but the teeth is stated. Drawn are 12 to 80 teeth, a mes
 900 Hz, 2 to 8 s at 5000 samples/s, a swing of 0.1 to 3 % at 0.05 to 8 Hz, sidebands of 1 to 7.5 %
 and noise of 0.3 to 16 % of the mesh line. The truth of the amplitudes is that in the gear's own
 angle; that of the frequency is turns over time. A swing faster than half of the shaft is not told
-from the shaft's own sidebands and is not followed: the lines are then those of the spectrum, and
-`measure` says what power lies beside them.
+from the shaft's own sidebands and is not followed: the lines are then those of the spectrum.
+`measure` says what power lies beside them, but not always: of nine such records that were more than
+three half widths off it said so in five.
 """
 
 

@@ -13,8 +13,7 @@ from thermogear.measured.evidence import weigh
 from thermogear.measured.hypotheses import Stated
 from thermogear.measured.reduction import measure
 from thermogear.measured.straight import sharp_peaks
-from thermogear.signals.following import best_followed
-from thermogear.signals.lines import line_spectrum
+from thermogear.signals.following import follow_line
 
 TRIAL = script("trial_swings")
 
@@ -29,9 +28,10 @@ def slow(seed: int) -> Any:
 def test_the_angle_of_a_followed_line_holds_to_the_ends_of_the_record(number: int) -> None:
     made = slow(25_112_026 + number)
     cycles = made.teeth * (made.turns - made.turns[0])
-    spectrum = line_spectrum(made.values, TRIAL.RATE)
-    found = best_followed(made.values, spectrum, made.teeth * made.shaft)
-    assert found is not None
+    mesh = made.teeth * made.shaft
+    found = follow_line(
+        made.values, TRIAL.RATE, frequency=mesh, half_width=0.1 * mesh, widest=made.shaft
+    )
     off = 2 * np.pi * (found.cycles - cycles)
     off -= off.mean()
     print(np.std(off), off[[0, -1]])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from conftest import Compared
 from thermogear.base.errors import InputError
-from thermogear.signals.following import best_followed, follow_line
+from thermogear.signals.following import follow_line
 from thermogear.signals.interval import Reading, dirichlet, read_line, strong_lines, student
 from thermogear.signals.left_over import noise_beside
 from thermogear.signals.lines import line_spectrum
@@ -99,8 +99,7 @@ def test_turns_of_a_wandering_line(wander: float, compared: Compared) -> None:
     speed = 100.0 * (1.0 + wander * np.sin(2 * np.pi * 0.3 * t + 0.7))
     cycles = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) / RATE
     x = np.cos(2 * np.pi * cycles + 0.4) + 0.05 * np.random.default_rng(8).normal(size=t.size)
-    found = best_followed(x, line_spectrum(x, RATE), 100.0)
-    assert found is not None
+    found = follow_line(x, RATE, frequency=100.0, half_width=2.5)
     assert found.whole
     turns = found.cycles - found.cycles[0] - cycles
     compared("turns of a wandering line", "the turns put in", turns, 0.05, "cycles")

@@ -71,11 +71,9 @@ def mesh_turns(
     least = _wandering(spectrum, reading, beside, strong, harmonics)
     turns: MeshTurns | None = None
     away = [abs(one - line.frequency) for one in beside]
-    narrowest = min(away, default=np.inf)
+    widest = min(away, default=np.inf)
     if least is not None:
-        turns = _follow(
-            values, spectrum, line.frequency, per_cycle, least=least, narrowest=narrowest
-        )
+        turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, widest=widest)
     if turns is not None:
         return turns
     best = reading.frequency, reading.frequency_half_width
@@ -195,12 +193,12 @@ def _follow(
     per_cycle: int,
     *,
     least: float,
-    narrowest: float,
+    widest: float,
 ) -> MeshTurns | None:
     """The line followed by the narrowest filter that leaves hardly more of noise and of turning in
     its phase than any; None: then its power is less than ``least``, or it cannot be followed."""
     tried: list[tuple[Followed, MeshTurns]] = []
-    for half_width in filter_widths(spectrum, frequency, narrow=True):
+    for half_width in filter_widths(spectrum, frequency, every=True):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue
         one = follow_line(
@@ -208,7 +206,7 @@ def _follow(
             spectrum.rate,
             frequency=frequency,
             half_width=half_width,
-            narrowest=narrowest,
+            widest=widest,
             cut=False,
         )
         turns = _followed(one, values, per_cycle)
@@ -226,14 +224,12 @@ def _follow(
         spectrum.rate,
         frequency=frequency,
         half_width=best.half_width,
-        narrowest=narrowest,
+        widest=widest,
     )
     return _followed(whole, values, per_cycle)
 
 
-def _followed(found: Followed | None, values: Floats, per_cycle: int) -> MeshTurns | None:
-    if found is None:
-        return None
+def _followed(found: Followed, values: Floats, per_cycle: int) -> MeshTurns | None:
     cycles = found.cycles
     if np.any(np.diff(cycles) <= 0.0):
         return None

@@ -81,12 +81,12 @@ def filter_widths(
     frequency: float,
     widths: Sequence[float] = WIDTHS,
     *,
-    narrow: bool = False,
+    every: bool = False,
 ) -> tuple[float, ...]:
     """Half widths to try on a wandering line, the narrowest that may hold it first.
 
     Twelve bins at least; a wider one than the first brings less than a tenth more power. With
-    ``narrow`` it is all of them, however little the narrowest holds. None where twelve bins are
+    ``every`` it is all of them, however little the narrowest holds. None where twelve bins are
     more than a fifth of ``frequency``.
 
     >>> from thermogear.signals.lines import line_spectrum
@@ -98,7 +98,7 @@ def filter_widths(
     if least > 0.2 * frequency:
         return ()
     steps = [*dict.fromkeys(max(least, round(w * frequency, 15)) for w in widths)]
-    if narrow:
+    if every:
         return tuple(steps)
     powers = [band_power(spectrum, frequency, one) for one in steps]
     first = next(i for i in range(len(steps)) if max(powers[i:]) <= _GAIN * powers[i])
@@ -111,7 +111,7 @@ def follow_line(
     *,
     frequency: float,
     half_width: float,
-    narrowest: float = np.inf,
+    widest: float = np.inf,
     cut: bool = True,
 ) -> Followed:
     """The phase of the line near ``frequency`` in a filter of +-``half_width``, unwrapped.
@@ -119,9 +119,8 @@ def follow_line(
     The record, shifted by -``frequency``, is smoothed by a Hann kernel of 2/half_width, which is
     cut at the record's ends, where nothing is dropped; the phase found is taken away and what is
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
-    caught a filter of half the width follows it (not narrower than the first of WIDTHS), or one of
-    ``narrowest`` if that is less: its zeros are at once and twice that, where sidebands keep their
-    own phase.
+    caught a filter of half the width follows it (not narrower than the first of WIDTHS), of
+    ``widest`` at most: its zeros are at once and twice that, where sidebands keep their own phase.
     The mean frequency is (cycles at the last sample - cycles at the first)/(time between). Its
     error is seen where the record is cut inside: phase at the cut from one side against both. With
     ``cut`` False this is left out, the error is that of half a turn.
@@ -144,7 +143,7 @@ def follow_line(
         least = 4.0 * per_second / count
         raise InputError("half_width", half_width, allowed=f"above {least:.3g} for {count} samples")
     last = min(length * 2.0, max(length, 2.0 / (WIDTHS[0] * frequency) * per_second))
-    last = min(max(last, 2.0 / narrowest * per_second), 0.25 * count)
+    last = min(max(last, 2.0 / widest * per_second), 0.25 * count)
     cycles, whole = _path(values, frequency / per_second, length, last=last)
     errors = np.zeros(0)
     if cut:
@@ -161,32 +160,6 @@ def follow_line(
         last=half_width * length / last,
         whole=whole,
     )
-
-
-def best_followed(x: ArrayLike, spectrum: LineSpectrum, frequency: float) -> Followed | None:
-    """``follow_line`` by the filter that leaves the smallest error; None: the record is too short.
-
-    ``spectrum``: that of ``x``. A filter too narrow loses the wander, one too wide lets noise in.
-
-    >>> from thermogear.signals.lines import line_spectrum
-    >>> x = 2.0 * np.cos(2 * np.pi * 0.1 * np.arange(2000))
-    >>> f"{best_followed(x, line_spectrum(x, 1.0), 0.1).frequency:.5f}"
-    '0.10000'
-    """
-    best: Followed | None = None
-    for half_width in filter_widths(spectrum, frequency):
-        if spectrum.samples * half_width < 4.0 * spectrum.rate:
-            continue
-        follow = functools.partial(follow_line, x, spectrum.rate, half_width=half_width)
-        found = follow(frequency=frequency)
-        if abs(found.frequency - frequency) > 0.2 * half_width and (
-            half_width <= found.frequency < 0.45 * spectrum.rate
-        ):
-            found = follow(frequency=found.frequency)
-        if best is not None and best.whole and found.frequency_error >= best.frequency_error:
-            break
-        best = found
-    return best
 
 
 def _hann_kernel(length: float) -> Floats:
