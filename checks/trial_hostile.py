@@ -341,16 +341,16 @@ def tried(kind: str, number: int, words: list[str], rest: int) -> Outcome:
     return found
 
 
-def _loaded(kind: str, folder: Path) -> None:
-    """Load what reading a file of a kind needs."""
+def _loaded(kind: str, folder: Path, count: int) -> None:
+    """Load what reading a file of a kind, of ``count`` samples, needs."""
     from thermogear.measured import optional
 
     if kind == "rig.mf4":
         importlib.import_module("asammdf")
         optional._run = forked
     path = named(folder, "whole", kind)
-    path.write_bytes(record(kind, folder, LONG))
-    done = tried(kind, 0, command(kind, folder, LONG, path), 0)
+    path.write_bytes(record(kind, folder, count))
+    done = tried(kind, 0, command(kind, folder, count, path), 0)
     if done.broken or done.code != 0:
         raise RuntimeError(f"the good record of {kind} is not read: {done.said}")
 
@@ -367,7 +367,8 @@ def work(jobs: list[tuple[str, int, int]], seed: int, keep: Path | None) -> None
                 (folder / "good.toml").write_text(cases()["rig.toml"], "utf-8")
                 tried(kind, 0, ["check", str(folder / "good.toml")], 0)
             else:
-                _loaded(kind, folder)
+                # what weighs teeth is loaded once, each reader by a record of its own
+                _loaded(kind, folder, LONG if len(made) == 1 + (CASES in made) else SHORT)
         gc.collect()
         gc.freeze()  # what is loaded by now need not be gone through for every file
         signal.signal(signal.SIGPROF, _stop)
