@@ -24,8 +24,10 @@ Flags = NDArray[np.bool_]
 
 _LEVELS = np.arange(-3.0, 10.01, 0.5)  # over the threshold [nepers]
 _SHARES = np.array([0.02, 0.1, 0.3, 0.6, 0.9])  # of groups that are there at all
+_LOG_SHARES, _LOG_WITHOUT = np.log(_SHARES), np.log1p(-_SHARES)
 _REACH = 4.0  # standard deviations of a place
 _FEW, _ASTRAY = 0.2, 0.12  # share of places that are less sure than they look, by as many bins
+_LOG_MOST, _LOG_FEW = float(np.log(1.0 - _FEW)), float(np.log(_FEW))
 _OUTLIER = 3.0
 _LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
 
@@ -38,6 +40,8 @@ BLOCK = 6
 COMB_SPREADS = (0.5, 1.0, 1.6)
 """Scatter [nepers] of neighbours in a comb about the resonances' envelope: one of these."""
 LONGEST_COMB = 400
+
+_COMB_BELOW = special.log_ndtr(-_LEVELS[:, None] / np.array(COMB_SPREADS))  # (level, spread)
 
 
 @dataclass(frozen=True)
@@ -62,12 +66,13 @@ def seen(
     """Evidence of groups of lines foretold at ``position`` (group, member) [cycles/sample].
 
     ``error`` [cycles/sample]: standard deviation of the foretelling; ``spread`` [nepers] of the
-    members about the group's level; ``trend`` [nepers] of members beside the group's level;
-    ``top`` [nepers]: the group's level is not above it (group,). ``used`` lines are explained
-    already: members there say nothing. Members hidden beside another line say nothing.
+    members about the group's level; ``trend`` [nepers] of members beside the group's level
+    (member,); ``top`` [nepers]: the group's level is not above it (group,). ``used`` lines are
+    explained already: members there say nothing. Members hidden beside another line say nothing.
     """
-    each, lines = _members(peaks, used, position, error, spread, trend)
-    return Seen(evidence=_over_levels(np.sum(each, axis=-1), peaks, top), lines=lines)
+    looked = _Looked.at(peaks, used, position, error)
+    total = looked.totals(spread, np.broadcast_to(trend, position.shape[-1:]))
+    return Seen(evidence=_over_levels(total, peaks, top), lines=looked.lines)
 
 
 def falling(
@@ -82,74 +87,107 @@ def falling(
     top: Floats | float,
 ) -> tuple[Seen, ...]:
     """``seen`` for groups of members up to each order: ``order`` (member,) from 1 on, in turn."""
-    each, lines = _members(peaks, used, position, error, spread, trend)
-    return tuple(
-        Seen(
-            evidence=_over_levels(np.sum(each[..., order <= last], axis=-1), peaks, top),
-            lines=np.where(order <= last, lines, -1),
+    looked = _Looked.at(peaks, used, position, error)
+    last = np.arange(1, int(order.max()) + 1)
+    upto = looked.only((order <= last[:, None])[:, None, :])
+    evidence = _over_levels(upto.totals(spread, trend), peaks, top)
+    return tuple(Seen(evidence=e, lines=n) for e, n in zip(evidence, upto.lines, strict=True))
+
+
+@dataclass(frozen=True)
+class _Looked:
+    """What is at foretold places (group, member): a line that is there, or none that would be
+    seen; the line's ``height`` [nepers over the threshold], and log ``gain`` of its place over
+    chance; its index (-1: none)."""
+
+    _: KW_ONLY
+    there: Floats
+    missing: Floats
+    height: Floats
+    gain: Floats
+    lines: NDArray[np.int64]
+
+    @classmethod
+    def at(cls, peaks: Peaks, used: Flags, position: Floats, error: Floats | float) -> _Looked:
+        shape = position.shape
+        if peaks.size == 0:
+            none = np.zeros(shape)
+            return cls(there=none, missing=none, height=none, gain=none, lines=np.full(shape, -1))
+        index, off = peaks.nearest(position)
+        close = np.hypot(peaks.error[index], error) / peaks.bin_width
+        deviation = np.hypot(close, _ASTRAY)
+        inside = (position >= 3.0 * peaks.bin_width) & (position <= HIGHEST)
+        far = np.abs(off)
+        there = (far < _REACH * deviation) & ~used[index] & inside
+        missing = ~there & inside & (far >= 3.0)
+        mean = max(0.3, float(np.mean(peaks.level - peaks.least)))
+        height = peaks.level[index] - peaks.least
+        place = np.logaddexp(
+            _LOG_MOST - np.log(close) - 0.5 * (off / close) ** 2,
+            _LOG_FEW - np.log(deviation) - 0.5 * (off / deviation) ** 2,
         )
-        for last in range(1, int(order.max()) + 1)
-    )
+        chance = np.log(peaks.density[index]) - height / mean - float(np.log(mean))
+        return cls(
+            there=there.astype(float),
+            missing=missing.astype(float),
+            height=np.where(there, height, 0.0),
+            gain=np.where(there, place - 2.0 * _LOG_ROOT - chance, 0.0),
+            lines=np.where(there, index, -1),
+        )
+
+    def only(self, members: Flags) -> _Looked:
+        """The same of some members alone: nothing is known of the others."""
+        return _Looked(
+            there=self.there * members,
+            missing=self.missing * members,
+            height=self.height * members,
+            gain=self.gain * members,
+            lines=np.where(members, self.lines, -1),
+        )
+
+    def totals(self, spread: float, trend: Floats) -> Floats:
+        """Log likelihood over chance (level, ..., group): sum over members of log normal or
+        missing."""
+        height = self.height - trend * self.there
+        each = np.stack([self.there, height, height**2, self.gain])
+        number, first, second, gain = np.add.reduce(each, axis=-1)
+        below = special.log_ndtr(-(_LEVELS[:, None] + trend) / spread)
+        level = _LEVELS.reshape(-1, *np.ones(number.ndim, dtype=int))
+        hidden = np.moveaxis(self.missing @ below.T, -1, 0)
+        return np.asarray(_normal(level, number, first, second, spread) + gain + hidden)
 
 
-def _members(
-    peaks: Peaks,
-    used: Flags,
-    position: Floats,
-    error: Floats | float,
-    spread: float,
-    trend: Floats | float,
-) -> tuple[Floats, NDArray[np.int64]]:
-    """Log likelihood over chance (level, group, member), and the lines (-1: none)."""
-    shape = position.shape
-    if peaks.size == 0:
-        return np.zeros((_LEVELS.size, *shape)), np.full(shape, -1)
-    index, off = peaks.nearest(position)
-    close = np.hypot(peaks.error[index], error) / peaks.bin_width
-    deviation = np.hypot(close, _ASTRAY)
-    outside = (position < 3.0 * peaks.bin_width) | (position > HIGHEST)
-    hit = (np.abs(off) < _REACH * deviation) & ~used[index] & ~outside
-    missing = ~hit & ~outside & (np.abs(off) >= 3.0)
-    mean = max(0.3, float(np.mean(peaks.level - peaks.least)))
-    height = peaks.level[index] - peaks.least
-    gain = np.logaddexp(
-        np.log(1.0 - _FEW) - np.log(close) - 0.5 * (off / close) ** 2,
-        np.log(_FEW) - np.log(deviation) - 0.5 * (off / deviation) ** 2,
-    )
-    gain = (
-        gain
-        - 2.0 * _LOG_ROOT
-        - np.log(spread)
-        - np.log(peaks.density[index])
-        + np.log(mean)
-        + height / mean
-    )
-    level = _LEVELS[:, None, None] + np.broadcast_to(trend, shape)
-    log_hit = gain - 0.5 * ((height - level) / spread) ** 2
-    log_missing = special.log_ndtr(-level / spread)
-    each = np.where(hit, log_hit, np.where(missing, log_missing, 0.0))
-    return each, np.where(hit, index, -1)
+def _normal(
+    level: Floats, number: Floats, first: Floats, second: Floats, spread: Floats | float
+) -> Floats:
+    """Log likelihood of ``number`` normal values about ``level`` with these sums of powers, but
+    for the root of 2 pi."""
+    square = second - 2.0 * level * first + level**2 * number
+    return np.asarray(-number * np.log(spread) - 0.5 * square / np.square(spread))
 
 
 def _over_levels(total: Floats, peaks: Peaks, top: Floats | float) -> Floats:
-    """Log of the mean over levels up to ``top`` of exp(total) (level, group)."""
-    highest = np.broadcast_to(top, total.shape[1:]) - peaks.least
-    below = _LEVELS[:, None] <= np.maximum(highest, _LEVELS[0])
+    """Log of the mean over levels up to ``top`` (group,) of exp(total) (level, ..., group)."""
+    highest = np.maximum(np.asarray(top) - peaks.least, _LEVELS[0])
+    if np.all(highest >= _LEVELS[-1]):
+        return _log_sum(total) - float(np.log(_LEVELS.size))
+    level = _LEVELS.reshape(-1, *np.ones(total.ndim - 1, dtype=int))
+    below = level <= highest
     return np.asarray(_log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0)))
 
 
 def _log_sum(values: Floats) -> Floats:
     """Log of the sum of exponentials over the first axis."""
-    highest = np.max(values, axis=0)
-    return np.asarray(highest + np.log(np.sum(np.exp(values - highest), axis=0)))
+    highest = np.maximum.reduce(values)
+    return np.asarray(highest + np.log(np.add.reduce(np.exp(values - highest))))
 
 
 def some_of(evidence: Floats) -> float:
     """Log evidence of groups of which a share w is there: sum of log(1 - w + w e), mean in w."""
     if evidence.size == 0:
         return 0.0
-    each = np.logaddexp(np.log1p(-_SHARES)[:, None], np.log(_SHARES)[:, None] + evidence)
-    return mean_exp(np.sum(each, axis=-1))
+    each = np.logaddexp(_LOG_WITHOUT[:, None], _LOG_SHARES[:, None] + evidence)
+    return mean_exp(np.add.reduce(each, axis=-1))
 
 
 def take(used: Flags, found: Seen) -> None:
@@ -207,18 +245,31 @@ def comb(peaks: Peaks, used: Flags, *, step: float, error: float) -> tuple[float
     step is uniform up to 0.1 cycles/sample: log(error sqrt(2 pi)/0.1) is added.
     """
     highest = min(LONGEST_COMB, int(HIGHEST / step))
-    parts: list[tuple[float, Seen]] = []
-    for start in (1, 1 - BLOCK // 2):
-        blocks = -(-(highest + 1 - start) // BLOCK)
-        ranks = (start + np.arange(blocks * BLOCK)).reshape(-1, BLOCK).astype(float)
-        errors = np.abs(ranks) * error
-        for spread in COMB_SPREADS:
-            found = seen(peaks, used, ranks * step, error=errors, spread=spread)
-            parts.append((some_of(found.evidence), found))
-    best = max(parts, key=lambda part: part[0])[1]
+    half = BLOCK // 2
+    blocks = -(-highest // BLOCK), -(-(highest + half) // BLOCK)
+    ranks = np.arange(1.0 - half, BLOCK * max(blocks) + 1.0)
+    looked = _Looked.at(peaks, used, ranks * step, np.abs(ranks) * error)
+    values = np.stack([looked.there, looked.height, looked.height**2, looked.gain, looked.missing])
+    sums = [
+        values[:, start : start + BLOCK * size].reshape(5, size, BLOCK).sum(axis=-1)
+        for start, size in zip((half, 0), blocks, strict=True)
+    ]
+    number, first, second, gain, missing = np.concatenate(sums, axis=-1)
+    spread = np.array(COMB_SPREADS)[:, None]
+    total = (
+        _normal(_LEVELS[:, None, None], number, first, second, spread)
+        + gain
+        + _COMB_BELOW[..., None] * missing
+    )
+    evidence = _log_sum(total) - float(np.log(_LEVELS.size))
+    each = [(some_of(part), part) for row in evidence for part in np.split(row, blocks[:1], -1)]
+    best = int(np.argmax([own for own, _ in each]))
+    start, size = ((half, 0)[best % 2], blocks[best % 2])
+    lines = looked.lines[start : start + BLOCK * size].reshape(size, BLOCK)
+    found = Seen(evidence=each[best][1], lines=lines)
     after = used.copy()
-    take(after, best)
-    return mean_exp([part[0] for part in parts]) + narrow(error, width=0.1), after, best
+    take(after, found)
+    return mean_exp([own for own, _ in each]) + narrow(error, width=0.1), after, found
 
 
 def narrow(error: float, *, width: float) -> float:

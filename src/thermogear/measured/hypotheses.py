@@ -32,10 +32,8 @@ from thermogear.measured.groups import (
 )
 from thermogear.measured.impacts import (
     TIMES,
-    Comb,
-    best_background,
+    Background,
     combs_of,
-    orders_of,
     standing_out,
 )
 from thermogear.measured.peaks import Peaks
@@ -166,16 +164,15 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
             for z in standing_out(peaks, comb.step, fewest=TEETH[0], most=TEETH[1])
             if z not in known
         ]
-    orders = orders_of(peaks, combs)
-    mains = stated.mains
-    alone, told = best_background(peaks, np.zeros(peaks.size, dtype=bool), orders, mains=mains)
+    background = Background(peaks, combs, mains=stated.mains)
+    alone, told = background.on(np.zeros(peaks.size, dtype=bool))
     none = Hypothesis(gears=(), evidence=max(0.0, alone), combs=tuple(one.step for one in told))
-    found = [(_beside(peaks, draft, orders, mains), draft) for draft in drafts]
+    found = [(_beside(draft, background), draft) for draft in drafts]
     found.sort(key=lambda pair: -pair[0].evidence)
     best = [draft for _, draft in found[:_FIRST]]
     bare = [_gear(peaks, mesh, (), stated) for mesh in _bare_lines(peaks, drafts)]
     twos = _with_second(peaks, best, singles, stated)
-    others = [_beside(peaks, draft, orders, mains) for draft in (*bare, *twos)]
+    others = [_beside(draft, background) for draft in (*bare, *twos)]
     carriers = [
         _carrier(one, draft, stated) for one, draft in found if _exact_mains(draft, stated.mains)
     ]
@@ -271,13 +268,11 @@ def _drafts(peaks: Peaks, stated: Stated) -> list[_Draft]:
     return list(drafts.values())
 
 
-def _beside(
-    peaks: Peaks, draft: _Draft, orders: list[list[Comb]], mains: tuple[float, ...]
-) -> Hypothesis:
+def _beside(draft: _Draft, background: Background) -> Hypothesis:
     """The draft with combs on what is left: beside its sidebands, or with its shafts' lines among
     those of the combs, so that the mesh's alone stand out."""
-    beside, told = best_background(peaks, draft.used, orders, draft.steps, mains=mains)
-    bare, bare_told = best_background(peaks, draft.mesh_lines, orders, draft.steps, mains=mains)
+    beside, told = background.on(draft.used, draft.steps)
+    bare, bare_told = background.on(draft.mesh_lines, draft.steps)
     both = draft.evidence + beside, draft.bare + bare
     return Hypothesis(
         gears=draft.gears,

@@ -123,65 +123,68 @@ def standing_out(peaks: Peaks, step: float, *, fewest: int, most: int) -> list[i
     return [int(number[place]) for place in np.argsort(-total)[:_OUTSTANDING]]
 
 
-def background(
-    peaks: Peaks,
-    used: Flags,
-    combs: list[Comb],
-    fixed: tuple[float, ...] = (),
-    *,
-    mains: tuple[float, ...] = (),
-) -> tuple[float, tuple[Comb, ...]]:
-    """Log evidence of the combs on the lines not used, each with its sidebands, and those seen.
+class Background:
+    """Combs behind a record's lines, and their evidence on what a gear leaves of the lines.
 
-    The step of a shaft in ``fixed`` [cycles/sample] is no free number. One that is p/q of a step
-    seen before, p and q up to 12, is one of so many ratios: shafts of one train turn so. One that
-    is a multiple of the ``mains`` [cycles/sample], as of a motor or its inverter, is free within
-    what the mains deviate by.
+    ``combs``: those looked for; ``mains`` [cycles/sample]: lines of which a motor or its inverter
+    makes multiples. What a comb and its sidebands hold of the same lines left is looked for once.
     """
-    total, told = 0.0, []
-    used = used.copy()
-    known = list(fixed)
-    for one in combs:
-        evidence, after, found = comb(peaks, used, step=one.step, error=one.error)
-        if any(abs(one.step / step - 1.0) < _SAME for step in fixed):
-            evidence -= narrow(one.error, width=0.1)
-        elif any(_in_ratio(one, step) for step in known):
-            evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, width=0.1))
-        else:
-            evidence += _of_mains(one, mains)
-        evidence += ONE_MORE
-        if evidence <= 0.0:
-            continue
-        sides, after = _sidebands(peaks, after, one, found)
-        total += evidence + sides
-        used = after
-        known.append(one.step)
-        told.append(one)
-    return total, tuple(told)
 
+    def __init__(self, peaks: Peaks, combs: list[Comb], *, mains: tuple[float, ...] = ()) -> None:
+        self._peaks = peaks
+        self._held: dict[tuple[bytes, float], tuple[float, Flags, Seen]] = {}
+        self._beside: dict[tuple[bytes, float], tuple[float, Flags]] = {}
+        self._mains: tuple[float, ...] = ()
+        self._orders = self._orders_of(combs)
+        self._mains = mains
 
-def best_background(
-    peaks: Peaks,
-    used: Flags,
-    orders: list[list[Comb]],
-    fixed: tuple[float, ...] = (),
-    *,
-    mains: tuple[float, ...] = (),
-) -> tuple[float, tuple[Comb, ...]]:
-    """``background`` in the order of combs that explains most."""
-    found = [background(peaks, used, order, fixed, mains=mains) for order in orders]
-    return max(found, key=lambda one: one[0])
+    def on(self, used: Flags, fixed: tuple[float, ...] = ()) -> tuple[float, tuple[Comb, ...]]:
+        """Log evidence of the combs on the lines not used, each with its sidebands, and those seen,
+        in the order of combs that explains most.
 
+        The step of a shaft in ``fixed`` [cycles/sample] is no free number. One that is p/q of a
+        step seen before, p and q up to 12, is one of so many ratios: shafts of one train turn so.
+        One that is a multiple of the mains is free within what the mains deviate by.
+        """
+        found = [self._in_order(used, order, fixed) for order in self._orders]
+        return max(found, key=lambda one: one[0])
 
-def orders_of(peaks: Peaks, combs: list[Comb]) -> list[list[Comb]]:
-    """The combs in the order of their evidence alone, and with that one first which leaves most
-    to the others: a comb at a part of a step holds lines that belong to another's sidebands."""
-    none = np.zeros(peaks.size, dtype=bool)
-    orders = [[one, *(other for other in combs if other is not one)] for one in combs]
-    if len(orders) < 2:
-        return [combs]
-    best = max(orders, key=lambda order: background(peaks, none, order)[0])
-    return [orders[0]] if best is orders[0] else [orders[0], best]
+    def _orders_of(self, combs: list[Comb]) -> list[list[Comb]]:
+        """The combs in the order of their evidence alone, and with that one first which leaves most
+        to the others: a comb at a part of a step holds lines that belong to another's sidebands."""
+        none = np.zeros(self._peaks.size, dtype=bool)
+        orders = [[one, *(other for other in combs if other is not one)] for one in combs]
+        if len(orders) < 2:
+            return [combs]
+        best = max(orders, key=lambda order: self._in_order(none, order, ())[0])
+        return [orders[0]] if best is orders[0] else [orders[0], best]
+
+    def _in_order(
+        self, used: Flags, combs: list[Comb], fixed: tuple[float, ...]
+    ) -> tuple[float, tuple[Comb, ...]]:
+        total, told = 0.0, []
+        known = list(fixed)
+        for one in combs:
+            key = used.tobytes(), one.step
+            if key not in self._held:
+                self._held[key] = comb(self._peaks, used, step=one.step, error=one.error)
+            evidence, after, found = self._held[key]
+            if any(abs(one.step / step - 1.0) < _SAME for step in fixed):
+                evidence -= narrow(one.error, width=0.1)
+            elif any(_in_ratio(one, step) for step in known):
+                evidence += max(0.0, -float(np.log(_RATIOS)) - narrow(one.error, width=0.1))
+            else:
+                evidence += _of_mains(one, self._mains)
+            evidence += ONE_MORE
+            if evidence <= 0.0:
+                continue
+            if key not in self._beside:
+                self._beside[key] = _sidebands(self._peaks, after, one, found)
+            sides, used = self._beside[key]
+            total += evidence + sides
+            known.append(one.step)
+            told.append(one)
+        return total, tuple(told)
 
 
 def _of_mains(one: Comb, mains: tuple[float, ...]) -> float:

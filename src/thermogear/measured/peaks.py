@@ -55,7 +55,8 @@ class Peaks:
         """Index of the line nearest to each position, and how far it is off [bins]."""
         if self.size == 0:
             return np.zeros(position.shape, dtype=np.int64), np.full(position.shape, np.inf)
-        after = np.searchsorted(self.place, position).clip(1, max(1, self.size - 1))
+        after = np.searchsorted(self.place, position)
+        after = np.minimum(np.maximum(after, 1), max(1, self.size - 1))
         before = after - 1
         after = np.minimum(after, self.size - 1)
         first = np.abs(self.place[before] - position) <= np.abs(self.place[after] - position)
