@@ -10,7 +10,7 @@ import pytest
 from scripts import script
 
 from thermogear.measured.evidence import weigh
-from thermogear.measured.hypotheses import Stated
+from thermogear.measured.meshes import Stated
 from thermogear.measured.reduction import measure
 from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.following import follow_line

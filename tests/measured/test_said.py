@@ -15,7 +15,8 @@ from thermogear.base.units import RPM
 from thermogear.measured.contradictions import of_pulses, of_speed, of_teeth
 from thermogear.measured.dataset import result_of
 from thermogear.measured.evidence import Evidence
-from thermogear.measured.hypotheses import Gears, Hypothesis
+from thermogear.measured.hypotheses import Hypothesis
+from thermogear.measured.meshes import Gears
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
 from thermogear.measured.shaft import given_shaft

@@ -15,8 +15,8 @@ from thermogear.measured.contradictions import of_pulses, of_teeth
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
+from thermogear.measured.meshes import Stated
 from thermogear.measured.order_map import OrderMap, order_map
 from thermogear.measured.quantities import quantities
 from thermogear.measured.record import Notice, Record

@@ -4,7 +4,9 @@ Each is foretold lines over chance (:mod:`thermogear.measured.hypotheses`). No l
 exact: what all lines together say, E nats of the best, is off by the sum of many small errors of
 either sign, which grows as sqrt(E). So log evidences are divided by sqrt(1 + E/25) before they are
 normalised to weights: ten lines are believed as they stand, of hundreds a small difference decides
-nothing. A gear is named where nearly all the weight has it.
+nothing. A gear is named where nearly all the weight has it. What has it is parted in two: teeth, or
+sidebands at a distance of their own, as of a torsional oscillation; the two have all other lines in
+common, so that their odds count as they are.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import special
 
-from thermogear.measured.hypotheses import Gears, Hypothesis, Stated, hypotheses
+from thermogear.measured.hypotheses import Hypothesis, hypotheses
+from thermogear.measured.meshes import Gears, Stated, whole
 from thermogear.measured.peaks import Peaks
 
 CLEAR = 0.99
@@ -134,7 +137,7 @@ class Evidence:
             hypotheses=tuple(
                 replace(
                     one,
-                    gears=tuple(replace(g, mesh=g.mesh * factor) for g in one.gears),
+                    gears=tuple(own.scaled(factor) for own in one.gears),
                     combs=tuple(step * factor for step in one.combs),
                     carrier=None if one.carrier is None else one.carrier * factor,
                 )
@@ -185,8 +188,15 @@ def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
     weights = np.exp(logs - special.logsumexp(logs))
     weighed = [replace(one, weight=float(w)) for one, w in zip(found, weights, strict=True)]
     weighed.sort(key=lambda one: -one.weight)
-    meshes = sorted(weighed[0].gears, key=lambda one: (stated.teeth in one.teeth, one.level))
+    best = weighed[0].gears
+    named = [_named(gears, weighed) for gears in best]
+    for gears, one in zip(best, named, strict=True):
+        for teeth in one.teeth:
+            order = (gears, *(other for other in best if other is not gears))
+            weighed = _or_free(weighed, gears.mesh, teeth, *whole(peaks, order, teeth, stated))
+    meshes = sorted(best, key=lambda one: (stated.teeth in one.teeth, one.level))
     named = [_named(gears, weighed) for gears in reversed(meshes)]
+    weighed.sort(key=lambda one: -one.weight)
     evidence = Evidence(
         hypotheses=tuple(weighed),
         named=tuple(one for one in named if one.teeth),
@@ -196,12 +206,33 @@ def weigh(peaks: Peaks, stated: Stated | None = None) -> Evidence:
     return Evidence(hypotheses=_untold(weighed))
 
 
+def _or_free(
+    weighed: list[Hypothesis], mesh: float, teeth: int, share: float, distance: float
+) -> list[Hypothesis]:
+    """The hypotheses, where those with this gear keep ``share`` of their weight: the rest is that
+    its sidebands have a distance of their own."""
+    found: list[Hypothesis] = []
+    for one in weighed:
+        if not _has(one, mesh, teeth):
+            found.append(one)
+            continue
+        gears = tuple(
+            own.without(teeth, distance) if abs(own.mesh / mesh - 1.0) < _ALIKE else own
+            for own in one.gears
+        )
+        found += [
+            replace(one, weight=one.weight * share),
+            replace(one, gears=gears, weight=one.weight * (1.0 - share)),
+        ]
+    return found
+
+
 def _untold(weighed: list[Hypothesis]) -> tuple[Hypothesis, ...]:
     """The hypotheses where no tooth number has a tenth of the weight: numbers that the lines do not
     tell are put together as teeth that are not seen, any number."""
     found: dict[tuple[str, tuple[int, ...]], Hypothesis] = {}
     for one in weighed:
-        gears = tuple(replace(own, teeth=(), sides=()) for own in one.gears)
+        gears = tuple(replace(own, teeth=(), sides=(), free=()) for own in one.gears)
         places = tuple(round(np.log(own.mesh) / _ALIKE) for own in gears)
         key = "" if gears else one.words, places
         best = found.get(key, replace(one, gears=gears, weight=0.0))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence, weigh
-from thermogear.measured.hypotheses import Stated
+from thermogear.measured.meshes import Stated
 from thermogear.measured.prominence import Prominence, prominence
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
 from thermogear.measured.straight import sharp_peaks

@@ -24,7 +24,6 @@ Flags = NDArray[np.bool_]
 
 _LEVELS = np.arange(-3.0, 10.01, 0.5)  # over the threshold [nepers]
 _SHARES = np.array([0.02, 0.1, 0.3, 0.6, 0.9])  # of groups that are there at all
-_LOG_SHARES, _LOG_WITHOUT = np.log(_SHARES), np.log1p(-_SHARES)
 _REACH = 4.0  # standard deviations of a place
 _FEW, _ASTRAY = 0.2, 0.12  # share of places that are less sure than they look, by as many bins
 _LOG_MOST, _LOG_FEW = float(np.log(1.0 - _FEW)), float(np.log(_FEW))
@@ -86,10 +85,13 @@ def falling(
     trend: Floats,
     top: Floats | float,
 ) -> tuple[Seen, ...]:
-    """``seen`` for groups of members up to each order: ``order`` (member,) from 1 on, in turn."""
+    """``seen`` for groups of members up to each order: ``order`` (member,) from 1 on, in turn.
+
+    ``position`` (..., group, member): cases at once, as many as its first axes have.
+    """
     looked = _Looked.at(peaks, used, position, error)
-    last = np.arange(1, int(order.max()) + 1)
-    upto = looked.only((order <= last[:, None])[:, None, :])
+    last = np.arange(1, int(order.max()) + 1).reshape(-1, *np.ones(position.ndim, dtype=int))
+    upto = looked.only(order <= last)
     evidence = _over_levels(upto.totals(spread, trend), peaks, top)
     return tuple(Seen(evidence=e, lines=n) for e, n in zip(evidence, upto.lines, strict=True))
 
@@ -182,12 +184,12 @@ def _log_sum(values: Floats) -> Floats:
     return np.asarray(highest + np.log(np.add.reduce(np.exp(values - highest))))
 
 
-def some_of(evidence: Floats) -> float:
-    """Log evidence of groups of which a share w is there: sum of log(1 - w + w e), mean in w."""
-    if evidence.size == 0:
-        return 0.0
-    each = np.logaddexp(_LOG_WITHOUT[:, None], _LOG_SHARES[:, None] + evidence)
-    return mean_exp(np.add.reduce(each, axis=-1))
+def some_of(evidence: Floats) -> Floats:
+    """Log evidence of groups (..., group) of which a share w is there: sum over groups of
+    log(1 - w + w e), mean in w."""
+    shares = _SHARES.reshape(-1, *np.ones(evidence.ndim, dtype=int))
+    each = np.logaddexp(np.log1p(-shares), np.log(shares) + evidence)
+    return _log_sum(np.add.reduce(each, axis=-1)) - float(np.log(_SHARES.size))
 
 
 def take(used: Flags, found: Seen) -> None:
@@ -262,14 +264,16 @@ def comb(peaks: Peaks, used: Flags, *, step: float, error: float) -> tuple[float
         + _COMB_BELOW[..., None] * missing
     )
     evidence = _log_sum(total) - float(np.log(_LEVELS.size))
-    each = [(some_of(part), part) for row in evidence for part in np.split(row, blocks[:1], -1)]
-    best = int(np.argmax([own for own, _ in each]))
+    parts = np.split(evidence, blocks[:1], axis=-1)
+    each = np.stack([some_of(part) for part in parts], axis=-1).ravel()
+    best = int(np.argmax(each))
+    own = parts[best % 2][best // 2]
     start, size = ((half, 0)[best % 2], blocks[best % 2])
     lines = looked.lines[start : start + BLOCK * size].reshape(size, BLOCK)
-    found = Seen(evidence=each[best][1], lines=lines)
+    found = Seen(evidence=own, lines=lines)
     after = used.copy()
     take(after, found)
-    return mean_exp([own for own, _ in each]) + narrow(error, width=0.1), after, found
+    return mean_exp(each) + narrow(error, width=0.1), after, found
 
 
 def narrow(error: float, *, width: float) -> float:

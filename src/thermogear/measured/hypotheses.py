@@ -5,8 +5,9 @@ harmonic sidebands up to the first, second or third of each of its gears' shafts
 lines; perhaps a second mesh with the like; and combs of impacts or shaft harmonics on all that is
 left. "No gear" has the combs alone, and a mesh whose teeth do not show has no sidebands. The log
 evidence of each is that of its groups of lines over chance (:mod:`thermogear.measured.groups`),
-with the prior of its free numbers: mesh line anywhere, teeth one of 12..250 for each gear. Where
-the shaft would turn at a multiple of the mains' frequency, an inverter is weighed against it.
+with the prior of its free numbers: mesh line anywhere, teeth one of 12..250 for each gear
+(:mod:`thermogear.measured.meshes`). Where the shaft would turn at a multiple of the mains'
+frequency, an inverter is weighed against it.
 """
 
 from __future__ import annotations
@@ -20,15 +21,8 @@ from numpy.typing import NDArray
 
 from thermogear.measured.groups import (
     HIGHEST,
-    ONE_MORE,
-    Flags,
-    Seen,
-    falling,
     mean_exp,
-    narrow,
     refined,
-    some_of,
-    take,
 )
 from thermogear.measured.impacts import (
     TIMES,
@@ -36,19 +30,20 @@ from thermogear.measured.impacts import (
     combs_of,
     standing_out,
 )
+from thermogear.measured.meshes import (
+    HARMONICS,
+    TEETH,
+    Draft,
+    Gears,
+    Stated,
+    mesh_of,
+    prior_of,
+)
 from thermogear.measured.peaks import Peaks
 
 Floats = NDArray[np.float64]
 
-TEETH = (12, 250)
-"""Tooth numbers looked for: fewer are not made as power gears."""
 
-_HARMONICS = 6
-_MESH_SPREAD = 1.5  # nepers, of mesh harmonics about a fall with their rank
-_SIDE_SPREAD = 1.2  # of sidebands, and of a shaft's own lines, about a fall with their order
-_FALL = 0.7  # nepers for each order
-_SIDES = np.array([-1, 1, -2, 2, -3, 3])
-_OWN = np.arange(1, 5)
 _LOWEST = 40.0  # bins, of a mesh line
 _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
@@ -59,39 +54,8 @@ _FIRST, _SECOND = 6, 24  # meshes that a second is put beside, and seconds tried
 _FINAL_TWO = 10
 _BARE = 4  # mesh lines without teeth
 _APART = 3.0  # bins between a line and its sidebands, and between the lines of two shafts
-_TOLD_APART = 6.0  # bins between a line and its sidebands where teeth can be named
 _SAME_STEP = 1e-4
 _SAME_RATE = 2e-4  # of two clocks: an inverter's and the recorder's
-_GIVEN = 0.9  # how far a stated tooth number or speed is trusted
-_SPEED_SPREAD = 0.05  # a stated speed is nominal
-
-
-@dataclass(frozen=True, kw_only=True)
-class Stated:
-    """What a user says, teeth of a gear and its shaft's turns per sample; and the frequencies that
-    ``mains`` may have [cycles/sample]."""
-
-    teeth: int | None = None
-    shaft: float | None = None
-    mains: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Gears:
-    """A mesh line [cycles/sample] and the teeth of those of its gears whose shafts show, with the
-    log evidence ``sides`` of each one's first sidebands alone; ``level`` of its highest harmonic
-    [nepers over the floor]."""
-
-    mesh: float
-    level: float
-    teeth: tuple[int, ...] = ()
-    sides: tuple[float, ...] = ()
-
-    @property
-    def words(self) -> str:
-        """In words."""
-        teeth = f"{' and '.join(map(str, self.teeth))} teeth" if self.teeth else "teeth not seen"
-        return f"mesh line {self.mesh:.6f} cycles/sample, {teeth}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,20 +99,6 @@ class Hypothesis:
         return "no gear" + (f": lines every {beside} cycles/sample" if beside else "")
 
 
-@dataclass(frozen=True)
-class _Draft:
-    gears: tuple[Gears, ...]
-    evidence: float
-    used: Flags
-    bare: float  # evidence of the mesh lines' harmonics alone
-    mesh_lines: Flags
-
-    @property
-    def steps(self) -> tuple[float, ...]:
-        """Turns per sample of the shafts."""
-        return tuple(gears.mesh / z for gears in self.gears for z in gears.teeth)
-
-
 def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
     """All that are worth weighing, with their evidence."""
     singles = sorted(_drafts(peaks, stated), key=lambda draft: -draft.evidence)
@@ -160,7 +110,7 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
     for comb in combs[:3]:
         known = [z for one in drafts for z in one.gears[0].teeth if _turns(one, z, comb.step)]
         drafts += [
-            _gear(peaks, z * comb.step, (z,), stated)
+            mesh_of(peaks, z * comb.step, (z,), stated)
             for z in standing_out(peaks, comb.step, fewest=TEETH[0], most=TEETH[1])
             if z not in known
         ]
@@ -170,7 +120,7 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
     found = [(_beside(draft, background), draft) for draft in drafts]
     found.sort(key=lambda pair: -pair[0].evidence)
     best = [draft for _, draft in found[:_FIRST]]
-    bare = [_gear(peaks, mesh, (), stated) for mesh in _bare_lines(peaks, drafts)]
+    bare = [mesh_of(peaks, mesh, (), stated) for mesh in _bare_lines(peaks, drafts)]
     twos = _with_second(peaks, best, singles, stated)
     others = [_beside(draft, background) for draft in (*bare, *twos)]
     carriers = [
@@ -179,7 +129,7 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
     return [none, *(one for one, _ in found), *others, *carriers]
 
 
-def _exact_mains(draft: _Draft, mains: tuple[float, ...]) -> bool:
+def _exact_mains(draft: Draft, mains: tuple[float, ...]) -> bool:
     """Whether the one shaft turns at a multiple of the mains' nominal frequency."""
     if len(draft.steps) != 1:
         return False
@@ -190,20 +140,20 @@ def _exact_mains(draft: _Draft, mains: tuple[float, ...]) -> bool:
     )
 
 
-def _carrier(one: Hypothesis, draft: _Draft, stated: Stated) -> Hypothesis:
+def _carrier(one: Hypothesis, draft: Draft, stated: Stated) -> Hypothesis:
     """The same lines without a gear: an inverter set to the mains' nominal frequency. Its carrier,
     by the same clock, is any whole multiple of its steps as well."""
     (gears,) = draft.gears
     choice = float(np.log(TIMES * len(stated.mains)))
     return Hypothesis(
         gears=(),
-        evidence=one.evidence - _prior(gears.mesh, gears.teeth[0], stated) - choice,
+        evidence=one.evidence - prior_of(gears.mesh, gears.teeth[0], stated) - choice,
         combs=(draft.steps[0], *one.combs),
         carrier=gears.mesh,
     )
 
 
-def _bare_lines(peaks: Peaks, drafts: list[_Draft]) -> list[float]:
+def _bare_lines(peaks: Peaks, drafts: list[Draft]) -> list[float]:
     """Mesh lines to weigh without teeth: the drafts' and the highest, each once."""
     found: list[float] = []
     meshes = [draft.gears[0].mesh for draft in drafts]
@@ -215,12 +165,12 @@ def _bare_lines(peaks: Peaks, drafts: list[_Draft]) -> list[float]:
 
 
 def _with_second(
-    peaks: Peaks, first: list[_Draft], singles: list[_Draft], stated: Stated
-) -> list[_Draft]:
+    peaks: Peaks, first: list[Draft], singles: list[Draft], stated: Stated
+) -> list[Draft]:
     """The best of the drafts, each with a second mesh on the lines it leaves."""
-    found: dict[frozenset[tuple[int, tuple[int, ...]]], _Draft] = {}
+    found: dict[frozenset[tuple[int, tuple[int, ...]]], Draft] = {}
     for one in first:
-        beside: list[_Draft] = []
+        beside: list[Draft] = []
         for other in singles:
             if len(beside) == _SECOND:
                 break
@@ -228,7 +178,7 @@ def _with_second(
                 beside.append(other)
         for other in beside:
             mesh, teeth = other.gears[0].mesh, other.gears[0].teeth
-            both = _gear(peaks, mesh, teeth, Stated(), one)
+            both = mesh_of(peaks, mesh, teeth, Stated(), one)
             key = frozenset(
                 (int(np.rint(g.mesh / peaks.bin_width / 2.0)), g.teeth) for g in both.gears
             )
@@ -245,18 +195,18 @@ def _harmonic(one: float, other: float) -> bool:
     return bool(abs(ratio / np.rint(ratio) - 1.0) < _SAME_STEP)
 
 
-def _turns(draft: _Draft, teeth: int, step: float) -> bool:
+def _turns(draft: Draft, teeth: int, step: float) -> bool:
     return abs(draft.gears[0].mesh / teeth / step - 1.0) < _SAME_STEP
 
 
-def _drafts(peaks: Peaks, stated: Stated) -> list[_Draft]:
+def _drafts(peaks: Peaks, stated: Stated) -> list[Draft]:
     """Mesh lines with one gear each, and with two of the best."""
-    drafts: dict[tuple[int, tuple[int, ...]], _Draft] = {}
+    drafts: dict[tuple[int, tuple[int, ...]], Draft] = {}
     members: dict[int, dict[int, float]] = {}
     meshes: dict[int, float] = {}
     for mesh, teeth in _screened(peaks, stated):
         key = int(np.rint(mesh / peaks.bin_width / 2.0))
-        draft = _gear(peaks, meshes.setdefault(key, mesh), (teeth,), stated)
+        draft = mesh_of(peaks, meshes.setdefault(key, mesh), (teeth,), stated)
         drafts[key, (teeth,)] = draft
         members.setdefault(key, {})[teeth] = draft.evidence
     for key, own in members.items():
@@ -264,11 +214,11 @@ def _drafts(peaks: Peaks, stated: Stated) -> list[_Draft]:
         for both in itertools.combinations(best, 2):
             if meshes[key] / both[0] - meshes[key] / both[1] < _APART * peaks.bin_width:
                 continue  # one line cannot tell of two shafts
-            drafts[key, both] = _gear(peaks, meshes[key], both, stated)
+            drafts[key, both] = mesh_of(peaks, meshes[key], both, stated)
     return list(drafts.values())
 
 
-def _beside(draft: _Draft, background: Background) -> Hypothesis:
+def _beside(draft: Draft, background: Background) -> Hypothesis:
     """The draft with combs on what is left: beside its sidebands, or with its shafts' lines among
     those of the combs, so that the mesh's alone stand out."""
     beside, told = background.on(draft.used, draft.steps)
@@ -297,7 +247,7 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
     pairs: list[tuple[float, float, int]] = []
     told: list[tuple[float, float, int]] = []
     for start in tried[tried > _LOWEST * peaks.bin_width]:
-        highest = min(_HARMONICS, int(HIGHEST / start))
+        highest = min(HARMONICS, int(HIGHEST / start))
         if highest < 1:
             continue
         mesh = refined(peaks, float(start), np.arange(1, highest + 1))[0]
@@ -331,95 +281,3 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
 def _looked(gain: Floats, peaks: Peaks, position: NDArray[np.floating[Any]]) -> Floats:
     place = np.rint(position / peaks.bin_width).astype(int)
     return np.asarray(gain[np.where((place > 2) & (place < peaks.bins), place, peaks.bins + 1)])
-
-
-def _gear(
-    peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated, first: _Draft | None = None
-) -> _Draft:
-    """Log evidence of a mesh line with these gears, without what is left of the lines; of a second
-    mesh on the lines that the ``first`` leaves."""
-    used = np.zeros(peaks.size, dtype=bool) if first is None else first.used.copy()
-    ranks = np.arange(1, min(_HARMONICS, int(HIGHEST / mesh)) + 1)
-    mesh, error = refined(peaks, mesh, ranks)
-    rank = ranks.astype(float)
-    carriers = falling(
-        peaks,
-        used,
-        position=(rank * mesh)[None, :],
-        order=ranks,
-        error=(rank * error)[None, :],
-        spread=_MESH_SPREAD,
-        trend=-np.log(rank),
-        top=np.inf,
-    )
-    evidence, seen_best = _open(carriers)
-    total = evidence + narrow(error, width=HIGHEST) + ONE_MORE
-    lines = seen_best.lines[0]
-    used[lines[lines >= 0]] = True
-    bare, mesh_lines = total, np.zeros(peaks.size, dtype=bool)
-    mesh_lines[lines[lines >= 0]] = True
-    around: list[float] = []
-    there = rank[lines >= 0]
-    tops = peaks.level[lines[lines >= 0]]
-    for z in teeth:
-        sides = falling(
-            peaks,
-            used,
-            position=(there[:, None] + _SIDES / z) * mesh,
-            order=np.abs(_SIDES),
-            error=there[:, None] * error,
-            spread=_SIDE_SPREAD,
-            trend=-_FALL * (np.abs(_SIDES) - 1.0),
-            top=tops,
-        )
-        own = falling(
-            peaks,
-            used,
-            position=(_OWN * mesh / z)[None, :],
-            order=_OWN,
-            error=(_OWN * error / z)[None, :],
-            spread=_SIDE_SPREAD,
-            trend=np.asarray(-_FALL * (_OWN - 1.0), float),
-            top=np.inf,
-        )
-        prior = _prior(mesh, z, stated)
-        bare += prior
-        # beside a line, as close as its own lobe, others are not placed well enough to count teeth
-        near = mesh / z < _TOLD_APART * peaks.bin_width
-        around.append(0.0 if near else some_of(sides[0].evidence))
-        total += prior
-        for part in (sides, own):
-            evidence, seen_best = _open(part)
-            total += evidence
-            take(used, seen_best)
-    level = float(np.max(tops, initial=-np.inf))
-    gears = Gears(mesh=mesh, level=level, teeth=teeth, sides=tuple(around))
-    if first is None:
-        return _Draft((gears,), total, used, bare, mesh_lines)
-    return _Draft(
-        (*first.gears, gears),
-        first.evidence + total,
-        used,
-        first.bare + bare,
-        first.mesh_lines | mesh_lines,
-    )
-
-
-def _open(parts: tuple[Seen, ...]) -> tuple[float, Seen]:
-    """Log evidence of groups up to an order that is open, all alike, and the best of them."""
-    each = [some_of(part.evidence) for part in parts]
-    return mean_exp(each), parts[int(np.argmax(each))]
-
-
-def _prior(mesh: float, teeth: int, stated: Stated) -> float:
-    """Log prior of a gear: any tooth number alike, or as stated; a stated speed is nominal."""
-    total = -float(np.log(TEETH[1] - TEETH[0] + 1))
-    if stated.teeth is not None:
-        own = _GIVEN if teeth == stated.teeth else 0.0
-        total = float(np.log(own + (1.0 - _GIVEN) * np.exp(total)))
-    if stated.shaft is not None:
-        away = np.log(mesh / teeth / stated.shaft) / _SPEED_SPREAD
-        # against a shaft anywhere within a factor of 30 to both sides
-        near = np.exp(-0.5 * away**2) / (_SPEED_SPREAD * np.sqrt(2 * np.pi)) * 2 * np.log(30.0)
-        total += float(np.log(_GIVEN * near + 1.0 - _GIVEN))
-    return total

@@ -232,7 +232,7 @@ def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float
         anywhere = narrow(error, width=one.step)
         as_teeth = narrow(error * ratio / middle, width=_HIGHEST_RATIO)
         prior = mean_exp((anywhere, as_teeth))
-        evidence = some_of(sides.evidence) + prior + ONE_MORE
+        evidence = float(some_of(sides.evidence)) + prior + ONE_MORE
         if evidence > best:
             best, after = evidence, used.copy()
             take(after, sides)

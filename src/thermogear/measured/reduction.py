@@ -22,8 +22,8 @@ from thermogear.measured.changing import (
 from thermogear.measured.contradictions import of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.hypotheses import Stated
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
+from thermogear.measured.meshes import Stated
 from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
