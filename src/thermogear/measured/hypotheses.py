@@ -48,6 +48,8 @@ _LOWEST = 40.0  # bins, of a mesh line
 _MESHES = 48  # lines tried as mesh lines
 _PAIRS = 60  # pairs of mesh line and teeth looked at closely
 _STATED_PAIRS = 12
+_MESHES_BESIDE, _BESIDE = 12, 6  # meshes, and the lines beside each, that are read as sidebands
+_ASIDE = 0.6  # bins
 _MEMBERS = 6  # tooth numbers that are put together in twos
 _FINAL = 24
 _FIRST, _SECOND = 6, 24  # meshes that a second is put beside, and seconds tried
@@ -268,6 +270,8 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
             told.append((own, mesh, stated.teeth))
     kept = [(m, z) for _, m, z in sorted(pairs, reverse=True)[:_PAIRS]]
     kept += [(m, z) for _, m, z in sorted(told, reverse=True)[:_STATED_PAIRS]]
+    best_meshes = list(dict.fromkeys(mesh for mesh, _ in kept))[:_MESHES_BESIDE]
+    kept += [(mesh, z) for mesh in best_meshes for z in _of_highest_beside(peaks, mesh)]
     # halves and doubles of the best contradict them: they must be weighed too
     for mesh, z in kept[:12]:
         for k in (2, 3):
@@ -276,6 +280,18 @@ def _screened(peaks: Peaks, stated: Stated) -> list[tuple[float, int]]:
                 kept += [(mesh, z // k), (mesh / k, z // k)]
     fitting = [(m, z) for m, z in kept if z in allowed and m < HIGHEST]
     return list(dict.fromkeys(fitting))
+
+
+def _of_highest_beside(peaks: Peaks, mesh: float) -> list[int]:
+    """The teeth that the highest lines beside a mesh line and its harmonics tell as first
+    sidebands: many others may have more lines where they foretell some, each lower."""
+    rank = np.maximum(np.rint(peaks.place / mesh), 1.0)
+    apart = np.abs(peaks.place - rank * mesh)
+    beside = np.flatnonzero((apart > _APART * peaks.bin_width) & (apart < mesh / TEETH[0]))
+    highest = beside[np.argsort(-peaks.level[beside])][:_BESIDE]
+    teeth = np.rint(mesh / apart[highest])
+    fits = np.abs(mesh / teeth - apart[highest]) < _ASIDE * peaks.bin_width
+    return [int(z) for z in dict.fromkeys(teeth[fits])]
 
 
 def _looked(gain: Floats, peaks: Peaks, position: NDArray[np.floating[Any]]) -> Floats:

@@ -21,6 +21,7 @@ _HIGHEST = 0.3
 _FINER = 4
 _NEAR, _AROUND = 20, 300  # bins: to each side of a line, and of its floor
 _GAIN = 5.0, 0.1  # of the sum of logarithms, and a share of it: less is chance
+_NEARLY = 0.9  # of the best gain
 _FLOOR = np.log(4.0)  # change of the floor: a clock takes half of the noise beside its own line
 
 
@@ -42,30 +43,44 @@ def sharp_peaks(channels: Floats) -> Peaks:
 
 def _straighter(channels: Floats, peaks: Peaks, widths: tuple[float, ...]) -> Floats | None:
     """The record in a better clock; None: there is none."""
-    best, gain = None, 0.0
     spectra = np.fft.rfft(channels - channels.mean(axis=-1, keepdims=True), axis=-1)
     count = channels.shape[-1]
     fine: Floats | None = None
     floor, before = _Floor.of(channels), dict[int, float]()
-    for reference in _references(peaks):
+    tried: list[tuple[float, float, float]] = []  # gain, reference, half width
+
+    def turned(reference: float, half_width: float) -> tuple[Floats, int] | None:
+        nonlocal fine
         lines = spectra[_clearest(np.abs(spectra), reference * count)]
+        cycles, start = _cycles(lines, count, reference, half_width)
+        if np.any(np.diff(cycles) <= 0.0):
+            return None
+        steady = np.linspace(cycles[0], cycles[-1], cycles.size)
+        if float(np.std(cycles - steady)) * _HIGHEST / reference < _STEADY:
+            return None
+        fine = _finer(channels) if fine is None else fine
+        return _warped(fine, cycles, start), start
+
+    for reference in _references(peaks):
         for half_width in sorted({max(width * reference, _LEAST / count) for width in widths}):
             if half_width > 0.2 * reference:
                 continue
-            cycles, start = _cycles(lines, count, reference, half_width)
-            if np.any(np.diff(cycles) <= 0.0):
+            found = turned(reference, half_width)
+            if found is None:
                 continue
-            steady = np.linspace(cycles[0], cycles[-1], cycles.size)
-            if float(np.std(cycles - steady)) * _HIGHEST / reference < _STEADY:
-                continue
-            fine = _finer(channels) if fine is None else fine
-            turned = _warped(fine, cycles, start)
+            straight, start = found
             if start not in before:  # a shorter record has less of both
                 before[start] = floor.cost(channels[:, start : count - start])
-            gained = before[start] - floor.cost(turned)
-            if gained > max(gain, _GAIN[0], _GAIN[1] * abs(before[start])):
-                best, gain = turned, gained
-    return best
+            gain = before[start] - floor.cost(straight)
+            if gain > max(_GAIN[0], _GAIN[1] * abs(before[start])):
+                tried.append((gain, reference, half_width))
+    if not tried:
+        return None
+    most, chosen, _ = max(tried)
+    # a wider filter takes sidebands of its line for wander: to all other lines it adds the like
+    narrow = min(w for gain, line, w in tried if line == chosen and gain > _NEARLY * most)
+    best = turned(chosen, narrow)
+    return None if best is None else best[0]
 
 
 @dataclass(frozen=True)
