@@ -128,8 +128,9 @@ of 200 wrong; seed 742026, 0 of 220 wrong and 57 of 65 clear ones right; seed 95
 a speed that swings, 1 of 235 wrong and 56 of 72 clear ones right. What was wrong there came of a
 clock that its own line's sidebands turned. That is mended, and sidebands at a distance of their own
 are weighed against every gear: of 100 mesh lines beside a torsional oscillation 8 were named, now
-none. The finder as it is was built on seeds 332026 (0 of 135 wrong, 30 of 41 clear ones right)
-and 952026 (0 of 235 wrong); the set below was drawn after that and scored once.
+none. Of seed 612026 110 records were scored (0 wrong) when the clock was mended once more, for
+lines of an inverter. The finder as it is was built on seeds 332026 (0 of 135 wrong, 30 of 41 clear
+ones right) and 952026 (0 of 235 wrong); the set below was drawn after that and scored once.
 """
 
 

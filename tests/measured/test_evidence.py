@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import integrate, stats
@@ -168,6 +170,8 @@ def test_an_inverter_is_no_gear_of_twenty_teeth() -> None:
     assert found.verdict == "undecided"
     assert any(one.carrier is not None for one in found.told)
     assert weigh(sharp_peaks(values[None, :]), Stated()).teeth == (20,)  # of what lines alone say
+    wandering = replace(sharp_peaks(values[None, :]), steady=False)
+    assert weigh(wandering, Stated(mains=(0.005, 0.006))).teeth == (20,)  # no inverter does so
 
 
 def test_a_gear_of_few_teeth_is_found_where_it_is_stated() -> None:

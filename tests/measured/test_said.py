@@ -108,12 +108,41 @@ def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert of_teeth(20, [20, 41]) is None
     assert of_teeth(20, []) is None
     assert of_teeth(None, [20]) is None
-    assert of_pulses(2.0, [20], 20.0) is None
-    assert of_pulses(None, [20], 30.0) is None
+    assert of_pulses(2.0, [20], 20.0, teeth=None) is None
+    assert of_pulses(None, [20], 30.0, teeth=20) is None
     assert of_speed(1000.0, lowest=1090.0, highest=2000.0) is None
-    both = of_pulses(1.0, [20, 41], 7.3)
+    both = of_pulses(1.0, [20, 41], 7.3, teeth=None)
     assert both is not None
     assert numbers(both.text) == [1.0, 20.0, 41.0, 7.3, 1.0]
+
+
+def with_tacho() -> Record:
+    """A mesh line of 20 teeth at 900 rpm without sidebands, one pulse a turn."""
+    t = np.arange(20_000) / 5000.0
+    turns = 15.0 * t
+    values = np.cos(40 * np.pi * turns) + 0.4 * np.cos(80 * np.pi * turns)
+    values += 0.05 * np.random.default_rng(11).standard_normal(t.size)
+    pulses = 5.0 * (turns % 1.0 < 0.1)
+    made = Record((Channel("a", values, "g"), Channel("p", pulses, "V")), "made", 5000.0, "made")
+    return made.supplied(tacho="p")
+
+
+def test_pulses_and_speed_that_contradict_each_other_are_told() -> None:
+    told = measure(with_tacho(), pulses_per_turn=2.0, speed=900.0 * RPM, harmonics=1, sidebands=0)
+    # two given make 450 of 900 rpm: one would fit
+    expected = [2.0, 450.0, 900.0, 1.0]
+    assert numbers(important(told, "pulses")) == pytest.approx(expected, rel=1e-4)
+    right = measure(with_tacho(), pulses_per_turn=1.0, speed=900.0 * RPM, harmonics=1, sidebands=0)
+    assert important(right, "pulses") == ""
+
+
+def test_a_stated_speed_tells_the_pulses_and_given_teeth_are_not_found_ones() -> None:
+    for speed, pulses in ((900.0, "1 pulse "), (450.0, "2 pulses ")):
+        found = measure(with_tacho(), speed=speed * RPM, harmonics=1, sidebands=0)
+        assert any(pulses in one.text for one in found.notices)
+    said = important(measure(with_tacho(), teeth=25, pulses_per_turn=1.0), "pulses")
+    assert numbers(said)[:3] == [1.0, 25.0, 20.0]
+    assert "found" in said.partition("25")[2]
 
 
 # --- weights -------------------------------------------------------------------------------------

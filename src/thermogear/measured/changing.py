@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
 from thermogear.measured.chain import Turning
-from thermogear.measured.contradictions import of_pulses, of_teeth
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.gate import Passed
-from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import MeasuredLine, Wanted, jittered, wanted_lines
-from thermogear.measured.meshes import Stated
+from thermogear.measured.order_angle import MESHES, OrderAngle, order_angle
 from thermogear.measured.order_map import OrderMap, order_map
 from thermogear.measured.quantities import quantities
 from thermogear.measured.record import Notice, Record
@@ -33,7 +32,6 @@ from thermogear.signals.tracking import samples_per_turn
 Floats = NDArray[np.float64]
 
 _NORMAL = 1.959964
-_MESHES = 16.0  # mesh cycles that stand for a turn where no shaft is known
 _NEIGHBOUR = 0.35  # orders: nearer than this a line beside is the line itself, changing
 _HIGHEST = 1.0 / 2.56
 
@@ -81,24 +79,12 @@ class Changing:
     slices: OrderSlices | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Angle:
-    """The angle that orders count: ``turns`` of the first shaft, or of 16 mesh cycles."""
-
-    turns: Floats
-    first: int
-    noise: float
-    mesh: float | None
-    of_mesh: bool
-    gearing: Gearing | None
-    teeth: int | None
-
-
 def read_in_angle(
     record: Record,
     through: Passed,
     *,
     teeth: int | None,
+    speed: float | None,
     harmonics: int,
     sidebands: int,
     orders: Sequence[float],
@@ -108,8 +94,8 @@ def read_in_angle(
 ) -> tuple[Changing | None, list[Notice]]:
     """The record in the angle that a tacho, a speed channel or a tracked line gives.
 
-    ``through``: the channels as they came through the gate. None, and what should
-    be known all the same, where neither is there and the speed is steady.
+    ``through``: the channels as they came through the gate; ``speed`` [rad/s] as stated. None, and
+    what should be known all the same, where neither is there and the speed is steady.
     """
     notices: list[Notice] = []
     table = through.table
@@ -133,7 +119,7 @@ def read_in_angle(
     if shaft is None:
         return None, notices
     notices += shaft.told
-    angle = _angle(shaft, table, teeth, notices)
+    angle = order_angle(shaft, table, teeth=teeth, speed=speed, rate=record.rate, notices=notices)
     if shaft.span < VARIES and angle.mesh is None:
         return None, notices
     if shaft.span < VARIES:
@@ -143,79 +129,7 @@ def read_in_angle(
     ), notices
 
 
-def _angle(shaft: Shaft, table: Floats, teeth: int | None, notices: list[Notice]) -> _Angle:
-    """Mesh line, teeth and pulses per turn in the shaft's angle."""
-    turns, told = shaft.turns, []
-    inside = table[:, shaft.first : shaft.first + turns.size]
-    loudest = inside[np.argsort(-np.std(inside, axis=-1))[:2]]
-    per_turn = samples_per_turn(turns)
-    straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
-    near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
-    told_as = per_turn * float((turns[-1] - turns[0]) / (turns.size - 1))
-    at, stated = None if near is None else near / per_turn, Stated(teeth=teeth)
-    gearing = _found(straight, at, stated, shaft.width, told_as)
-    mesh = None if gearing is None else gearing.mesh_frequency * per_turn
-    if near is not None and gearing is None:
-        gearing = _found(straight, None, stated, 0.0, told_as)
-        mesh = None if gearing is None else gearing.mesh_frequency * per_turn
-    if mesh is None and teeth and not shaft.line:
-        mesh = float(teeth)
-    z = teeth or (gearing.teeth if gearing else None)
-    decided = [one.teeth for one in gearing.shafts] if gearing else []
-    contradicted = [of_teeth(teeth, decided)]
-    if mesh is not None:
-        known = decided or ([teeth] if teeth else [])
-        contradicted.append(of_pulses(shaft.pulses, known, mesh))
-    notices += [one for one in contradicted if one is not None]
-    factor = 1.0
-    if shaft.line:
-        factor = (mesh or 1.0) / (z or _MESHES)
-    elif mesh is not None and not shaft.sure and z:
-        pulses = z / mesh
-        if abs(pulses - round(pulses)) < 0.02 * pulses and pulses > 0.5:
-            factor = 1.0 / round(pulses)
-            told.append(f"{round(pulses)} pulses per turn, by the mesh line of {z} teeth")
-        else:
-            told.append(
-                f"pulses per turn are not stated: 1 is taken ({pulses:.4g} by the mesh line)"
-            )
-    elif not shaft.sure:
-        told.append("pulses per turn are not stated: 1 is taken (give --pulses)")
-    elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
-        factor = mesh / teeth
-        told.append(
-            f"the mesh line stands at order {mesh:.4g} of the tacho's shaft: the shaft of {teeth} "
-            f"teeth turns {factor:.5g} times as fast"
-        )
-    elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
-        z = round(mesh)
-        sure = "" if not decided or z in decided else ", if its gear is one of this mesh"
-        told.append(
-            f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth{sure}"
-        )
-    notices += [Notice("important" if "taken" in t else "info", f"tacho: {t}") for t in told]
-    own = turns * factor
-    return _Angle(
-        turns=own,
-        first=shaft.first,
-        noise=shaft.noise * factor,
-        mesh=None if mesh is None else mesh / factor if not shaft.line else z or _MESHES,
-        of_mesh=shaft.line and not z,
-        gearing=gearing,
-        teeth=z,
-    )
-
-
-def _found(
-    table: list[Floats], near: float | None, stated: Stated, width: float, told_as: float
-) -> Gearing | None:
-    try:
-        return find_gearing(table, near, stated, followed=width, told_as=told_as)
-    except InputError:
-        return None
-
-
-def _steady(shaft: Shaft, angle: _Angle, notices: list[Notice]) -> Changing:
+def _steady(shaft: Shaft, angle: OrderAngle, notices: list[Notice]) -> Changing:
     """The angle of a nearly steady shaft, for lines of the whole record."""
     assert angle.mesh is not None
     cycles = angle.mesh * angle.turns
@@ -251,7 +165,7 @@ def _sliced(
     record: Record,
     through: Passed,
     shaft: Shaft,
-    angle: _Angle,
+    angle: OrderAngle,
     harmonics: int,
     sidebands: int,
     orders: Sequence[float],
@@ -295,9 +209,9 @@ def _sliced(
     damage = np.array([through.extra.get(c.name, 0.0) for c in chosen])[:, None, None]
     damage = damage + 2.0 * record.rate_share + jittered(frequency / rate, record.jitter)
     amplitude = np.stack([s.amplitude for s in read])
-    unit = 1.0 if not angle.of_mesh else 1.0 / _MESHES
+    unit = 1.0 if not angle.of_mesh else 1.0 / MESHES
     known = [c.unit is not None and not c.needs_scale for c in chosen]
-    shafts_speed = 2.0 * np.pi * rate * speed * (1.0 if not angle.of_mesh else _MESHES)
+    shafts_speed = 2.0 * np.pi * rate * speed * (1.0 if not angle.of_mesh else MESHES)
     time = (sample + angle.first) / rate
     slices = OrderSlices(
         channels=tuple(c.name for c in chosen),
@@ -358,7 +272,7 @@ def _sliced(
 
 def _wanted(
     gearing: Gearing | None,
-    angle: _Angle,
+    angle: OrderAngle,
     inside: Floats,
     per_turn: int,
     harmonics: int,
@@ -408,7 +322,7 @@ def _sidebands(meshes: Sequence[Wanted], teeth: int, count: int, shaft: float) -
 
 
 def _strongest(
-    values: Floats, angle: _Angle, per_turn: int, most: int, mean: float
+    values: Floats, angle: OrderAngle, per_turn: int, most: int, mean: float
 ) -> list[Wanted]:
     """The strongest orders, where no mesh line is known."""
     straight = resample_by_angle(values, angle.turns, samples_per_turn=per_turn)
@@ -453,7 +367,7 @@ def _rates(turns: Floats, steps: Floats) -> Floats:
 def _lines(
     slices: OrderSlices,
     wanted: Sequence[Wanted],
-    angle: _Angle,
+    angle: OrderAngle,
     mean: float,
     rate: float,
     in_hertz: bool,

@@ -31,24 +31,49 @@ def of_teeth(given: int | None, found: Sequence[int]) -> Notice | None:
     )
 
 
-def of_pulses(given: float | None, found: Sequence[int], mesh: float) -> Notice | None:
+def of_pulses(
+    given: float | None, found: Sequence[int], mesh: float, *, teeth: int | None
+) -> Notice | None:
     """Pulses per turn ``given`` that put the mesh line at an order ``mesh`` of the tacho's shaft
-    which is no number of teeth ``found`` (none: undecided)."""
-    if given is None or not found or any(abs(mesh / z - 1.0) < _WHOLE for z in found):
+    which is no number of teeth ``found``, or, where these are undecided, given."""
+    known = list(found) or ([teeth] if teeth else [])
+    if given is None or not known or any(abs(mesh / z - 1.0) < _WHOLE for z in known):
         return None
-    fitting = [(given * z / mesh, z) for z in found]
+    said = f"found: {_both(known)} teeth, and" if found else f"teeth given: {teeth}; found:"
+    fitting = [(given * z / mesh, z) for z in known]
     ways = [
         f"{round(p)} would fit a tacho on the shaft of {z} teeth"
         for p, z in fitting
         if abs(p - round(p)) < _WHOLE * p
     ]
     other = f"the other gear, of {round(mesh)} teeth, or on "
-    whole = len(found) == 1 and abs(mesh - round(mesh)) < _WHOLE
-    ways.append(f"{given:g} fit one on the shaft of {other if whole else ''}no gear of this mesh")
+    whole = len(known) == 1 and abs(mesh - round(mesh)) < _WHOLE
+    fits = f"{given:g} {'fits' if given == 1.0 else 'fit'} one on the shaft of"
+    ways.append(f"{fits} {other if whole else ''}no gear of this mesh")
     return Notice(
         "important",
-        f"pulses per turn given: {given:g}; found: {_both(found)} teeth, and the mesh line at "
-        f"order {mesh:.5g} of the tacho's shaft: {', '.join(ways)}",
+        f"pulses per turn given: {given:g}; {said} the mesh line at order {mesh:.5g} of the "
+        f"tacho's shaft: {', '.join(ways)}",
+    )
+
+
+def of_tacho_speed(
+    *, pulses: float | None, given: float | None, own: float, orders: Sequence[float]
+) -> Notice | None:
+    """A speed ``given`` [rad/s] that no shaft has: the tacho's turns at ``own`` [rad/s] with the
+    ``pulses`` per turn given, others ``orders`` times as fast (1: itself)."""
+    if pulses is None or given is None:
+        return None
+    shafts = [own * order for order in orders]
+    if any(abs(given / one - 1.0) <= NEAR for one in shafts):
+        return None
+    would = round(pulses * own / given)
+    ways = [f"{would} would fit"] if would and abs(pulses * own / given / would - 1) < NEAR else []
+    ways += ["the speed given may be wrong or that of another shaft, or the rate is wrong"]
+    return Notice(
+        "important",
+        f"pulses per turn given: {pulses:g}, with which the tacho's shaft turns at "
+        f"{own / RPM:.6g} rpm; speed given: {given / RPM:.6g} rpm: {', '.join(ways)}",
     )
 
 

@@ -125,9 +125,9 @@ def hypotheses(peaks: Peaks, stated: Stated) -> list[Hypothesis]:
     bare = [mesh_of(peaks, mesh, (), stated) for mesh in _bare_lines(peaks, drafts)]
     twos = _with_second(peaks, best, singles, stated)
     others = [_beside(draft, background) for draft in (*bare, *twos)]
-    carriers = [
-        _carrier(one, draft, stated) for one, draft in found if _exact_mains(draft, stated.mains)
-    ]
+    # an inverter is set to one frequency: a speed that wanders is none of its
+    mains = stated.mains if peaks.steady else ()
+    carriers = [_carrier(one, draft, stated) for one, draft in found if _exact_mains(draft, mains)]
     return [none, *(one for one, _ in found), *others, *carriers]
 
 
@@ -149,7 +149,7 @@ def _carrier(one: Hypothesis, draft: Draft, stated: Stated) -> Hypothesis:
     choice = float(np.log(TIMES * len(stated.mains)))
     return Hypothesis(
         gears=(),
-        evidence=one.evidence - prior_of(gears.mesh, gears.teeth[0], stated) - choice,
+        evidence=one.evidence - prior_of(gears.mesh, teeth=gears.teeth[0], stated=stated) - choice,
         combs=(draft.steps[0], *one.combs),
         carrier=gears.mesh,
     )

@@ -181,7 +181,7 @@ def mesh_of(
     around: list[float] = []
     for z in teeth:
         sides, own = carriers.beside(peaks, used, np.array([float(z)]))
-        prior = prior_of(mesh, z, stated)
+        prior = prior_of(mesh, teeth=z, stated=stated)
         bare += prior
         # beside a line, as close as its own lobe, others are not placed well enough to count teeth
         near = mesh / z < _TOLD_APART * peaks.bin_width
@@ -231,7 +231,9 @@ def whole(
     evidence = _open(sides) + _open(own)
     share = np.log(ratio**2 / mesh * peaks.bin_width * (_OFF[1] - _OFF[0]))
     free = mean_exp(evidence[:-1] + share) + float(np.log(ratio.size * _FREE))
-    gear = evidence[-1] + prior_of(mesh, teeth, stated) - prior_of(mesh, teeth, Stated())
+    # what is stated may be of the other gear: it speaks for these teeth or says nothing
+    said = prior_of(mesh, teeth=teeth, stated=stated) - prior_of(mesh, teeth=teeth, stated=Stated())
+    gear = evidence[-1] + max(0.0, said)
     return float(special.expit(gear - free)), float(distance[np.argmax(evidence[:-1])])
 
 
@@ -248,7 +250,7 @@ def _best(parts: tuple[Seen, ...]) -> Seen:
     return Seen(evidence=parts[best].evidence.ravel(), lines=lines)
 
 
-def prior_of(mesh: float, teeth: int, stated: Stated) -> float:
+def prior_of(mesh: float, *, teeth: int, stated: Stated) -> float:
     """Log prior of a gear: any tooth number alike, or as stated; a stated speed is nominal."""
     total = -float(np.log(TEETH[1] - TEETH[0] + 1))
     if stated.teeth is not None:

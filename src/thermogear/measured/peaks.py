@@ -35,7 +35,8 @@ class Peaks:
 
     ``place`` [cycles/sample] with standard deviation ``error``; ``level``: natural logarithm of
     amplitude over the floor's rms; ``density``: other lines per bin around each; ``least``: the
-    level that a line must have to be seen; ``bin_width`` [cycles/sample].
+    level that a line must have to be seen; ``bin_width`` [cycles/sample]; ``steady``: the clock is
+    the record's own, no line had to be followed.
     """
 
     place: Floats
@@ -45,6 +46,7 @@ class Peaks:
     least: float
     bin_width: float
     bins: int
+    steady: bool = True
 
     @property
     def size(self) -> int:

@@ -153,6 +153,7 @@ def measure(
         record,
         through,
         teeth=teeth,
+        speed=speed,
         harmonics=harmonics,
         sidebands=sidebands,
         orders=orders,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +37,8 @@ def sharp_peaks(channels: Floats) -> Peaks:
         straight = _straighter(channels, best, widths)
         if straight is None:
             break
-        channels, best = straight, peaks_of(straight, resolution=resolution)
+        channels = straight
+        best = replace(peaks_of(straight, resolution=resolution), steady=False)
     return best
 
 
@@ -46,7 +47,7 @@ def _straighter(channels: Floats, peaks: Peaks, widths: tuple[float, ...]) -> Fl
     spectra = np.fft.rfft(channels - channels.mean(axis=-1, keepdims=True), axis=-1)
     count = channels.shape[-1]
     fine: Floats | None = None
-    floor, before = _Floor.of(channels), dict[int, float]()
+    floor, before = _Floor.of(channels), dict[int, Floats]()
     tried: list[tuple[float, float, float]] = []  # gain, reference, half width
 
     def turned(reference: float, half_width: float) -> tuple[Floats, int] | None:
@@ -71,8 +72,12 @@ def _straighter(channels: Floats, peaks: Peaks, widths: tuple[float, ...]) -> Fl
             straight, start = found
             if start not in before:  # a shorter record has less of both
                 before[start] = floor.cost(channels[:, start : count - start])
-            gain = before[start] - floor.cost(straight)
-            if gain > max(_GAIN[0], _GAIN[1] * abs(before[start])):
+            gains = before[start] - floor.cost(straight)
+            gain, cost = float(np.sum(gains)), float(np.sum(before[start]))
+            # what is in the filter turns the clock, and is gone whatever it was
+            outside = np.abs(np.linspace(0.0, 0.5, gains.size) - reference) > half_width
+            least = max(_GAIN[0], _GAIN[1] * abs(cost))
+            if gain > least and float(np.sum(gains[outside])) > _GAIN[0]:
                 tried.append((gain, reference, half_width))
     if not tried:
         return None
@@ -94,8 +99,8 @@ class _Floor:
     def of(cls, channels: Floats) -> _Floor:
         return cls(floor_of(np.log(np.maximum(_power(channels), 1e-300))), channels.shape[-1])
 
-    def cost(self, channels: Floats) -> float:
-        """How much a record has of lines and, against this floor, of noise: sums of logarithms.
+    def cost(self, channels: Floats) -> Floats:
+        """How much a bin has of lines and, against this floor, of noise: logarithms.
 
         Of each line the power over the least seen, of the floor what changed fourfold or
         more. In the right clock the lines are few, and what a line smeared over the floor is gone
@@ -109,8 +114,8 @@ class _Floor:
         total = np.sum(power * np.exp(-floor), axis=0) * np.log(2.0)
         over = total / least_seen(total.size, channels=channels.shape[0])
         own = np.mean(floor_of(np.log(np.maximum(power, 1e-300))) - floor, axis=0)
-        changed = own[np.abs(own) > _FLOOR]
-        return float(np.sum(np.log(over[over > 1.0])) + np.sum(changed))
+        changed = np.where(np.abs(own) > _FLOOR, own, 0.0)
+        return np.asarray(np.log(np.maximum(over, 1.0)) + changed)
 
 
 def _power(channels: Floats) -> Floats:

@@ -37,7 +37,8 @@ _TABLE: dict[str, tuple[str, float]] = {
     "rad": ("angle", 0.15915494309189535),
 }
 _VIBRATES = ("acceleration", "velocity", "displacement", "voltage")
-UNITS = ", ".join(name for name, (kind, _) in _TABLE.items() if kind in _VIBRATES)
+_OF_RECORDS = tuple(name for name, (kind, _) in _TABLE.items() if kind in _VIBRATES)
+UNITS = ", ".join(_OF_RECORDS)
 """Known units of what vibrates, in words."""
 _SPELLINGS = {
     "m/s2": "m/s^2",
@@ -106,10 +107,10 @@ def unit(text: str) -> str | None:
 
 
 def known_unit(text: str, field: str = "unit") -> str:
-    """The unit a user gave; an unknown one is refused with the nearest name."""
+    """The unit a user gave; an unknown one is refused with the units of what vibrates."""
     found = unit(text)
     if found is None:
-        raise InputError(field, repr(text), fix=nearest(text, _TABLE))
+        raise InputError(field, repr(text), fix=nearest(text, _OF_RECORDS))
     return found
 
 

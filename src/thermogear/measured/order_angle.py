@@ -1,0 +1,139 @@
+"""The angle that orders count, with the gearing found in it: which shaft turns, and how often."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.errors import InputError
+from thermogear.measured.contradictions import NEAR, of_pulses, of_tacho_speed, of_teeth
+from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.meshes import Stated
+from thermogear.measured.record import Notice
+from thermogear.measured.shaft import VARIES, Shaft
+from thermogear.signals.orders import resample_by_angle
+from thermogear.signals.tracking import samples_per_turn
+
+Floats = NDArray[np.float64]
+
+MESHES = 16.0
+"""Mesh cycles that stand for a turn where no shaft is known."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrderAngle:
+    """The angle that orders count: ``turns`` of the first shaft, or of 16 mesh cycles."""
+
+    turns: Floats
+    first: int
+    noise: float
+    mesh: float | None
+    of_mesh: bool
+    gearing: Gearing | None
+    teeth: int | None
+
+
+def order_angle(
+    shaft: Shaft,
+    table: Floats,
+    *,
+    teeth: int | None,
+    speed: float | None,
+    rate: float | None,
+    notices: list[Notice],
+) -> OrderAngle:
+    """Mesh line, teeth and pulses per turn in the shaft's angle.
+
+    ``speed`` [rad/s] as stated, ``rate`` [1/s]. Pulses per turn that are not stated are those that
+    the mesh line of known teeth tells, else those of a steady stated speed, else one; what
+    contradicts goes to ``notices``.
+    """
+    turns, told = shaft.turns, []
+    mean = float((turns[-1] - turns[0]) / (turns.size - 1))
+    steady = shaft.span < VARIES and rate is not None
+    own = 2.0 * np.pi * mean * rate if rate is not None else mean
+    inside = table[:, shaft.first : shaft.first + turns.size]
+    loudest = inside[np.argsort(-np.std(inside, axis=-1))[:2]]
+    per_turn = samples_per_turn(turns)
+    straight = [resample_by_angle(c, turns, samples_per_turn=per_turn) for c in loudest]
+    near = 1.0 if shaft.line else float(teeth) if teeth and shaft.sure else None
+    told_as = per_turn * mean
+    at, stated = None if near is None else near / per_turn, Stated(teeth=teeth)
+    gearing = _found(straight, at, stated, shaft.width, told_as)
+    mesh = None if gearing is None else gearing.mesh_frequency * per_turn
+    if near is not None and gearing is None:
+        gearing = _found(straight, None, stated, 0.0, told_as)
+        mesh = None if gearing is None else gearing.mesh_frequency * per_turn
+    if mesh is None and teeth and not shaft.line:
+        mesh = float(teeth)
+    z = teeth or (gearing.teeth if gearing else None)
+    decided = [one.teeth for one in gearing.shafts] if gearing else []
+    contradicted = [of_teeth(teeth, decided)]
+    if steady:
+        orders = [1.0] if mesh is None else [1.0, *(mesh / z for z in decided)]
+        contradicted.append(
+            of_tacho_speed(pulses=shaft.pulses, given=speed, own=own, orders=orders)
+        )
+    if mesh is not None:
+        contradicted.append(of_pulses(shaft.pulses, decided, mesh, teeth=teeth))
+    notices += [one for one in contradicted if one is not None]
+    factor = 1.0
+    if shaft.line:
+        factor = (mesh or 1.0) / (z or MESHES)
+    elif mesh is not None and not shaft.sure and z:
+        pulses = z / mesh
+        if abs(pulses - round(pulses)) < 0.02 * pulses and pulses > 0.5:
+            factor = 1.0 / round(pulses)
+            told.append(f"{_pulses(round(pulses))}, by the mesh line of {z} teeth")
+        else:
+            told.append(
+                f"pulses per turn are not stated: 1 is taken ({pulses:.4g} by the mesh line)"
+            )
+    elif not shaft.sure and steady and speed and (by := _pulses_of(own, speed)):
+        factor = 1.0 / by
+        told.append(f"{_pulses(by)}, by the speed given")
+    elif not shaft.sure:
+        told.append("pulses per turn are not stated: 1 is taken (give --pulses)")
+    elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
+        factor = mesh / teeth
+        told.append(
+            f"the mesh line stands at order {mesh:.4g} of the tacho's shaft: the shaft of {teeth} "
+            f"teeth turns {factor:.5g} times as fast"
+        )
+    elif mesh is not None and not teeth and abs(mesh - round(mesh)) < 0.02 and mesh > 4.5:
+        z = round(mesh)
+        sure = "" if not decided or z in decided else ", if its gear is one of this mesh"
+        told.append(
+            f"the mesh line stands at order {mesh:.4f} of the tacho's shaft: {z} teeth{sure}"
+        )
+    notices += [Notice("important" if "taken" in t else "info", f"tacho: {t}") for t in told]
+    return OrderAngle(
+        turns=turns * factor,
+        first=shaft.first,
+        noise=shaft.noise * factor,
+        mesh=None if mesh is None else mesh / factor if not shaft.line else z or MESHES,
+        of_mesh=shaft.line and not z,
+        gearing=gearing,
+        teeth=z,
+    )
+
+
+def _found(
+    table: list[Floats], near: float | None, stated: Stated, width: float, told_as: float
+) -> Gearing | None:
+    try:
+        return find_gearing(table, near, stated, followed=width, told_as=told_as)
+    except InputError:
+        return None
+
+
+def _pulses_of(own: float, speed: float) -> int:
+    """Pulses in a turn at this ``speed``, where ``own`` counts one as a turn; 0: no number fits."""
+    pulses = round(own / speed)
+    return pulses if pulses and abs(own / speed / pulses - 1.0) <= NEAR else 0
+
+
+def _pulses(number: int) -> str:
+    return f"{number} pulse{'' if number == 1 else 's'} per turn"
