@@ -13,7 +13,7 @@ from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
-from thermogear.measured.turns import MeshTurns, sides_of
+from thermogear.measured.turns import MeshTurns, sides_of, unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
 from thermogear.signals.spectra import amplitude_spectrum
@@ -247,13 +247,15 @@ def channel_lines(
         wanted = [*wanted, *others]
     places = [want.position for want in wanted]
     found = []
+    missed: dict[int, float] = {}  # of a mesh harmonic, beside it, of its power
     in_hertz = record.rate is not None
     shaft = gearing.mesh_frequency / teeth if gearing and teeth else float("nan")
     speed = 2 * np.pi * rate * shaft if in_hertz else float("nan")
     share = turns.half_width / turns.frequency if turns else float("nan")
     for want in wanted:
         line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
-        around, near = [*places, *_sides(gearing, teeth, want)], line.frequency / through.axis
+        sides = _sides(gearing, teeth, want)
+        around, near = [*places, *sides], line.frequency / through.axis
         if want.kind == "order" and (stronger := _nearby(strong, want.position, bin_width)):
             around, near = [*around, *stronger], want.position * rate / through.axis
         beside = [p * rate / through.axis for p in around]
@@ -265,11 +267,16 @@ def channel_lines(
             followed=turns.followed * rate / through.axis if turns else 0.0,
         )
         position = reading.frequency * through.axis / rate
+        rank = int(np.rint(position / gearing.mesh_frequency)) if gearing else 0
+        if turns is not None and turns.unfollowed and want.kind == "mesh":
+            own_sides = [p * rate / through.axis for p in sides]
+            missed[rank], _ = unfollowed(through.spectrum, reading, own_sides)
         amplitude, relative = _amplitude(reading, position, turns)
+        relative += float(np.sqrt(1.0 + missed.get(rank, 0.0))) - 1.0
         # the chain's displacement, read as the acceleration was
         displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
         own = reading.frequency_half_width * through.axis / rate
-        if turns is not None and turns.turning is not None:
+        if turns is not None and (turns.turning is not None or turns.unfollowed):
             own = float(np.hypot(own, share * position))
         if reading.hidden:  # a peak of noise: the line may be anywhere it was looked for
             own = max(own, want.half_width + abs(position - want.position))

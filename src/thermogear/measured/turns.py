@@ -28,6 +28,10 @@ _BROUGHT = 0.75
 _TOLD = 0.01  # of its power
 _ALIKE = 1.5  # of the phase's noise
 _STILL = 0.1  # of a line, that no steady one explains
+_CLEAR = 3  # bins of a line's own lobe, Hann's
+_HANN = 1.5  # bins, noise bandwidth
+_AS_FAR = 3.0  # times the distance of the first sidebands
+_NOISE = 40.0  # times its median: hardly by chance
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -37,7 +41,8 @@ class MeshTurns:
 
     ``frequency`` +- ``half_width`` (95 %) [cycles/sample]; ``turning``: the angle to read lines in,
     None where the speed is steady enough; ``said`` how it was found; ``phase_noise`` [rad]: what
-    noise brings to that angle and what of the turning it misses, in the mesh line's own phase.
+    noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
+    ``unfollowed``: power beside a line read as a steady one that may be its own, of its power.
     """
 
     frequency: float
@@ -47,6 +52,7 @@ class MeshTurns:
     phase_noise: float = 0.0
     followed: float = 0.0
     power: float = 0.0
+    unfollowed: float = 0.0
 
 
 def mesh_turns(
@@ -70,10 +76,8 @@ def mesh_turns(
     reading = read_line(spectrum, line.frequency, beside=beside, strong=strong)
     least = _wandering(spectrum, reading, beside, strong, harmonics)
     turns: MeshTurns | None = None
-    away = [abs(one - line.frequency) for one in beside]
-    widest = min(away, default=np.inf)
     if least is not None:
-        turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, widest=widest)
+        turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     if turns is not None:
         return turns
     best = reading.frequency, reading.frequency_half_width
@@ -88,13 +92,68 @@ def mesh_turns(
         )
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
-    return MeshTurns(frequency=best[0], half_width=best[1], said=_beside(reading, least))
+    share, spread = unfollowed(spectrum, reading, beside)
+    return MeshTurns(
+        frequency=best[0],
+        half_width=best[1] + spread,
+        said=_beside(reading, least, share),
+        unfollowed=share,
+    )
 
 
-def _beside(reading: Reading, least: float | None) -> str:
+def unfollowed(
+    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float]
+) -> tuple[float, float]:
+    """Power beside a line that is read as a steady one and may be its own, of its power; and how
+    far that is away, rms.
+
+    A phase or an amplitude that oscillates makes lines at equal distances to both sides: they count
+    where both stand out of the noise. Where all power beside is more than
+    the line's, the line may be one of those, and all counts. Without a known shaft (``beside``)
+    sidebands are not told from it. Looked for up to three times the distance of the first.
+    """
+    own, width = reading.amplitude**2, spectrum.bin_width
+    middle = round(reading.frequency / width)
+    apart = np.abs(np.asarray(beside) - reading.frequency) / width
+    first = float(apart.min(initial=np.inf))
+    reach = min(_AS_FAR * first, middle - 1, spectrum.hann.size - 1 - middle)
+    away = np.arange(_CLEAR, max(int(reach), _CLEAR) + 1)
+    if own <= 0.0 or not beside or away.size < _CLEAR:
+        return 0.0, 0.0
+    power = spectrum.hann**2 / _HANN
+    noise = _NOISE * float(np.median(power[np.append(middle + away, middle - away)]))
+    place = np.abs(np.arange(power.size) - reading.frequency / width)
+    off = np.abs(place - np.rint(place / first) * first)
+    power[np.minimum(off, np.abs(place[:, None] - apart).min(axis=-1)) < _CLEAR] = 0.0
+    lobe = np.convolve(power, np.ones(2 * _CLEAR - 1), mode="same")
+    up, down = lobe[middle + away], lobe[middle - away]
+    each = _highest(np.where(2.0 * np.minimum(up, down) > noise, up + down, 0.0), away)
+    everything = _highest(np.where(up + down > noise, up + down, 0.0), away)
+    if sum(each.values()) < own < sum(everything.values()):
+        each = everything
+    total = sum(each.values())
+    if total < _TOLD * own:
+        return 0.0, 0.0
+    spread = sum(one * place**2 for place, one in each.items()) / (own + total)
+    return total / own, float(np.sqrt(spread)) * width
+
+
+def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
+    """Power of lines ``away`` [bins], the highest first, none beside another."""
+    found: dict[int, float] = {}
+    for place in np.argsort(-power):
+        if power[place] <= 0.0:
+            break
+        if all(abs(away[place] - other) >= 2 * _CLEAR - 1 for other in found):
+            found[int(away[place])] = float(power[place])
+    return found
+
+
+def _beside(reading: Reading, least: float | None, share: float) -> str:
     """What is said of power near a line that is read as a steady one."""
     own = reading.amplitude**2
-    share = 0.0 if not least or own <= 0.0 else (least / own - 1.0) / _BROUGHT
+    near = 0.0 if not least or own <= 0.0 else (least / own - 1.0) / _BROUGHT
+    share = max(share, near)
     if share < _TOLD:
         return ""
     return (
@@ -193,10 +252,12 @@ def _follow(
     per_cycle: int,
     *,
     least: float,
-    widest: float,
+    beside: Sequence[float],
 ) -> MeshTurns | None:
     """The line followed by the narrowest filter that leaves hardly more of noise and of turning in
     its phase than any; None: then its power is less than ``least``, or it cannot be followed."""
+    widest = min((abs(one - frequency) for one in beside), default=np.inf)
+    orders = [one / frequency for one in beside]
     tried: list[tuple[Followed, MeshTurns]] = []
     for half_width in filter_widths(spectrum, frequency, every=True):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
@@ -209,7 +270,7 @@ def _follow(
             widest=widest,
             cut=False,
         )
-        turns = _followed(one, values, per_cycle)
+        turns = _followed(one, values, per_cycle, orders)
         if turns is not None:
             tried.append((one, turns))
     held = [pair for pair in tried if pair[0].whole] or tried
@@ -226,10 +287,13 @@ def _follow(
         half_width=best.half_width,
         widest=widest,
     )
-    return _followed(whole, values, per_cycle)
+    return _followed(whole, values, per_cycle, orders)
 
 
-def _followed(found: Followed, values: Floats, per_cycle: int) -> MeshTurns | None:
+def _followed(
+    found: Followed, values: Floats, per_cycle: int, beside: Sequence[float]
+) -> MeshTurns | None:
+    """The turns of a line followed; ``beside``: its shafts' sidebands, over its frequency."""
     cycles = found.cycles
     if np.any(np.diff(cycles) <= 0.0):
         return None
@@ -237,6 +301,7 @@ def _followed(found: Followed, values: Floats, per_cycle: int) -> MeshTurns | No
     wander = float(np.std(cycles - np.linspace(cycles[0], cycles[-1], cycles.size)))
     straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
     reading = read_line(straight, 1.0, followed=_HELD * found.last / found.frequency)
+    share, spread = unfollowed(straight, reading, beside)
     bins = 1.2 * found.last * values.size  # in the filter, its noise bandwidth
     # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))
@@ -244,7 +309,8 @@ def _followed(found: Followed, values: Floats, per_cycle: int) -> MeshTurns | No
     line = 2.0 * abs(np.sum(hann * values * np.exp(-2j * np.pi * cycles))) / np.sum(hann)
     return MeshTurns(
         frequency=found.frequency,
-        half_width=found.frequency_half_width,
+        half_width=found.frequency_half_width + spread * found.frequency,
+        unfollowed=share,
         turning=turning,
         said=f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by "
         "that phase",
