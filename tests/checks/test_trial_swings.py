@@ -56,6 +56,36 @@ def test_a_swing_is_told() -> None:
     assert any("wanders" in text or "tracked" in text for text in said)
 
 
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_a_swing_too_fast_to_be_followed_is_told_and_in_the_intervals(number: int) -> None:
+    """The line's own power stands beside it, to both sides: it was 60 to 1500 half widths off."""
+    random = np.random.default_rng([25_112_726, number])
+    t = np.arange(20_000) / TRIAL.RATE
+    ratio, depth = random.uniform(0.6, 0.9), random.uniform(0.3, 1.2)
+    turns = 9.0 * t + depth / (2 * np.pi * 40) * np.sin(2 * np.pi * 9.0 * ratio * t)
+    values = 0.02 * random.standard_normal(t.size)
+    by = 1.0 + 0.08 * np.cos(2 * np.pi * turns)
+    values += by * np.cos(2 * np.pi * 40 * turns + random.uniform(0.0, 6.0))
+    size = depth * 9.0 * ratio / (40 * 9.0)
+    made = TRIAL.Swing(40, 0.08, size, 9.0 * ratio, turns, values)
+    found = measure(made.record, teeth=40, harmonics=1, sidebands=1)
+    line = next(one for one in found.lines if one.name == "mesh x 1")
+    assert line.reading * (1.0 + 1.1 * line.half_width) > 1.0 > line.reading
+    assert line.half_width < 1.5 * (1.0 / line.reading - 1.0)
+    assert abs(line.frequency - 40 * made.shaft) < line.frequency_half_width
+    assert any("swings" in one.text or "wanders" in one.text for one in found.notices)
+
+
+def test_a_neighbour_on_one_side_is_no_swing() -> None:
+    random = np.random.default_rng(25_112_826)
+    t = np.arange(20_000) / TRIAL.RATE
+    values = 0.02 * random.standard_normal(t.size) + np.cos(2 * np.pi * 360.0 * t)
+    alone = TRIAL.Swing(40, 0.0, 0.0, 1.0, 9.0 * t, values)
+    beside = TRIAL.Swing(40, 0.0, 0.0, 1.0, 9.0 * t, values + 0.3 * np.cos(2 * np.pi * 365.3 * t))
+    widths = [measure(one.record, teeth=40).lines[0].half_width for one in (alone, beside)]
+    assert widths[1] < 1.5 * widths[0]
+
+
 @pytest.mark.parametrize("number", range(2))
 def test_a_swinging_speed_hides_no_teeth(number: int) -> None:
     made = slow(25_112_226 + number)

@@ -30,8 +30,9 @@ _ALIKE = 1.5  # of the phase's noise
 _STILL = 0.1  # of a line, that no steady one explains
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _HANN = 1.5  # bins, noise bandwidth
+_UNEVEN = 10.0  # of their powers
 _AS_FAR = 3.0  # times the distance of the first sidebands
-_NOISE = 40.0  # times its median: hardly by chance
+_NOISE = 25.0  # times that of a bin, in the five of a lobe: hardly by chance
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -108,9 +109,10 @@ def unfollowed(
     far that is away, rms.
 
     A phase or an amplitude that oscillates makes lines at equal distances to both sides: they count
-    where both stand out of the noise. Where all power beside is more than
-    the line's, the line may be one of those, and all counts. Without a known shaft (``beside``)
-    sidebands are not told from it. Looked for up to three times the distance of the first.
+    where both stand out of the noise, the one at most ten times the other. Where all power beside
+    is more than the line's, the line may be one of those, and all counts. Without a known shaft
+    (``beside``) sidebands are not told from it. Looked for up to three times the distance of the
+    first.
     """
     own, width = reading.amplitude**2, spectrum.bin_width
     middle = round(reading.frequency / width)
@@ -121,21 +123,25 @@ def unfollowed(
     if own <= 0.0 or not beside or away.size < _CLEAR:
         return 0.0, 0.0
     power = spectrum.hann**2 / _HANN
-    noise = _NOISE * float(np.median(power[np.append(middle + away, middle - away)]))
+    floor = float(np.median(power[np.append(middle + away, middle - away)])) / float(np.log(2.0))
+    noise = _NOISE * max(floor, reading.noise**2)
+    steady = float(np.sum(power[middle - _CLEAR + 1 : middle + _CLEAR]))
     place = np.abs(np.arange(power.size) - reading.frequency / width)
     off = np.abs(place - np.rint(place / first) * first)
     power[np.minimum(off, np.abs(place[:, None] - apart).min(axis=-1)) < _CLEAR] = 0.0
     lobe = np.convolve(power, np.ones(2 * _CLEAR - 1), mode="same")
     up, down = lobe[middle + away], lobe[middle - away]
-    each = _highest(np.where(2.0 * np.minimum(up, down) > noise, up + down, 0.0), away)
-    everything = _highest(np.where(up + down > noise, up + down, 0.0), away)
+    least, most = np.minimum(up, down), np.maximum(up, down)
+    each = _highest(np.where(least > np.maximum(noise, most / _UNEVEN), up + down, 0.0), away)
+    everything = _highest(np.where(most > noise, up + down, 0.0), away)
     if sum(each.values()) < own < sum(everything.values()):
         each = everything
     total = sum(each.values())
     if total < _TOLD * own:
         return 0.0, 0.0
-    spread = sum(one * place**2 for place, one in each.items()) / (own + total)
-    return total / own, float(np.sqrt(spread)) * width
+    spread = sum(one * place**2 for place, one in each.items()) / (steady + total)
+    # what changes slowly enough is in the reading
+    return max(0.0, (steady + total) / own - 1.0), float(np.sqrt(spread)) * width
 
 
 def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
