@@ -221,6 +221,11 @@ def _wandering(
         return None
     own = reading.amplitude**2
     missing = _missing(spectrum, reading, beside, widths[0])
+    sides = {one > frequency for one in reading.neighbours}
+    still = max(reading.turning, reading.changing) < _STILL and reading.explained
+    farther = _missing(spectrum, reading, beside, widths[-1]) - missing
+    if len(sides) == 1 and still and farther < _BROUGHT * reading.beside:
+        return None  # lines to one side: amplitude and phase would oscillate alike
     others = [0.0]
     for one in [o.place * width for o in strong if not _is_side(o, beside, width)]:
         if 3.0 * width < abs(one - frequency) < widths[0]:
