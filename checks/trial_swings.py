@@ -157,9 +157,11 @@ torsional mode. Nothing but the teeth is stated. Drawn are 12 to 80 teeth, a mes
 900 Hz, 2 to 8 s at 5000 samples/s, a swing of 0.1 to 3 % at 0.05 to 8 Hz, sidebands of 1 to 7.5 %
 and noise of 0.3 to 16 % of the mesh line. The truth of the amplitudes is that in the gear's own
 angle; that of the frequency is turns over time. A swing faster than half of the shaft is not told
-from the shaft's own sidebands and is not followed: the lines are then those of the spectrum.
-`measure` says what power lies beside them, but not always: of nine such records that were more than
-three half widths off it said so in five.
+from the shaft's own sidebands and is not followed: the lines are then those of the spectrum, and
+the power that stands to both sides of the mesh line, but is no sideband of its shaft, is in its
+intervals. Where the swing is as fast as the shaft, within the record's resolution, nothing tells
+the two apart. Before that was so, 26.9 % of the mesh lines of the last kind were inside, the worst
+5907 half widths off.
 """
 
 
