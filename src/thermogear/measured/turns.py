@@ -27,10 +27,12 @@ _MISSED = 0.002  # of the line's power: a tenth of a per cent of its amplitude
 _BROUGHT = 0.75
 _TOLD = 0.01  # of its power
 _ALIKE = 1.5  # of the phase's noise
+_MEET = 2.5  # times its power, of a neighbour's beside a line: nearer than two bins they add up
 _STILL = 0.1  # of a line, that no steady one explains
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _HANN = 1.5  # bins, noise bandwidth
 _UNEVEN = 10.0  # of their powers
+_SUM = 50  # bins of the sum that is the transform at a line's own place
 _AS_FAR = 3.0  # times the distance of the first sidebands
 _NOISE = 25.0  # times that of a bin, in the five of a lobe: hardly by chance
 _HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
@@ -105,8 +107,8 @@ def mesh_turns(
 def unfollowed(
     spectrum: LineSpectrum, reading: Reading, beside: Sequence[float]
 ) -> tuple[float, float]:
-    """Power beside a line that is read as a steady one and may be its own, of its power; and how
-    far that is away, rms.
+    """Power beside a line that is read as a steady one and may be its own, of its power; and by
+    how much its turns over time may differ from where it stands.
 
     A phase or an amplitude that oscillates makes lines at equal distances to both sides: they count
     where both stand out of the noise, the one at most ten times the other. Where all power beside
@@ -125,7 +127,10 @@ def unfollowed(
     power = spectrum.hann**2 / _HANN
     floor = float(np.median(power[np.append(middle + away, middle - away)])) / float(np.log(2.0))
     noise = _NOISE * max(floor, reading.noise**2)
-    steady = float(np.sum(power[middle - _CLEAR + 1 : middle + _CLEAR]))
+    around = np.arange(max(0, middle - _SUM), min(power.size, middle + _SUM + 1))
+    apart_from = around - reading.frequency / width
+    kernel = np.exp(1j * np.pi * apart_from) * np.sinc(apart_from)
+    steady = float(np.abs(np.sum(spectrum.lines[around] * kernel)) ** 2)
     place = np.abs(np.arange(power.size) - reading.frequency / width)
     off = np.abs(place - np.rint(place / first) * first)
     power[np.minimum(off, np.abs(place[:, None] - apart).min(axis=-1)) < _CLEAR] = 0.0
@@ -134,14 +139,17 @@ def unfollowed(
     least, most = np.minimum(up, down), np.maximum(up, down)
     each = _highest(np.where(least > np.maximum(noise, most / _UNEVEN), up + down, 0.0), away)
     everything = _highest(np.where(most > noise, up + down, 0.0), away)
-    if sum(each.values()) < own < sum(everything.values()):
-        each = everything
     total = sum(each.values())
-    if total < _TOLD * own:
+    if total == 0.0 and sum(everything.values()) < own:
         return 0.0, 0.0
-    spread = sum(one * place**2 for place, one in each.items()) / (steady + total)
+    # a phase that oscillates by sqrt(2 total/steady) [rad] may be at any place at both ends
+    spread = float(np.sqrt(2.0 * total / max(steady, 1e-300)) / np.pi)  # bins
+    if total < own < sum(everything.values()):
+        total = sum(everything.values())
+        square = sum(one * place**2 for place, one in everything.items())
+        spread = float(np.sqrt(square / (steady + total)))
     # what changes slowly enough is in the reading
-    return max(0.0, (steady + total) / own - 1.0), float(np.sqrt(spread)) * width
+    return max(0.0, (steady + total) / own - 1.0), spread * width
 
 
 def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
@@ -162,9 +170,10 @@ def _beside(reading: Reading, least: float | None, share: float) -> str:
     share = max(share, near)
     if share < _TOLD:
         return ""
+    percent = f"{100 * share:.2g}" if share < 1.0 else f"{100 * share:.0f}"
     return (
-        f"lines beside the mesh line that are no sidebands of its shafts hold {100 * share:.2g} % "
-        "of its power: neighbours, or a speed that swings too fast to be followed; it is read as a "
+        f"lines beside the mesh line that are no sidebands of its shafts hold {percent} % of its "
+        "power: neighbours, or a speed that swings too fast to be followed; it is read as a "
         "steady line"
     )
 
@@ -223,8 +232,8 @@ def _wandering(
     missing = _missing(spectrum, reading, beside, widths[0])
     sides = {one > frequency for one in reading.neighbours}
     still = max(reading.turning, reading.changing) < _STILL and reading.explained
-    farther = _missing(spectrum, reading, beside, widths[-1]) - missing
-    if len(sides) == 1 and still and farther < _BROUGHT * reading.beside:
+    most = max(_missing(spectrum, reading, beside, one) for one in widths)
+    if len(sides) == 1 and still and most < _MEET * reading.beside:
         return None  # lines to one side: amplitude and phase would oscillate alike
     others = [0.0]
     for one in [o.place * width for o in strong if not _is_side(o, beside, width)]:
@@ -234,11 +243,9 @@ def _wandering(
                 others.append(other.amplitude**2)
     if own + reading.beside < _KEPT * (own + missing) - sum(others):
         return 0.0
-    missing = max(_missing(spectrum, reading, beside, one) for one in widths)
-    highest = max(own, *others)
-    if missing < _MISSED * own:
+    if most < _MISSED * own:
         return None
-    return (1.0 - _BROUGHT) * highest + _BROUGHT * (own + missing)
+    return (1.0 - _BROUGHT) * max(own, *others) + _BROUGHT * (own + most)
 
 
 def _missing(
