@@ -140,6 +140,7 @@ def test_a_stated_speed_tells_the_pulses_and_given_teeth_are_not_found_ones() ->
     for speed, pulses in ((900.0, "1 pulse "), (450.0, "2 pulses ")):
         found = measure(with_tacho(), speed=speed * RPM, harmonics=1, sidebands=0)
         assert any(pulses in one.text for one in found.notices)
+    assert numbers(important(measure(steady(), pulses_per_turn=2.0), "pulses")) == [2.0]
     said = important(measure(with_tacho(), teeth=25, pulses_per_turn=1.0), "pulses")
     assert numbers(said)[:3] == [1.0, 25.0, 20.0]
     assert "found" in said.partition("25")[2]

@@ -106,6 +106,9 @@ def read_in_angle(
         pulses_per_turn=pulses_per_turn,
         tacho=tacho,
     )
+    if shaft is None and pulses_per_turn is not None:
+        text = f"pulses per turn given: {pulses_per_turn:g}; no tacho is found: they are not used"
+        notices.append(Notice("important", f"{text} (name it: --tacho NAME)"))
     if shaft is not None and shaft.turns.size == 0:
         notices += shaft.told
         shaft = None

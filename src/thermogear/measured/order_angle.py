@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
-from thermogear.measured.contradictions import NEAR, of_pulses, of_tacho_speed, of_teeth
+from thermogear.base.units import RPM
+from thermogear.measured.contradictions import of_pulses, of_tacho_speed, of_teeth
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.meshes import Stated
 from thermogear.measured.record import Notice
@@ -20,6 +21,8 @@ Floats = NDArray[np.float64]
 
 MESHES = 16.0
 """Mesh cycles that stand for a turn where no shaft is known."""
+
+_NEAR, _MOST = 0.04, 10  # of pulses told by a stated speed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +96,8 @@ def order_angle(
             )
     elif not shaft.sure and steady and speed and (by := _pulses_of(own, speed)):
         factor = 1.0 / by
-        told.append(f"{_pulses(by)}, by the speed given")
+        made = own / by / RPM
+        told.append(f"{_pulses(by)}, by the speed given; the tacho makes it {made:.6g} rpm")
     elif not shaft.sure:
         told.append("pulses per turn are not stated: 1 is taken (give --pulses)")
     elif mesh is not None and teeth and abs(mesh / teeth - 1.0) > 0.02:
@@ -131,8 +135,10 @@ def _found(
 
 def _pulses_of(own: float, speed: float) -> int:
     """Pulses in a turn at this ``speed``, where ``own`` counts one as a turn; 0: no number fits."""
-    pulses = round(own / speed)
-    return pulses if pulses and abs(own / speed / pulses - 1.0) <= NEAR else 0
+    ratio = own / speed
+    pulses = round(ratio)
+    # a stated speed is nominal: of more pulses than ten it could be one more or less
+    return pulses if 0 < pulses <= _MOST and abs(ratio / pulses - 1.0) <= _NEAR else 0
 
 
 def _pulses(number: int) -> str:

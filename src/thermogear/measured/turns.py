@@ -108,7 +108,7 @@ def unfollowed(
     spectrum: LineSpectrum, reading: Reading, beside: Sequence[float]
 ) -> tuple[float, float]:
     """Power beside a line that is read as a steady one and may be its own, of its power; and by
-    how much its turns over time may differ from where it stands.
+    how much its turns over time may differ from its place.
 
     A phase or an amplitude that oscillates makes lines at equal distances to both sides: they count
     where both stand out of the noise, the one at most ten times the other. Where all power beside
