@@ -45,7 +45,8 @@ class MeshTurns:
     ``frequency`` +- ``half_width`` (95 %) [cycles/sample]; ``turning``: the angle to read lines in,
     None where the speed is steady enough; ``said`` how it was found; ``phase_noise`` [rad]: what
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
-    ``unfollowed``: power beside a line read as a steady one that may be its own, of its power.
+    ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
+    power.
     """
 
     frequency: float
@@ -107,8 +108,8 @@ def mesh_turns(
 def unfollowed(
     spectrum: LineSpectrum, reading: Reading, beside: Sequence[float]
 ) -> tuple[float, float]:
-    """Power beside a line that is read as a steady one and may be its own, of its power; and by
-    how much its turns over time may differ from its place.
+    """Power beside a line that its reading lacks and that may be its own, of its power; and by how
+    much its turns over time may differ from its place.
 
     A phase or an amplitude that oscillates makes lines at equal distances to both sides: they count
     where both stand out of the noise, the one at most ten times the other. Where all power beside
@@ -124,18 +125,21 @@ def unfollowed(
     away = np.arange(_CLEAR, max(int(reach), _CLEAR) + 1)
     if own <= 0.0 or not beside or away.size < _CLEAR:
         return 0.0, 0.0
-    power = spectrum.hann**2 / _HANN
-    floor = float(np.median(power[np.append(middle + away, middle - away)])) / float(np.log(2.0))
-    noise = _NOISE * max(floor, reading.noise**2)
-    around = np.arange(max(0, middle - _SUM), min(power.size, middle + _SUM + 1))
-    apart_from = around - reading.frequency / width
-    kernel = np.exp(1j * np.pi * apart_from) * np.sinc(apart_from)
+    # of the spectrum what is looked at, with half a lobe beyond
+    last = int(away[-1]) + _CLEAR
+    bins = np.arange(max(0, middle - last), min(spectrum.hann.size, middle + last + 1))
+    power = spectrum.hann[bins] ** 2 / _HANN
+    sides = np.append(middle + away, middle - away) - bins[0]
+    noise = _NOISE * max(float(np.median(power[sides])) / float(np.log(2.0)), reading.noise**2)
+    around = np.arange(max(0, middle - _SUM), min(spectrum.lines.size, middle + _SUM + 1))
+    beyond = around - reading.frequency / width
+    kernel = np.exp(1j * np.pi * beyond) * np.sinc(beyond)
     steady = float(np.abs(np.sum(spectrum.lines[around] * kernel)) ** 2)
-    place = np.abs(np.arange(power.size) - reading.frequency / width)
+    place = np.abs(bins - reading.frequency / width)
     off = np.abs(place - np.rint(place / first) * first)
     power[np.minimum(off, np.abs(place[:, None] - apart).min(axis=-1)) < _CLEAR] = 0.0
     lobe = np.convolve(power, np.ones(2 * _CLEAR - 1), mode="same")
-    up, down = lobe[middle + away], lobe[middle - away]
+    up, down = lobe[sides[: away.size]], lobe[sides[away.size :]]
     least, most = np.minimum(up, down), np.maximum(up, down)
     each = _highest(np.where(least > np.maximum(noise, most / _UNEVEN), up + down, 0.0), away)
     everything = _highest(np.where(most > noise, up + down, 0.0), away)
@@ -288,7 +292,7 @@ def _follow(
             widest=widest,
             cut=False,
         )
-        turns = _followed(one, values, per_cycle, orders)
+        turns = _followed(one, values, per_cycle, ())
         if turns is not None:
             tried.append((one, turns))
     held = [pair for pair in tried if pair[0].whole] or tried
@@ -311,7 +315,8 @@ def _follow(
 def _followed(
     found: Followed, values: Floats, per_cycle: int, beside: Sequence[float]
 ) -> MeshTurns | None:
-    """The turns of a line followed; ``beside``: its shafts' sidebands, over its frequency."""
+    """The turns of a line followed; ``beside``: its shafts' sidebands, over its frequency, to see
+    what following misses (none: not asked)."""
     cycles = found.cycles
     if np.any(np.diff(cycles) <= 0.0):
         return None
