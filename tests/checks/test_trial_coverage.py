@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 from scripts import script
+
+from thermogear.measured.evidence import Evidence
+from thermogear.measured.gearing import Gearing
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import measure
+from thermogear.measured.turns import mesh_turns
 
 TRIAL = script("trial_coverage")
 RUNS = 24
@@ -59,3 +67,38 @@ def test_an_unresolved_neighbour_is_no_wander(number: int) -> None:
     place = next(i for i, one in enumerate(TRIAL.SCENARIOS) if one.neighbour == (0.4, 0.3))
     cell = TRIAL.run(place, 1, first=number)
     assert abs(cell.errors[0, 0]) < 1.5 * cell.half_widths[0, 0]
+
+
+@pytest.mark.parametrize("seed", [15, 54])
+def test_a_line_that_wanders_far_is_no_noise(seed: int) -> None:
+    """Its own hump was taken for noise, the line for a steady one: 3 and 7 half widths off."""
+    law = replace(TRIAL.SCENARIOS[7], wander=2e-2, seconds=8.0)
+    made = TRIAL.drawn(law, np.random.default_rng(seed))
+    (channel,) = made.record.channels
+    gearing = Gearing(
+        mesh_frequency=made.frequency / law.rate,
+        mesh_frequency_error=0.0,
+        harmonics=(),
+        shafts=(),
+        meshes=(),
+        evidence=(),
+        weighed=Evidence(hypotheses=()),
+    )
+    turns = mesh_turns(channel.values()[None, :], gearing, teeth=TRIAL.TEETH, harmonics=2)
+    assert turns.turning is not None
+    assert abs(turns.frequency - made.frequency / law.rate) < 1.5 * turns.half_width
+
+
+@pytest.mark.parametrize("rate", [2.0, 7.0])
+def test_a_load_that_oscillates_is_no_speed(rate: float) -> None:
+    """Amplitude is in I: the frequency's interval keeps its width."""
+    t = np.arange(10_240) / 2560.0
+    noise = 0.02 * np.random.default_rng(4).normal(size=t.size)
+    widths = []
+    for load in (0.0, 0.1):
+        x = (1.0 + load * np.cos(2 * np.pi * rate * t)) * np.cos(2 * np.pi * 400.0 * t) + noise
+        record = Record((Channel("a", x, "m/s^2"),), "made", 2560.0, "made")
+        line = measure(record, teeth=25, harmonics=1, sidebands=0).lines[0]
+        assert abs(line.frequency - 400.0) < line.frequency_half_width
+        widths.append(line.frequency_half_width)
+    assert widths[1] < 1.3 * widths[0]

@@ -276,8 +276,9 @@ def channel_lines(
         # the chain's displacement, read as the acceleration was
         displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
         own = reading.frequency_half_width * through.axis / rate
-        if turns is not None and (turns.turning is not None or turns.unfollowed):
-            own = float(np.hypot(own, share * position))
+        if turns is not None:
+            more = turns.spread if turns.turning is None else turns.half_width
+            own = float(np.hypot(own, more / turns.frequency * position))
         if reading.hidden:  # a peak of noise: the line may be anywhere it was looked for
             own = max(own, want.half_width + abs(position - want.position))
         # damage is no random error: its share is added, not its square

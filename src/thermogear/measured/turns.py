@@ -15,11 +15,13 @@ from thermogear.signals.following import (
     band_power,
     filter_widths,
     follow_line,
+    power_beyond,
 )
 from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 
 Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain
@@ -33,9 +35,11 @@ _CLEAR = 3  # bins of a line's own lobe, Hann's
 _HANN = 1.5  # bins, noise bandwidth
 _UNEVEN = 10.0  # of their powers
 _SUM = 50  # bins of the sum that is the transform at a line's own place
+_SEEN = 2.0  # times the noise of a lobe in Q: three of its standard deviations
+_FAR = 0.3  # of the line's power
 _AS_FAR = 3.0  # times the distance of the first sidebands
 _NOISE = 25.0  # times that of a bin, in the five of a lobe: hardly by chance
-_HELD = 0.7  # of the filter's half width: there its phase has taken the noise away
+_HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +50,7 @@ class MeshTurns:
     None where the speed is steady enough; ``said`` how it was found; ``phase_noise`` [rad]: what
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
-    power.
+    power; ``spread``: what of ``half_width`` comes of that.
     """
 
     frequency: float
@@ -57,6 +61,7 @@ class MeshTurns:
     followed: float = 0.0
     power: float = 0.0
     unfollowed: float = 0.0
+    spread: float = 0.0
 
 
 def mesh_turns(
@@ -99,9 +104,10 @@ def mesh_turns(
     share, spread = unfollowed(spectrum, reading, beside)
     return MeshTurns(
         frequency=best[0],
-        half_width=best[1] + spread,
+        half_width=float(np.hypot(best[1], spread)),
         said=_beside(reading, least, share),
         unfollowed=share,
+        spread=spread,
     )
 
 
@@ -125,35 +131,65 @@ def unfollowed(
     away = np.arange(_CLEAR, max(int(reach), _CLEAR) + 1)
     if own <= 0.0 or not beside or away.size < _CLEAR:
         return 0.0, 0.0
-    # of the spectrum what is looked at, with half a lobe beyond
-    last = int(away[-1]) + _CLEAR
-    bins = np.arange(max(0, middle - last), min(spectrum.hann.size, middle + last + 1))
-    power = spectrum.hann[bins] ** 2 / _HANN
-    sides = np.append(middle + away, middle - away) - bins[0]
-    noise = _NOISE * max(float(np.median(power[sides])) / float(np.log(2.0)), reading.noise**2)
-    around = np.arange(max(0, middle - _SUM), min(spectrum.lines.size, middle + _SUM + 1))
-    beyond = around - reading.frequency / width
-    kernel = np.exp(1j * np.pi * beyond) * np.sinc(beyond)
-    steady = float(np.abs(np.sum(spectrum.lines[around] * kernel)) ** 2)
-    place = np.abs(bins - reading.frequency / width)
-    off = np.abs(place - np.rint(place / first) * first)
-    power[np.minimum(off, np.abs(place[:, None] - apart).min(axis=-1)) < _CLEAR] = 0.0
-    lobe = np.convolve(power, np.ones(2 * _CLEAR - 1), mode="same")
-    up, down = lobe[sides[: away.size]], lobe[sides[away.size :]]
-    least, most = np.minimum(up, down), np.maximum(up, down)
+    above, below, steady = _beside_place(spectrum, reading.frequency / width, int(away[-1]))
+    sides = np.abs(above[_CLEAR - 1 :]), np.abs(below[_CLEAR - 1 :])
+    level = float(np.median(np.concatenate(sides) ** 2)) / float(np.log(2.0))
+    level = max(level, reading.noise**2)
+    # own sidebands at both sides are left out
+    steps = np.arange(1, above.size + 1)
+    off = np.abs(steps - np.rint(steps / first) * first)
+    off = np.minimum(off, np.abs(steps[:, None] - apart).min(axis=-1))
+    lobe = np.ones(2 * _CLEAR - 1)
+    up, down, odd = (
+        np.convolve(np.where(off < _CLEAR, 0.0, np.abs(one) ** 2), lobe, mode="same")
+        for one in (above, below, (above - below) / np.sqrt(2.0))
+    )
+    up, down = up[away - 1], down[away - 1]
+    least, most, noise = np.minimum(up, down), np.maximum(up, down), _NOISE * level
     each = _highest(np.where(least > np.maximum(noise, most / _UNEVEN), up + down, 0.0), away)
     everything = _highest(np.where(most > noise, up + down, 0.0), away)
     total = sum(each.values())
     if total == 0.0 and sum(everything.values()) < own:
         return 0.0, 0.0
-    # a phase that oscillates by sqrt(2 total/steady) [rad] may be at any place at both ends
-    spread = float(np.sqrt(2.0 * total / max(steady, 1e-300)) / np.pi)  # bins
+    # amplitude is in I, phase in Q; one that turns far is in both
+    turned = sum(float(odd[place - 1]) - lobe.size * level for place in each)
+    if turned < _SEEN * lobe.size * level * np.sqrt(len(each)):
+        turned = 0.0
+    if total > _FAR * own:
+        turned = total
+    # a phase that oscillates by sqrt(2 turned/steady) [rad] may be at any place at both ends
+    spread = float(np.sqrt(2.0 * turned / max(steady, 1e-300)) / np.pi)  # bins
     if total < own < sum(everything.values()):
         total = sum(everything.values())
         square = sum(one * place**2 for place, one in everything.items())
         spread = float(np.sqrt(square / (steady + total)))
     # what changes slowly enough is in the reading
     return max(0.0, (steady + total) / own - 1.0), spread * width
+
+
+def _beside_place(
+    spectrum: LineSpectrum, place: float, most: int
+) -> tuple[Complexes, Complexes, float]:
+    """A line at ``place`` [bins] and what is 1 .. ``most`` and half a lobe beside it.
+
+    Above it and, conjugate, below, turned by the line's phase: Hann's window, powers that of noise
+    in a bin. And the power of the line itself, without a window.
+    """
+    reach = most + _CLEAR  # one more for the window
+    middle = round(place)
+    bins = np.arange(middle - reach - _SUM, middle + reach + _SUM + 1)
+    inside = (bins >= 0) & (bins < spectrum.lines.size)
+    lines = np.zeros(bins.size, dtype=complex)
+    lines[inside] = spectrum.lines[bins[inside]]
+    beyond = np.arange(-_SUM, _SUM + 1) - (place - middle)
+    kernel = np.exp(1j * np.pi * beyond) * np.sinc(beyond)
+    plain = np.convolve(lines, kernel[::-1], mode="valid")
+    hann = plain[1:-1] - 0.5 * (plain[2:] + plain[:-2])
+    own = plain.size // 2
+    turned = hann * np.exp(-1j * np.angle(plain[own])) / np.sqrt(_HANN)
+    own -= 1
+    above, below = turned[own + 1 :], np.conj(turned[:own][::-1])
+    return above, below, float(np.abs(plain[own + 1]) ** 2)
 
 
 def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
@@ -260,7 +296,10 @@ def _missing(
     near = [one for one in beside if 3.0 * width < abs(one - frequency) < half_width]
     power = band_power(spectrum, frequency, half_width) - reading.amplitude**2
     power -= sum(band_power(spectrum, one, 2.0 * width) for one in near)
-    return power - 4.0 * reading.noise**2 * float(np.sqrt(4.0 * half_width / width))
+    noise = reading.noise**2
+    if reading.hidden:  # what wanders far is noise to its own highest line
+        noise = min(noise, power_beyond(spectrum, frequency, half_width))
+    return power - 4.0 * noise * float(np.sqrt(4.0 * half_width / width))
 
 
 def _is_side(one: Strong, beside: Sequence[float], width: float) -> bool:
@@ -332,7 +371,7 @@ def _followed(
     line = 2.0 * abs(np.sum(hann * values * np.exp(-2j * np.pi * cycles))) / np.sum(hann)
     return MeshTurns(
         frequency=found.frequency,
-        half_width=found.frequency_half_width + spread * found.frequency,
+        half_width=float(np.hypot(found.frequency_half_width, spread * found.frequency)),
         unfollowed=share,
         turning=turning,
         said=f"the mesh line's phase wanders by {wander:.3g} cycles: lines are read in angle, by "

@@ -13,6 +13,9 @@ NEAR = 6
 """Bins on each side in which a neighbour is looked for."""
 
 _CLEARLY = 2.5
+_INNER = 6
+"""Bins nearest to a line, in which a change stands out first."""
+_ROUNDS = 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +75,9 @@ def noise_beside(
     it is left aside. Medians over bins, so that single lines count little: ln 2 of the
     mean where it is noise. Q of bins nearer than ``followed`` has been taken away with the phase.
     Both together, unless one is 2.5 times the other: then the quieter, because a change fills one
-    alone; likewise the outer half of its bins, because a change fills the inner ones first.
+    alone; likewise the outer half of its bins, because a change fills the inner ones first. What
+    shows in the inner bins alone are skirts: the record's ends cut a change, which leaves power
+    that falls with the square of the distance. They are fitted and taken away.
 
     Noise of a resonance is not level. I and Q hold both sides alike, so a slope cancels and
     a + c m^2 is left: of the inner and the outer half of the bins, mean m^2 (r/2)^2/3 and 7 times
@@ -85,15 +90,18 @@ def noise_beside(
     """
     first = 1 if powers[0].size > 3 else 0  # a slow change is in the first
     starts = first, max(first, int(np.ceil(followed)))
-    one, two = (
-        _whole(power[start:], share[start:])
+    (one, steps), (two, others) = (
+        _whole(power, share, start)
         for power, share, start in zip(powers, shares, starts, strict=True)
     )
     if two.size < 4:
         return _level(_outer(one))
     if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
         return _level(min(_outer(one), _outer(two)))
+    count = one.size + two.size
+    one, two = _without_skirts(one, steps, two), _without_skirts(two, others, one)
     joined = np.concatenate([one, two])
+    fitted = count - joined.size
     far = np.concatenate([one[one.size // 2 :], two[two.size // 2 :]])
     if far.size >= 16 and _median(joined) > 2.0 * _median(far):
         return _level((_median(far), float(far.size)))
@@ -101,7 +109,8 @@ def noise_beside(
         return _level((_median(joined), float(joined.size)))
     near = np.concatenate([one[: one.size // 2], two[: two.size // 2]])
     here = (7.0 * _median(near) - _median(far)) / 6.0
-    degrees = 36.0 / (49.0 / near.size + 1.0 / far.size)
+    # skirts fitted to some bins scatter as if twice as many were lost (seen in drawn noise)
+    degrees = 36.0 / (49.0 / max(near.size - 2 * fitted, 1) + 1.0 / far.size)
     return _median(joined), max(here, 0.5 * _median(joined)), degrees
 
 
@@ -110,11 +119,35 @@ def _level(found: tuple[float, float]) -> tuple[float, float, float]:
     return noise, noise, degrees
 
 
-def _whole(powers: Floats, shares: Floats) -> Floats:
-    kept = shares >= 0.5
-    if np.count_nonzero(kept) < min(4, powers.size):
-        kept = np.ones(powers.size, dtype=bool)
-    return np.asarray(powers[kept] / np.maximum(shares[kept], 0.1))
+def _whole(powers: Floats, shares: Floats, start: int) -> tuple[Floats, Floats]:
+    """Powers of noise that the fit leaves whole, from bin ``start`` on, and their distances."""
+    kept = shares[start:] >= 0.5
+    if np.count_nonzero(kept) < min(4, kept.size):
+        kept[:] = True
+    distances = np.arange(1.0, powers.size + 1.0)[start:][kept]
+    return powers[start:][kept] / np.maximum(shares[start:][kept], 0.1), distances
+
+
+def _without_skirts(powers: Floats, distances: Floats, other: Floats) -> Floats:
+    """``powers`` of I or Q, noise n alone, where a change has skirts a/m^2 in the inner bins.
+
+    That is where the inner bins have 2.5 times the power of the ``other``'s. In turn a, by which
+    the inner ones would be p/(1/m^2 + n/a), and n, by the outer half p/(1 + a/(n m^2)) and
+    the other; the inner ones, which tell of the skirts, are left out.
+    """
+    if min(powers.size, other.size) < 2 * _INNER:
+        return powers
+    inner = powers[:_INNER]
+    if _median(inner) <= _CLEARLY * _median(other[:_INNER]):
+        return powers
+    square = distances**2
+    noise = _median(np.concatenate([other, powers[powers.size // 2 :]]))
+    skirts = _median(inner * square[:_INNER])
+    for _ in range(_ROUNDS):
+        skirts = _median(inner / (1.0 / square[:_INNER] + noise / skirts))
+        level = powers / (1.0 + skirts / (noise * square))
+        noise = _median(np.concatenate([other, level]))
+    return level[_INNER:]
 
 
 def _outer(powers: Floats) -> tuple[float, float]:
