@@ -270,9 +270,12 @@ def channel_lines(
         rank = int(np.rint(position / gearing.mesh_frequency)) if gearing else 0
         if turns is not None and turns.unfollowed and want.kind == "mesh":
             own_sides = [p * rate / through.axis for p in sides]
-            missed[rank], _ = unfollowed(through.spectrum, reading, own_sides)
+            missed[rank], _ = unfollowed(through.spectrum, reading, own_sides, strong)
         amplitude, relative = _amplitude(reading, position, turns)
-        relative += float(np.sqrt(1.0 + missed.get(rank, 0.0))) - 1.0
+        # with what may be its own beside it, or without; a sideband shares its mesh line's
+        gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
+        amplitude *= 0.5 * (1.0 + gain)
+        relative += abs(gain - 1.0) / (1.0 + gain)
         # the chain's displacement, read as the acceleration was
         displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
         own = reading.frequency_half_width * through.axis / rate

@@ -17,7 +17,17 @@ from thermogear.signals.following import (
     follow_line,
     power_beyond,
 )
-from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
+from thermogear.signals.interval import (
+    APART,
+    REACH,
+    SIDE,
+    UNEVEN,
+    Reading,
+    Strong,
+    read_line,
+    strong_lines,
+    twins,
+)
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 
 Floats = NDArray[np.float64]
@@ -33,7 +43,6 @@ _MEET = 2.5  # times its power, of a neighbour's beside a line: nearer than two 
 _STILL = 0.1  # of a line, that no steady one explains
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _HANN = 1.5  # bins, noise bandwidth
-_UNEVEN = 10.0  # of their powers
 _SUM = 50  # bins of the sum that is the transform at a line's own place
 _SEEN = 2.0  # times the noise of a lobe in Q: three of its standard deviations
 _FAR = 0.3  # of the line's power
@@ -101,7 +110,7 @@ def mesh_turns(
         )
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
-    share, spread = unfollowed(spectrum, reading, beside)
+    share, spread = unfollowed(spectrum, reading, beside, strong)
     return MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
@@ -112,7 +121,7 @@ def mesh_turns(
 
 
 def unfollowed(
-    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float]
+    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float], strong: Sequence[Strong]
 ) -> tuple[float, float]:
     """Power beside a line that its reading lacks and that may be its own, of its power; and by how
     much its turns over time may differ from its place.
@@ -146,15 +155,17 @@ def unfollowed(
     )
     up, down = up[away - 1], down[away - 1]
     least, most, noise = np.minimum(up, down), np.maximum(up, down), _NOISE * level
-    each = _highest(np.where(least > np.maximum(noise, most / _UNEVEN), up + down, 0.0), away)
+    each = _highest(np.where(least > np.maximum(noise, most / UNEVEN), up + down, 0.0), away)
     everything = _highest(np.where(most > noise, up + down, 0.0), away)
-    total = sum(each.values())
-    if total == 0.0 and sum(everything.values()) < own:
+    hidden, unread = _next_to_sides(strong, reading.frequency / width, first)
+    total = sum(each.values()) + hidden
+    if total == 0.0 and reading.pairs == 0.0 and sum(everything.values()) < own:
         return 0.0, 0.0
     # amplitude is in I, phase in Q; one that turns far is in both
     turned = sum(float(odd[place - 1]) - lobe.size * level for place in each)
     if turned < _SEEN * lobe.size * level * np.sqrt(len(each)):
         turned = 0.0
+    turned += hidden
     if total > _FAR * own:
         turned = total
     # a phase that oscillates by sqrt(2 turned/steady) [rad] may be at any place at both ends
@@ -163,8 +174,24 @@ def unfollowed(
         total = sum(everything.values())
         square = sum(one * place**2 for place, one in everything.items())
         spread = float(np.sqrt(square / (steady + total)))
-    # what changes slowly enough is in the reading
-    return max(0.0, (steady + total) / own - 1.0), spread * width
+        return max(0.0, (steady + total) / own - 1.0), spread * width
+    total = reading.pairs + unread + sum(one for place, one in each.items() if place > REACH)
+    return max(total / own, -_FAR), spread * width
+
+
+def _next_to_sides(strong: Sequence[Strong], place: float, first: float) -> tuple[float, float]:
+    """Power of pairs of lines next to sidebands of a line at ``place``, each ``first`` [bins] from
+    the last: at equal distances, but no whole number of ``first``. And what of it a reading has
+    not among its pairs."""
+    power = unread = 0.0
+    for one, other in twins(strong, place):
+        away = one.place - place
+        off = abs(away - np.rint(away / first) * first)
+        if away > 0.5 * first and APART < off < _CLEAR:
+            both = abs(one.amplitude) ** 2 + abs(other.amplitude) ** 2
+            power += both
+            unread += both if off < SIDE or away > REACH else 0.0
+    return power, unread
 
 
 def _beside_place(
@@ -363,7 +390,7 @@ def _followed(
     wander = float(np.std(cycles - np.linspace(cycles[0], cycles[-1], cycles.size)))
     straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
     reading = read_line(straight, 1.0, followed=_HELD * found.last / found.frequency)
-    share, spread = unfollowed(straight, reading, beside)
+    share, spread = unfollowed(straight, reading, beside, strong_lines(straight))
     bins = 1.2 * found.last * values.size  # in the filter, its noise bandwidth
     # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))

@@ -31,9 +31,18 @@ Complexes = NDArray[np.complex128]
 REACH = 40
 """Bins on each side of a line from which its noise is judged."""
 
-_APART = 0.75  # bins: two lines nearer than this are one that changes
+APART = 0.75
+"""Bins: two lines nearer than this are one that changes."""
+SIDE = 2.0
+"""Bins: a strong line nearer than this to where one is known is that line."""
+UNEVEN = 10.0
+"""Of the powers of two lines that one change may make."""
 _HIDDEN = 12.0  # times the power of noise in a bin
 _CLEAN = 60  # strong lines of a spectrum whose leakage is taken away
+_TOUCH = 4  # bins about a strong line that its own changes fill
+_LEAST_REACH = 8  # bins
+_EVEN = 0.3  # bins, by which two distances may differ
+
 _LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
 
 
@@ -47,9 +56,10 @@ class Reading:
     ``half_width`` and ``frequency_half_width``: of the 95 % interval, Student's t. ``changing`` and
     ``turning``: rms of the amplitude's change (relative) and of the phase's [rad] beyond noise;
     ``neighbours``: frequencies of lines fitted beside it and ``beside`` the sum of their squared
-    amplitudes; ``noise``: rms amplitude that noise
-    brings to one bin; ``explained`` is False where more is left over than noise and a changing
-    amplitude or phase can be.
+    amplitudes; ``pairs``: mean square that further lines at equal distances to both sides, up to
+    REACH bins, add to it, what they share over the record included; ``noise``: rms amplitude that
+    noise brings to one bin; ``explained`` is False where more is left over than noise and
+    a changing amplitude or phase can be.
     """
 
     amplitude: float
@@ -61,6 +71,7 @@ class Reading:
     turning: float
     neighbours: tuple[float, ...]
     beside: float
+    pairs: float
     noise: float
     explained: bool
 
@@ -143,6 +154,19 @@ def strong_lines(spectrum: LineSpectrum, most: int = _CLEAN) -> tuple[Strong, ..
         size[low:high] = np.abs(left[low:high])
         found.append(Strong(peak + offset, value))
     return tuple(found)
+
+
+def twins(lines: Sequence[Strong], place: float) -> list[tuple[Strong, Strong]]:
+    """Pairs of lines at equal distances above and below ``place`` [bins], of like height: the
+    greater has at most ten times the power."""
+    found = []
+    for one in lines:
+        for other in lines:
+            powers = abs(one.amplitude) ** 2, abs(other.amplitude) ** 2
+            even = place < one.place and abs(one.place + other.place - 2.0 * place) < _EVEN
+            if even and max(powers) < UNEVEN * min(powers):
+                found.append((one, other))
+    return found
 
 
 def _rough_floor(size: Floats, block: int = 128) -> Floats:
@@ -240,11 +264,11 @@ class _Fit:
         data = spectrum.lines[low : high + 1].copy()
         taken: list[Strong] = []
         for one in strong:
-            if abs(one.place - place) < _APART or any(abs(one.place - k) < 2.0 for k in known):
+            if abs(one.place - place) < APART or any(abs(one.place - k) < SIDE for k in known):
                 continue
             if abs(one.place - place) < 4.0:
                 continue  # too near to be told apart by the Hann window
-            if low - 1 < one.place < high + 1:
+            if low - _TOUCH < one.place < high + _TOUCH:
                 taken.append(one)
             data -= one.amplitude * dirichlet(one.place - bins, count)
             data -= np.conj(one.amplitude) * dirichlet(-one.place - bins, count)
@@ -328,7 +352,7 @@ class _Fit:
         """What is left beside the line, turned by its phase."""
         error = self.data - self._model()
         place, phase = float(self.places[0]), np.exp(-1j * np.angle(self.amplitudes[0]))
-        reach = int(max(1, min(place - self.bins[0], self.bins[-1] - place)))
+        reach = int(max(1, min(place - self.bins[0], self.bins[-1] - place, self._own_reach())))
         steps = np.arange(1, reach + 1, dtype=float)
 
         def rows(at: Floats) -> Complexes:
@@ -343,7 +367,7 @@ class _Fit:
             (even, odd), shares=shares, followed=followed / self.spectrum.bin_width
         )
         fine = np.arange(-NEAR, NEAR + 0.01, 0.125)
-        fine = fine[np.abs(fine) >= _APART]
+        fine = fine[np.abs(fine) >= APART]
         fine = fine[(place + fine > self.bins[0]) & (place + fine < self.bins[-1])]
         return Left(
             even=even,
@@ -355,6 +379,36 @@ class _Fit:
             places=fine,
             finer=np.abs(rows(fine) @ error) ** 2,
         )
+
+    def _own_reach(self) -> float:
+        """Half way to the next stronger line, whose own changes fill the bins about it; eight bins
+        at least."""
+        size = abs(self.amplitudes[0])
+        stronger = [
+            *self.places[1:][np.abs(self.amplitudes[1:]) > size],
+            *(one.place for one in self.taken if abs(one.amplitude) > size * self.unit),
+        ]
+        nearest = np.min(np.abs(np.asarray(stronger) - self.places[0]), initial=np.inf)
+        return float(max(0.5 * nearest, _LEAST_REACH))
+
+    def _pairs(self) -> float:
+        """What lines at equal distances to both sides add to the mean square of a(t).
+
+        |sum_i c_i exp(2 pi i u_i t/T)|^2 over the record, with the pairs less without them.
+        """
+        others = [Strong(one.place, one.amplitude / self.unit) for one in self.taken]
+        others += [
+            Strong(float(place), complex(value))
+            for place, value, free in zip(self.places, self.amplitudes, self.free, strict=True)
+            if free
+        ][1:]
+        middle = float(self.places[0])
+        own = Strong(middle, complex(self.amplitudes[0]))
+        found = [own, *(one for pair in twins(others, middle) for one in pair)]
+        at = np.array([one.place for one in found])
+        c = np.array([one.amplitude for one in found])
+        shared = dirichlet(at[None, :] - at[:, None], self.spectrum.samples)
+        return float(np.real(np.conj(c) @ shared @ c) - abs(c[0]) ** 2)
 
     def with_neighbour(self, left: Left) -> _Fit | None:
         """The fit with a further line at the highest of what is left, where that is no noise.
@@ -375,7 +429,7 @@ class _Fit:
         fit = fit._solved().refined()
         apart = np.abs(fit.places[1:] - fit.places[0])
         moved = abs(fit.places[0] - self.places[0])
-        if np.any(apart < _APART) or np.any(apart > REACH) or moved > 0.5:
+        if np.any(apart < APART) or np.any(apart > REACH) or moved > 0.5:
             return None
         return fit
 
@@ -418,6 +472,7 @@ class _Fit:
                 if free
             ),
             beside=power * self.unit**2,
+            pairs=self._pairs() * self.unit**2,
             noise=float(np.sqrt(left.noise)) * self.unit,
             explained=hidden_power == 0.0,
         )
