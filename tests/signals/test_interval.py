@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.signals.following import follow_line
-from thermogear.signals.interval import Reading, dirichlet, read_line, strong_lines, student
+from thermogear.signals.interval import Reading, read_line, student
 from thermogear.signals.left_over import noise_beside
 from thermogear.signals.lines import line_spectrum
+from thermogear.signals.strong import dirichlet, strong_lines
 
 RATE = 1000.0
 

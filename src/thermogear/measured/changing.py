@@ -23,10 +23,10 @@ from thermogear.measured.resonances import Resonance, resonances_of
 from thermogear.measured.shaft import VARIES, Shaft, given_shaft, locked, tracked_shaft
 from thermogear.measured.turns import MeshTurns
 from thermogear.measured.units import kind_of
-from thermogear.signals.interval import strong_lines
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.orders import resample_by_angle
 from thermogear.signals.slices import order_slices
+from thermogear.signals.strong import strong_lines
 from thermogear.signals.tracking import samples_per_turn
 
 Floats = NDArray[np.float64]

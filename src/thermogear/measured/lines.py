@@ -15,8 +15,9 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, sides_of, unfollowed
 from thermogear.measured.units import kind_of
-from thermogear.signals.interval import Reading, Strong, read_line, strong_lines
+from thermogear.signals.interval import Reading, read_line
 from thermogear.signals.spectra import amplitude_spectrum
+from thermogear.signals.strong import Strong, strong_lines
 
 Floats = NDArray[np.float64]
 
@@ -259,18 +260,17 @@ def channel_lines(
         if want.kind == "order" and (stronger := _nearby(strong, want.position, bin_width)):
             around, near = [*around, *stronger], want.position * rate / through.axis
         beside = [p * rate / through.axis for p in around]
-        reading = read_line(
-            through.spectrum,
-            near,
-            beside=beside,
-            strong=strong,
-            followed=turns.followed * rate / through.axis if turns else 0.0,
-        )
+        followed = turns.followed * rate / through.axis if turns else 0.0
+        reading = read_line(through.spectrum, near, beside=beside, strong=strong, followed=followed)
         position = reading.frequency * through.axis / rate
         rank = int(np.rint(position / gearing.mesh_frequency)) if gearing else 0
         if turns is not None and turns.unfollowed and want.kind == "mesh":
+            # among sidebands alone: other lines that are read may be its own
             own_sides = [p * rate / through.axis for p in sides]
-            missed[rank], _ = unfollowed(through.spectrum, reading, own_sides, strong)
+            alone = read_line(
+                through.spectrum, near, beside=own_sides, strong=strong, followed=followed
+            )
+            missed[rank], _ = unfollowed(through.spectrum, alone, own_sides, strong)
         amplitude, relative = _amplitude(reading, position, turns)
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))

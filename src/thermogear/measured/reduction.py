@@ -32,9 +32,10 @@ from thermogear.measured.swelling import Swelling, swelling_of
 from thermogear.measured.traps import HUGE, health, unknown_unit
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.measured.units import UNITS
-from thermogear.signals.interval import read_line, strong_lines
+from thermogear.signals.interval import read_line
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.quality import phase_jumps
+from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
 Floats = NDArray[np.float64]

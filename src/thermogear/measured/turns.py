@@ -17,18 +17,9 @@ from thermogear.signals.following import (
     follow_line,
     power_beyond,
 )
-from thermogear.signals.interval import (
-    APART,
-    REACH,
-    SIDE,
-    UNEVEN,
-    Reading,
-    Strong,
-    read_line,
-    strong_lines,
-    twins,
-)
+from thermogear.signals.interval import APART, REACH, SIDE, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
+from thermogear.signals.strong import UNEVEN, Strong, strong_lines, twins
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -389,8 +380,11 @@ def _followed(
     turning = Turning(cycles=cycles, dropped=0, per_cycle=per_cycle)
     wander = float(np.std(cycles - np.linspace(cycles[0], cycles[-1], cycles.size)))
     straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
-    reading = read_line(straight, 1.0, followed=_HELD * found.last / found.frequency)
-    share, spread = unfollowed(straight, reading, beside, strong_lines(straight))
+    strong = strong_lines(straight) if beside else ()
+    reading = read_line(
+        straight, 1.0, beside=beside, strong=strong, followed=_HELD * found.last / found.frequency
+    )
+    share, spread = unfollowed(straight, reading, beside, strong)
     bins = 1.2 * found.last * values.size  # in the filter, its noise bandwidth
     # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))

@@ -65,7 +65,12 @@ def band_power(spectrum: LineSpectrum, frequency: float, half_width: float) -> f
 
 def power_beyond(spectrum: LineSpectrum, frequency: float, half_width: float) -> float:
     """Power of noise in a bin, by the median beyond ``frequency`` +- ``half_width``: up to twice
-    that, or 60 bins."""
+    that, or 60 bins. The median of noise is ln 2 of its mean.
+
+    >>> level = LineSpectrum(rate=1.0, samples=200, lines=np.full(101, 0.1 + 0j))
+    >>> f"{power_beyond(level, 0.2, 0.05):.4f}"
+    '0.0144'
+    """
     low, high = _bins(spectrum, frequency, half_width)
     more = max(half_width, 60.0 * spectrum.bin_width)
     first, last = _bins(spectrum, frequency, half_width + more)

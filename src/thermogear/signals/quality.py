@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.signals.interval import Strong, strong_lines
 from thermogear.signals.lines import line_spectrum
+from thermogear.signals.strong import Strong, strong_lines
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -1,0 +1,107 @@
+"""The strongest lines of a spectrum, and what a line shows in the bins about it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.signals.lines import LineSpectrum, floor_around, hann_offset
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+MOST = 60
+"""Strong lines of a spectrum whose leakage is taken away."""
+UNEVEN = 10.0
+"""Of the powers of two lines that one change may make."""
+_EVEN = 0.3  # bins, by which two distances may differ
+
+
+@dataclass(frozen=True)
+class Strong:
+    """A line whose leakage is taken away: ``place`` [bins], complex peak ``amplitude``."""
+
+    place: float
+    amplitude: complex
+
+
+def dirichlet(offset: Floats, samples: int) -> Complexes:
+    """What a line of amplitude 1 shows ``offset`` bins below it, no window, N ``samples``.
+
+    D(u) = (1/N) sum_n exp(2 pi i u n/N) = exp(i pi u (N-1)/N) sin(pi u)/(N sin(pi u/N)).
+
+    >>> np.abs(dirichlet(np.array([0.0, 0.5, 1.0]), 1000)).round(3)
+    array([1.   , 0.637, 0.   ])
+    """
+    u = np.asarray(offset, dtype=float)
+    low = samples * np.sin(np.pi * u / samples)
+    near = np.abs(low) < 1e-9
+    size = np.where(near, 1.0, np.sin(np.pi * u) / np.where(near, 1.0, low))
+    return np.asarray(np.exp(1j * np.pi * u * (samples - 1) / samples) * size)
+
+
+def strong_lines(spectrum: LineSpectrum, most: int = MOST) -> tuple[Strong, ...]:
+    """The strongest lines, four bins or more apart, each six times over its floor (Hann window).
+
+    Each is taken away with its skirts before the next is looked for.
+
+    >>> t = np.arange(1000) / 1000.0
+    >>> from thermogear.signals.lines import line_spectrum
+    >>> x = np.cos(2 * np.pi * 50.3 * t) + 0.1 * np.cos(2 * np.pi * 80 * t)
+    >>> [f"{one.place:.1f}" for one in strong_lines(line_spectrum(x, 1000.0), 2)]
+    ['50.3', '80.0']
+    """
+    left = spectrum.windowed("hann").copy()
+    size, count = np.abs(left), left.size
+    open_to = size > 3.0 * _rough_floor(size)
+    open_to[:3] = open_to[-3:] = False
+    found: list[Strong] = []
+    for _ in range(3 * most):
+        peak = int(np.argmax(np.where(open_to, size, 0.0)))
+        if len(found) == most or not open_to[peak] or size[peak] <= 0.0:
+            break
+        open_to[max(0, peak - 3) : peak + 4] = False
+        if size[peak] <= 6.0 * floor_around(size, peak, lobe=4):
+            continue  # a peak of noise: weaker lines may be clear elsewhere
+        offset = hann_offset(size[peak - 1 : peak + 2])
+        value = complex(left[peak]) / complex(_hann(np.array([offset]), spectrum.samples)[0])
+        low, high = max(0, peak - 60), min(count, peak + 61)
+        bins = np.arange(low, high, dtype=np.float64)
+        left[low:high] -= value * _hann((peak + offset) - bins, spectrum.samples)
+        size[low:high] = np.abs(left[low:high])
+        found.append(Strong(peak + offset, value))
+    return tuple(found)
+
+
+def twins(lines: Sequence[Strong], place: float) -> list[tuple[Strong, Strong]]:
+    """Pairs of lines at equal distances above and below ``place`` [bins], of like height: the
+    greater has at most ten times the power.
+
+    >>> lines = [Strong(40.0, 1.0), Strong(43.1, 0.1j), Strong(36.9, 0.1)]
+    >>> [(above.place, below.place) for above, below in twins(lines, 40.0)]
+    [(43.1, 36.9)]
+    """
+    found = []
+    for one in lines:
+        for other in lines:
+            powers = abs(one.amplitude) ** 2, abs(other.amplitude) ** 2
+            even = place < one.place and abs(one.place + other.place - 2.0 * place) < _EVEN
+            if even and max(powers) < UNEVEN * min(powers):
+                found.append((one, other))
+    return found
+
+
+def _rough_floor(size: Floats, block: int = 128) -> Floats:
+    """Medians of blocks, at each bin."""
+    starts = np.arange(0, size.size, block)
+    floors = np.array([np.median(size[start : start + block]) for start in starts])
+    return np.asarray(np.repeat(floors, block)[: size.size])
+
+
+def _hann(offset: Floats, samples: int) -> Complexes:
+    """What a line of amplitude 1 shows ``offset`` bins below it through the Hann window."""
+    sides = dirichlet(offset - 1.0, samples) + dirichlet(offset + 1.0, samples)
+    return np.asarray(dirichlet(offset, samples) - 0.5 * sides)
