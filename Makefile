@@ -160,7 +160,7 @@ trial-turning: $(STAMP)  ## orders of runs of eight kinds (lost pulses, no tacho
 trial-stamps: $(STAMP)  ## rates of rounded and jittering time stamps: do their intervals hold? a minute; docs/trial_stamps.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_stamps.py $(STAMPS)
 
-trial-swings: $(STAMP)  ## records whose speed swings: do intervals hold? four minutes; SWINGS=20 for a few; docs/trial_swings.md
+trial-swings: $(STAMP)  ## records whose speed, phase or load oscillates: do intervals hold? ten minutes; SWINGS=20 for a few; docs/trial_swings.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_swings.py $(SWINGS)
 
 trial-teeth: $(STAMP)  ## 200 held-back records with known teeth or none, ten minutes; TEETH=20 for a few; docs/trial_teeth.md

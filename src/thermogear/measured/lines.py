@@ -257,8 +257,10 @@ def channel_lines(
         line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
         sides = _sides(gearing, teeth, want)
         around, near = [*places, *sides], line.frequency / through.axis
-        if want.kind == "order" and (stronger := _nearby(strong, want.position, bin_width)):
-            around, near = [*around, *stronger], want.position * rate / through.axis
+        if want.kind in ("order", "sideband"):
+            place, stronger = _nearby(strong, want.position, bin_width)
+            if stronger:
+                around, near = [*around, *stronger], place * rate / through.axis
         beside = [p * rate / through.axis for p in around]
         followed = turns.followed * rate / through.axis if turns else 0.0
         reading = read_line(through.spectrum, near, beside=beside, strong=strong, followed=followed)
@@ -331,15 +333,17 @@ def jittered(position: ArrayLike, jitter: float) -> Floats:
     return np.asarray(0.5 * (2.0 * np.pi * jitter * np.asarray(position, dtype=float)) ** 2)
 
 
-def _nearby(strong: tuple[Strong, ...], position: float, bin_width: float) -> list[float]:
-    """Strong lines so near to an asked one that they would be taken for it [cycles/sample].
-
-    None where one is too near to be told apart: then it is the asked one.
-    """
-    away = [abs(one.place - position / bin_width) for one in strong]
-    if min(away, default=_NEAR) < _TOLD_APART:
-        return []
-    return [one.place * bin_width for one, a in zip(strong, away, strict=True) if a < _NEAR]
+def _nearby(
+    strong: tuple[Strong, ...], position: float, bin_width: float
+) -> tuple[float, list[float]]:
+    """Where a line known to be at ``position`` is, and strong lines so near that they would be
+    taken for it [cycles/sample]. A strong line too near to be told apart is the line itself."""
+    places = np.array([one.place for one in strong])
+    away = np.abs(places - position / bin_width)
+    own = places[away < _TOLD_APART]
+    others = places[(away >= _TOLD_APART) & (away < _NEAR)]
+    place = own[np.argmin(np.abs(own - position / bin_width))] if own.size else position / bin_width
+    return float(place * bin_width), [float(one * bin_width) for one in others]
 
 
 def _amplitude(reading: Reading, position: float, turns: MeshTurns | None) -> tuple[float, float]:
