@@ -3,6 +3,10 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
 
+# Python keeps the bytecode of what it loads, also where the environment forbids it: the tests start
+# some hundred processes, and each took seconds to compile the libraries anew.
+export PYTHONDONTWRITEBYTECODE :=
+
 DOCS_STAMP := .venv/.docs-installed
 
 BENCH_BIN := .bench-venv/bin

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from pathlib import Path
+
 import numpy as np
 import pytest
 from record_makers import SHARED, mesh_train, quantised
@@ -18,6 +21,15 @@ TRUTH = {"h30hz0": (0.074385, 32.0, 19.2), "h30hz50": (0.074189, 32.0, 19.2)}
 def twin(name: str) -> list[np.ndarray]:
     """A synthetic record of the real rig's gearing."""
     return list(quantised(mesh_train(88_000, TRUTH[name][0], noise=0.2)))
+
+
+def path_of(name: str) -> Path:
+    return SHARED / f"{name}.csv.gz"
+
+
+@cache
+def table_of(name: str) -> np.ndarray:
+    return np.loadtxt(path_of(name), delimiter=",", skiprows=1).T
 
 
 @pytest.mark.parametrize("name", TRUTH)
@@ -37,10 +49,9 @@ def test_the_rigs_orders_are_found_without_rate_or_teeth(name: str) -> None:
 @pytest.mark.parametrize("name", TRUTH)
 def test_the_real_records_name_no_wrong_gear(name: str, channels: tuple[int, ...]) -> None:
     """Hundreds of lines of three shafts in whole ratios: most channels leave the teeth open."""
-    path = SHARED / f"{name}.csv.gz"
-    if not path.is_file():
+    if not path_of(name).is_file():
         pytest.skip("the folder is not part of the project")
-    table = np.loadtxt(path, delimiter=",", skiprows=1).T
+    table = table_of(name)
     found = find_gearing([table[i] for i in channels])
     assert {shaft.teeth for shaft in found.shafts} <= {32, 80}
 

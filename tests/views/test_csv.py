@@ -27,9 +27,16 @@ def read(path: Path) -> dict[str, list[str]]:
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-def test_curves_come_back_with_units_and_operating_points(tmp_path: Path) -> None:
-    synthetic.build(tmp_path)
-    files = {path.name: path for path in write_csv(tmp_path)}
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The tables of a run with everything, beside its results."""
+    place = tmp_path_factory.mktemp("whole")
+    synthetic.build(place)
+    return write_csv(place)
+
+
+def test_curves_come_back_with_units_and_operating_points(whole: list[Path]) -> None:
+    files = {path.name: path for path in whole}
     table = read(files["path_consistent_hot.csv"])
     data = synthetic.path_group(("consistent", "thesis"), (100.0, 100.0))
     here = data.isel(bundle=0, state=1)
@@ -47,14 +54,13 @@ def test_curves_come_back_with_units_and_operating_points(tmp_path: Path) -> Non
     )
 
 
-def test_every_variable_of_the_store_stands_in_some_file(tmp_path: Path) -> None:
-    synthetic.build(tmp_path)
+def test_every_variable_of_the_store_stands_in_some_file(whole: list[Path]) -> None:
     columns = {
         name.split(" [")[0]
-        for path in write_csv(tmp_path)
+        for path in whole
         for name in path.read_text(encoding="utf-8").partition("\n")[0].split(",")
     }
-    with xr.open_datatree(tmp_path / "results.nc", engine="h5netcdf") as tree:
+    with xr.open_datatree(whole[0].parents[1] / "results.nc", engine="h5netcdf") as tree:
         stored = {str(n) for node in tree.subtree for n in node.data_vars}
     assert stored <= columns
 

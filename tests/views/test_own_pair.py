@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
+from functools import cache
 from html import unescape
 
 import numpy as np
@@ -136,16 +138,23 @@ def survey_page(tree: Result) -> str:
     return prose(page(tree))
 
 
+@cache
+def surveyed(make: Callable[[GearCase], Result]) -> tuple[Result, str]:
+    """A survey of the own pair, and what its page says."""
+    tree = make(own())
+    return tree, survey_page(tree)
+
+
 @pytest.mark.parametrize("make", [friction_survey, loaded_survey, relief_survey])
-def test_pages_of_surveys_are_this_pairs(make) -> None:  # type: ignore[no-untyped-def]
-    text = survey_page(make(own()))
+def test_pages_of_surveys_are_this_pairs(make: Callable[[GearCase], Result]) -> None:
+    _, text = surveyed(make)
     assert FOREIGN.findall(text) == []
     assert "second picture" not in text
 
 
 def test_captions_of_the_relief_are_its_curves() -> None:
-    tree = relief_survey(own())
-    loads, text = tree["loads"], survey_page(tree)
+    tree, text = surveyed(relief_survey)
+    loads = tree["loads"]
     without, with_it = loads["peak_to_peak_error"].values
     worse = loads["load"].values[with_it > without]
     assert re.search(rf"\b{worse[0]:.3g} \w+ {worse[-1]:.3g} N m", text)

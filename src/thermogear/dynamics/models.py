@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -379,14 +380,18 @@ class PairModel:
         (i1, i2), (r1, r2), (t1, t2) = self.inertias, self.base_radii, self.torques
         return self.equivalent_mass * (r1 * t1 / i1 + r2 * t2 / i2)
 
+    @cached_property
+    def _error_rate(self) -> Periodic:
+        """e' [m/s] over the mesh phase."""
+        return self.error.derivative() * (1.0 / self.period)
+
     def displacement(self, t: ArrayLike, state: ArrayLike) -> tuple[Floats, Floats]:
         """x and x' [m, m/s] along the line of action of ``state`` (first axis 4) at ``t``."""
         y = np.asarray(state, dtype=float)
         r1, r2 = self.base_radii
         phase = np.asarray(t, dtype=float) / self.period
-        rate = self.error.derivative() * (1.0 / self.period)
         x = r1 * y[0] - r2 * y[1] - self.error(phase)
-        return np.asarray(x), np.asarray(r1 * y[2] - r2 * y[3] - rate(phase))
+        return np.asarray(x), np.asarray(r1 * y[2] - r2 * y[3] - self._error_rate(phase))
 
     def momentum(self, state: ArrayLike) -> Floats:
         """I1 theta1'/r_b1 + I2 theta2'/r_b2 [kg m/s] of ``state`` (first axis 4)."""

@@ -65,7 +65,8 @@ def pinion_point(pair: GearPair, s: ArrayLike, *, rho: ArrayLike) -> tuple[Float
     # seen from the wheel's centre, with its axes turned to meet its own string
     seen = np.conj((r1 + r2 + 1j * length) - point)
     string = np.sqrt(np.maximum(np.abs(seen) ** 2 - r2**2, 0.0))
-    turn = np.angle(seen / (r2 - 1j * string))
+    turned = seen / (r2 - 1j * string)
+    turn = np.arctan2(turned.imag, turned.real)
     return string, s_ - (length - string + r2 * turn)
 
 

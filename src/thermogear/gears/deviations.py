@@ -154,7 +154,7 @@ class Relief(FlankShape):
                 why=f"the {self.end} relief is longer than the active profile",
             )
         depth = rho - (tip - self.length) if self.end == "tip" else start + self.length - rho
-        x = np.clip(depth / self.length, 0.0, 1.0)
+        x = np.minimum(np.maximum(depth / self.length, 0.0), 1.0)
         return self.amount * (x if self.shape == "linear" else x * x)
 
     def finest(self, pair: GearPair) -> float:

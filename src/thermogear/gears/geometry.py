@@ -238,7 +238,7 @@ class Gear:
         """r = m z/2 [m]."""
         return 0.5 * self.module * self.teeth
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """r_b = r cos(alpha) [m]."""
         return self.pitch_radius * math.cos(self.pressure_angle)

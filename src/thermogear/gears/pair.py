@@ -164,7 +164,7 @@ class GearPair:
         both = self.pinion.base_radius + self.wheel.base_radius
         return math.atan2(self.line_of_action, both)
 
-    @property
+    @cached_property
     def line_of_action(self) -> float:
         """Length N1 N2 = sqrt(a_w^2 - (r_b1 + r_b2)^2) [m] between the two tangent points."""
         both = self.pinion.base_radius + self.wheel.base_radius

@@ -155,7 +155,9 @@ def _taken_off(
     def taken_off(rho: Floats) -> Floats:
         total = np.zeros_like(rho)
         for one in own:
-            total = total + np.broadcast_to(one.taken_off(pair, rho), (*lead, *rho.shape))[case]
+            found = one.taken_off(pair, rho)
+            whole = (*lead, *rho.shape)
+            total = total + (found if found.shape == whole else np.broadcast_to(found, whole))[case]
         return total
 
     return taken_off

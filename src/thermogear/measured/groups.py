@@ -122,7 +122,7 @@ class _Looked:
         far = np.abs(off)
         there = (far < _REACH * deviation) & ~used[index] & inside
         missing = ~there & inside & (far >= 3.0)
-        mean = max(0.3, float(np.mean(peaks.level - peaks.least)))
+        mean = max(0.3, peaks.mean_height)
         height = peaks.level[index] - peaks.least
         place = np.logaddexp(
             _LOG_MOST - np.log(close) - 0.5 * (off / close) ** 2,

@@ -132,8 +132,9 @@ class _Carriers:
             trend=-np.log(rank),
             top=np.inf,
         )
-        evidence = _open(found) + narrow(error, width=HIGHEST) + ONE_MORE
-        lines = _best(found).lines[0]
+        each = _each(found)
+        evidence = _open(each) + narrow(error, width=HIGHEST) + ONE_MORE
+        lines = _best(found, each).lines[0]
         seen = lines >= 0
         lines, rank = lines[seen], rank[seen]
         return cls(mesh, error, float(evidence), lines, rank, peaks.level[lines])
@@ -188,8 +189,9 @@ def mesh_of(
         around.append(0.0 if near else float(some_of(sides[0].evidence)[0]))
         total += prior
         for part in (sides, own):
-            total += float(_open(part)[0])
-            take(used, _best(part))
+            each = _each(part)
+            total += float(_open(each)[0])
+            take(used, _best(part, each))
     level = float(np.max(carriers.tops, initial=-np.inf))
     gears = Gears(mesh=mesh, level=level, teeth=teeth, sides=tuple(around))
     if first is None:
@@ -228,7 +230,7 @@ def whole(
     near = (np.abs(ratio - teeth) < 0.5) & (distance > 0.0)
     ratio, distance = ratio[near], distance[near]
     sides, own = carriers.beside(peaks, draft.used, np.append(ratio, float(teeth)))
-    evidence = _open(sides) + _open(own)
+    evidence = _open(_each(sides)) + _open(_each(own))
     share = np.log(ratio**2 / mesh * peaks.bin_width * (_OFF[1] - _OFF[0]))
     free = mean_exp(evidence[:-1] + share) + float(np.log(ratio.size * _FREE))
     # what is stated may be of the other gear: it speaks for these teeth or says nothing
@@ -237,15 +239,26 @@ def whole(
     return float(special.expit(gear - free)), float(distance[np.argmax(evidence[:-1])])
 
 
-def _open(parts: tuple[Seen, ...]) -> Floats:
-    """Log evidence of groups (..., group) up to an order that is open, all alike."""
-    each = np.stack([some_of(part.evidence) for part in parts])
-    return np.asarray(special.logsumexp(each, axis=0) - np.log(len(parts)))
+def _each(parts: tuple[Seen, ...]) -> Floats:
+    """Log evidence of groups (..., group) up to each order: (order, ...)."""
+    return some_of(np.stack([part.evidence for part in parts]))
 
 
-def _best(parts: tuple[Seen, ...]) -> Seen:
+def _open(each: Floats) -> Floats:
+    """Log evidence of groups up to an order that is open, all alike: of ``each`` (order, ...).
+
+    The sum of exponentials as :func:`scipy.special.logsumexp` has it, in a fourth of its time.
+    """
+    highest = np.maximum.reduce(each)
+    there = each == highest
+    number = np.add.reduce(there, dtype=float)
+    rest = np.add.reduce(np.exp(np.where(there, -np.inf, each) - highest)) / number
+    return np.asarray(np.log1p(rest) + np.log(number) + highest - np.log(len(each)))
+
+
+def _best(parts: tuple[Seen, ...], each: Floats) -> Seen:
     """Those up to the order with the greatest evidence, of one case."""
-    best = int(np.argmax([np.sum(some_of(part.evidence)) for part in parts]))
+    best = int(np.argmax(np.sum(each.reshape(len(parts), -1), axis=-1)))
     lines = parts[best].lines.reshape(-1, parts[best].lines.shape[-1])
     return Seen(evidence=parts[best].evidence.ravel(), lines=lines)
 

@@ -7,6 +7,7 @@ around it is exponential (Gaussian noise), channels independent.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,11 @@ class Peaks:
     def size(self) -> int:
         """How many there are."""
         return int(self.place.size)
+
+    @cached_property
+    def mean_height(self) -> float:
+        """Mean height of the lines over the threshold [nepers]."""
+        return float(np.mean(self.level - self.least))
 
     def nearest(self, position: Floats) -> tuple[NDArray[np.int64], Floats]:
         """Index of the line nearest to each position, and how far it is off [bins]."""

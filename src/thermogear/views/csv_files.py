@@ -98,7 +98,7 @@ def _columns(data: xr.Dataset, dims: list[str]) -> list[Column]:
             found.append((dimension, _flat(axis, dims, shape)))
     names = [*data.coords, *data.data_vars]
     for name in sorted(names, key=lambda n: n not in data.coords):
-        variable = data[name].variable
+        variable = data.variables[name]
         if variable.dims or name in data.data_vars:
             unit = str(variable.attrs.get("units", ""))
             found.append((f"{name} [{unit}]" if unit else str(name), _flat(variable, dims, shape)))
@@ -115,7 +115,7 @@ def _flat(variable: xr.Variable, dims: list[str], shape: tuple[int, ...]) -> lis
     own = [str(d) for d in variable.dims]
     wide = texts.transpose([own.index(d) for d in dims if d in own])
     spread = wide.reshape([variable.sizes[d] if d in own else 1 for d in dims])
-    return [str(text) for text in np.broadcast_to(spread, shape).ravel()]
+    return np.broadcast_to(spread, shape).ravel().tolist()
 
 
 def _texts(values: NDArray[np.generic]) -> NDArray[np.object_]:
