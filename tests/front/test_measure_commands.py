@@ -147,6 +147,12 @@ def test_compare_as_json() -> None:
         ),
         (
             measure,
+            ["FILE", "--channel", "acc", "--tacho", "acc"],
+            r"^--tacho: got acc; --channel n",
+        ),
+        (measure, ["FILE", "--tacho", "acc"], r"^tacho: got acc; no other channel is left to read"),
+        (
+            measure,
             ["FILE", "--tacho-scale", 300],
             r"^--tacho-scale: got 300 rpm; no tacho is named",
         ),

@@ -157,8 +157,29 @@ def test_dead_channels_are_left_out_and_refused_when_asked_for() -> None:
     record = Record((Channel("a", x, "g"), Channel("b", np.zeros(x.size), "g")), "x", RATE, "given")
     found = measure(record)
     assert found.channels == ("a",)
-    with pytest.raises(InputError, match=r"^channel: got 'b'; it holds no signal$"):
+    with pytest.raises(InputError, match=r"^channel: got 'b'; no signal: it is constant$"):
         measure(record, channels=["b"])
+
+
+@pytest.mark.parametrize("scale", [1e-320, 1e-200, 1e200])
+def test_numbers_of_no_sensor_are_refused_with_their_size(scale: float) -> None:
+    x = mesh_train(1 << 12, channels=1)[0] * scale
+    with pytest.raises(InputError, match=r"^record: got x; channel 'a' holds no signal: its larg"):
+        measure(Record((Channel("a", x, "g"),), "x", RATE, "given"))
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_speed_given_next_to_a_sideband_is_nominal(side: int) -> None:
+    """24 teeth at 1200 rpm; the speed given puts the mesh line on its first sideband: that was
+    read, with half the amplitude and an interval of 90 %."""
+    t = np.arange(20_000) / 5000.0
+    x = (1 + 0.1 * np.cos(40 * np.pi * t)) * np.cos(960 * np.pi * t)
+    x += 0.02 * np.random.default_rng(1).normal(size=t.size)
+    record = Record((Channel("a", x, "g"),), "x", 5000.0, "given")
+    found = measure(record, teeth=24, speed=(1200.0 + 50.0 * side) * np.pi / 30)
+    assert found.lines[0].shaft_speed == pytest.approx(40 * np.pi, rel=1e-6)
+    assert found.lines[0].reading == pytest.approx(1.0, rel=2e-3)
+    assert any("nominal" in one.text for one in found.notices)
 
 
 def test_uncertainty_grows_with_noise_and_holds_the_sensor() -> None:

@@ -23,6 +23,7 @@ def measured_by(file: str, options: dict[str, Any]) -> Measurement:
     from thermogear.measured.readers import read_record
 
     named, most = options["tacho"], _limit(options)
+    _apart(options)
     other = None if named is None else tacho_file(named, options["decimal"], most)
     record = read_record(
         file,
@@ -55,6 +56,7 @@ def measured_run(
     """The files of one run, joined ``how`` "channels" or "time"."""
     from thermogear.measured.joined import join_records, named, only
 
+    _apart(options)
     if len(files) < 2:
         why = "there is one file" if files else "there is no file"
         raise InputError("--join", how, why=why, fix="name the files of the run, or leave it out")
@@ -173,6 +175,13 @@ def _reduced(record: Record, other: Record | None, options: dict[str, Any]) -> M
         harmonics=3 if options["harmonics"] is None else options["harmonics"],
         sidebands=2 if options["sidebands"] is None else options["sidebands"],
     )
+
+
+def _apart(options: dict[str, Any]) -> None:
+    """Refuse a channel that is to be read and to be its own tacho."""
+    if options["tacho"] is not None and options["tacho"] in options["channels"]:
+        why = "--channel names it as well"
+        raise InputError("--tacho", options["tacho"], why=why, fix="name another channel")
 
 
 def _as_speed(record: Record, other: Record | None, rpm: float) -> tuple[Record, Record | None]:

@@ -245,15 +245,8 @@ def _each(parts: tuple[Seen, ...]) -> Floats:
 
 
 def _open(each: Floats) -> Floats:
-    """Log evidence of groups up to an order that is open, all alike: of ``each`` (order, ...).
-
-    The sum of exponentials as :func:`scipy.special.logsumexp` has it, in a fourth of its time.
-    """
-    highest = np.maximum.reduce(each)
-    there = each == highest
-    number = np.add.reduce(there, dtype=float)
-    rest = np.add.reduce(np.exp(np.where(there, -np.inf, each) - highest)) / number
-    return np.asarray(np.log1p(rest) + np.log(number) + highest - np.log(len(each)))
+    """Log evidence of groups up to an order that is open, all alike: of ``each`` (order, ...)."""
+    return np.asarray(special.logsumexp(each, axis=0) - np.log(len(each)))
 
 
 def _best(parts: tuple[Seen, ...], each: Floats) -> Seen:

@@ -8,8 +8,9 @@ from thermogear.measured.contradictions import NEAR
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Notice, Record
 
-_SURE = 0.9
+SURE = 0.9
 """Weight of all that has one line, from which that line is beyond doubt."""
+_TOLD = 0.005
 _FACTORS = {
     10.0: "ten times too high",
     0.1: "ten times too low",
@@ -56,11 +57,14 @@ def check_rate(
             )
         return ""
     implied = turns * record.rate
+    shaft = implied if speed is None else speed / (2.0 * np.pi)
+    nominal = f"; the {60 * shaft:.6g} rpm given count as nominal"
+    told = _TOLD < abs(implied / shaft - 1.0) <= NEAR
     notices.append(
         Notice(
             "info",
             f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
-            f"{60 * implied:.6g} rpm",
+            f"{60 * implied:.6g} rpm{nominal if told else ''}",
         )
     )
     if 2.56 * gearing.mesh_frequency > 1.0:
@@ -69,7 +73,6 @@ def check_rate(
         )
     if speed is None:
         return record.rate_doubt
-    shaft = speed / (2 * np.pi)
     ratio = implied / shaft
     if abs(ratio - 1.0) <= NEAR:
         return ""
@@ -78,7 +81,7 @@ def check_rate(
         return record.rate_doubt
     if any(abs(implied * teeth / z / shaft - 1.0) <= NEAR for z in weighed.teeth):
         return record.rate_doubt  # the speed given is that of the teeth found: others are told of
-    sure = given is not None and weighed.line_weight >= _SURE
+    sure = given is not None and weighed.line_weight >= SURE
     if weighed.verdict != "decided" and not sure:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(

@@ -173,6 +173,17 @@ class Record:
             )
         return found
 
+    def _with_tacho(self, tacho: str | int) -> Record:
+        try:
+            named = self.channel(tacho).name
+        except InputError as error:
+            raise error.named("tacho") from error
+        record = replace(self, tacho=named)
+        if not record.vibrating():
+            why = "no other channel is left to read"
+            raise InputError("tacho", named, why=why, fix="name another, or leave it out")
+        return record
+
     def supplied(
         self,
         rate: float | None = None,
@@ -184,11 +195,7 @@ class Record:
         kept as the user says, with an important notice."""
         record = self
         if tacho is not None:
-            try:
-                named = record.channel(tacho).name
-            except InputError as error:
-                raise error.named("tacho") from error
-            record = replace(record, tacho=named)
+            record = record._with_tacho(tacho)
         if rate is not None:
             RATE.require("rate", rate)
             if self.rate is not None and abs(rate / self.rate - 1.0) > 1e-3:

@@ -19,17 +19,17 @@ from thermogear.measured.changing import (
     order_lines,
     read_in_angle,
 )
-from thermogear.measured.contradictions import of_speed, of_teeth
+from thermogear.measured.contradictions import NEAR, of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
 from thermogear.measured.meshes import Stated
 from thermogear.measured.quantities import of_velocity
-from thermogear.measured.rate_check import check_rate
+from thermogear.measured.rate_check import SURE, check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.swelling import Swelling, swelling_of
-from thermogear.measured.traps import HUGE, health, unknown_unit
+from thermogear.measured.traps import health, unknown_unit
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line
@@ -364,19 +364,18 @@ def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]
     if channels:
         picked = [record.channel(name) for name in channels]
         for channel in picked:
-            found = health(channel)
-            if found.constant or found.missing == len(channel) or found.peak >= HUGE:
-                raise InputError("channel", repr(channel.name), why="it holds no signal")
+            if why := health(channel).silent:
+                raise InputError("channel", repr(channel.name), why=f"no signal: {why}")
         return picked
-    alive = []
+    alive, silent = [], []
     for channel in record.signals():
-        found = health(channel)
-        if found.constant or found.missing == len(channel) or found.peak >= HUGE:
-            notices.append(Notice("warning", f"channel {channel.name!r} holds no signal: left out"))
+        if why := health(channel).silent:
+            silent.append(f"channel {channel.name!r} holds no signal: {why}")
         else:
             alive.append(channel)
+    notices += [Notice("warning", f"{why}; left out") for why in silent]
     if not alive:
-        raise InputError("record", record.source, why="no channel holds a signal")
+        raise InputError("record", record.source, why="; ".join(silent[:3]))
     if len({c.unit for c in alive}) > 1:
         first = alive[0].unit
         notices.append(Notice("info", f"channels of several units; those in {first} are reduced"))
@@ -455,7 +454,7 @@ def _gearing(
     except InputError as error:
         notices.append(Notice("important", str(error)))
         free = None
-    if expected is None or (free and abs(free.mesh_frequency / expected - 1.0) < 0.03):
+    if expected is None or (free and _is_expected(free, expected)):
         return free
     if 5.0 / table.shape[-1] < expected < 0.45:
         try:
@@ -466,6 +465,14 @@ def _gearing(
         if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
             return near
     return free
+
+
+def _is_expected(free: Gearing, expected: float) -> bool:
+    """Whether the line found is the one expected: a stated speed is nominal. A sideband of a line
+    beyond doubt may stand nearer to it."""
+    off = abs(free.mesh_frequency / expected - 1.0)
+    sure = free.weighed.mesh_weight >= SURE
+    return off < 0.03 or (off <= NEAR and sure)
 
 
 def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:

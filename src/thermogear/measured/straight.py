@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,13 +120,8 @@ class _Floor:
 
 def _power(channels: Floats) -> Floats:
     centred = channels - channels.mean(axis=-1, keepdims=True)
-    hann = _hann(centred.shape[-1])
+    hann = np.hanning(centred.shape[-1])
     return np.asarray(np.abs(fft.rfft(centred * hann, axis=-1)) ** 2)
-
-
-@lru_cache(maxsize=4)
-def _hann(count: int) -> Floats:
-    return np.hanning(count)
 
 
 def _clearest(size: Floats, place: float) -> int:

@@ -36,6 +36,7 @@ _LONGEST = 200  # characters of a name that are looked at and kept
 _FEW, _SOME = 0.05, 3  # of the steps may be jumps; so many are few in any record
 _EVEN, _EXACT = 0.25, 0.02  # of a step: how far stamps may be off where blocks are dropped
 HUGE = 1e30
+TINY = 1e-30
 """No sensor reads this: beyond it a file is damaged or read in the wrong type."""
 
 
@@ -297,6 +298,15 @@ class Health:
     constant: bool
     rms: float
     peak: float
+
+    @property
+    def silent(self) -> str:
+        """Why nothing can be read from the channel, "" where it holds a signal."""
+        if self.constant or self.peak == 0.0:
+            return "it is constant" if self.constant else "it holds no number"
+        if TINY <= self.peak < HUGE:
+            return ""
+        return f"its largest value is {self.peak:.3g}, allowed {TINY:g}..{HUGE:g}: scale it"
 
 
 def health(channel: Channel) -> Health:

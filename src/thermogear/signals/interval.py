@@ -38,6 +38,7 @@ SIDE = 2.0
 """Bins: a strong line nearer than this to where one is known is that line."""
 _HIDDEN = 12.0  # times the power of noise in a bin
 _TOUCH = 4  # bins about a strong line that its own changes fill
+_STRONGER = 4.0
 _LEAST_REACH = 8  # bins
 
 _LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
@@ -296,9 +297,9 @@ class _Fit:
         )
 
     def _own_reach(self) -> float:
-        """Half way to the next stronger line, whose own changes fill the bins about it; eight bins
-        at least."""
-        size = abs(self.amplitudes[0])
+        """Half way to the next line four times as high, whose own changes fill the bins about it;
+        eight bins at least. Pieces of a line that wanders are of like height."""
+        size = _STRONGER * abs(self.amplitudes[0])
         stronger = [
             *self.places[1:][np.abs(self.amplitudes[1:]) > size],
             *(one.place for one in self.taken if abs(one.amplitude) > size * self.unit),
