@@ -76,6 +76,23 @@ def test_a_swing_too_fast_to_be_followed_is_told_and_in_the_intervals(number: in
     assert any("swings" in one.text or "wanders" in one.text for one in found.notices)
 
 
+@pytest.mark.parametrize("sort", ["phase", "load"])
+def test_small_oscillations_and_loads_are_in_the_intervals(sort: str) -> None:
+    """They were up to 28 half widths off, untold. One as fast as the shaft, or a whole multiple,
+    within three bins, may be sidebands: it is left out here."""
+    off = list[float]()
+    for number in range(3):
+        made = TRIAL.drawn(np.random.default_rng([25_112_926, number]), sort)
+        turns = made.rate / made.shaft
+        bins = abs(turns - round(turns)) * made.shaft * made.turns.size / TRIAL.RATE
+        if sort == "load" or bins > 3.0:
+            off += [abs(one) for line in TRIAL.errors(made).values() for one in line]
+    print(np.sort(off))
+    assert len(off) >= 14
+    assert max(off) < 3.0
+    assert np.mean(np.array(off) < 1.0) > 0.8
+
+
 def test_a_neighbour_on_one_side_is_no_swing() -> None:
     random = np.random.default_rng(25_112_826)
     t = np.arange(20_000) / TRIAL.RATE

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.measured.chain import Chain
+from thermogear.measured.gearing import _family
+from thermogear.measured.prominence import prominence
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
@@ -235,3 +238,11 @@ def test_a_line_beside_the_shaft_s_is_named_and_says_nothing_of_sidebands(order:
         for found in (plain, beside):
             assert found[name].reading == pytest.approx(0.1, abs=0.01)
             assert found[name].half_width < 0.1
+
+
+def test_a_line_hidden_with_all_its_harmonics_keeps_its_place() -> None:
+    """No harmonic stood out of the noise: their mean had no weight."""
+    raw = prominence(np.random.default_rng(3).normal(size=(1, 4096)), 1.0)
+    low = int(np.argmin(raw.level[400:1200])) + 400
+    flat = replace(raw, level=np.zeros_like(raw.level))
+    assert _family(flat, low / raw.per_unit).mesh == pytest.approx(low / raw.per_unit, rel=0.01)

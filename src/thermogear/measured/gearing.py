@@ -191,7 +191,9 @@ def _family(raw: Prominence, near: float) -> _Family:
         if height > 1.5 and rank > 1:
             fundamental = float(np.mean([f for f, _ in found]))
     strong = [(f, (rank + 1) * h) for rank, (f, h) in enumerate(found) if h > 1.0]
-    mesh = float(np.average([f for f, _ in strong], weights=[w for _, w in strong]))
+    mesh = start  # where noise hides it and all its harmonics
+    if strong:
+        mesh = float(np.average([f for f, _ in strong], weights=[w for _, w in strong]))
     heights = tuple(h for _, h in found)
     # a shaft's harmonics stand high where the floor is low, but the mesh moves the metal: the
     # family's share of the record's energy counts beside its height over the floor

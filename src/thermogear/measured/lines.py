@@ -272,7 +272,9 @@ def channel_lines(
             alone = read_line(
                 through.spectrum, near, beside=own_sides, strong=strong, followed=followed
             )
-            missed[rank], _ = unfollowed(through.spectrum, alone, own_sides, strong)
+            lacks, _ = unfollowed(through.spectrum, alone, own_sides, strong)
+            own_power = max(reading.amplitude, 1e-300) ** 2
+            missed[rank] = alone.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))

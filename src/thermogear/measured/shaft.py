@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 VARIES = 1.03
 """Highest over lowest speed from which a record is read slice by slice."""
 
+_LEAST_PART = 0.2  # of the record, that an angle must cover to be used
 _SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
 _LEAST_SHARP = 0.05
 _POWER = 1e-3  # of the highest order's: less is no line to follow
@@ -94,7 +95,7 @@ def given_shaft(
             text = f"tacho {channel.name!r} is not used: {error}{'' if speed else _meant(channel)}"
             told.append(Notice("important", text))
             continue
-        if found.turns.size < 0.2 * samples:
+        if found.turns.size < _LEAST_PART * samples:
             share = 100.0 * found.turns.size / samples
             text = f"tacho {channel.name!r} covers {share:.0f} % of the record: it is not used"
             told.append(Notice("important", text))
@@ -293,8 +294,9 @@ def tracked_shaft(table: Floats) -> Shaft | None:
                 best is None or found.sharp > best.sharp
             ):
                 held = held_part(channel, cycles=found.cycles)
-                ends = max(int(path.at[1]), held[0]), min(int(path.at[-2]) + 1, held[1])
-                best = found
+                kept = max(int(path.at[1]), held[0]), min(int(path.at[-2]) + 1, held[1])
+                if kept[1] - kept[0] >= _LEAST_PART * table.shape[-1]:
+                    ends, best = kept, found
         if best is not None:
             break
     if best is None:

@@ -38,8 +38,9 @@ SIDE = 2.0
 """Bins: a strong line nearer than this to where one is known is that line."""
 _HIDDEN = 12.0  # times the power of noise in a bin
 _TOUCH = 4  # bins about a strong line that its own changes fill
-_STRONGER = 4.0
-_LEAST_REACH = 8  # bins
+_HIGHER = 1.5
+_MUCH_HIGHER = 4.0
+_LEAST_REACH = 4  # bins
 
 _LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
 
@@ -172,11 +173,10 @@ class _Fit:
         centre = int(np.rint(place))
         low, high = max(1, centre - REACH), min((count - 1) // 2, centre + REACH)
         bins = np.arange(low, high + 1, dtype=float)
-        known = [
-            one / width
-            for one in beside
-            if 1.2 < abs(one / width - place) < REACH and one / width > 1
-        ]
+        known: list[float] = []  # each once: two columns of one line would share its height
+        for at in sorted(one / width for one in beside):
+            if 1.2 < abs(at - place) < REACH and at > 1 and (not known or at - known[-1] > APART):
+                known.append(at)
         data = spectrum.lines[low : high + 1].copy()
         taken: list[Strong] = []
         for one in strong:
@@ -292,19 +292,20 @@ class _Fit:
             noise=noise,
             here=here,
             degrees=degrees,
+            crowded=self._own_reach() < REACH,
             places=fine,
             finer=np.abs(rows(fine) @ error) ** 2,
         )
 
     def _own_reach(self) -> float:
-        """Half way to the next line four times as high, whose own changes fill the bins about it;
-        eight bins at least. Pieces of a line that wanders are of like height."""
-        size = _STRONGER * abs(self.amplitudes[0])
-        stronger = [
-            *self.places[1:][np.abs(self.amplitudes[1:]) > size],
-            *(one.place for one in self.taken if abs(one.amplitude) > size * self.unit),
+        """Half way to the next higher line, whose own changes fill the bins about it; four bins at
+        least. A line that is not known must be four times as high: one that wanders has pieces."""
+        size, known = abs(self.amplitudes[0]), ~self.free
+        higher = [
+            *self.places[known][np.abs(self.amplitudes[known]) > _HIGHER * size],
+            *(o.place for o in self.taken if abs(o.amplitude) > _MUCH_HIGHER * size * self.unit),
         ]
-        nearest = np.min(np.abs(np.asarray(stronger) - self.places[0]), initial=np.inf)
+        nearest = np.min(np.abs(np.asarray(higher) - self.places[0]), initial=np.inf)
         return float(max(0.5 * nearest, _LEAST_REACH))
 
     def _pairs(self) -> float:

@@ -28,6 +28,7 @@ class Left:
     noise: float  # power in one bin, typical of those beside
     here: float  # power in one bin at the line
     degrees: float  # of freedom behind ``here``
+    crowded: bool  # by a much higher line, whose skirts fill I and Q alike
     places: Floats  # of the finer grid on which a neighbour is looked for [bins from the line]
     finer: Floats  # power there
 
@@ -47,8 +48,9 @@ class Left:
 
     @property
     def change(self) -> float:
-        """Power of I beyond noise, of either sign."""
-        return float(np.sum(self.even) - np.sum(self.shares[0]) * self.noise)
+        """Power of I beyond noise, of either sign; of a crowded line beyond that of Q as well."""
+        even, odd = self._beyond()
+        return even - max(odd, 0.0) if self.crowded else even
 
     @property
     def changed(self) -> float:
@@ -58,8 +60,14 @@ class Left:
     @property
     def turned(self) -> float:
         """Power of Q beyond noise, 0 where it is within four of its standard deviations."""
-        extra = float(np.sum(self.odd) - np.sum(self.shares[1]) * self.noise)
-        return self._clearly(extra, self.odd.size)
+        even, odd = self._beyond()
+        return self._clearly(odd - max(even, 0.0) if self.crowded else odd, self.odd.size)
+
+    def _beyond(self) -> tuple[float, float]:
+        return (
+            float(np.sum(self.even) - np.sum(self.shares[0]) * self.noise),
+            float(np.sum(self.odd) - np.sum(self.shares[1]) * self.noise),
+        )
 
     def _clearly(self, extra: float, size: int) -> float:
         return extra if extra > 4.0 * self.noise * np.sqrt(size) else 0.0
