@@ -167,6 +167,9 @@ class Record:
     def signals(self) -> tuple[Channel, ...]:
         """The vibration channels, of which there must be one."""
         found = self.vibrating()
+        if not found and replace(self, tacho=None).vibrating():
+            why = "no other channel is left to read"
+            raise InputError("tacho", self.tacho, why=why, fix="name another, or leave it out")
         if not found:
             raise InputError(
                 "channel", ", ".join(self.names), why="none of them is a vibration", fix="--channel"
@@ -178,11 +181,7 @@ class Record:
             named = self.channel(tacho).name
         except InputError as error:
             raise error.named("tacho") from error
-        record = replace(self, tacho=named)
-        if not record.vibrating():
-            why = "no other channel is left to read"
-            raise InputError("tacho", named, why=why, fix="name another, or leave it out")
-        return record
+        return replace(self, tacho=named)
 
     def supplied(
         self,
