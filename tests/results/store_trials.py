@@ -29,7 +29,6 @@ from thermogear.base.errors import InputError, WorkerWarning
 from thermogear.base.plan import keys_of
 from thermogear.base.stores import read_journal, read_store
 from thermogear.dynamics.models import TorsionalModel
-from thermogear.results import workers as crew
 from thermogear.results.fingerprint import code_version
 from thermogear.results.store import QUARANTINE
 from thermogear.results.work import carry_out
@@ -37,8 +36,6 @@ from thermogear.results.work import carry_out
 MODEL = TorsionalModel(
     damping_ratio=0.05, frequency=1.0, stiffness_amplitude=0.3, mean_force=0.1, force_amplitude=0.3
 )
-
-crew.PAUSE, crew.GRACE = 1.0, 2.0  # seconds: a cluster of this machine is asked and judged sooner
 
 
 def small_plan(count: int = 30, tile: int = 6) -> MapPlan:
