@@ -30,7 +30,6 @@ _MISSED = 0.002  # of the line's power: a tenth of a per cent of its amplitude
 _BROUGHT = 0.75
 _TOLD = 0.01  # of its power
 _ALIKE = 1.5  # of the phase's noise
-_MEET = 2.5  # times its power, of a neighbour's beside a line: nearer than two bins they add up
 _STILL = 0.1  # of a line, that no steady one explains
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _HANN = 1.5  # bins, noise bandwidth
@@ -291,7 +290,7 @@ def _wandering(
     sides = {one > frequency for one in reading.neighbours}
     still = max(reading.turning, reading.changing) < _STILL and reading.explained
     most = max(_missing(spectrum, reading, beside, one) for one in widths)
-    if len(sides) == 1 and still and most < _MEET * reading.beside:
+    if len(sides) == 1 and still and own + reading.beside > _KEPT * (own + most):
         return None  # lines to one side: amplitude and phase would oscillate alike
     others = [0.0]
     for one in [o.place * width for o in strong if not _is_side(o, beside, width)]:
@@ -335,7 +334,6 @@ def _follow(
 ) -> MeshTurns | None:
     """The line followed by the narrowest filter that leaves hardly more of noise and of turning in
     its phase than any; None: then its power is less than ``least``, or it cannot be followed."""
-    widest = min((abs(one - frequency) for one in beside), default=np.inf)
     orders = [one / frequency for one in beside]
     tried: list[tuple[Followed, MeshTurns]] = []
     for half_width in filter_widths(spectrum, frequency, every=True):
@@ -346,7 +344,7 @@ def _follow(
             spectrum.rate,
             frequency=frequency,
             half_width=half_width,
-            widest=widest,
+            beside=beside,
             cut=False,
         )
         turns = _followed(one, values, per_cycle, ())
@@ -364,7 +362,7 @@ def _follow(
         spectrum.rate,
         frequency=frequency,
         half_width=best.half_width,
-        widest=widest,
+        beside=beside,
     )
     return _followed(whole, values, per_cycle, orders)
 

@@ -27,6 +27,8 @@ _FINER = 32  # samples of the envelope in a kernel
 _PASSES = 3
 _CUTS = 8
 _PIECE = 4  # kernels on one side of a cut
+_HALF = 0.5  # of a turn
+_APART = 4.0  # turns over the record by which Hann's window tells lines apart
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +121,7 @@ def follow_line(
     *,
     frequency: float,
     half_width: float,
-    widest: float = np.inf,
+    beside: Sequence[float] = (),
     cut: bool = True,
 ) -> Followed:
     """The phase of the line near ``frequency`` in a filter of +-``half_width``, unwrapped.
@@ -127,14 +129,14 @@ def follow_line(
     The record, shifted by -``frequency``, is smoothed by a Hann kernel of 2/half_width, which is
     cut at the record's ends, where nothing is dropped; the phase found is taken away and what is
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
-    caught a filter of half the width follows it (not narrower than the first of WIDTHS), of
-    ``widest`` at most: its zeros are at once and twice that, where sidebands keep their own phase.
-    The mean frequency is (cycles at the last sample - cycles at the first)/(time between). Its
-    error is seen where the record is cut inside: phase at the cut from one side against both. Of
-    noise that difference has 7/8 of the variance of one side. With ``cut`` False this is left out,
-    the error is that of half a turn.
+    caught a filter of half the width follows it (not narrower than the first of WIDTHS). Lines
+    ``beside`` that turn with it, sidebands, are taken away by the cycles found, and it is followed
+    anew; that filter is at most as wide as the nearest is off, so that its zeros are where
+    sidebands are. The mean frequency is (cycles at the last sample - cycles at the first)/(time
+    between). Its error is seen where the record is cut inside, by the phase there from each side.
+    With ``cut`` False this is left out, the error is that of half a turn.
 
-    ``x`` [any unit] one channel; ``rate``, ``frequency`` and ``half_width`` in one unit. Range: the
+    ``x`` [any unit] one channel; ``rate`` and all frequencies in one unit. Range: the
     line outweighs the noise within the filter, and no line of half its height is there; where
     the envelope all but vanishes, ``whole`` is False. Raises InputError for a filter that the
     record is too short for.
@@ -152,19 +154,22 @@ def follow_line(
         least = 4.0 * per_second / count
         raise InputError("half_width", half_width, allowed=f"above {least:.3g} for {count} samples")
     last = min(length * 2.0, max(length, 2.0 / (WIDTHS[0] * frequency) * per_second))
+    widest = min((abs(one - frequency) for one in beside), default=np.inf)
     last = min(max(last, 2.0 / widest * per_second), 0.25 * count)
     cycles, whole = _path(values, frequency / per_second, length, last=last)
-    errors = np.zeros(0)
+    if beside:
+        ratios = [one / frequency for one in beside if 0.0 < one < 0.5 * per_second]
+        values = values - _turning_with(values, cycles, ratios)
+        cycles, whole = _path(values, frequency / per_second, length, last=last)
+    edge, degrees = _HALF, 1.0
     if cut:
-        errors = _cut_errors(values, cycles, frequency / per_second, length, last)
-    # straight fits to white noise on one side (variance 4/n) and on both (1/2n, the same samples)
-    edge = float(np.sqrt(8.0 / 7.0 * np.mean(errors**2))) if errors.size else 0.5
-    edge = edge if whole else max(edge, 0.5)  # a turn may be lost
+        edge, degrees = _edge(values, frequency / per_second, length, last)
+    edge = edge if whole else max(edge, _HALF)  # a turn may be lost
     return Followed(
         cycles=cycles,
         frequency=float(cycles[-1] - cycles[0]) / (count - 1) * per_second,
         frequency_error=float(np.sqrt(2.0)) * edge / (count - 1) * per_second,
-        degrees=float(max(errors.size // 2, 1)),
+        degrees=degrees,
         half_width=half_width,
         last=half_width * length / last,
         whole=whole,
@@ -265,20 +270,48 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
     return cycles, whole
 
 
-def _cut_errors(
-    values: Floats, cycles: Floats, frequency: float, length: float, last: float
-) -> Floats:
-    """Cycles at cuts inside, from one side of the record less those from both, without turns."""
+def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Floats:
+    """Sum of the lines that turn ``ratios`` times as fast as ``cycles``.
+
+    Each by Hann's window, which tells lines four turns and more over the record apart: nearer ones
+    are left out.
+    """
+    window = np.hanning(values.size)
+    window /= np.sum(window)
+    found = np.zeros(values.size)
+    line = np.exp(2j * np.pi * cycles)
+    for ratio in ratios:
+        away = (ratio - 1.0) * (cycles[-1] - cycles[0])
+        if abs(away) < _APART:
+            continue
+        turn = line * np.exp(2j * np.pi * (ratio - 1.0) * cycles)
+        found += np.real(2.0 * np.sum(window * values * np.conj(turn)) * turn)
+    return found
+
+
+def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple[float, float]:
+    """Standard error of a path's cycles at an end of the record, without turns, and its degrees.
+
+    At cuts inside, e and f: cycles from one side of the record and from the other, less those of
+    both through a filter twice as wide. Of noise and of a speed that walks e and f are independent:
+    half of e^2 + f^2 is seen in (e - f)^2/4, and as much in their mean. A speed that bends smoothly
+    moves both alike, and shows in the mean alone. The larger counts. A side is a kernel long at
+    least; without a cut it is half a turn.
+    """
+    finer, _ = _path(values, frequency, length, last=0.5 * last)
     found = []
     piece = int(np.ceil(_PIECE * last))
     for number in range(1, _CUTS):
         cut = values.size * number // _CUTS
-        for part in (slice(max(0, cut - piece), cut), slice(cut, cut + piece)):
-            own = values[part]
-            if own.size < 2.0 * last:
-                continue
-            path, _ = _path(own, frequency, length, last=last)
-            at = -1 if part.stop == cut else 0
-            found.append(float(path[at] - cycles[cut + min(at, 0)]))
-    errors = np.asarray(found, dtype=float)
-    return np.asarray(errors - np.rint(errors))
+        if min(cut, values.size - cut) < last:
+            continue
+        before, after = slice(max(0, cut - piece), cut), slice(cut, cut + piece)
+        ended, _ = _path(values[before], frequency, length, last=last)
+        begun, _ = _path(values[after], frequency, length, last=last)
+        found.append((ended[-1] - finer[cut - 1], begun[0] - finer[cut]))
+    if not found:
+        return _HALF, 1.0
+    errors = np.asarray(found) - np.rint(found)
+    apart = 0.25 * float(np.mean((errors[:, 0] - errors[:, 1]) ** 2))
+    both = float(np.mean(np.mean(errors, axis=1) ** 2))
+    return float(np.sqrt(apart + max(apart, both))), float(len(found))

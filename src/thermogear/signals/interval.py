@@ -54,9 +54,9 @@ class Reading:
     ``amplitude_error`` and ``frequency_error``: standard; ``degrees`` of freedom behind them;
     ``half_width`` and ``frequency_half_width``: of the 95 % interval, Student's t. ``changing`` and
     ``turning``: rms of the amplitude's change (relative) and of the phase's [rad] beyond noise;
-    ``neighbours``: frequencies of lines fitted beside it and ``beside`` the sum of their squared
-    amplitudes; ``pairs``: mean square that further lines at equal distances to both sides, up to
-    REACH bins, add to it, what they share over the record included; ``noise``: rms amplitude that
+    ``neighbours``: frequencies of lines fitted beside it; ``beside``: what they, and ``pairs``:
+    what further lines at equal distances to both sides, up to REACH bins, add to its mean
+    square as its parts, what they share over the record included; ``noise``: rms amplitude that
     noise brings to one bin; ``explained`` is False where more is left over than noise and
     a changing amplitude or phase can be.
     """
@@ -308,26 +308,29 @@ class _Fit:
         nearest = np.min(np.abs(np.asarray(higher) - self.places[0]), initial=np.inf)
         return float(max(0.5 * nearest, _LEAST_REACH))
 
-    def _pairs(self) -> float:
-        """What lines at equal distances to both sides add to the mean square of a(t).
+    def _neighbours(self) -> list[Strong]:
+        """Further lines fitted, but for those that were known."""
+        pairs = zip(self.places[self.free], self.amplitudes[self.free], strict=True)
+        return [Strong(float(place), complex(value)) for place, value in pairs][1:]
 
-        |sum_i c_i exp(2 pi i u_i t/T)|^2 over the record, with the pairs less without them.
-        """
+    def _pairs(self) -> list[Strong]:
+        """Lines at equal distances to both sides, fitted or taken away before."""
+        middle = float(self.places[0])
         others = [
             Strong(one.place, one.amplitude / self.unit)
             for one in self.taken
-            if abs(one.place - self.places[0]) < REACH
+            if abs(one.place - middle) < REACH
         ]
-        others += [
-            Strong(float(place), complex(value))
-            for place, value, free in zip(self.places, self.amplitudes, self.free, strict=True)
-            if free
-        ][1:]
-        middle = float(self.places[0])
-        own = Strong(middle, complex(self.amplitudes[0]))
-        found = [own, *(one for pair in twins(others, middle) for one in pair)]
-        at = np.array([one.place for one in found])
-        c = np.array([one.amplitude for one in found])
+        found = twins([*others, *self._neighbours()], middle)
+        return [one for pair in found for one in pair]
+
+    def _added(self, others: Sequence[Strong]) -> float:
+        """What ``others`` add to the mean square of a(t), as its part.
+
+        |sum_i c_i exp(2 pi i u_i t/T)|^2 over the record, with them less without.
+        """
+        at = np.array([self.places[0], *(one.place for one in others)])
+        c = np.array([self.amplitudes[0], *(one.amplitude for one in others)])
         shared = dirichlet(at[None, :] - at[:, None], self.spectrum.samples)
         return float(np.real(np.conj(c) @ shared @ c) - abs(c[0]) ** 2)
 
@@ -378,7 +381,7 @@ class _Fit:
             variance += left.noise
         phase = turned / max(size, 1e-150) ** 2
         wander = 0.25 * phase + both / max(size, 1e-150) ** 2
-        power = float(np.sum(np.abs(self.amplitudes[1:][self.free[1:]]) ** 2))
+        neighbours = self._neighbours()
         return Reading(
             amplitude=amplitude * self.unit,
             frequency=float(self.places[0]) * width,
@@ -387,13 +390,9 @@ class _Fit:
             degrees=left.degrees,
             changing=float(np.sqrt(changed) / max(size, 1e-300)),
             turning=float(np.sqrt(phase)),
-            neighbours=tuple(
-                float(p) * width
-                for p, free in zip(self.places[1:], self.free[1:], strict=True)
-                if free
-            ),
-            beside=power * self.unit**2,
-            pairs=self._pairs() * self.unit**2,
+            neighbours=tuple(one.place * width for one in neighbours),
+            beside=self._added(neighbours) * self.unit**2,
+            pairs=self._added(self._pairs()) * self.unit**2,
             noise=float(np.sqrt(left.noise)) * self.unit,
             explained=hidden_power == 0.0,
         )

@@ -26,6 +26,7 @@ _FAR = 12.0  # robust standard deviations of a spike's second difference
 _OUTSIDE = 8.0  # spans of all other samples
 _JUMP = 0.06  # cycles
 _PIECES = 12  # at least, to tell one step in
+_SHARP = 0.75  # of a step, between the pieces beside it
 _STEPS = 12.0  # standard errors of a step; fewer are made by a speed that walks
 
 
@@ -311,8 +312,9 @@ def _one_step(phase: Floats, middles: NDArray[np.int64]) -> list[int]:
     """The one place at which the phase [cycles] of pieces that share nothing steps, if there is.
 
     Least squares by a straight line and a step of any height, the piece at the step left out:
-    a step of twelve standard errors or more, and what is left as good as white (its neighbours'
-    correlation below two standard errors), so that a speed that wanders is none.
+    a step of twelve standard errors or more, from the piece before to the one behind three
+    quarters of it, and what is left as good as white (its neighbours' correlation below two
+    standard errors), so that a speed that wanders is none.
     """
     count = phase.size
     if count < _PIECES:
@@ -332,7 +334,10 @@ def _one_step(phase: Floats, middles: NDArray[np.int64]) -> list[int]:
         error = np.sqrt(power / (rest.size - 3) * np.linalg.inv(columns.T @ columns)[2, 2])
         step = float(fit[2] - np.rint(fit[2]))
         alike = float(rest[1:] @ rest[:-1]) / power
-        clear = abs(step) > _STEPS * float(error) and alike < 2.0 / np.sqrt(rest.size)
+        # of the pieces beside it; the one at the step is not there
+        beside = float(rest[cut] - rest[cut - 1]) * np.sign(fit[2])
+        sharp = beside > (_SHARP - 1.0) * abs(fit[2]) and alike < 2.0 / np.sqrt(rest.size)
+        clear = sharp and abs(step) > _STEPS * float(error)
     return [int(middles[best[1]])] if best is not None and clear else []
 
 
