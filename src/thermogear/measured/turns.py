@@ -271,8 +271,9 @@ def _wandering(
 
     It wanders where its phase turns, or most of the power near it is no steady line's. Where steady
     neighbours explain that power, they may be its own: a line that wanders has a comb about it.
-    Then the line followed must have three quarters of their power besides; of a neighbour it gets
-    half, of two that swell and fade together nothing.
+    Then the line followed must have three quarters of their power besides, and of what its own
+    change and turning hold; of a neighbour it gets half, of two that swell and fade together
+    nothing.
 
     The power is that within a filter that may hold a wandering line, less that of the sidebands at
     ``beside`` and four standard deviations of the noise there.
@@ -302,7 +303,8 @@ def _wandering(
         return 0.0
     if most < _MISSED * own:
         return None
-    return (1.0 - _BROUGHT) * max(own, *others) + _BROUGHT * (own + most)
+    steady = own / (1.0 + reading.changing**2 + reading.turning**2)
+    return (1.0 - _BROUGHT) * max(steady, *others) + _BROUGHT * (own + most)
 
 
 def _missing(

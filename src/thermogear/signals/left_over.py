@@ -104,10 +104,10 @@ def noise_beside(
     )
     if two.size < 4:
         return _level(_outer(one))
-    if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
-        return _level(min(_outer(one), _outer(two)))
     count = one.size + two.size
     one, two = _without_skirts(one, steps, two), _without_skirts(two, others, one)
+    if max(_median(one), _median(two)) > _CLEARLY * min(_median(one), _median(two)):
+        return _level(min(_outer(one), _outer(two)))
     joined = np.concatenate([one, two])
     fitted = count - joined.size
     far = np.concatenate([one[one.size // 2 :], two[two.size // 2 :]])
