@@ -15,7 +15,8 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, sides_of, unfollowed
 from thermogear.measured.units import kind_of
-from thermogear.signals.interval import Reading, read_line
+from thermogear.signals.interval import APART, Reading, read_line
+from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
@@ -26,6 +27,7 @@ _OTHERS = 3  # prominent lines that no gear explains, of a channel
 _PROMINENT = 0.1  # of the channel's strongest line
 _FAR = 10  # sidebands of a mesh harmonic
 _TOLD_APART = 1.2  # bins between two lines that a fit tells apart
+_CLEARLY_OFF = 2.0  # half widths
 _NEAR = 4.0  # bins within which a stronger line reaches into an asked one
 
 
@@ -256,21 +258,27 @@ def channel_lines(
     for want in wanted:
         line, displacement = through.read(want.position * rate, half_width=want.half_width * rate)
         sides = _sides(gearing, teeth, want)
-        around, near = [*places, *sides], line.frequency / through.axis
-        if want.kind in ("order", "sideband"):
-            place, stronger = _nearby(strong, want.position, bin_width)
-            if stronger:
-                around, near = [*around, *stronger], place * rate / through.axis
-        beside = [p * rate / through.axis for p in around]
+        beside = [p * rate / through.axis for p in [*places, *sides]]
+        expected = want.position * rate / through.axis
         followed = turns.followed * rate / through.axis if turns else 0.0
-        reading = read_line(through.spectrum, near, beside=beside, strong=strong, followed=followed)
+        if want.kind in ("order", "sideband"):
+            reading = _read_known(through.spectrum, expected, beside, strong, followed)
+        else:
+            near = line.frequency / through.axis
+            reading = read_line(
+                through.spectrum, near, beside=beside, strong=strong, followed=followed
+            )
         position = reading.frequency * through.axis / rate
         rank = int(np.rint(position / gearing.mesh_frequency)) if gearing else 0
         if turns is not None and turns.unfollowed and want.kind == "mesh":
             # among sidebands alone: other lines that are read may be its own
             own_sides = [p * rate / through.axis for p in sides]
             alone = read_line(
-                through.spectrum, near, beside=own_sides, strong=strong, followed=followed
+                through.spectrum,
+                line.frequency / through.axis,
+                beside=own_sides,
+                strong=strong,
+                followed=followed,
             )
             lacks, _ = unfollowed(through.spectrum, alone, own_sides, strong)
             own_power = max(reading.amplitude, 1e-300) ** 2
@@ -278,6 +286,9 @@ def channel_lines(
         amplitude, relative = _amplitude(reading, position, turns)
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
+        if want.kind == "sideband":
+            place_error = turns.half_width / turns.frequency * expected if turns else 0.0
+            relative += _shared(reading, expected, place_error, through.spectrum.bin_width)
         amplitude *= 0.5 * (1.0 + gain)
         relative += abs(gain - 1.0) / (1.0 + gain)
         # the chain's displacement, read as the acceleration was
@@ -335,17 +346,44 @@ def jittered(position: ArrayLike, jitter: float) -> Floats:
     return np.asarray(0.5 * (2.0 * np.pi * jitter * np.asarray(position, dtype=float)) ** 2)
 
 
-def _nearby(
-    strong: tuple[Strong, ...], position: float, bin_width: float
-) -> tuple[float, list[float]]:
-    """Where a line known to be at ``position`` is, and strong lines so near that they would be
-    taken for it [cycles/sample]. A strong line too near to be told apart is the line itself."""
-    places = np.array([one.place for one in strong])
-    away = np.abs(places - position / bin_width)
-    own = places[away < _TOLD_APART]
-    others = places[(away >= _TOLD_APART) & (away < _NEAR)]
-    place = own[np.argmin(np.abs(own - position / bin_width))] if own.size else position / bin_width
-    return float(place * bin_width), [float(one * bin_width) for one in others]
+def _read_known(
+    spectrum: LineSpectrum,
+    expected: float,
+    beside: Sequence[float],
+    strong: Sequence[Strong],
+    followed: float,
+) -> Reading:
+    """The line known to be at ``expected`` (unit of the rate).
+
+    A line that is near and stronger draws the fit to itself: it is read from the expected place,
+    and from the strong line there with the others near it as known ones. Which ends nearest to the
+    expected place is the line.
+    """
+    width = spectrum.bin_width
+    reading = read_line(spectrum, expected, beside=beside, strong=strong, followed=followed)
+    away = np.array([one.place * width - expected for one in strong])
+    near = away[np.abs(away) < _NEAR * width]
+    if near.size == 0:
+        return reading
+    told = np.abs(near) >= _TOLD_APART * width
+    start = expected + (0.0 if told.all() else min(near[~told], key=abs))
+    others = [*beside, *(expected + near[told])]
+    other = read_line(spectrum, start, beside=others, strong=strong, followed=followed)
+    return min(reading, other, key=lambda one: abs(one.frequency - expected))
+
+
+def _shared(reading: Reading, known: float, place_error: float, bin_width: float) -> float:
+    """Share of a line that may be another's, with which it is read as one.
+
+    A line clearly off the place where it is ``known`` to be holds another: the share of it times
+    its distance makes the line's own way off. The distance is taken as half of that from which two
+    are told apart.
+    """
+    if reading.hidden:
+        return 0.0
+    room = _CLEARLY_OFF * (reading.frequency_half_width + place_error)
+    way = max(abs(reading.frequency - known) - room, 0.0) / bin_width
+    return way / (0.5 * APART)
 
 
 def _amplitude(reading: Reading, position: float, turns: MeshTurns | None) -> tuple[float, float]:

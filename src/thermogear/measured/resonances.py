@@ -204,9 +204,10 @@ def _shape(f: Floats, a: Floats, half: Floats) -> tuple[float, float, float]:
 
     place, damping = solved(inverse)
     # jackknife over the points: neighbours overlap, so that it is a floor of the error
-    left = [_solved_without(matrix, inverse, sigma, i) * centre for i in range(f.size)]
-    spread = np.nanstd(np.asarray(left)) * np.sqrt(f.size - 1.0)
-    return place, float(spread) if np.isfinite(spread) else float("nan"), damping
+    left = np.array([_solved_without(matrix, inverse, sigma, i) * centre for i in range(f.size)])
+    solvable = left[np.isfinite(left)]
+    spread = np.std(solvable) * np.sqrt(f.size - 1.0) if solvable.size > 1 else np.nan
+    return place, float(spread), damping
 
 
 def _solved_without(matrix: Floats, values: Floats, sigma: Floats, gone: int) -> float:

@@ -349,7 +349,7 @@ def _follow(
             beside=beside,
             cut=False,
         )
-        turns = _followed(one, values, per_cycle, ())
+        turns = _followed(one, values, per_cycle, orders, trial=True)
         if turns is not None:
             tried.append((one, turns))
     held = [pair for pair in tried if pair[0].whole] or tried
@@ -370,21 +370,26 @@ def _follow(
 
 
 def _followed(
-    found: Followed, values: Floats, per_cycle: int, beside: Sequence[float]
+    found: Followed,
+    values: Floats,
+    per_cycle: int,
+    beside: Sequence[float],
+    *,
+    trial: bool = False,
 ) -> MeshTurns | None:
-    """The turns of a line followed; ``beside``: its shafts' sidebands, over its frequency, to see
-    what following misses (none: not asked)."""
+    """The turns of a line followed; ``beside``: its shafts' sidebands, over its frequency. What
+    following misses is not looked for in a ``trial``."""
     cycles = found.cycles
     if np.any(np.diff(cycles) <= 0.0):
         return None
     turning = Turning(cycles=cycles, dropped=0, per_cycle=per_cycle)
     wander = float(np.std(cycles - np.linspace(cycles[0], cycles[-1], cycles.size)))
     straight = line_spectrum(turning.resampled(values, 0), float(per_cycle))
-    strong = strong_lines(straight) if beside else ()
+    strong = () if trial else strong_lines(straight)
     reading = read_line(
         straight, 1.0, beside=beside, strong=strong, followed=_HELD * found.last / found.frequency
     )
-    share, spread = unfollowed(straight, reading, beside, strong)
+    share, spread = (0.0, 0.0) if trial else unfollowed(straight, reading, beside, strong)
     bins = 1.2 * found.last * values.size  # in the filter, its noise bandwidth
     # what the filter misses is seen beyond it; farther off it is taken to be as much again
     noise = reading.noise / max(reading.amplitude, 1e-300) * float(np.sqrt(0.5 * bins))

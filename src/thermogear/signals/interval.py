@@ -129,7 +129,7 @@ def read_line(
     >>> round(found.amplitude, 6), round(found.frequency, 6)
     (2.0, 0.1)
     """
-    fit = _Fit.of(spectrum, frequency, beside, strong)
+    fit = _Fit.of(spectrum, frequency, beside, strong, followed)
     fit = fit.refined()
     left = fit.left(followed)
     for _ in range(3):
@@ -167,15 +167,17 @@ class _Fit:
         frequency: float,
         beside: Sequence[float],
         strong: Sequence[Strong],
+        followed: float,
     ) -> _Fit:
         count, width = spectrum.samples, spectrum.bin_width
         place = frequency / width
         centre = int(np.rint(place))
-        low, high = max(1, centre - REACH), min((count - 1) // 2, centre + REACH)
+        reach = REACH + min(int(followed / width), REACH)  # as many bins that tell of the noise
+        low, high = max(1, centre - reach), min((count - 1) // 2, centre + reach)
         bins = np.arange(low, high + 1, dtype=float)
         known: list[float] = []  # each once: two columns of one line would share its height
         for at in sorted(one / width for one in beside):
-            if 1.2 < abs(at - place) < REACH and at > 1 and (not known or at - known[-1] > APART):
+            if 1.2 < abs(at - place) < reach and at > 1 and (not known or at - known[-1] > APART):
                 known.append(at)
         data = spectrum.lines[low : high + 1].copy()
         taken: list[Strong] = []

@@ -1,0 +1,47 @@
+"""Sidebands beside those of another gear, and far wanders beside their own rest."""
+
+from __future__ import annotations
+
+from unittest.mock import Mock, patch
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from thermogear.measured.evidence import Evidence
+from thermogear.measured.lines import MeasuredLine
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import measure
+
+RATE, MESH, TEETH = 5000.0, 410.3, 29
+NONE = Mock(return_value=Evidence(hypotheses=()))
+
+
+def lines_of(x: NDArray[np.float64]) -> dict[str, MeasuredLine]:
+    record = Record((Channel("a", x, "g"),), "made", RATE, "made")
+    speed = 2.0 * np.pi * MESH / TEETH
+    with patch("thermogear.measured.gearing.weigh", NONE):
+        found = measure(record, teeth=TEETH, speed=speed, sidebands=1, harmonics=1)
+    return {line.name: line for line in found.lines}
+
+
+@pytest.mark.parametrize("bins", [0.3, 0.5, 0.8, 1.1, 1.5, 2.5])
+def test_sidebands_beside_another_gears_are_in_their_interval(bins: float) -> None:
+    """29 teeth mesh with 29 to 31: both shafts' sidebands lie within two bins or less."""
+    random = np.random.default_rng([18, round(10 * bins)])
+    t = np.arange(15000) / RATE
+    shaft = MESH / TEETH
+    other = shaft + bins * RATE / t.size
+    own, others = (
+        size * np.cos(2 * np.pi * turn * t + random.uniform(0.0, 2 * np.pi))
+        for size, turn in ((0.1, shaft), (0.12, other))
+    )
+    noise = 0.01 * random.standard_normal(t.size)
+    lines = lines_of((1.0 + own + others) * np.cos(2 * np.pi * MESH * t) + noise)
+    for sign in "-+":
+        line = lines[f"mesh x 1 {sign} 1 shaft/{TEETH}"]
+        off = (line.reading - 0.05) / (line.half_width * line.reading)
+        print(f"{bins} bins, {sign}: {off:.2f} half widths of {100 * line.half_width:.2g} %")
+        assert abs(off) < 1.5
+        if bins > 1.2:  # told apart
+            assert line.half_width < 0.05
