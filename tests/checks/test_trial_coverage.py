@@ -14,6 +14,7 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 from thermogear.measured.turns import mesh_turns
+from thermogear.signals.quality import phase_jumps
 
 TRIAL = script("trial_coverage")
 RUNS = 24
@@ -102,3 +103,25 @@ def test_a_load_that_oscillates_is_no_speed(rate: float) -> None:
         assert abs(line.frequency - 400.0) < line.frequency_half_width
         widths.append(line.frequency_half_width)
     assert widths[1] < 1.3 * widths[0]
+
+
+@pytest.mark.parametrize("record", [(312026, 435), (91, 64), (312026, 164)])
+def test_far_wanders_are_followed(record: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    """One fitted neighbour passed for the rest of a wander; sidebands of the line followed passed
+    for what is not; what a turning line holds itself was asked for beside it."""
+    seed, number = record
+    monkeypatch.setattr(TRIAL, "SEED", seed)
+    monkeypatch.setattr(TRIAL, "weigh", lambda *_, **__: Evidence(hypotheses=()))
+    name = "load wanders 5 % and speed 0.1 %, 1 s" if number == 164 else "speed wanders 1 %, 1 s"
+    place = next(i for i, one in enumerate(TRIAL.SCENARIOS) if one.name == name)
+    cell = TRIAL.run(place, 1, first=number)
+    assert np.all(np.abs(cell.errors[:2, 0]) < 1.5 * cell.half_widths[:2, 0])
+    assert np.all(cell.half_widths[:2, 0] < 0.02)
+
+
+@pytest.mark.parametrize("record", [(312026, 247), (91, 65), (91, 137), (92, 2)])
+def test_a_steep_wander_is_no_lost_sample(record: tuple[int, int]) -> None:
+    seed, number = record
+    made = TRIAL.drawn(TRIAL.SCENARIOS[9], np.random.default_rng([seed, 9, number]))
+    x = made.record.channels[0].values()
+    assert phase_jumps(x - x.mean(), made.frequency / 2560.0, cycles=75.0) == []
