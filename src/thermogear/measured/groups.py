@@ -172,13 +172,13 @@ def _over_levels(total: Floats, peaks: Peaks, top: Floats | float) -> Floats:
     """Log of the mean over levels up to ``top`` (group,) of exp(total) (level, ..., group)."""
     highest = np.maximum(np.asarray(top) - peaks.least, _LEVELS[0])
     if np.all(highest >= _LEVELS[-1]):
-        return _log_sum(total) - float(np.log(_LEVELS.size))
+        return log_sum(total) - float(np.log(_LEVELS.size))
     level = _LEVELS.reshape(-1, *np.ones(total.ndim - 1, dtype=int))
     below = level <= highest
-    return np.asarray(_log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0)))
+    return np.asarray(log_sum(np.where(below, total, -np.inf)) - np.log(np.sum(below, axis=0)))
 
 
-def _log_sum(values: Floats) -> Floats:
+def log_sum(values: Floats) -> Floats:
     """Log of the sum of exponentials over the first axis."""
     highest = np.maximum.reduce(values)
     return np.asarray(highest + np.log(np.add.reduce(np.exp(values - highest))))
@@ -189,7 +189,7 @@ def some_of(evidence: Floats) -> Floats:
     log(1 - w + w e), mean in w."""
     shares = _SHARES.reshape(-1, *np.ones(evidence.ndim, dtype=int))
     each = np.logaddexp(np.log1p(-shares), np.log(shares) + evidence)
-    return _log_sum(np.add.reduce(each, axis=-1)) - float(np.log(_SHARES.size))
+    return log_sum(np.add.reduce(each, axis=-1)) - float(np.log(_SHARES.size))
 
 
 def take(used: Flags, found: Seen) -> None:
@@ -263,7 +263,7 @@ def comb(peaks: Peaks, used: Flags, *, step: float, error: float) -> tuple[float
         + gain
         + _COMB_BELOW[..., None] * missing
     )
-    evidence = _log_sum(total) - float(np.log(_LEVELS.size))
+    evidence = log_sum(total) - float(np.log(_LEVELS.size))
     parts = np.split(evidence, blocks[:1], axis=-1)
     each = np.stack([some_of(part) for part in parts], axis=-1).ravel()
     best = int(np.argmax(each))
@@ -283,4 +283,4 @@ def narrow(error: float, *, width: float) -> float:
 
 def mean_exp(values: Sequence[float] | Floats) -> float:
     """Log of the mean of exponentials."""
-    return float(_log_sum(np.asarray(values, dtype=float))) - float(np.log(len(values)))
+    return float(log_sum(np.asarray(values, dtype=float))) - float(np.log(len(values)))

@@ -3,6 +3,7 @@ foretell, and the evidence for them over chance (:mod:`thermogear.measured.group
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from thermogear.measured.groups import (
     Flags,
     Seen,
     falling,
+    log_sum,
     mean_exp,
     narrow,
     refined,
@@ -117,28 +119,6 @@ class _Carriers:
     rank: Floats
     tops: Floats
 
-    @classmethod
-    def of(cls, peaks: Peaks, mesh: float, used: Flags) -> _Carriers:
-        ranks = np.arange(1, min(HARMONICS, int(HIGHEST / mesh)) + 1)
-        mesh, error = refined(peaks, mesh, ranks)
-        rank = ranks.astype(float)
-        found = falling(
-            peaks,
-            used,
-            position=(rank * mesh)[None, :],
-            order=ranks,
-            error=(rank * error)[None, :],
-            spread=_MESH_SPREAD,
-            trend=-np.log(rank),
-            top=np.inf,
-        )
-        each = _each(found)
-        evidence = _open(each) + narrow(error, width=HIGHEST) + ONE_MORE
-        lines = _best(found, each).lines[0]
-        seen = lines >= 0
-        lines, rank = lines[seen], rank[seen]
-        return cls(mesh, error, float(evidence), lines, rank, peaks.level[lines])
-
     def beside(
         self, peaks: Peaks, used: Flags, ratio: Floats
     ) -> tuple[tuple[Seen, ...], tuple[Seen, ...]]:
@@ -168,13 +148,39 @@ class _Carriers:
         return sides, own
 
 
+@functools.lru_cache(maxsize=128)
+def _carriers(peaks: Peaks, mesh: float, taken: bytes) -> _Carriers:
+    """Harmonics of a mesh line on lines that are not ``taken`` (flags as bytes): most of many
+    tooth numbers share theirs."""
+    used = np.frombuffer(taken, dtype=bool)
+    ranks = np.arange(1, min(HARMONICS, int(HIGHEST / mesh)) + 1)
+    mesh, error = refined(peaks, mesh, ranks)
+    rank = ranks.astype(float)
+    found = falling(
+        peaks,
+        used,
+        position=(rank * mesh)[None, :],
+        order=ranks,
+        error=(rank * error)[None, :],
+        spread=_MESH_SPREAD,
+        trend=-np.log(rank),
+        top=np.inf,
+    )
+    each = _each(found)
+    evidence = _open(each) + narrow(error, width=HIGHEST) + ONE_MORE
+    lines = _best(found, each).lines[0]
+    seen = lines >= 0
+    lines, rank = lines[seen], rank[seen]
+    return _Carriers(mesh, error, float(evidence), lines, rank, peaks.level[lines])
+
+
 def mesh_of(
     peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated, first: Draft | None = None
 ) -> Draft:
     """Log evidence of a mesh line with these gears, without what is left of the lines; of a second
     mesh on the lines that the ``first`` leaves."""
     used = np.zeros(peaks.size, dtype=bool) if first is None else first.used.copy()
-    carriers = _Carriers.of(peaks, mesh, used)
+    carriers = _carriers(peaks, mesh, used.tobytes())
     mesh, total = carriers.mesh, carriers.evidence
     used[carriers.lines] = True
     bare, mesh_lines = total, np.zeros(peaks.size, dtype=bool)
@@ -223,7 +229,7 @@ def whole(
         draft = mesh_of(peaks, one.mesh, one.teeth, Stated(), draft)
     if draft is None:
         raise ValueError("no mesh")
-    carriers = _Carriers.of(peaks, gears[0].mesh, np.zeros(peaks.size, dtype=bool))
+    carriers = _carriers(peaks, gears[0].mesh, bytes(peaks.size))
     mesh = carriers.mesh
     distance = mesh / teeth + peaks.bin_width * _OFF
     ratio = mesh / distance
@@ -246,7 +252,7 @@ def _each(parts: tuple[Seen, ...]) -> Floats:
 
 def _open(each: Floats) -> Floats:
     """Log evidence of groups up to an order that is open, all alike: of ``each`` (order, ...)."""
-    return np.asarray(special.logsumexp(each, axis=0) - np.log(len(each)))
+    return log_sum(each) - float(np.log(len(each)))
 
 
 def _best(parts: tuple[Seen, ...], each: Floats) -> Seen:

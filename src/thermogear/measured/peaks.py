@@ -30,7 +30,7 @@ _SAME_NUMBER = 1e-9  # of the range: two values that a unit's factor has made of
 _LOBE_BINS = np.arange(-2, 3)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Peaks:
     """Lines that stand out of the floor, by position, and what is not seen between them.
 
