@@ -12,7 +12,7 @@ from scipy import stats
 
 from said import facts, numbers
 from thermogear.base.units import RPM
-from thermogear.measured.contradictions import of_pulses, of_speed, of_teeth
+from thermogear.measured.contradictions import of_line, of_pulses, of_speed, of_teeth
 from thermogear.measured.dataset import result_of
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.hypotheses import Hypothesis
@@ -104,6 +104,15 @@ def test_a_wrong_speed_is_told_before_the_rate_and_a_right_one_blames_the_teeth(
     assert np.isfinite(found.lines[0].frequency)
 
 
+def test_a_speed_twice_too_fast_with_the_right_teeth_is_told() -> None:
+    """Twice the mesh line stands there as well, and is read."""
+    found = measure(steady(), teeth=25, speed=2400.0 * RPM, harmonics=1, sidebands=0)
+    told = important(found, "teeth and speed")
+    assert "0.5 times the speed given would fit" in told
+    right = measure(steady(), teeth=25, speed=1200.0 * RPM, harmonics=1, sidebands=0)
+    assert important(right, "teeth and speed") == important(right, "speed") == ""
+
+
 def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert of_teeth(20, [20, 41]) is None
     assert of_teeth(20, []) is None
@@ -111,6 +120,7 @@ def test_what_agrees_or_is_open_is_no_contradiction() -> None:
     assert of_pulses(2.0, [20], 20.0, teeth=None) is None
     assert of_pulses(None, [20], 30.0, teeth=20) is None
     assert of_speed(1000.0, lowest=1090.0, highest=2000.0) is None
+    assert of_line(0.2, 0.202, 1.0) is None
     both = of_pulses(1.0, [20, 41], 7.3, teeth=None)
     assert both is not None
     assert numbers(both.text) == [1.0, 20.0, 41.0, 7.3, 1.0]

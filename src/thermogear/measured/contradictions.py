@@ -89,5 +89,18 @@ def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | 
     )
 
 
+def of_line(given: float, found: float, weight: float) -> Notice | None:
+    """A mesh line that teeth and speed ``given`` place [cycles/sample], and is read there, where
+    nearly all the ``weight`` has another."""
+    if abs(found / given - 1.0) <= NEAR:
+        return None
+    return Notice(
+        "important",
+        f"teeth and speed given put the mesh line at {given:.6f} cycles/sample, where it is read; "
+        f"found: {found:.6f} (weight {weight:.4g}). {found / given:.4g} times the speed given "
+        "would fit",
+    )
+
+
 def _both(teeth: Sequence[int]) -> str:
     return " and ".join(map(str, teeth))

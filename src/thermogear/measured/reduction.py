@@ -19,7 +19,7 @@ from thermogear.measured.changing import (
     order_lines,
     read_in_angle,
 )
-from thermogear.measured.contradictions import NEAR, of_speed, of_teeth
+from thermogear.measured.contradictions import NEAR, of_line, of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
@@ -463,6 +463,11 @@ def _gearing(
             return free  # nothing stands where teeth and speed put the mesh line
         heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
         if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
+            weighed = near.weighed
+            if weighed.mesh_weight >= SURE and (
+                said := of_line(near.mesh_frequency, weighed.mesh, weighed.mesh_weight)
+            ):
+                notices.append(said)
             return near
     return free
 
