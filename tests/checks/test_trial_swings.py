@@ -29,8 +29,9 @@ def test_the_angle_of_a_followed_line_holds_to_the_ends_of_the_record(number: in
     made = slow(25_112_026 + number)
     cycles = made.teeth * (made.turns - made.turns[0])
     mesh = made.teeth * made.shaft
+    beside = mesh - made.shaft, mesh + made.shaft
     found = follow_line(
-        made.values, TRIAL.RATE, frequency=mesh, half_width=0.1 * mesh, widest=made.shaft
+        made.values, TRIAL.RATE, frequency=mesh, half_width=0.1 * mesh, beside=beside
     )
     off = 2 * np.pi * (found.cycles - cycles)
     off -= off.mean()
@@ -128,3 +129,10 @@ def test_sidebands_keep_their_own_phase_where_the_speed_swings() -> None:
         line = found[names[side]]
         assert line.reading == pytest.approx(height, rel=2.0 * line.half_width)
         assert line.half_width < 0.1
+
+
+def test_a_mesh_line_that_is_not_seen_is_not_read_while_teeth_are_undecided() -> None:
+    """A mesh line's phase oscillates: half of it explains most lines, but none stands there."""
+    kind, off, _, _ = TRIAL.run(("phase", 55))
+    assert kind == len(TRIAL.RATIOS) + TRIAL.SORTS.index("phase")
+    assert np.abs(off["mesh line"] + off["sidebands"]).max() < 1.5

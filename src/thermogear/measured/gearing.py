@@ -27,6 +27,7 @@ LONGEST = 1 << 19
 
 _HARMONICS = 5
 _SAME = 1e-3  # a mesh line's position from two ways of reading it
+_STANDS = float(np.log(3.0))  # over the floor
 _LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
@@ -68,8 +69,9 @@ def find_gearing(
     1. Hypotheses on teeth, on impacts without teeth and on nothing at all are weighed
        (:func:`~thermogear.measured.evidence.weigh`). Teeth are named where nearly all the weight
        has them; else the record leaves them undecided and the alternatives are told.
-    2. Mesh line: that of the hypotheses; where they agree on none, the peak with the clearest
-       harmonics 1..5 (``near`` [cycles/sample] restricts it to +-3 %).
+    2. Mesh line: that of the hypotheses; where they agree on none, or on one that is not seen while
+       teeth are undecided, the peak with the clearest harmonics 1..5 (``near`` [cycles/sample]
+       restricts it to +-3 %).
     3. The phase of that line is the angle: the record is resampled in mesh cycles, where the
        decided shafts' sidebands measure mesh line over shaft line.
     4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
@@ -94,9 +96,11 @@ def find_gearing(
     if near is not None and followed > 0.0:
         peaks = peaks.without_skirts(near, followed)
     weighed = weigh(peaks, stated)
-    likely = weighed.mesh_weight >= _LIKELY
-    if likely and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
-        family = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
+    if weighed.mesh_weight >= _LIKELY and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
+        likely = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
+        # a line that is not seen itself, by its harmonics alone, is one where teeth are decided
+        if weighed.teeth or likely.heights[0] > _STANDS:
+            family = likely
     return _of_family(table, family, weighed, told_as)
 
 
