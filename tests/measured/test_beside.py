@@ -45,3 +45,31 @@ def test_sidebands_beside_another_gears_are_in_their_interval(bins: float) -> No
         assert abs(off) < 1.5
         if bins > 1.2:  # told apart
             assert line.half_width < 0.05
+
+
+@pytest.mark.parametrize(("teeth", "other"), [(17, 45), (15, 76), (46, 113), (29, 31)])
+def test_sidebands_of_an_unknown_slower_shaft_or_a_swing_are_both_in_the_interval(
+    teeth: int, other: int
+) -> None:
+    """Pairs of lines at equal distances are either: the mesh line of a steady record, followed by
+    them, was up to 52 half widths too high."""
+    random = np.random.default_rng([19, teeth, other])
+    t = np.arange(20_000) / RATE
+    values = 0.01 * random.standard_normal(t.size)
+    for rank, height in ((1, 1.0), (2, 0.5)):
+        for size, side in ((1.0, 0.0), (0.03, 1 / teeth), (0.12, 1 / other)):
+            for sign in (-1, 1) if side else (1,):
+                turn = 2 * np.pi * MESH * (rank + sign * side) * t
+                values += height * size * np.cos(turn + random.uniform(0.0, 2 * np.pi))
+    record = Record((Channel("a", values, "g"),), "made", RATE, "made")
+    with patch("thermogear.measured.gearing.weigh", NONE):
+        speed = 2.0 * np.pi * MESH / teeth
+        found = measure(record, teeth=teeth, speed=speed, sidebands=1, harmonics=2)
+    lines = {line.name: line for line in found.lines}
+    for rank, height in ((1, 1.0), (2, 0.5)):
+        for name, size in ((f"mesh x {rank}", 1.0), (f"mesh x {rank} + 1 shaft/{teeth}", 0.03)):
+            line = lines[name]
+            off = (line.reading - size * height) / (line.half_width * line.reading)
+            print(f"{name}: {off:.2f} half widths of {100 * line.half_width:.2g} %")
+            assert abs(off) < 1.5
+    assert abs(lines["mesh x 1"].frequency - MESH) < 1.5 * lines["mesh x 1"].frequency_half_width

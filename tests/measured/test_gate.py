@@ -112,6 +112,14 @@ def test_lost_samples_cut_the_record_where_the_phase_jumps() -> None:
     assert found.lines[0].frequency == pytest.approx(MESH, abs=0.01)
 
 
+@pytest.mark.parametrize("first", [2100, 3130, 5270, 6290])
+def test_the_stretch_that_is_kept_does_not_hold_the_loss(first: int) -> None:
+    found = measured(np.delete(channel(), np.arange(first, first + 37)))
+    assert "jumps" in found.findings[0].kind
+    assert not found.start < first < found.start + found.samples
+    assert found.samples > 3500
+
+
 def test_one_lost_block_is_found_where_the_phase_is_straight() -> None:
     """A fifth of a cycle in much noise; nothing is found where none is lost or speed wanders."""
     random = np.random.default_rng(93)

@@ -89,7 +89,7 @@ def of_speed(given: float | None, *, lowest: float, highest: float) -> Notice | 
     )
 
 
-def of_line(given: float, found: float, weight: float) -> Notice | None:
+def of_line(given: float, *, found: float, weight: float) -> Notice | None:
     """A mesh line that teeth and speed ``given`` place [cycles/sample], and is read there, where
     nearly all the ``weight`` has another."""
     if abs(found / given - 1.0) <= NEAR:

@@ -15,12 +15,15 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.turns import MeshTurns, sides_of, unfollowed
 from thermogear.measured.units import kind_of
-from thermogear.signals.interval import APART, Reading, read_line
+from thermogear.signals.interval import APART, REACH, Reading, read_line
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.spectra import amplitude_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
 Floats = NDArray[np.float64]
+
+FIRST = "mesh x 1"
+"""Name of the mesh line itself."""
 
 _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
 _OTHERS = 3  # prominent lines that no gear explains, of a channel
@@ -164,7 +167,7 @@ def wanted_lines(
             Wanted("second mesh", label, position=place, half_width=max(bins, 2e-4 * place))
         )
     if not found:
-        found.append(Wanted("mesh", "mesh x 1", position=mesh, half_width=max(bins, 2e-4 * mesh)))
+        found.append(Wanted("mesh", FIRST, position=mesh, half_width=max(bins, 2e-4 * mesh)))
     return [w for w in found if bins < w.position < 0.5 - bins]
 
 
@@ -265,8 +268,15 @@ def channel_lines(
             reading = _read_known(through.spectrum, expected, beside, strong, followed)
         else:
             near = line.frequency / through.axis
+            # as many bins that tell of the noise as where nothing was followed
+            taken = min(int(followed / through.spectrum.bin_width), REACH)
             reading = read_line(
-                through.spectrum, near, beside=beside, strong=strong, followed=followed
+                through.spectrum,
+                near,
+                beside=beside,
+                strong=strong,
+                followed=followed,
+                reach=REACH + taken,
             )
         position = reading.frequency * through.axis / rate
         rank = int(np.rint(position / gearing.mesh_frequency)) if gearing else 0
@@ -284,8 +294,12 @@ def channel_lines(
             own_power = max(reading.amplitude, 1e-300) ** 2
             missed[rank] = alone.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
+        doubt = turns.doubt if turns else 0.0
+        # the followed line would hold its pairs; an angle that is none smears all others
+        own_gain = float(np.sqrt(1.0 - doubt)) if want.name == FIRST else 1.0
+        relative += rank**2 * doubt if want.name != FIRST else 0.0
         # with what may be its own beside it, or without; a sideband shares its mesh line's
-        gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
+        gain = own_gain * float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         if want.kind == "sideband":
             place_error = turns.half_width / turns.frequency * expected if turns else 0.0
             relative += _shared(reading, expected, place_error, through.spectrum.bin_width)

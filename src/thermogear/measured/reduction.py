@@ -392,7 +392,7 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
     if not jumps or _beats(spectrum, gearing.mesh_frequency):
         return False
-    around = int(np.ceil(piece / gearing.mesh_frequency))  # a jump is placed so well
+    around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
     edges = [-around, *jumps, values.size + around]
     first, stop = max(
         ((a + around, b - around) for a, b in pairwise(edges)), key=lambda pair: pair[1] - pair[0]
@@ -465,7 +465,7 @@ def _gearing(
         if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
             weighed = near.weighed
             if weighed.mesh_weight >= SURE and (
-                said := of_line(near.mesh_frequency, weighed.mesh, weighed.mesh_weight)
+                said := of_line(near.mesh_frequency, found=weighed.mesh, weight=weighed.mesh_weight)
             ):
                 notices.append(said)
             return near

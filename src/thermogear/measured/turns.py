@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ _MISSED = 0.002  # of the line's power: a tenth of a per cent of its amplitude
 _BROUGHT = 0.75
 _TOLD = 0.01  # of its power
 _ALIKE = 1.5  # of the phase's noise
+_EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _HANN = 1.5  # bins, noise bandwidth
@@ -61,6 +62,7 @@ class MeshTurns:
     power: float = 0.0
     unfollowed: float = 0.0
     spread: float = 0.0
+    doubt: float = 0.0
 
 
 def mesh_turns(
@@ -87,7 +89,7 @@ def mesh_turns(
     if least is not None:
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     if turns is not None:
-        return turns
+        return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
         if 2.56 * rank * reading.frequency > 1.0:
@@ -108,6 +110,36 @@ def mesh_turns(
         unfollowed=share,
         spread=spread,
     )
+
+
+def _or_steady(
+    turns: MeshTurns,
+    spectrum: LineSpectrum,
+    reading: Reading,
+    beside: Sequence[float],
+    strong: Sequence[Strong],
+) -> MeshTurns:
+    """A line followed, in doubt where steady lines explain the same.
+
+    A small oscillation of the speed is a pair of lines at equal distances to both sides, and so are
+    the sidebands of a shaft that is not known. Where such pairs hold nearly all the power that the
+    line itself does not, the line may be what is read between them.
+    """
+    width, own = spectrum.bin_width, reading.amplitude**2
+    if max(reading.turning, reading.changing) > _STILL or own <= 0.0:
+        return turns
+    free = [one for one in strong if not _is_side(one, beside, width)]
+    found = twins(free, reading.frequency / width)
+    pairs = sum(abs(one.amplitude) ** 2 for pair in found for one in pair)
+    pairs = max(pairs, reading.pairs)
+    most = max(
+        _missing(spectrum, reading, beside, one)
+        for one in filter_widths(spectrum, reading.frequency)
+    )
+    if pairs < _MISSED * own or most > _EXPLAINED * pairs:
+        return turns
+    off = abs(turns.frequency - reading.frequency)
+    return replace(turns, doubt=pairs / (own + pairs), half_width=turns.half_width + off)
 
 
 def unfollowed(

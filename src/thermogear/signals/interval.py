@@ -106,16 +106,18 @@ def read_line(
     beside: Sequence[float] = (),
     strong: Sequence[Strong] = (),
     followed: float = 0.0,
+    reach: int = REACH,
 ) -> Reading:
     """The line near ``frequency`` over the whole stretch, with errors.
 
     ``frequency`` (unit of the rate) good to half a bin; ``beside``: frequencies at which other
     lines are known to stand; ``strong``: ``strong_lines`` of the same spectrum, whose leakage is
     taken away; ``followed``: half width (unit of the rate) within which the record has been
-    straightened by this line's own phase, so that the phase tells nothing of the noise there.
+    straightened by this line's own phase, so that the phase tells nothing of the noise there;
+    ``reach``: bins on each side from which noise is judged.
 
-    Amplitude, frequency and known neighbours are fitted together (Gauss-Newton) to REACH bins on
-    each side, the line's image below 0 Hz included. A further line is fitted where it takes
+    Amplitude, frequency and known neighbours are fitted together (Gauss-Newton) to ``reach`` bins
+    on each side, the line's image below 0 Hz included. A further line is fitted where it takes
     three quarters of what is left with it: a changing amplitude or phase is even about the line
     and is not taken for one. Errors: the fit's covariance with the noise of I or Q, the quieter;
     what is in both and no line explains comes on top, as the largest leakage it can have.
@@ -129,7 +131,7 @@ def read_line(
     >>> round(found.amplitude, 6), round(found.frequency, 6)
     (2.0, 0.1)
     """
-    fit = _Fit.of(spectrum, frequency, beside, strong, followed)
+    fit = _Fit.of(spectrum, frequency, beside, strong, reach)
     fit = fit.refined()
     left = fit.left(followed)
     for _ in range(3):
@@ -167,12 +169,11 @@ class _Fit:
         frequency: float,
         beside: Sequence[float],
         strong: Sequence[Strong],
-        followed: float,
+        reach: int,
     ) -> _Fit:
         count, width = spectrum.samples, spectrum.bin_width
         place = frequency / width
         centre = int(np.rint(place))
-        reach = REACH + min(int(followed / width), REACH)  # as many bins that tell of the noise
         low, high = max(1, centre - reach), min((count - 1) // 2, centre + reach)
         bins = np.arange(low, high + 1, dtype=float)
         known: list[float] = []  # each once: two columns of one line would share its height
