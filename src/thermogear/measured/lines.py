@@ -283,28 +283,29 @@ def channel_lines(
         if turns is not None and turns.unfollowed and want.kind == "mesh":
             # among sidebands alone: other lines that are read may be its own
             own_sides = [p * rate / through.axis for p in sides]
-            alone = read_line(
+            single = read_line(
                 through.spectrum,
                 line.frequency / through.axis,
                 beside=own_sides,
                 strong=strong,
                 followed=followed,
             )
-            lacks, _ = unfollowed(through.spectrum, alone, own_sides, strong)
+            lacks, _ = unfollowed(through.spectrum, single, own_sides, strong)
             own_power = max(reading.amplitude, 1e-300) ** 2
-            missed[rank] = alone.amplitude**2 * (1.0 + lacks) / own_power - 1.0
+            missed[rank] = single.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
         doubt = turns.doubt if turns else 0.0
         # the followed line would hold its pairs; an angle that is none smears all others
-        own_gain = float(np.sqrt(1.0 - doubt)) if want.name == FIRST else 1.0
+        alone = float(np.sqrt(1.0 - doubt)) if want.name == FIRST else 1.0
         relative += rank**2 * doubt if want.name != FIRST else 0.0
         # with what may be its own beside it, or without; a sideband shares its mesh line's
-        gain = own_gain * float(np.sqrt(1.0 + missed.get(rank, 0.0)))
+        gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
+        low, high = min(1.0, gain, alone), max(1.0, gain)
         if want.kind == "sideband":
             place_error = turns.half_width / turns.frequency * expected if turns else 0.0
             relative += _shared(reading, expected, place_error, through.spectrum.bin_width)
-        amplitude *= 0.5 * (1.0 + gain)
-        relative += abs(gain - 1.0) / (1.0 + gain)
+        amplitude *= 0.5 * (low + high)
+        relative += (high - low) / (high + low)
         # the chain's displacement, read as the acceleration was
         displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
         own = reading.frequency_half_width * through.axis / rate
