@@ -125,3 +125,10 @@ def test_a_steep_wander_is_no_lost_sample(record: tuple[int, int]) -> None:
     made = TRIAL.drawn(TRIAL.SCENARIOS[9], np.random.default_rng([seed, 9, number]))
     x = made.record.channels[0].values()
     assert phase_jumps(x - x.mean(), made.frequency / 2560.0, cycles=75.0) == []
+
+
+def test_a_line_is_no_pair_of_itself() -> None:
+    """Of 500 records in red noise one is followed: its own line, and lines as far off as itself,
+    passed for steady ones beside it, and half the amplitude for its interval."""
+    cell = TRIAL.run(2, 1, first=357)
+    assert np.all(cell.half_widths[:2, 0] < 0.02)

@@ -43,6 +43,8 @@ def test_sidebands_beside_another_gears_are_in_their_interval(bins: float) -> No
         off = (line.reading - 0.05) / (line.half_width * line.reading)
         print(f"{bins} bins, {sign}: {off:.2f} half widths of {100 * line.half_width:.2g} %")
         assert abs(off) < 1.5
+        place = MESH + (1 if sign == "+" else -1) * shaft
+        assert abs(line.frequency - place) < 2.0 * line.frequency_half_width
         if bins > 1.2:  # told apart
             assert line.half_width < 0.05
 

@@ -301,14 +301,17 @@ def channel_lines(
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         low, high = min(1.0, gain, alone), max(1.0, gain)
+        off = 0.0
         if want.kind == "sideband":
             place_error = turns.half_width / turns.frequency * expected if turns else 0.0
-            relative += _shared(reading, expected, place_error, through.spectrum.bin_width)
+            other = _shared(reading, expected, place_error, through.spectrum.bin_width)
+            relative += other
+            off = abs(position - want.position) if other else 0.0  # its own place is known
         amplitude *= 0.5 * (low + high)
         relative += (high - low) / (high + low)
         # the chain's displacement, read as the acceleration was
         displacement *= amplitude / line.amplitude if line.amplitude > 0.0 else 1.0
-        own = reading.frequency_half_width * through.axis / rate
+        own = reading.frequency_half_width * through.axis / rate + off
         if turns is not None:
             more = turns.spread if turns.turning is None else turns.half_width
             own = float(np.hypot(own, more / turns.frequency * position))

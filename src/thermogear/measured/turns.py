@@ -128,14 +128,17 @@ def _or_steady(
     width, own = spectrum.bin_width, reading.amplitude**2
     if max(reading.turning, reading.changing) > _STILL or own <= 0.0:
         return turns
-    free = [one for one in strong if not _is_side(one, beside, width)]
+    widths = filter_widths(spectrum, reading.frequency)
+    free = [
+        one
+        for one in strong
+        if APART * width < abs(one.place * width - reading.frequency) < max(widths)
+        and not _is_side(one, beside, width)
+    ]
     found = twins(free, reading.frequency / width)
     pairs = sum(abs(one.amplitude) ** 2 for pair in found for one in pair)
     pairs = max(pairs, reading.pairs)
-    most = max(
-        _missing(spectrum, reading, beside, one)
-        for one in filter_widths(spectrum, reading.frequency)
-    )
+    most = max(_missing(spectrum, reading, beside, one) for one in widths)
     if pairs < _MISSED * own or most > _EXPLAINED * pairs:
         return turns
     off = abs(turns.frequency - reading.frequency)
