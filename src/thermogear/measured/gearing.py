@@ -98,7 +98,7 @@ def find_gearing(
     weighed = weigh(peaks, stated)
     if weighed.mesh_weight >= _LIKELY and (near is None or abs(weighed.mesh / near - 1.0) < 0.03):
         likely = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
-        # a line that is not seen itself, by its harmonics alone, is one where teeth are decided
+        # harmonics alone make no mesh line while teeth are undecided: it must be seen itself
         if weighed.teeth or likely.heights[0] > _STANDS:
             family = likely
     return _of_family(table, family, weighed, told_as)
@@ -174,7 +174,7 @@ def _clearest_family(raw: Prominence, near: float | None) -> _Family:
     peaks = inside[
         (level[inside] >= level[inside - 1])
         & (level[inside] > level[inside + 1])
-        & (level[inside] > max(4.0 * raw.spread, np.log(3.0)))
+        & (level[inside] > max(4.0 * raw.spread, _STANDS))
     ]
     if peaks.size == 0:
         raise InputError("mesh line", "none", why="no line stands out of the floor")

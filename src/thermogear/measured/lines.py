@@ -22,9 +22,6 @@ from thermogear.signals.strong import Strong, strong_lines
 
 Floats = NDArray[np.float64]
 
-FIRST = "mesh x 1"
-"""Name of the mesh line itself."""
-
 _NORMAL = 1.959964  # standard deviations of a normal law that hold 95 %
 _OTHERS = 3  # prominent lines that no gear explains, of a channel
 _PROMINENT = 0.1  # of the channel's strongest line
@@ -167,7 +164,7 @@ def wanted_lines(
             Wanted("second mesh", label, position=place, half_width=max(bins, 2e-4 * place))
         )
     if not found:
-        found.append(Wanted("mesh", FIRST, position=mesh, half_width=max(bins, 2e-4 * mesh)))
+        found.append(Wanted("mesh", "mesh x 1", position=mesh, half_width=max(bins, 2e-4 * mesh)))
     return [w for w in found if bins < w.position < 0.5 - bins]
 
 
@@ -296,8 +293,9 @@ def channel_lines(
         amplitude, relative = _amplitude(reading, position, turns)
         doubt = turns.doubt if turns else 0.0
         # the followed line would hold its pairs; an angle that is none smears all others
-        alone = float(np.sqrt(1.0 - doubt)) if want.name == FIRST else 1.0
-        relative += rank**2 * doubt if want.name != FIRST else 0.0
+        itself = want.kind == "mesh" and rank == 1
+        alone = float(np.sqrt(1.0 - doubt)) if itself else 1.0
+        relative += 0.0 if itself else rank**2 * doubt
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         low, high = min(1.0, gain, alone), max(1.0, gain)

@@ -142,7 +142,13 @@ def _or_steady(
     if pairs < _MISSED * own or most > _EXPLAINED * pairs:
         return turns
     off = abs(turns.frequency - reading.frequency)
-    return replace(turns, doubt=pairs / (own + pairs), half_width=turns.half_width + off)
+    return replace(
+        turns,
+        doubt=pairs / (own + pairs),
+        half_width=turns.half_width + off,
+        said=f"{turns.said}; the lines beside it may as well be sidebands of a shaft that is not "
+        "known: the intervals hold both",
+    )
 
 
 def unfollowed(

@@ -131,9 +131,10 @@ def follow_line(
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
     caught a filter of half the width follows it (not narrower than the first of WIDTHS). Lines
     ``beside`` that turn with it, sidebands, are taken away by the cycles found, and it is followed
-    anew; that filter is at most as wide as the nearest is off, so that its zeros are where
-    sidebands are. The mean frequency is (cycles at the last sample - cycles at the first)/(time
-    between). Its error is seen where the record is cut inside, by the phase there from each side.
+    anew (those less than four turns off over the record are left in); that filter is at most as
+    wide as the nearest is off, so that its zeros are where sidebands are. The mean frequency is
+    (cycles at the last sample - cycles at the first)/(time between). Its error is seen where the
+    record is cut inside, by the phase there from each side.
     With ``cut`` False this is left out, the error is that of half a turn.
 
     ``x`` [any unit] one channel; ``rate`` and all frequencies in one unit. Range: the
