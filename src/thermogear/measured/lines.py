@@ -320,8 +320,12 @@ def channel_lines(
         own += turned_by(damage, samples=values.size)
         half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + damage
         half_width += 2.0 * record.rate_share + float(jittered(position, record.jitter))
+        doubtful = doubts
+        if want.kind == "sideband" and turns is not None and turns.withheld:
+            whys = doubts.withheld, turns.withheld
+            doubtful = replace(doubts, withheld="; ".join(why for why in whys if why))
         found.append(
-            doubts.applied(
+            doubtful.applied(
                 MeasuredLine(
                     channel=channel.name,
                     kind=want.kind,

@@ -39,6 +39,7 @@ _SEEN = 2.0  # times the noise of a lobe in Q: three of its standard deviations
 _FAR = 0.3  # of the line's power
 _AS_FAR = 3.0  # times the distance of the first sidebands
 _NOISE = 25.0  # times that of a bin, in the five of a lobe: hardly by chance
+_FEW = 4.0  # turns of a shaft over the record
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -50,7 +51,8 @@ class MeshTurns:
     None where the speed is steady enough; ``said`` how it was found; ``phase_noise`` [rad]: what
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
-    power; ``spread``: what of ``half_width`` comes of that.
+    power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
+    line that may be others'; ``withheld``: why its sidebands are.
     """
 
     frequency: float
@@ -63,6 +65,7 @@ class MeshTurns:
     unfollowed: float = 0.0
     spread: float = 0.0
     doubt: float = 0.0
+    withheld: str = ""
 
 
 def mesh_turns(
@@ -88,7 +91,11 @@ def mesh_turns(
     turns: MeshTurns | None = None
     if least is not None:
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
+    nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
+    few = _few_turns(spectrum, nearest)
     if turns is not None:
+        if few:
+            return _or_sidebands(turns, spectrum, reading, few)
         return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
@@ -106,7 +113,7 @@ def mesh_turns(
     return MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
-        said=_beside(reading, least, share),
+        said="; ".join(one for one in (_beside(reading, least, share), few) if one),
         unfollowed=share,
         spread=spread,
     )
@@ -148,6 +155,32 @@ def _or_steady(
         half_width=turns.half_width + off,
         said=f"{turns.said}; the lines beside it may as well be sidebands of a shaft that is not "
         "known: the intervals hold both",
+    )
+
+
+def _or_sidebands(
+    turns: MeshTurns, spectrum: LineSpectrum, reading: Reading, few: str
+) -> MeshTurns:
+    """A line followed over ``few`` turns of a shaft.
+
+    A speed that wanders puts power where the sidebands are, and what they hold turns the line's
+    phase: they are withheld. All power near the line that a steady one has not may be theirs.
+    """
+    own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
+    near = max(filter_widths(spectrum, reading.frequency, every=True))
+    power = band_power(spectrum, reading.frequency, near)
+    why = f"the speed wanders, and {few}"
+    return replace(turns, doubt=max(0.0, 1.0 - own / max(power, own)), withheld=why)
+
+
+def _few_turns(spectrum: LineSpectrum, nearest: float) -> str:
+    """What is said of sidebands ``nearest`` to their line, '' where they are far enough."""
+    count = nearest / spectrum.bin_width
+    if count >= _FEW:
+        return ""
+    return (
+        f"the record holds {count:.2g} turns of the shaft: below {_FEW:g} its sidebands are not "
+        "told from a speed that wanders"
     )
 
 

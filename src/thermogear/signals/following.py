@@ -15,6 +15,7 @@ from thermogear.base.errors import InputError
 from thermogear.signals.interval import student
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.spectra import finite_record, positive_rate
+from thermogear.signals.strong import hann_at
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -28,7 +29,11 @@ _PASSES = 3
 _CUTS = 8
 _PIECE = 4  # kernels on one side of a cut
 _HALF = 0.5  # of a turn
-_APART = 4.0  # turns over the record by which Hann's window tells lines apart
+_NEAR = 8.0  # turns over the record: a sideband nearer than this turns the path that is found
+_SAME = 0.5  # turns
+_ROUNDS = 40
+_ALIKE = 1e-4  # cycles
+_LEAST = 1e-3  # of the largest: lines too near to each other share what they hold
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,7 +136,8 @@ def follow_line(
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
     caught a filter of half the width follows it (not narrower than the first of WIDTHS). Lines
     ``beside`` that turn with it, sidebands, are taken away by the cycles found, and it is followed
-    anew (those less than four turns off over the record are left in); that filter is at most as
+    anew, until the path stays (sidebands eight turns off over the record and more do not turn it
+    again); that filter is at most as
     wide as the nearest is off, so that its zeros are where sidebands are. The mean frequency is
     (cycles at the last sample - cycles at the first)/(time between). Its error is seen where the
     record is cut inside, by the phase there from each side.
@@ -146,8 +152,8 @@ def follow_line(
     >>> f"{follow_line(x, 1.0, frequency=0.101, half_width=0.01).frequency:.5f}"
     '0.10000'
     """
-    values, per_second = finite_record(x), positive_rate(rate)
-    count = values.size
+    record, per_second = finite_record(x), positive_rate(rate)
+    values, count = record, record.size
     if not 0 < half_width <= frequency < 0.5 * per_second:
         raise InputError("half_width", half_width, allowed=f"0..{frequency:g}")
     length = 2.0 * per_second / half_width  # of the kernel, samples
@@ -160,8 +166,13 @@ def follow_line(
     cycles, whole = _path(values, frequency / per_second, length, last=last)
     if beside:
         ratios = [one / frequency for one in beside if 0.0 < one < 0.5 * per_second]
-        values = values - _turning_with(values, cycles, ratios)
-        cycles, whole = _path(values, frequency / per_second, length, last=last)
+        near = widest / per_second * count < _NEAR
+        for _ in range(_ROUNDS if near else 1):
+            before = cycles
+            values = record - _turning_with(record, cycles, ratios)
+            cycles, whole = _path(values, frequency / per_second, length, last=last)
+            if np.max(np.abs(cycles - before)) < _ALIKE:
+                break
     edge, degrees = _HALF, 1.0
     if cut:
         edge, degrees = _edge(values, frequency / per_second, length, last)
@@ -272,22 +283,24 @@ def _path(values: Floats, frequency: float, length: float, *, last: float) -> tu
 
 
 def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Floats:
-    """Sum of the lines that turn ``ratios`` times as fast as ``cycles``.
+    """Sum of the lines that turn ``ratios`` times as fast as ``cycles``, the line itself left out.
 
-    Each by Hann's window, which tells lines four turns and more over the record apart: nearer ones
-    are left out.
+    Together with it by Hann's window: each transform holds its neighbours' as well, by the window's
+    at their distance. A line less than half a turn off over the record is taken for the line.
     """
-    window = np.hanning(values.size)
-    window /= np.sum(window)
-    found = np.zeros(values.size)
+    count, turned = values.size, float(cycles[-1] - cycles[0])
+    apart = np.array([0.0, *((one - 1.0) * turned for one in ratios)])
+    apart = apart[(apart == 0.0) | (np.abs(apart) > _SAME)]
+    window = np.hanning(count)
     line = np.exp(2j * np.pi * cycles)
-    for ratio in ratios:
-        away = (ratio - 1.0) * (cycles[-1] - cycles[0])
-        if abs(away) < _APART:
-            continue
-        turn = line * np.exp(2j * np.pi * (ratio - 1.0) * cycles)
-        found += np.real(2.0 * np.sum(window * values * np.conj(turn)) * turn)
-    return found
+    turns = [line * np.exp(2j * np.pi * away / turned * cycles) for away in apart]
+    sums = np.array([2.0 * np.vdot(one, window * values) for one in turns]) / np.sum(window)
+    shared = hann_at(apart[None, :] - apart[:, None], count)
+    found = np.linalg.lstsq(shared, sums, rcond=_LEAST)[0]
+    total = np.zeros(count)
+    for one, size in zip(turns[1:], found[1:], strict=True):
+        total += np.real(size * one)
+    return total
 
 
 def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple[float, float]:

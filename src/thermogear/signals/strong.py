@@ -43,6 +43,19 @@ def dirichlet(offset: Floats, samples: int) -> Complexes:
     return np.asarray(np.exp(1j * np.pi * u * (samples - 1) / samples) * size)
 
 
+def hann_at(offset: Floats, samples: int) -> Complexes:
+    """What a line of amplitude 1 shows ``offset`` bins below it, Hann's window.
+
+    D(u) - (D(u - 1) + D(u + 1))/2.
+
+    >>> np.abs(hann_at(np.array([0.0, 0.5, 1.0, 2.0]), 1000)).round(3)
+    array([1.   , 0.849, 0.5  , 0.   ])
+    """
+    u = np.asarray(offset, dtype=float)
+    below, above = dirichlet(u - 1.0, samples), dirichlet(u + 1.0, samples)
+    return np.asarray(dirichlet(u, samples) - 0.5 * (below + above))
+
+
 def strong_lines(spectrum: LineSpectrum, most: int = MOST) -> tuple[Strong, ...]:
     """The strongest lines, four bins or more apart, each six times over its floor (Hann window).
 
