@@ -199,10 +199,7 @@ def measure(
             )
         )
     notices += [one.notice for one in through.findings]
-    if turns is not None and turns.said:
-        notices.append(Notice("info", turns.said))
-    if turns is not None and turns.withheld:
-        notices.append(Notice("important", f"sidebands are withheld: {turns.withheld}"))
+    notices += turns.notices if turns is not None else []
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
+from thermogear.measured.record import Notice
+from thermogear.measured.unfollowed import AS_FAR, unfollowed
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -17,9 +19,9 @@ from thermogear.signals.following import (
     follow_line,
     power_beyond,
 )
-from thermogear.signals.interval import APART, REACH, SIDE, Reading, read_line
+from thermogear.signals.interval import APART, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
-from thermogear.signals.strong import UNEVEN, Strong, strong_lines, twins
+from thermogear.signals.strong import Strong, strong_lines, twins
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -32,13 +34,6 @@ _TOLD = 0.01  # of its power
 _ALIKE = 1.5  # of the phase's noise
 _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
-_CLEAR = 3  # bins of a line's own lobe, Hann's
-_HANN = 1.5  # bins, noise bandwidth
-_SUM = 50  # bins of the sum that is the transform at a line's own place
-_SEEN = 2.0  # times the noise of a lobe in Q: three of its standard deviations
-_FAR = 0.3  # of the line's power
-_AS_FAR = 3.0  # times the distance of the first sidebands
-_NOISE = 25.0  # times that of a bin, in the five of a lobe: hardly by chance
 _FEW = 4.0  # turns of a shaft over the record
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
@@ -67,6 +62,14 @@ class MeshTurns:
     doubt: float = 0.0
     withheld: str = ""
 
+    @property
+    def notices(self) -> list[Notice]:
+        """What a user is told of it."""
+        told = [Notice("info", self.said)] if self.said else []
+        if self.withheld:
+            told.append(Notice("important", f"sidebands are withheld: {self.withheld}"))
+        return told
+
 
 def mesh_turns(
     table: Floats,
@@ -92,10 +95,10 @@ def mesh_turns(
     if least is not None:
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
-    few = _few_turns(spectrum, nearest)
+    few = nearest < _FEW * spectrum.bin_width
     if turns is not None:
         if few:
-            return _or_sidebands(turns, spectrum, reading, few)
+            return _or_sidebands(turns, values, spectrum, reading, nearest)
         return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
@@ -110,13 +113,14 @@ def mesh_turns(
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
     share, spread = unfollowed(spectrum, reading, beside, strong)
-    return MeshTurns(
+    steady = MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
-        said="; ".join(one for one in (_beside(reading, least, share), few) if one),
+        said=_beside(reading, least, share),
         unfollowed=share,
         spread=spread,
     )
+    return _or_sidebands(steady, values, spectrum, reading, nearest) if few else steady
 
 
 def _or_steady(
@@ -159,139 +163,42 @@ def _or_steady(
 
 
 def _or_sidebands(
-    turns: MeshTurns, spectrum: LineSpectrum, reading: Reading, few: str
+    turns: MeshTurns, values: Floats, spectrum: LineSpectrum, reading: Reading, nearest: float
 ) -> MeshTurns:
-    """A line followed over ``few`` turns of a shaft.
+    """A line over few turns of a shaft, whose sidebands are ``nearest``.
 
     A speed that wanders puts power where the sidebands are, and what they hold turns the line's
-    phase: they are withheld. All power near the line that a steady one has not may be theirs.
+    phase. All power near the line that a steady one has not may be the one or the other's: half of
+    it may turn the line at both ends. Where the line was followed, or sidebands are less than two
+    bins off, they are withheld.
     """
+    width, frequency = spectrum.bin_width, reading.frequency
     own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
-    near = max(filter_widths(spectrum, reading.frequency, every=True))
-    power = band_power(spectrum, reading.frequency, near)
-    why = f"the speed wanders, and {few}"
-    return replace(turns, doubt=max(0.0, 1.0 - own / max(power, own)), withheld=why)
-
-
-def _few_turns(spectrum: LineSpectrum, nearest: float) -> str:
-    """What is said of sidebands ``nearest`` to their line, '' where they are far enough."""
-    count = nearest / spectrum.bin_width
-    if count >= _FEW:
-        return ""
-    return (
-        f"the record holds {count:.2g} turns of the shaft: below {_FEW:g} its sidebands are not "
-        "told from a speed that wanders"
+    near = AS_FAR * nearest + 2.0 * width
+    power = max(band_power(spectrum, frequency, near), own)
+    if own <= 0.0:
+        return turns
+    others = power / own - 1.0
+    why = (
+        f"the record holds {nearest / width:.2g} turns of the shaft: below {_FEW:g} its sidebands "
+        "are not told from a speed that wanders"
     )
-
-
-def unfollowed(
-    spectrum: LineSpectrum, reading: Reading, beside: Sequence[float], strong: Sequence[Strong]
-) -> tuple[float, float]:
-    """Power beside a line that its reading lacks and that may be its own, of its power; and by how
-    much its turns over time may differ from its place.
-
-    A phase or an amplitude that oscillates makes lines at equal distances to both sides: they count
-    where both stand out of the noise, the one at most ten times the other. Where all power beside
-    is more than the line's, the line may be one of those, and all counts. Without a known shaft
-    (``beside``) sidebands are not told from it. Looked for up to three times the distance of the
-    first.
-    """
-    own, width = reading.amplitude**2, spectrum.bin_width
-    middle = round(reading.frequency / width)
-    apart = np.abs(np.asarray(beside) - reading.frequency) / width
-    first = float(apart.min(initial=np.inf))
-    reach = min(_AS_FAR * first, middle - 1, spectrum.hann.size - 1 - middle)
-    away = np.arange(_CLEAR, max(int(reach), _CLEAR) + 1)
-    if own <= 0.0 or not beside or away.size < _CLEAR:
-        return 0.0, 0.0
-    above, below, steady = _beside_place(spectrum, reading.frequency / width, int(away[-1]))
-    sides = np.abs(above[_CLEAR - 1 :]), np.abs(below[_CLEAR - 1 :])
-    level = float(np.median(np.concatenate(sides) ** 2)) / float(np.log(2.0))
-    level = max(level, reading.noise**2)
-    # own sidebands at both sides are left out
-    steps = np.arange(1, above.size + 1)
-    off = np.abs(steps - np.rint(steps / first) * first)
-    off = np.minimum(off, np.abs(steps[:, None] - apart).min(axis=-1))
-    lobe = np.ones(2 * _CLEAR - 1)
-    up, down, odd = (
-        np.convolve(np.where(off < _CLEAR, 0.0, np.abs(one) ** 2), lobe, mode="same")
-        for one in (above, below, (above - below) / np.sqrt(2.0))
+    if turns.turning is not None:
+        per_cycle = turns.turning.per_cycle
+        straight = line_spectrum(turns.turning.resampled(values, 0), float(per_cycle))
+        sides = band_power(straight, 1.0, near / frequency)
+        others = max(0.0, sides / max(turns.power, 1e-300) - 1.0)
+        why = f"the speed wanders, and {why}"
+    withheld = turns.turning is not None or nearest < 2.0 * width
+    spread = float(np.sqrt(others)) / np.pi * width
+    return replace(
+        turns,
+        doubt=1.0 - own / power,
+        half_width=float(np.hypot(turns.half_width, spread)),
+        spread=float(np.hypot(turns.spread, spread)),
+        withheld=why if withheld else "",
+        said=turns.said if withheld else "; ".join(one for one in (turns.said, why) if one),
     )
-    up, down = up[away - 1], down[away - 1]
-    least, most, noise = np.minimum(up, down), np.maximum(up, down), _NOISE * level
-    each = _highest(np.where(least > np.maximum(noise, most / UNEVEN), up + down, 0.0), away)
-    everything = _highest(np.where(most > noise, up + down, 0.0), away)
-    hidden, unread = _next_to_sides(strong, reading.frequency / width, first)
-    total = sum(each.values()) + hidden
-    if total == 0.0 and reading.pairs == 0.0 and sum(everything.values()) < own:
-        return 0.0, 0.0
-    # amplitude is in I, phase in Q; one that turns far is in both
-    turned = sum(float(odd[place - 1]) - lobe.size * level for place in each)
-    if turned < _SEEN * lobe.size * level * np.sqrt(len(each)):
-        turned = 0.0
-    turned += hidden
-    if total > _FAR * own:
-        turned = total
-    # a phase that oscillates by sqrt(2 turned/steady) [rad] may be at any place at both ends
-    spread = float(np.sqrt(2.0 * turned / max(steady, 1e-300)) / np.pi)  # bins
-    if total < own < sum(everything.values()):
-        total = sum(everything.values())
-        square = sum(one * place**2 for place, one in everything.items())
-        spread = float(np.sqrt(square / (steady + total)))
-        return max(0.0, (steady + total) / own - 1.0), spread * width
-    total = reading.pairs + unread + sum(one for place, one in each.items() if place > REACH)
-    return max(total / own, -_FAR), spread * width
-
-
-def _next_to_sides(strong: Sequence[Strong], place: float, first: float) -> tuple[float, float]:
-    """Power of pairs of lines next to sidebands of a line at ``place``, each ``first`` [bins] from
-    the last: at equal distances, but no whole number of ``first``. And what of it a reading has
-    not among its pairs."""
-    power = unread = 0.0
-    for one, other in twins(strong, place):
-        away = one.place - place
-        off = abs(away - np.rint(away / first) * first)
-        if away > 0.5 * first and APART < off < _CLEAR:
-            both = abs(one.amplitude) ** 2 + abs(other.amplitude) ** 2
-            power += both
-            unread += both if off < SIDE or away > REACH else 0.0
-    return power, unread
-
-
-def _beside_place(
-    spectrum: LineSpectrum, place: float, most: int
-) -> tuple[Complexes, Complexes, float]:
-    """A line at ``place`` [bins] and what is 1 .. ``most`` and half a lobe beside it.
-
-    Above it and, conjugate, below, turned by the line's phase: Hann's window, powers that of noise
-    in a bin. And the power of the line itself, without a window.
-    """
-    reach = most + _CLEAR  # one more for the window
-    middle = round(place)
-    bins = np.arange(middle - reach - _SUM, middle + reach + _SUM + 1)
-    inside = (bins >= 0) & (bins < spectrum.lines.size)
-    lines = np.zeros(bins.size, dtype=complex)
-    lines[inside] = spectrum.lines[bins[inside]]
-    beyond = np.arange(-_SUM, _SUM + 1) - (place - middle)
-    kernel = np.exp(1j * np.pi * beyond) * np.sinc(beyond)
-    plain = np.convolve(lines, kernel[::-1], mode="valid")
-    hann = plain[1:-1] - 0.5 * (plain[2:] + plain[:-2])
-    own = plain.size // 2
-    turned = hann * np.exp(-1j * np.angle(plain[own])) / np.sqrt(_HANN)
-    own -= 1
-    above, below = turned[own + 1 :], np.conj(turned[:own][::-1])
-    return above, below, float(np.abs(plain[own + 1]) ** 2)
-
-
-def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
-    """Power of lines ``away`` [bins], the highest first, none beside another."""
-    found: dict[int, float] = {}
-    for place in np.argsort(-power):
-        if power[place] <= 0.0:
-            break
-        if all(abs(away[place] - other) >= 2 * _CLEAR - 1 for other in found):
-            found[int(away[place])] = float(power[place])
-    return found
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> str:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from thermogear.signals.left_over import NEAR, Left, noise_beside
+from thermogear.signals.left_over import NEAR, Left, noise_beside, without_others
 from thermogear.signals.lines import LineSpectrum
 from thermogear.signals.strong import Strong, dirichlet, twins
 
@@ -38,6 +38,7 @@ SIDE = 2.0
 """Bins: a strong line nearer than this to where one is known is that line."""
 _HIDDEN = 12.0  # times the power of noise in a bin
 _TOUCH = 4  # bins about a strong line that its own changes fill
+_BESIDE = 1.5  # bins
 _HIGHER = 1.5
 _MUCH_HIGHER = 4.0
 _LEAST_REACH = 4  # bins
@@ -285,6 +286,11 @@ class _Fit:
         noise, here, degrees = noise_beside(
             (even, odd), shares=shares, followed=followed / self.spectrum.bin_width
         )
+        known = np.abs(self.places[~self.free] - place)
+        known = known[known > NEAR]  # nearer it is not told from the line's own change
+        beside = np.any(np.abs(steps[:, None] - known) < _BESIDE, axis=-1)
+        even, more = without_others(even, beside, noise)
+        odd, most = without_others(odd, beside, noise)
         fine = np.arange(-NEAR, NEAR + 0.01, 0.125)
         fine = fine[np.abs(fine) >= APART]
         fine = fine[(place + fine > self.bins[0]) & (place + fine < self.bins[-1])]
@@ -296,6 +302,7 @@ class _Fit:
             here=here,
             degrees=degrees,
             crowded=self._own_reach() < REACH,
+            others=more + most,
             places=fine,
             finer=np.abs(rows(fine) @ error) ** 2,
         )
@@ -395,7 +402,7 @@ class _Fit:
             turning=float(np.sqrt(phase)),
             neighbours=tuple(one.place * width for one in neighbours),
             beside=self._added(neighbours) * self.unit**2,
-            pairs=self._added(self._pairs()) * self.unit**2,
+            pairs=(self._added(self._pairs()) + left.others) * self.unit**2,
             noise=float(np.sqrt(left.noise)) * self.unit,
             explained=hidden_power == 0.0,
         )

@@ -16,6 +16,7 @@ _CLEARLY = 2.5
 _INNER = 6
 """Bins nearest to a line, in which a change stands out first."""
 _ROUNDS = 8
+_NOISE = 25.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +30,7 @@ class Left:
     here: float  # power in one bin at the line
     degrees: float  # of freedom behind ``here``
     crowded: bool  # by a much higher line, whose skirts fill I and Q alike
+    others: float  # power of I and Q next to known lines, taken for what others have there
     places: Floats  # of the finer grid on which a neighbour is looked for [bins from the line]
     finer: Floats  # power there
 
@@ -71,6 +73,27 @@ class Left:
 
     def _clearly(self, extra: float, size: int) -> float:
         return extra if extra > 4.0 * self.noise * np.sqrt(size) else 0.0
+
+
+def without_others(powers: Floats, known: NDArray[np.bool_], noise: float) -> tuple[Floats, float]:
+    """``powers`` of I or Q without what stands out next to ``known`` lines, and how much that is.
+
+    A change has as much there as in the bins about; another line next to a known one shows there
+    alone. It counts where in all it is above 25 times the ``noise`` of a bin, hardly by chance.
+
+    >>> powers, known = np.ones(9), np.zeros(9, dtype=bool)
+    >>> powers[3:6], known[3:6] = (5.0, 60.0, 5.0), True
+    >>> level, others = without_others(powers, known, 1.0)
+    >>> level.tolist() == [1.0] * 9, others
+    (True, 67.0)
+    """
+    if known.all() or not known.any():
+        return powers, 0.0
+    place = np.arange(powers.size)
+    about = np.interp(place, place[~known], powers[~known])
+    level = np.where(known, np.minimum(powers, np.maximum(about, noise)), powers)
+    others = float(np.sum(powers - level))
+    return (level, others) if others > _NOISE * noise else (powers, 0.0)
 
 
 def noise_beside(

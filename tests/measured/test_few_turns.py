@@ -1,0 +1,73 @@
+"""Records that hold few turns of the shaft: sidebands stand near the line that is followed."""
+
+from unittest.mock import Mock, patch
+
+import numpy as np
+import pytest
+
+from thermogear.measured.evidence import Evidence
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import Measurement, measure
+
+RATE = 4000.0
+TEETH = 64
+
+
+def drawn(turns: float, wander: float, seed: int) -> tuple[Measurement, dict[str, float], float]:
+    """A record of so many ``turns``, whose speed moves as half a sine; true lines, mean mesh."""
+    random = np.random.default_rng([seed, round(10 * turns)])
+    mesh = random.uniform(300.0, 600.0)
+    seconds = turns * TEETH / mesh
+    time = np.arange(int(seconds * RATE)) / RATE
+    speed = 1.0 + wander * np.sin(np.pi * time / seconds + random.uniform(0.0, 6.3))
+    cycles = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * mesh / RATE
+    truth = {"mesh x 1": 1.0, "mesh x 1 - 1 shaft/64": 0.12, "mesh x 1 + 1 shaft/64": 0.08}
+    values = 0.03 * random.normal(size=time.size)
+    for order, size in zip(
+        (1.0, 1.0 - 1.0 / TEETH, 1.0 + 1.0 / TEETH), truth.values(), strict=True
+    ):
+        values += size * np.cos(2.0 * np.pi * order * cycles + random.uniform(0.0, 6.3))
+    record = Record((Channel("a", values, "m/s^2"),), "made", RATE, "made")
+    with patch("thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))):
+        found = measure(
+            record, teeth=TEETH, speed=2.0 * np.pi * mesh / TEETH, sidebands=1, harmonics=1
+        )
+    return found, truth, (cycles[-1] - cycles[0]) / time[-1]
+
+
+@pytest.mark.parametrize("turns", [4.6, 6.3, 9.1])
+def test_lines_about_a_followed_one_are_in_their_intervals(turns: float) -> None:
+    worst = []
+    for seed in range(4):
+        found, truth, mesh = drawn(turns, 0.006, seed)
+        assert any("lines are read in angle" in one.text for one in found.notices)
+        lines = {line.name: line for line in found.lines}
+        for name, size in truth.items():
+            line = lines[name]
+            worst.append(abs(line.reading / size - 1.0) / line.half_width)
+        line = lines["mesh x 1"]
+        assert line.half_width < 0.02
+        assert abs(line.frequency - mesh) < 1.5 * line.frequency_half_width
+    assert np.mean(np.array(worst) < 1.0) > 0.85
+    assert max(worst) < 1.8
+
+
+@pytest.mark.parametrize("turns", [1.6, 2.4, 3.3])
+def test_sidebands_not_told_from_a_speed_that_wanders_are_withheld(turns: float) -> None:
+    for seed in range(3):
+        found, truth, _ = drawn(turns, 0.006, seed)
+        lines = {line.name: line for line in found.lines}
+        assert [one.level for one in found.notices if "sidebands are withheld" in one.text] == [
+            "important"
+        ]
+        for name in truth:
+            assert ("turns of the shaft" in lines[name].withheld) == ("shaft/" in name)
+            assert np.isnan(lines[name].reading) == ("shaft/" in name)
+        mesh = lines["mesh x 1"]
+        assert abs(mesh.reading - 1.0) < 1.5 * mesh.half_width * mesh.reading
+
+
+def test_a_steady_speed_withholds_nothing() -> None:
+    found, truth, _ = drawn(2.4, 0.0, 5)
+    assert not any(line.withheld for line in found.lines)
+    assert {line.name for line in found.lines} >= set(truth)
