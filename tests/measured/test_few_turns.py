@@ -35,10 +35,10 @@ def drawn(turns: float, wander: float, seed: int) -> tuple[Measurement, dict[str
     return found, truth, (cycles[-1] - cycles[0]) / time[-1]
 
 
-@pytest.mark.parametrize("turns", [4.6, 6.3, 9.1])
+@pytest.mark.parametrize("turns", [4.6, 7.3])
 def test_lines_about_a_followed_one_are_in_their_intervals(turns: float) -> None:
     worst = []
-    for seed in range(4):
+    for seed in range(3):
         found, truth, mesh = drawn(turns, 0.006, seed)
         assert any("lines are read in angle" in one.text for one in found.notices)
         lines = {line.name: line for line in found.lines}
@@ -52,9 +52,9 @@ def test_lines_about_a_followed_one_are_in_their_intervals(turns: float) -> None
     assert max(worst) < 1.8
 
 
-@pytest.mark.parametrize("turns", [1.6, 2.4, 3.3])
+@pytest.mark.parametrize("turns", [1.6, 3.3])
 def test_sidebands_not_told_from_a_speed_that_wanders_are_withheld(turns: float) -> None:
-    for seed in range(3):
+    for seed in range(2):
         found, truth, _ = drawn(turns, 0.006, seed)
         lines = {line.name: line for line in found.lines}
         assert [one.level for one in found.notices if "sidebands are withheld" in one.text] == [

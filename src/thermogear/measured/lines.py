@@ -293,18 +293,17 @@ def channel_lines(
             missed[rank] = single.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
         doubt = turns.doubt if turns else 0.0
-        # a followed line would hold its pairs, one not followed lacks them; an angle that is none
-        # smears all others
+        # with the power in doubt, or without; an angle that is none smears all others
         itself = want.kind == "mesh" and rank == 1
         alone = float(np.sqrt(1.0 - doubt)) if itself else 1.0
         relative += 0.0 if itself else rank**2 * doubt
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         low, high = min(1.0, gain), max(1.0, gain)
-        if turns is not None and turns.turning is not None:
-            low = min(low, alone)
-        else:
+        if turns is not None and turns.lacks:
             high = max(high, 1.0 / alone)
+        else:
+            low = min(low, alone)
         off = 0.0
         if want.kind == "sideband":
             place_error = turns.half_width / turns.frequency * expected if turns else 0.0

@@ -35,6 +35,11 @@ _ALIKE = 1.5  # of the phase's noise
 _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
+_CLEAR = 3  # bins of a line's own lobe, Hann's
+_UNKNOWN = (
+    "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
+    "both"
+)
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -47,7 +52,8 @@ class MeshTurns:
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
-    line that may be others'; ``withheld``: why its sidebands are.
+    line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why its
+    sidebands are.
     """
 
     frequency: float
@@ -60,6 +66,7 @@ class MeshTurns:
     unfollowed: float = 0.0
     spread: float = 0.0
     doubt: float = 0.0
+    lacks: bool = False
     withheld: str = ""
 
     @property
@@ -157,8 +164,7 @@ def _or_steady(
         turns,
         doubt=pairs / (own + pairs),
         half_width=turns.half_width + off,
-        said=f"{turns.said}; the lines beside it may as well be sidebands of a shaft that is not "
-        "known: the intervals hold both",
+        said=f"{turns.said}; {_UNKNOWN}",
     )
 
 
@@ -194,6 +200,7 @@ def _or_sidebands(
     return replace(
         turns,
         doubt=1.0 - own / power,
+        lacks=turns.turning is None,
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
         withheld=why if withheld else "",
@@ -347,7 +354,42 @@ def _follow(
         half_width=best.half_width,
         beside=beside,
     )
-    return _followed(whole, values, per_cycle, orders)
+    found = _followed(whole, values, per_cycle, orders)
+    return found and _with_pairs(found, whole, values, beside)
+
+
+def _with_pairs(
+    turns: MeshTurns, found: Followed, values: Floats, beside: Sequence[float]
+) -> MeshTurns:
+    """A line followed, once more with pairs of lines that turn with it taken away.
+
+    In its angle lines within the filter at equal distances to both sides are sidebands of a shaft
+    that is not known, half of which its phase has taken; an oscillation of its own speed would have
+    gone with the phase.
+    """
+    assert turns.turning is not None
+    per_cycle, frequency = turns.turning.per_cycle, found.frequency
+    straight = line_spectrum(turns.turning.resampled(values, 0), float(per_cycle))
+    width, sides = straight.bin_width, [one / frequency for one in beside]
+    free = [
+        one
+        for one in strong_lines(straight)
+        if _CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
+        and not _is_side(one, sides, width)
+    ]
+    pairs = [one for pair in twins(free, 1.0 / width) for one in pair]
+    if not pairs:
+        return turns
+    orders = [*sides, *(one.place * width for one in pairs)]
+    again = follow_line(
+        values,
+        1.0,
+        frequency=frequency,
+        half_width=found.half_width,
+        beside=[one * frequency for one in orders],
+    )
+    other = _followed(again, values, per_cycle, orders)
+    return other or turns
 
 
 def _followed(

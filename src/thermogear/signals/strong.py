@@ -80,10 +80,10 @@ def strong_lines(spectrum: LineSpectrum, most: int = MOST) -> tuple[Strong, ...]
         if size[peak] <= 6.0 * floor_around(size, peak, lobe=4):
             continue  # a peak of noise: weaker lines may be clear elsewhere
         offset = hann_offset(size[peak - 1 : peak + 2])
-        value = complex(left[peak]) / complex(_hann(np.array([offset]), spectrum.samples)[0])
+        value = complex(left[peak]) / complex(hann_at(np.array([offset]), spectrum.samples)[0])
         low, high = max(0, peak - 60), min(count, peak + 61)
         bins = np.arange(low, high, dtype=np.float64)
-        left[low:high] -= value * _hann((peak + offset) - bins, spectrum.samples)
+        left[low:high] -= value * hann_at((peak + offset) - bins, spectrum.samples)
         size[low:high] = np.abs(left[low:high])
         found.append(Strong(peak + offset, value))
     return tuple(found)
@@ -112,9 +112,3 @@ def _rough_floor(size: Floats, block: int = 128) -> Floats:
     starts = np.arange(0, size.size, block)
     floors = np.array([np.median(size[start : start + block]) for start in starts])
     return np.asarray(np.repeat(floors, block)[: size.size])
-
-
-def _hann(offset: Floats, samples: int) -> Complexes:
-    """What a line of amplitude 1 shows ``offset`` bins below it through the Hann window."""
-    sides = dirichlet(offset - 1.0, samples) + dirichlet(offset + 1.0, samples)
-    return np.asarray(dirichlet(offset, samples) - 0.5 * sides)
