@@ -35,6 +35,7 @@ _ALIKE = 1.5  # of the phase's noise
 _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
+_CLEARLY = 3.0  # times the power of Q
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
@@ -162,9 +163,9 @@ def _or_steady(
     off = abs(turns.frequency - reading.frequency)
     return replace(
         turns,
-        doubt=pairs / (own + pairs),
+        doubt=max(turns.doubt, pairs / (own + pairs)),
         half_width=turns.half_width + off,
-        said=f"{turns.said}; {_UNKNOWN}",
+        said=turns.said if _UNKNOWN in turns.said else f"{turns.said}; {_UNKNOWN}",
     )
 
 
@@ -363,23 +364,27 @@ def _with_pairs(
 ) -> MeshTurns:
     """A line followed, once more with pairs of lines that turn with it taken away.
 
-    In its angle lines within the filter at equal distances to both sides are sidebands of a shaft
-    that is not known, half of which its phase has taken; an oscillation of its own speed would have
-    gone with the phase.
+    In its angle lines within the filter at equal distances to both sides may be sidebands of a
+    shaft that is not known. Its phase has taken what of them would turn it (Q), and left what
+    would change its amplitude (I): then it is followed without them. Of an oscillation of the speed
+    it would have left Q: where there is Q, the intervals hold both.
     """
     assert turns.turning is not None
     per_cycle, frequency = turns.turning.per_cycle, found.frequency
     straight = line_spectrum(turns.turning.resampled(values, 0), float(per_cycle))
     width, sides = straight.bin_width, [one / frequency for one in beside]
+    strong = strong_lines(straight)
+    line = min(strong, key=lambda one: abs(one.place * width - 1.0), default=None)
     free = [
         one
-        for one in strong_lines(straight)
+        for one in strong
         if _CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
         and not _is_side(one, sides, width)
     ]
-    pairs = [one for pair in twins(free, 1.0 / width) for one in pair]
-    if not pairs:
+    both_sides = twins(free, 1.0 / width) if line else []
+    if line is None or not both_sides:
         return turns
+    pairs = [one for pair in both_sides for one in pair]
     orders = [*sides, *(one.place * width for one in pairs)]
     again = follow_line(
         values,
@@ -389,7 +394,20 @@ def _with_pairs(
         beside=[one * frequency for one in orders],
     )
     other = _followed(again, values, per_cycle, orders)
-    return other or turns
+    if other is None:
+        return turns
+    shares = [
+        (above.amplitude / line.amplitude, np.conj(below.amplitude / line.amplitude))
+        for above, below in both_sides
+    ]
+    if all(abs(one + two) ** 2 > _CLEARLY * abs(one - two) ** 2 for one, two in shares):
+        return other
+    return replace(
+        turns,
+        doubt=max(0.0, 1.0 - other.power / max(turns.power, 1e-300)),
+        half_width=turns.half_width + abs(other.frequency - turns.frequency),
+        said=f"{turns.said}; {_UNKNOWN}",
+    )
 
 
 def _followed(
