@@ -7,6 +7,7 @@ from unittest.mock import Mock, patch
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy import signal
 
 from thermogear.measured.evidence import Evidence
 from thermogear.measured.lines import MeasuredLine
@@ -75,3 +76,30 @@ def test_sidebands_of_an_unknown_slower_shaft_or_a_swing_are_both_in_the_interva
             print(f"{name}: {off:.2f} half widths of {100 * line.half_width:.2g} %")
             assert abs(off) < 1.5
     assert abs(lines["mesh x 1"].frequency - MESH) < 1.5 * lines["mesh x 1"].frequency_half_width
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_an_unknown_shaft_does_not_turn_the_path_of_a_line_that_walks(number: int) -> None:
+    """Half of its sidebands went with the phase: the mesh line was 70 half widths too high."""
+    random = np.random.default_rng([20, number])
+    teeth, mesh, rate, seconds = 24, 300.0, 2000.0, 10.0
+    size = int(seconds * rate)
+    walk = np.exp(-1.0 / rate)  # 1 s
+    steps = np.sqrt(1.0 - walk**2) * random.standard_normal(size)
+    speed = mesh * (1.0 + 0.002 * signal.lfilter([1.0], [1.0, -walk], steps))
+    cycles = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) / rate
+    values = 0.01 * random.standard_normal(size)
+    for order, amplitude in ((1.0, 1.0), (1 / teeth, 0.05), (1 / (3 * teeth), 0.15)):
+        for sign in (1.0,) if order == 1.0 else (-1.0, 1.0):
+            place = order if order == 1.0 else 1.0 + sign * order
+            values += amplitude * np.cos(2 * np.pi * place * cycles + random.uniform(0.0, 6.3))
+    record = Record((Channel("a", values, "g"),), "made", rate, "made")
+    with patch("thermogear.measured.gearing.weigh", NONE):
+        found = measure(record, teeth=teeth, sidebands=1, harmonics=1)
+    lines = {line.name: line for line in found.lines}
+    line = lines["mesh x 1"]
+    assert abs(line.reading - 1.0) < 1.5 * line.half_width
+    assert line.half_width < 0.04
+    for sign in "-+":
+        side = lines[f"mesh x 1 {sign} 1 shaft/{teeth}"]
+        assert abs(side.reading - 0.05) < 1.5 * side.half_width * side.reading

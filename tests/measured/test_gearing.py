@@ -13,6 +13,7 @@ from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.meshes import Stated
 
 # main mesh [cycles/sample], then main and second mesh in orders of the first shaft
 TRUTH = {"h30hz0": (0.074385, 32.0, 19.2), "h30hz50": (0.074189, 32.0, 19.2)}
@@ -103,3 +104,16 @@ def test_evidence_is_in_words_with_numbers() -> None:
     said = [numbers(line) for line in gearing.evidence]
     for figures in ([32.0, 1.0], [80.0, 0.4], [19.2, 48.0, 64.0]):
         assert any(set(figures) <= set(row) for row in said), figures
+
+
+def test_a_line_that_was_followed_may_be_a_harmonic() -> None:
+    """Taken for the mesh line it made the shaft turn twice as fast, whatever the weights told."""
+    n = np.arange(40_000)
+    mesh, teeth = 0.05, 27
+    x = 0.01 * np.random.default_rng(8).standard_normal(n.size)
+    by = 1.0 + 0.2 * np.cos(2 * np.pi * mesh / teeth * n)
+    for rank, size in ((1, 0.6), (2, 1.0), (3, 0.2)):
+        x += size * by * np.cos(2 * np.pi * rank * mesh * n + rank)
+    found = find_gearing([x], 2.0 * mesh, Stated(teeth=teeth), followed=0.001)
+    assert found.weighed.mesh == pytest.approx(mesh, rel=1e-3)
+    assert found.mesh_frequency == pytest.approx(mesh, rel=1e-4)
