@@ -34,7 +34,7 @@ from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line
 from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.quality import phase_jumps
+from thermogear.signals.quality import phase_jumps, phase_step
 from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
@@ -389,9 +389,13 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     values, spectrum = clearest(through.table, gearing.mesh_frequency)
     piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
     jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
+    around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
+    known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
+    if not jumps and known:
+        step = phase_step(values, gearing.mesh_frequency, sorted(known))
+        jumps, around = ([], around) if step is None else ([step[0]], 2 * step[1])
     if not jumps or _beats(spectrum, gearing.mesh_frequency):
         return False
-    around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
     edges = [-around, *jumps, values.size + around]
     first, stop = max(
         ((a + around, b - around) for a, b in pairwise(edges)), key=lambda pair: pair[1] - pair[0]
