@@ -36,6 +36,8 @@ _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
 _CLEARLY = 3.0  # times the power of Q
+_ALONE = 10.0  # times the power of I
+_SEEN = 2.0  # times the noise
 _CLEAR = 3  # bins of a line's own lobe, Hann's
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
@@ -175,38 +177,59 @@ def _or_sidebands(
     """A line over few turns of a shaft, whose sidebands are ``nearest``.
 
     A speed that wanders puts power where the sidebands are, and what they hold turns the line's
-    phase. All power near the line that a steady one has not may be the one or the other's: half of
-    it may turn the line at both ends. Where the line was followed, or sidebands are less than two
-    bins off, they are withheld.
+    phase. Where the line was followed, all power near it that a steady one has not may be the one
+    or the other's, and half of it may turn the line at both ends. Where it was not, that which
+    turns it may be its own if hardly anything changes its amplitude: sidebands would do both.
+    Sidebands of a line that was followed, or less than two bins off, are withheld.
     """
     width, frequency = spectrum.bin_width, reading.frequency
     own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
     near = AS_FAR * nearest + 2.0 * width
-    power = max(band_power(spectrum, frequency, near), own)
     if own <= 0.0:
         return turns
-    others = power / own - 1.0
     why = (
         f"the record holds {nearest / width:.2g} turns of the shaft: below {_FEW:g} its sidebands "
         "are not told from a speed that wanders"
     )
-    if turns.turning is not None:
+    if turns.turning is None:
+        others = _turning_alone(values, reading, place=frequency / width, most=int(near / width))
+        turned, doubt = 2.0 * others, others / (1.0 + others)
+    else:
+        power = max(band_power(spectrum, frequency, near), own)
         per_cycle = turns.turning.per_cycle
         straight = line_spectrum(turns.turning.resampled(values, 0), float(per_cycle))
         sides = band_power(straight, 1.0, near / frequency)
-        others = max(0.0, sides / max(turns.power, 1e-300) - 1.0)
+        turned = max(0.0, sides / max(turns.power, 1e-300) - 1.0)
+        doubt = 1.0 - own / power
         why = f"the speed wanders, and {why}"
     withheld = turns.turning is not None or nearest < 2.0 * width
-    spread = float(np.sqrt(others)) / np.pi * width
+    # a phase that oscillates by sqrt(turned) [rad] may be at any place at both ends
+    spread = float(np.sqrt(turned)) / np.pi * width
     return replace(
         turns,
-        doubt=1.0 - own / power,
+        doubt=doubt,
         lacks=turns.turning is None,
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
         withheld=why if withheld else "",
         said=turns.said if withheld else "; ".join(one for one in (turns.said, why) if one),
     )
+
+
+def _turning_alone(values: Floats, reading: Reading, *, place: float, most: int) -> float:
+    """Power up to ``most`` bins beside a line at ``place`` that turns it, of its own; 0 where a
+    tenth of it or more changes its amplitude, or noise may make it."""
+    at = place + np.arange(-most, most + 1)
+    steps = np.arange(values.size) / values.size
+    found = np.array([np.vdot(np.exp(2j * np.pi * one * steps), values) for one in at])
+    found *= 2.0 / values.size * np.exp(-1j * np.angle(found[most]))
+    above, below = found[most + 1 :], np.conj(found[:most][::-1])
+    noise = most * reading.noise**2
+    even = max(float(np.sum(np.abs(above + below) ** 2)) / 2.0 - noise, 0.0)
+    odd = float(np.sum(np.abs(above - below) ** 2)) / 2.0 - noise
+    if odd < _ALONE * even or odd < _SEEN * noise:
+        return 0.0
+    return odd / float(np.abs(found[most])) ** 2
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> str:
