@@ -14,7 +14,7 @@ BENCH_STAMP := .bench-venv/.installed
 AUDIT_BIN := .audit-venv/bin
 AUDIT_STAMP := .audit-venv/.installed
 
-.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
+.PHONY: audit bench bench-coordinates bench-geared bench-measure bench-paths bench-shafts bench-train-map check chromium clean compile demo friction-evidence house licences lint lock look mutate same sbom test trial-app trial-attacks trial-branches trial-coverage trial-damage trial-defects trial-experiment trial-heat trial-hostile trial-labels trial-located trial-long trial-pairs trial-public trial-shafts trial-stamps trial-swings trial-teeth trial-trains trial-turning unit
 
 demo: $(STAMP)  ## the main job: the rig's case file to a report
 	$(BIN)/thermogear example rig > .venv/rig.toml
@@ -166,6 +166,9 @@ trial-stamps: $(STAMP)  ## rates of rounded and jittering time stamps: do their 
 
 trial-swings: $(STAMP)  ## records whose speed, phase or load oscillates: do intervals hold? ten minutes; SWINGS=20 for a few; docs/trial_swings.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_swings.py $(SWINGS)
+
+trial-shafts: $(STAMP)  ## few turns of a shaft, an unknown shaft, lost samples: do intervals hold? ten minutes; SHAFTS=20 for a few; docs/trial_shafts.md
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_shafts.py $(SHAFTS)
 
 trial-teeth: $(STAMP)  ## 200 held-back records with known teeth or none, ten minutes; TEETH=20 for a few; docs/trial_teeth.md
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python checks/trial_teeth.py $(TEETH)

@@ -96,10 +96,10 @@ def find_gearing(
     if near is not None and followed > 0.0:
         peaks = peaks.without_skirts(near, followed)
     weighed = weigh(peaks, stated)
-    multiple = near / weighed.mesh if near is not None and weighed.mesh else 1.0
-    if followed > 0.0:  # the line that was followed may be a harmonic
-        multiple /= max(1.0, float(np.rint(multiple)))
-    if weighed.mesh_weight >= _LIKELY and abs(multiple - 1.0) < 0.03:
+    rank = near / weighed.mesh if near is not None and weighed.mesh else 1.0
+    # a line that was followed may be a harmonic
+    ranks = range(1, _HARMONICS + 1) if followed > 0.0 else (1,)
+    if weighed.mesh_weight >= _LIKELY and any(abs(rank - one) < 0.03 for one in ranks):
         likely = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
         # harmonics alone make no mesh line while teeth are undecided: it must be seen itself
         if weighed.teeth or likely.heights[0] > _STANDS:

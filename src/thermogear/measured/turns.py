@@ -182,26 +182,22 @@ def _or_sidebands(
     turns it may be its own if hardly anything changes its amplitude: sidebands would do both.
     Sidebands of a line that was followed, or less than two bins off, are withheld.
     """
-    width, frequency = spectrum.bin_width, reading.frequency
-    own = reading.amplitude**2 / (1.0 + reading.changing**2 + reading.turning**2)
-    near = AS_FAR * nearest + 2.0 * width
-    if own <= 0.0:
-        return turns
+    width, most = spectrum.bin_width, int(AS_FAR * nearest / spectrum.bin_width + 2.0)
     why = (
         f"the record holds {nearest / width:.2g} turns of the shaft: below {_FEW:g} its sidebands "
         "are not told from a speed that wanders"
     )
-    if turns.turning is None:
-        others = _turning_alone(values, reading, place=frequency / width, most=int(near / width))
-        turned, doubt = 2.0 * others, others / (1.0 + others)
-    else:
-        power = max(band_power(spectrum, frequency, near), own)
-        per_cycle = turns.turning.per_cycle
-        straight = line_spectrum(turns.turning.resampled(values, 0), float(per_cycle))
-        sides = band_power(straight, 1.0, near / frequency)
-        turned = max(0.0, sides / max(turns.power, 1e-300) - 1.0)
-        doubt = 1.0 - own / power
+    own, even, odd = _around(values, reading.frequency / width, most, noise=reading.noise)
+    doubt, turned = 0.0, 0.0
+    if turns.turning is not None:
+        doubt = (even + odd) / (own + even + odd)
+        straight = turns.turning.resampled(values, 0)
+        place = straight.size / turns.turning.per_cycle
+        own, even, odd = _around(straight, place, most, noise=reading.noise)
+        turned = (even + odd) / own
         why = f"the speed wanders, and {why}"
+    elif odd > max(_ALONE * even, _SEEN * most * reading.noise**2):
+        doubt, turned = odd / (own + odd), 2.0 * odd / own
     withheld = turns.turning is not None or nearest < 2.0 * width
     # a phase that oscillates by sqrt(turned) [rad] may be at any place at both ends
     spread = float(np.sqrt(turned)) / np.pi * width
@@ -216,20 +212,18 @@ def _or_sidebands(
     )
 
 
-def _turning_alone(values: Floats, reading: Reading, *, place: float, most: int) -> float:
-    """Power up to ``most`` bins beside a line at ``place`` that turns it, of its own; 0 where a
-    tenth of it or more changes its amplitude, or noise may make it."""
+def _around(values: Floats, place: float, most: int, *, noise: float) -> tuple[float, float, float]:
+    """Power of a line at ``place`` [bins], and beyond ``noise`` of a bin what up to ``most`` bins
+    beside it changes its amplitude (I), and what turns it (Q)."""
     at = place + np.arange(-most, most + 1)
     steps = np.arange(values.size) / values.size
     found = np.array([np.vdot(np.exp(2j * np.pi * one * steps), values) for one in at])
     found *= 2.0 / values.size * np.exp(-1j * np.angle(found[most]))
     above, below = found[most + 1 :], np.conj(found[:most][::-1])
-    noise = most * reading.noise**2
-    even = max(float(np.sum(np.abs(above + below) ** 2)) / 2.0 - noise, 0.0)
-    odd = float(np.sum(np.abs(above - below) ** 2)) / 2.0 - noise
-    if odd < _ALONE * even or odd < _SEEN * noise:
-        return 0.0
-    return odd / float(np.abs(found[most])) ** 2
+    even, odd = (float(np.sum(np.abs(above + sign * below) ** 2)) / 2.0 for sign in (1, -1))
+    level = most * noise**2
+    own = max(float(np.abs(found[most])) ** 2, 1e-300)
+    return own, max(even - level, 0.0), max(odd - level, 0.0)
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> str:

@@ -137,10 +137,9 @@ def follow_line(
     caught a filter of half the width follows it (not narrower than the first of WIDTHS). Lines
     ``beside`` that turn with it, sidebands, are taken away by the cycles found, and it is followed
     anew, until the path stays (sidebands eight turns off over the record and more do not turn it
-    again); that filter is at most as
-    wide as the nearest is off, so that its zeros are where sidebands are. The mean frequency is
-    (cycles at the last sample - cycles at the first)/(time between). Its error is seen where the
-    record is cut inside, by the phase there from each side.
+    again); that filter is at most as wide as the nearest is off, so that its zeros are where
+    sidebands are. The mean frequency is (cycles at the last sample - cycles at the first)/(time
+    between). Its error is seen where the record is cut inside, by the phase there from each side.
     With ``cut`` False this is left out, the error is that of half a turn.
 
     ``x`` [any unit] one channel; ``rate`` and all frequencies in one unit. Range: the
@@ -293,14 +292,15 @@ def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Fl
     apart = apart[(apart == 0.0) | (np.abs(apart) > _SAME)]
     window = np.hanning(count)
     line = np.exp(2j * np.pi * cycles)
-    turns = [line * np.exp(2j * np.pi * away / turned * cycles) for away in apart]
-    sums = np.array([2.0 * np.vdot(one, window * values) for one in turns]) / np.sum(window)
+    still = 2.0 / np.sum(window) * window * values * np.conj(line)
+    turn = 2j * np.pi / turned * cycles
+    sums = np.array([np.sum(still * np.exp(-away * turn)) for away in apart])
     shared = hann_at(apart[None, :] - apart[:, None], count)
     found = np.linalg.lstsq(shared, sums, rcond=_LEAST)[0]
-    total = np.zeros(count)
-    for one, size in zip(turns[1:], found[1:], strict=True):
-        total += np.real(size * one)
-    return total
+    total = np.zeros(count, dtype=complex)
+    for away, size in zip(apart[1:], found[1:], strict=True):
+        total += size * np.exp(away * turn)
+    return np.asarray(np.real(total * line))
 
 
 def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple[float, float]:

@@ -1,0 +1,37 @@
+"""A few records of the trial of few turns, unknown shafts and lost samples; `make trial-shafts`."""
+
+from __future__ import annotations
+
+from unittest.mock import Mock
+
+import numpy as np
+import pytest
+from scripts import script
+
+from thermogear.measured.evidence import Evidence
+
+TRIAL = script("trial_shafts")
+
+
+@pytest.mark.parametrize("sort", range(len(TRIAL.SORTS)), ids=TRIAL.SORTS)
+def test_intervals_hold(sort: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))
+    )
+    rows = [TRIAL.run((sort, 1000 + number)) for number in range(3)]
+    off = {name: np.abs([one for row in rows for one in row.errors[name]]) for name in TRIAL.LINES}
+    print(TRIAL.SORTS[sort], {name: np.round(all_, 2).tolist() for name, all_ in off.items()})
+    assert not any(row.refused for row in rows)
+    assert off["mesh line"].size == 6
+    assert np.mean(off["mesh line"] <= 1.0) >= 5 / 6
+    assert max(one.max() for one in off.values() if one.size) < 3.0
+    if TRIAL.SORTS[sort] == "none lost, speed changes":
+        assert not any(row.lost for row in rows)
+
+
+def test_the_page_tells_every_sort() -> None:
+    rows = [
+        TRIAL.Row(sort, 5.0, {name: [0.5] for name in TRIAL.LINES}, "", 0, False, 1.0, "")
+        for sort in TRIAL.SORTS
+    ]
+    assert [line.split(" | ")[0][2:] for line in TRIAL.table(rows)[2:8]] == list(TRIAL.SORTS)
