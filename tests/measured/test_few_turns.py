@@ -13,7 +13,9 @@ RATE = 4000.0
 TEETH = 64
 
 
-def drawn(turns: float, wander: float, seed: int) -> tuple[Measurement, dict[str, float], float]:
+def drawn(
+    turns: float, wander: float, seed: int, orders: tuple[float, ...] = ()
+) -> tuple[Measurement, dict[str, float], float]:
     """A record of so many ``turns``, whose speed moves as half a sine; true lines, mean mesh."""
     random = np.random.default_rng([seed, round(10 * turns)])
     mesh = random.uniform(300.0, 600.0)
@@ -30,7 +32,12 @@ def drawn(turns: float, wander: float, seed: int) -> tuple[Measurement, dict[str
     record = Record((Channel("a", values, "m/s^2"),), "made", RATE, "made")
     with patch("thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))):
         found = measure(
-            record, teeth=TEETH, speed=2.0 * np.pi * mesh / TEETH, sidebands=1, harmonics=1
+            record,
+            teeth=TEETH,
+            speed=2.0 * np.pi * mesh / TEETH,
+            sidebands=0 if orders else 1,
+            harmonics=1,
+            orders=orders,
         )
     return found, truth, (cycles[-1] - cycles[0]) / time[-1]
 
@@ -57,11 +64,9 @@ def test_sidebands_not_told_from_a_speed_that_wanders_are_withheld(turns: float)
     for seed in range(2):
         found, truth, _ = drawn(turns, 0.006, seed)
         lines = {line.name: line for line in found.lines}
-        assert [one.level for one in found.notices if "sidebands are withheld" in one.text] == [
-            "important"
-        ]
+        assert [one.level for one in found.notices if "are withheld: " in one.text] == ["important"]
         for name in truth:
-            assert ("turns of the shaft" in lines[name].withheld) == ("shaft/" in name)
+            assert ("of the slowest shaft" in lines[name].withheld) == ("shaft/" in name)
             assert np.isnan(lines[name].reading) == ("shaft/" in name)
         mesh = lines["mesh x 1"]
         assert abs(mesh.reading - 1.0) < 1.5 * mesh.half_width * mesh.reading
@@ -71,3 +76,9 @@ def test_a_steady_speed_withholds_nothing() -> None:
     found, truth, _ = drawn(2.4, 0.0, 5)
     assert not any(line.withheld for line in found.lines)
     assert {line.name for line in found.lines} >= set(truth)
+
+
+def test_a_line_asked_for_where_sidebands_are_withheld_is_too() -> None:
+    found, _, _ = drawn(2.3, 0.006, 1, orders=(TEETH - 1.0, TEETH + 1.0, 0.5 * TEETH))
+    withheld = {round(line.order): bool(line.withheld) for line in found.lines}
+    assert withheld == {TEETH: False, TEETH - 1: True, TEETH + 1: True, TEETH // 2: False}

@@ -103,3 +103,19 @@ def test_an_unknown_shaft_does_not_turn_the_path_of_a_line_that_walks(number: in
     for sign in "-+":
         side = lines[f"mesh x 1 {sign} 1 shaft/{teeth}"]
         assert abs(side.reading - 0.05) < 1.5 * side.half_width * side.reading
+
+
+@pytest.mark.parametrize("bins", [1.2, 1.6, 1.8, 2.0, 2.6])
+def test_a_line_next_to_a_sideband_is_no_change_of_the_mesh_line(bins: float) -> None:
+    """It was read with it: the mesh line was up to 25 half widths too high."""
+    random = np.random.default_rng([21, round(10 * bins)])
+    t = np.arange(20 * TEETH * int(RATE / MESH)) / RATE
+    x = 0.01 * random.standard_normal(t.size) + np.cos(2 * np.pi * MESH * t)
+    shaft = MESH / TEETH
+    for away in (shaft, shaft + bins * RATE / t.size):
+        for side in (-1, 1):
+            turn = 2 * np.pi * (MESH + side * away) * t
+            x += 0.1 * np.cos(turn + random.uniform(0.0, 6.3))
+    line = lines_of(x)["mesh x 1"]
+    print(f"{bins} bins: {(line.reading - 1.0) / line.half_width:.2f} of {line.half_width:.4f}")
+    assert abs(line.reading - 1.0) < 1.5 * line.half_width

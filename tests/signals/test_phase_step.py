@@ -67,6 +67,16 @@ def test_a_step_is_seen_where_samples_are_lost_and_nowhere_else(kind: str) -> No
         assert seen == 0
 
 
+@pytest.mark.parametrize("teeth", [(17.0, 34.0, 51.0), (40.0, 80.0, 160.0), (20.0, 40.0)])
+def test_shafts_in_whole_ratios_turn_the_phase_alike(teeth: tuple[float, ...]) -> None:
+    """Their waves are the same: a step's error was no number."""
+    random = np.random.default_rng(30)
+    t = np.arange(int(12 * max(teeth) / MESH * RATE)) / RATE
+    for lost in (0, 53):
+        x = mesh_line(random, int(min(teeth)), MESH * (t + (t > 0.5 * t[-1]) * lost / RATE))
+        assert (phase_step(x, MESH / RATE, teeth) is not None) == (lost > 0)
+
+
 def test_lost_samples_are_told_over_eight_turns() -> None:
     """Below 24 turns of the shaft they were not: the shaft was up to 67 half widths off."""
     random = np.random.default_rng(29)

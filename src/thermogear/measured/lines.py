@@ -12,7 +12,7 @@ from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.record import Channel, Record
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.turns import MeshTurns, sides_of
 from thermogear.measured.unfollowed import unfollowed
 from thermogear.measured.units import kind_of
@@ -293,10 +293,10 @@ def channel_lines(
             missed[rank] = single.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
         doubt = turns.doubt if turns else 0.0
-        # with the power in doubt, or without; an angle that is none smears all others
+        # with the power in doubt, or without; an angle that is another's smears all others
         itself = want.kind == "mesh" and rank == 1
         alone = float(np.sqrt(1.0 - doubt)) if itself else 1.0
-        relative += 0.0 if itself else rank**2 * doubt
+        relative += rank**2 * doubt if turns and turns.turning and not itself else 0.0
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         low, high = min(1.0, gain), max(1.0, gain)
@@ -325,10 +325,9 @@ def channel_lines(
         own += turned_by(damage, samples=values.size)
         half_width = float(np.hypot(relative, _NORMAL * (sensor_tolerance or 0.0))) + damage
         half_width += 2.0 * record.rate_share + float(jittered(position, record.jitter))
-        doubtful = doubts
-        if want.kind == "sideband" and turns is not None and turns.withheld:
-            whys = doubts.withheld, turns.withheld
-            doubtful = replace(doubts, withheld="; ".join(why for why in whys if why))
+        why = turns.why_withheld(want.position) if turns and want.kind != "mesh" else ""
+        whys = doubts.withheld, why
+        doubtful = replace(doubts, withheld="; ".join(one for one in whys if one))
         found.append(
             doubtful.applied(
                 MeasuredLine(
@@ -359,6 +358,13 @@ def channel_lines(
             )
         )
     return found
+
+
+def told_withheld(lines: Sequence[MeasuredLine], turns: MeshTurns | None) -> list[Notice]:
+    """That lines near the mesh line are withheld, where some are."""
+    if turns is None or not any(turns.withheld and turns.withheld in o.withheld for o in lines):
+        return []
+    return [Notice("important", f"lines near the mesh line are withheld: {turns.withheld}")]
 
 
 def jittered(position: ArrayLike, jitter: float) -> Floats:

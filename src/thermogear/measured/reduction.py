@@ -22,7 +22,14 @@ from thermogear.measured.changing import (
 from thermogear.measured.contradictions import NEAR, of_line, of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
 from thermogear.measured.gearing import Gearing, find_gearing
-from thermogear.measured.lines import Doubts, MeasuredLine, Wanted, channel_lines, wanted_lines
+from thermogear.measured.lines import (
+    Doubts,
+    MeasuredLine,
+    Wanted,
+    channel_lines,
+    told_withheld,
+    wanted_lines,
+)
 from thermogear.measured.meshes import Stated
 from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import SURE, check_rate
@@ -199,7 +206,8 @@ def measure(
             )
         )
     notices += [one.notice for one in through.findings]
-    notices += turns.notices if turns is not None else []
+    if turns is not None and turns.said:
+        notices.append(Notice("info", turns.said))
     rate = record.rate or 1.0
     mesh = (gearing.mesh_frequency if gearing else 0.05) * rate
     wanted = (chain or Chain()).settled(rate=rate, samples=table.shape[-1], mesh=mesh)
@@ -229,6 +237,7 @@ def measure(
                 rate=doubt,
             ),
         )
+    notices += told_withheld(lines, turns)
     lines = [of_velocity(line, record.channel(line.channel)) for line in lines]
     notices += _untold(record, chosen, sensor_tolerance)
     notices += _filtered(wanted, rate, mesh, gearing)

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.record import Notice
-from thermogear.measured.unfollowed import AS_FAR, unfollowed
+from thermogear.measured.unfollowed import AS_FAR, CLEAR, unfollowed
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -21,10 +20,9 @@ from thermogear.signals.following import (
 )
 from thermogear.signals.interval import APART, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
-from thermogear.signals.strong import Strong, strong_lines, twins
+from thermogear.signals.strong import Strong, dirichlet, strong_lines, twins
 
 Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 _STEADY = 0.02  # cycles of wander at the highest line: 0.8 % of its amplitude
 _KEPT = 0.8  # of the power near the mesh line that a steady line must explain
@@ -38,7 +36,6 @@ _FEW = 4.0  # turns of a shaft over the record
 _CLEARLY = 3.0  # times the power of Q
 _ALONE = 10.0  # times the power of I
 _SEEN = 2.0  # times the noise
-_CLEAR = 3  # bins of a line's own lobe, Hann's
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
     "both"
@@ -55,8 +52,8 @@ class MeshTurns:
     noise brings to that angle and what of the turning it misses, in the mesh line's own phase;
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
-    line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why its
-    sidebands are.
+    line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why
+    lines nearer to it and its harmonics than ``near`` are.
     """
 
     frequency: float
@@ -71,14 +68,12 @@ class MeshTurns:
     doubt: float = 0.0
     lacks: bool = False
     withheld: str = ""
+    near: float = 0.0
 
-    @property
-    def notices(self) -> list[Notice]:
-        """What a user is told of it."""
-        told = [Notice("info", self.said)] if self.said else []
-        if self.withheld:
-            told.append(Notice("important", f"sidebands are withheld: {self.withheld}"))
-        return told
+    def why_withheld(self, position: float) -> str:
+        """Why a line at this place [cycles/sample], no harmonic itself, is withheld, or ''."""
+        harmonic = max(1.0, float(np.rint(position / self.frequency))) * self.frequency
+        return self.withheld if abs(position - harmonic) < self.near else ""
 
 
 def mesh_turns(
@@ -108,7 +103,7 @@ def mesh_turns(
     few = nearest < _FEW * spectrum.bin_width
     if turns is not None:
         if few:
-            return _or_sidebands(turns, values, spectrum, reading, nearest)
+            return _or_sidebands(turns, values, spectrum, reading, strong, nearest)
         return _or_steady(turns, spectrum, reading, beside, strong)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
@@ -130,7 +125,7 @@ def mesh_turns(
         unfollowed=share,
         spread=spread,
     )
-    return _or_sidebands(steady, values, spectrum, reading, nearest) if few else steady
+    return _or_sidebands(steady, values, spectrum, reading, strong, nearest) if few else steady
 
 
 def _or_steady(
@@ -172,7 +167,12 @@ def _or_steady(
 
 
 def _or_sidebands(
-    turns: MeshTurns, values: Floats, spectrum: LineSpectrum, reading: Reading, nearest: float
+    turns: MeshTurns,
+    values: Floats,
+    spectrum: LineSpectrum,
+    reading: Reading,
+    strong: Sequence[Strong],
+    nearest: float,
 ) -> MeshTurns:
     """A line over few turns of a shaft, whose sidebands are ``nearest``.
 
@@ -180,45 +180,57 @@ def _or_sidebands(
     phase. Where the line was followed, all power near it that a steady one has not may be the one
     or the other's, and half of it may turn the line at both ends. Where it was not, that which
     turns it may be its own if hardly anything changes its amplitude: sidebands would do both.
-    Sidebands of a line that was followed, or less than two bins off, are withheld.
+    Lines beside one that was followed, or less than two bins off, are withheld.
     """
     width, most = spectrum.bin_width, int(AS_FAR * nearest / spectrum.bin_width + 2.0)
     why = (
-        f"the record holds {nearest / width:.2g} turns of the shaft: below {_FEW:g} its sidebands "
-        "are not told from a speed that wanders"
+        f"the record holds {nearest / width:.2g} turns of the slowest shaft: below {_FEW:g} its "
+        "sidebands are not told from a speed that wanders"
     )
-    own, even, odd = _around(values, reading.frequency / width, most, noise=reading.noise)
-    doubt, turned = 0.0, 0.0
+    place = reading.frequency / width
+    own, even, odd = _around(values, place, most, strong=strong, noise=reading.noise)
+    doubt, turned, near = 0.0, 0.0, 2.0 * width
     if turns.turning is not None:
-        doubt = (even + odd) / (own + even + odd)
+        doubt, near = (even + odd) / (own + even + odd), AS_FAR * nearest + near
         straight = turns.turning.resampled(values, 0)
-        place = straight.size / turns.turning.per_cycle
-        own, even, odd = _around(straight, place, most, noise=reading.noise)
+        per_cycle = turns.turning.per_cycle
+        strong, place = strong_lines(line_spectrum(straight, 1.0)), straight.size / per_cycle
+        own, even, odd = _around(straight, place, most, strong=strong, noise=reading.noise)
         turned = (even + odd) / own
         why = f"the speed wanders, and {why}"
     elif odd > max(_ALONE * even, _SEEN * most * reading.noise**2):
         doubt, turned = odd / (own + odd), 2.0 * odd / own
-    withheld = turns.turning is not None or nearest < 2.0 * width
     # a phase that oscillates by sqrt(turned) [rad] may be at any place at both ends
     spread = float(np.sqrt(turned)) / np.pi * width
+    told = turns.turning is not None or nearest < near
     return replace(
         turns,
-        doubt=doubt,
+        doubt=max(turns.doubt, doubt),
         lacks=turns.turning is None,
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
-        withheld=why if withheld else "",
-        said=turns.said if withheld else "; ".join(one for one in (turns.said, why) if one),
+        withheld=why,
+        near=near,
+        said=turns.said if told else "; ".join(one for one in (turns.said, why) if one),
     )
 
 
-def _around(values: Floats, place: float, most: int, *, noise: float) -> tuple[float, float, float]:
+def _around(
+    values: Floats, place: float, most: int, *, strong: Sequence[Strong], noise: float
+) -> tuple[float, float, float]:
     """Power of a line at ``place`` [bins], and beyond ``noise`` of a bin what up to ``most`` bins
-    beside it changes its amplitude (I), and what turns it (Q)."""
-    at = place + np.arange(-most, most + 1)
-    steps = np.arange(values.size) / values.size
+    beside it changes its amplitude (I), and what turns it (Q). ``strong`` lines farther off are
+    taken away."""
+    count = values.size
+    at = np.asarray(place + np.arange(-most, most + 1), dtype=float)
+    steps = np.arange(count) / count
     found = np.array([np.vdot(np.exp(2j * np.pi * one * steps), values) for one in at])
-    found *= 2.0 / values.size * np.exp(-1j * np.angle(found[most]))
+    found *= 2.0 / count
+    for one in strong:
+        if abs(one.place - place) > most + CLEAR:
+            found -= one.amplitude * dirichlet(np.asarray(one.place - at), count)
+            found -= np.conj(one.amplitude) * dirichlet(np.asarray(-one.place - at), count)
+    found *= np.exp(-1j * np.angle(found[most]))
     above, below = found[most + 1 :], np.conj(found[:most][::-1])
     even, odd = (float(np.sum(np.abs(above + sign * below) ** 2)) / 2.0 for sign in (1, -1))
     level = most * noise**2
@@ -395,7 +407,7 @@ def _with_pairs(
     free = [
         one
         for one in strong
-        if _CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
+        if CLEAR * width < abs(one.place * width - 1.0) < found.last / frequency
         and not _is_side(one, sides, width)
     ]
     both_sides = twins(free, 1.0 / width) if line else []

@@ -16,7 +16,8 @@ Complexes = NDArray[np.complex128]
 
 AS_FAR = 3.0
 """Times the distance of the first sidebands, up to which is looked."""
-_CLEAR = 3  # bins of a line's own lobe, Hann's
+CLEAR = 3
+"""Bins of a line's own lobe, Hann's window."""
 _HANN = 1.5  # bins, noise bandwidth
 _SUM = 50  # bins of the sum that is the transform at a line's own place
 _SEEN = 2.0  # times the noise of a lobe in Q: three of its standard deviations
@@ -41,20 +42,20 @@ def unfollowed(
     apart = np.abs(np.asarray(beside) - reading.frequency) / width
     first = float(apart.min(initial=np.inf))
     reach = min(AS_FAR * first, middle - 1, spectrum.hann.size - 1 - middle)
-    away = np.arange(_CLEAR, max(int(reach), _CLEAR) + 1)
-    if own <= 0.0 or not beside or away.size < _CLEAR:
+    away = np.arange(CLEAR, max(int(reach), CLEAR) + 1)
+    if own <= 0.0 or not beside or away.size < CLEAR:
         return 0.0, 0.0
     above, below, steady = _beside_place(spectrum, reading.frequency / width, int(away[-1]))
-    sides = np.abs(above[_CLEAR - 1 :]), np.abs(below[_CLEAR - 1 :])
+    sides = np.abs(above[CLEAR - 1 :]), np.abs(below[CLEAR - 1 :])
     level = float(np.median(np.concatenate(sides) ** 2)) / float(np.log(2.0))
     level = max(level, reading.noise**2)
     # own sidebands at both sides are left out
     steps = np.arange(1, above.size + 1)
     off = np.abs(steps - np.rint(steps / first) * first)
     off = np.minimum(off, np.abs(steps[:, None] - apart).min(axis=-1))
-    lobe = np.ones(2 * _CLEAR - 1)
+    lobe = np.ones(2 * CLEAR - 1)
     up, down, odd = (
-        np.convolve(np.where(off < _CLEAR, 0.0, np.abs(one) ** 2), lobe, mode="same")
+        np.convolve(np.where(off < CLEAR, 0.0, np.abs(one) ** 2), lobe, mode="same")
         for one in (above, below, (above - below) / np.sqrt(2.0))
     )
     up, down = up[away - 1], down[away - 1]
@@ -91,7 +92,7 @@ def _next_to_sides(strong: Sequence[Strong], place: float, first: float) -> tupl
     for one, other in twins(strong, place):
         away = one.place - place
         off = abs(away - np.rint(away / first) * first)
-        if away > 0.5 * first and APART < off < _CLEAR:
+        if away > 0.5 * first and APART < off < CLEAR:
             both = abs(one.amplitude) ** 2 + abs(other.amplitude) ** 2
             power += both
             unread += both if off < SIDE or away > REACH else 0.0
@@ -106,7 +107,7 @@ def _beside_place(
     Above it and, conjugate, below, turned by the line's phase: Hann's window, powers that of noise
     in a bin. And the power of the line itself, without a window.
     """
-    reach = most + _CLEAR  # one more for the window
+    reach = most + CLEAR  # one more for the window
     middle = round(place)
     bins = np.arange(middle - reach - _SUM, middle + reach + _SUM + 1)
     inside = (bins >= 0) & (bins < spectrum.lines.size)
@@ -129,6 +130,6 @@ def _highest(power: Floats, away: NDArray[np.int64]) -> dict[int, float]:
     for place in np.argsort(-power):
         if power[place] <= 0.0:
             break
-        if all(abs(away[place] - other) >= 2 * _CLEAR - 1 for other in found):
+        if all(abs(away[place] - other) >= 2 * CLEAR - 1 for other in found):
             found[int(away[place])] = float(power[place])
     return found

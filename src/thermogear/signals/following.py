@@ -32,6 +32,7 @@ _HALF = 0.5  # of a turn
 _NEAR = 8.0  # turns over the record: a sideband nearer than this turns the path that is found
 _SAME = 0.5  # turns
 _ROUNDS = 40
+_FEWER = 5
 _ALIKE = 1e-4  # cycles
 _LEAST = 1e-3  # of the largest: lines too near to each other share what they hold
 
@@ -136,11 +137,13 @@ def follow_line(
     left is smoothed again, so that neither a ramp nor a cut kernel shifts the phase. Once it is
     caught a filter of half the width follows it (not narrower than the first of WIDTHS). Lines
     ``beside`` that turn with it, sidebands, are taken away by the cycles found, and it is followed
-    anew, until the path stays (sidebands eight turns off over the record and more do not turn it
-    again); that filter is at most as wide as the nearest is off, so that its zeros are where
-    sidebands are. The mean frequency is (cycles at the last sample - cycles at the first)/(time
-    between). Its error is seen where the record is cut inside, by the phase there from each side.
-    With ``cut`` False this is left out, the error is that of half a turn.
+    anew, until the path stays or forty times (sidebands eight turns off over the record and more do
+    not turn it again); that filter is at most as wide as the nearest is off, so that its zeros are
+    where sidebands are. The mean frequency is (cycles at the last sample - cycles at the
+    first)/(time between). Its error is seen where the record is cut inside, by the phase there from
+    each side.
+    With ``cut`` False this is left out, the error is that of half a turn, and it is followed anew
+    five times at most.
 
     ``x`` [any unit] one channel; ``rate`` and all frequencies in one unit. Range: the
     line outweighs the noise within the filter, and no line of half its height is there; where
@@ -166,7 +169,7 @@ def follow_line(
     if beside:
         ratios = [one / frequency for one in beside if 0.0 < one < 0.5 * per_second]
         near = widest / per_second * count < _NEAR
-        for _ in range(_ROUNDS if near else 1):
+        for _ in range((_ROUNDS if cut else _FEWER) if near else 1):
             before = cycles
             values = record - _turning_with(record, cycles, ratios)
             cycles, whole = _path(values, frequency / per_second, length, last=last)

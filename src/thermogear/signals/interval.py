@@ -38,7 +38,7 @@ SIDE = 2.0
 """Bins: a strong line nearer than this to where one is known is that line."""
 _HIDDEN = 12.0  # times the power of noise in a bin
 _TOUCH = 4  # bins about a strong line that its own changes fill
-_BESIDE = 1.5  # bins
+_BESIDE = SIDE + 0.5
 _HIGHER = 1.5
 _MUCH_HIGHER = 4.0
 _LEAST_REACH = 4  # bins
@@ -56,10 +56,10 @@ class Reading:
     ``half_width`` and ``frequency_half_width``: of the 95 % interval, Student's t. ``changing`` and
     ``turning``: rms of the amplitude's change (relative) and of the phase's [rad] beyond noise;
     ``neighbours``: frequencies of lines fitted beside it; ``beside``: what they, and ``pairs``:
-    what further lines at equal distances to both sides, up to REACH bins, add to its mean
-    square as its parts, what they share over the record included; ``noise``: rms amplitude that
-    noise brings to one bin; ``explained`` is False where more is left over than noise and
-    a changing amplitude or phase can be.
+    what further lines at equal distances to both sides, up to REACH bins, and what stands next to
+    known lines, add to its mean square as its parts, what they share over the record included;
+    ``noise``: rms amplitude that noise brings to one bin; ``explained`` is False where more is left
+    over than noise and a changing amplitude or phase can be.
     """
 
     amplitude: float

@@ -365,15 +365,15 @@ def _one_step(phase: Floats, waves: Sequence[Floats] = ()) -> int | None:
     for cut in range(3, count - 3):
         kept = place != cut
         columns = np.column_stack([np.ones(count), place - cut, place > cut, *waves])[kept]
-        fit = np.linalg.lstsq(columns, phase[kept])[0]
+        # of shafts in whole ratios some waves are the same
+        fit, _, rank, _ = np.linalg.lstsq(columns, phase[kept])
         rest = phase[kept] - columns @ fit
         power = float(rest @ rest)
         if power <= 0.0 or (best is not None and power >= best[0]):
             continue
         best = power, cut
-        error = np.sqrt(
-            power / (rest.size - columns.shape[1]) * np.linalg.inv(columns.T @ columns)[2, 2]
-        )
+        spread = np.linalg.pinv(columns.T @ columns, hermitian=True)[2, 2]
+        error = np.sqrt(power / (rest.size - rank) * spread)
         step = float(fit[2] - np.rint(fit[2]))
         alike = float(rest[1:] @ rest[:-1]) / power
         # of the pieces beside it; the one at the step is not there
