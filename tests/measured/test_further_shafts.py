@@ -100,8 +100,8 @@ def test_an_unknown_shaft_does_not_turn_the_path_of_a_line_that_walks(number: in
     line = lines["mesh x 1"]
     assert abs(line.reading - 1.0) < 1.5 * line.half_width
     assert line.half_width < 0.04
-    for sign in "-+":
-        side = lines[f"mesh x 1 {sign} 1 shaft/{teeth}"]
+    for mark in "-+":
+        side = lines[f"mesh x 1 {mark} 1 shaft/{teeth}"]
         assert abs(side.reading - 0.05) < 1.5 * side.half_width * side.reading
 
 
