@@ -1,4 +1,4 @@
-"""What stands beside a line that was not followed and may be its own: pairs at equal distances."""
+"""What is beside a line that was not followed and may be its own: pairs at equal distances."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class Reading:
     ``half_width`` and ``frequency_half_width``: of the 95 % interval, Student's t. ``changing`` and
     ``turning``: rms of the amplitude's change (relative) and of the phase's [rad] beyond noise;
     ``neighbours``: frequencies of lines fitted beside it; ``beside``: what they, and ``pairs``:
-    what further lines at equal distances to both sides, up to REACH bins, and what stands next to
+    what further lines at equal distances to both sides, up to REACH bins, and what is next to
     known lines, add to its mean square as its parts, what they share over the record included;
     ``noise``: rms amplitude that noise brings to one bin; ``explained`` is False where more is left
     over than noise and a changing amplitude or phase can be.

@@ -76,7 +76,7 @@ class Left:
 
 
 def without_others(powers: Floats, known: NDArray[np.bool_], noise: float) -> tuple[Floats, float]:
-    """``powers`` of I or Q without what stands out next to ``known`` lines, and how much that is.
+    """``powers`` of I or Q without what rises next to ``known`` lines, and how much that is.
 
     A change has as much there as in the bins about; another line next to a known one shows there
     alone. It counts where in all it is above 25 times the ``noise`` of a bin, hardly by chance.
