@@ -127,7 +127,7 @@ def wanted_lines(
 ) -> list[Wanted]:
     """Harmonics of the mesh line with their sidebands and further meshes, below rate/2.56.
 
-    Sidebands are those of the shafts that are decided, else of ``teeth`` where they are given.
+    Sidebands are those of the shafts that are decided and of ``teeth`` where they are given.
     Without a gearing the highest lines of ``values`` (sample,).
     """
     count = values.size
@@ -144,7 +144,7 @@ def wanted_lines(
                 )
         return found[:harmonics]
     mesh = gearing.mesh_frequency
-    shafts = [shaft.teeth for shaft in gearing.shafts] or ([teeth] if teeth else [])
+    shafts = _known(gearing, teeth)
     found = []
     for rank in range(1, harmonics + 1):
         if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
@@ -169,6 +169,12 @@ def wanted_lines(
     return [w for w in found if bins < w.position < 0.5 - bins]
 
 
+def _known(gearing: Gearing, teeth: int | None) -> list[int]:
+    """Teeth of the shafts that are decided, and those given."""
+    given = [teeth] if teeth else []
+    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
+
+
 def other_lines(
     strong: list[tuple[float, float]],
     gearing: Gearing,
@@ -185,7 +191,7 @@ def other_lines(
     sidebands.
     """
     mesh = gearing.mesh_frequency
-    known = [shaft.teeth for shaft in gearing.shafts] or ([teeth] if teeth else [])
+    known = _known(gearing, teeth)
     shaft = mesh / (known[0] if teeth is None else teeth) if known or teeth else None
     further = [other.order * mesh / gearing.shafts[0].teeth for other in gearing.meshes]
     least = _PROMINENT * max((size for _, size in strong), default=0.0)
