@@ -18,12 +18,12 @@ def test_intervals_hold(sort: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))
     )
-    rows = [TRIAL.run((sort, 1000 + number)) for number in range(3)]
+    rows = [TRIAL.run((sort, 1000 + number)) for number in range(2)]
     off = {name: np.abs([one for row in rows for one in row.errors[name]]) for name in TRIAL.LINES}
     print(TRIAL.SORTS[sort], {name: np.round(all_, 2).tolist() for name, all_ in off.items()})
     assert not any(row.refused for row in rows)
-    assert off["mesh line"].size == 6
-    assert np.mean(off["mesh line"] <= 1.0) >= 5 / 6
+    assert off["mesh line"].size == 4
+    assert np.mean(off["mesh line"] <= 1.0) >= 0.75
     assert max(one.max() for one in off.values() if one.size) < 3.0
     if TRIAL.SORTS[sort] == "none lost, speed changes":
         assert not any(row.lost for row in rows)

@@ -201,11 +201,14 @@ def _envelope(values: Floats, cycles: Floats, length: float) -> tuple[Complexes,
     count = values.size
     kernel = _hann_kernel(length / 4.0)
     turn = np.exp(-2j * np.pi * cycles)
-    weight = signal.oaconvolve(np.ones(count), kernel, mode="same")
-    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="same") / weight
+    base = signal.oaconvolve((values - values.mean()) * turn, kernel, mode="same")
     size = max(64, int(np.ceil(count / length * _FINER)))
     place = np.unique(np.rint(np.linspace(0, count - 1, min(size, count))).astype(np.int64))
-    return base[place], place
+    # of the kernel what is inside the record
+    inside = np.concatenate([[0.0], np.cumsum(kernel)])
+    last = place + kernel.size // 2 + 1
+    weight = inside[np.minimum(last, kernel.size)] - inside[np.maximum(last - count, 0)]
+    return base[place] / weight, place
 
 
 @dataclass(frozen=True)
