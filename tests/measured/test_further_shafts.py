@@ -80,7 +80,7 @@ def test_sidebands_of_an_unknown_slower_shaft_or_a_swing_are_both_in_the_interva
 
 @pytest.mark.parametrize("number", range(4))
 def test_an_unknown_shaft_does_not_turn_the_path_of_a_line_that_walks(number: int) -> None:
-    """Half of its sidebands went with the phase: the mesh line was 70 half widths too high."""
+    """Half of its sidebands went with the phase, and the mesh line was read with them."""
     random = np.random.default_rng([20, number])
     teeth, mesh, rate, seconds = 24, 300.0, 2000.0, 10.0
     size = int(seconds * rate)
@@ -107,7 +107,7 @@ def test_an_unknown_shaft_does_not_turn_the_path_of_a_line_that_walks(number: in
 
 @pytest.mark.parametrize("bins", [1.2, 1.6, 1.8, 2.0, 2.6])
 def test_a_line_next_to_a_sideband_is_no_change_of_the_mesh_line(bins: float) -> None:
-    """It was read with it: the mesh line was up to 25 half widths too high."""
+    """The mesh line was read with it."""
     random = np.random.default_rng([21, round(10 * bins)])
     t = np.arange(20 * TEETH * int(RATE / MESH)) / RATE
     x = 0.01 * random.standard_normal(t.size) + np.cos(2 * np.pi * MESH * t)
