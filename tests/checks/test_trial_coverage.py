@@ -14,7 +14,7 @@ from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure
 from thermogear.measured.turns import mesh_turns
-from thermogear.signals.quality import phase_jumps
+from thermogear.signals.lost import phase_jumps
 
 TRIAL = script("trial_coverage")
 RUNS = 24

@@ -13,7 +13,8 @@ from thermogear.measured.figures import figures
 from thermogear.measured.gate import turned_by
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import Measurement, measure
-from thermogear.signals.quality import damages, filled, phase_jumps
+from thermogear.signals.lost import phase_jumps
+from thermogear.signals.quality import damages, filled
 
 RATE, TEETH, MESH, COUNT = 2560.0, 25, 401.3, 8192
 SPEED = 2.0 * np.pi * MESH / TEETH

@@ -41,7 +41,7 @@ from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line
 from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.quality import phase_jumps, phase_step
+from thermogear.signals.lost import phase_jumps, phase_step
 from thermogear.signals.strong import strong_lines
 from thermogear.signals.windows import Window
 
@@ -400,9 +400,9 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
     around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
     known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
-    if not jumps and known:
+    if len(jumps) < 2 and known:
         step = phase_step(values, gearing.mesh_frequency, sorted(known))
-        jumps, around = ([], around) if step is None else ([step[0]], 2 * step[1])
+        jumps, around = (jumps, around) if step is None else ([step[0]], 2 * step[1])
     if not jumps or _beats(spectrum, gearing.mesh_frequency):
         return False
     edges = [-around, *jumps, values.size + around]

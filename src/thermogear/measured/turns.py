@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import signal
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
@@ -40,6 +41,7 @@ _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
     "both"
 )
+_THIN = 0.25  # cycles a sample, of the line while filters are tried
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -89,7 +91,7 @@ def mesh_turns(
     one where its phase, noise taken away, wanders by less than a fiftieth of a turn at the
     highest of ``harmonics``, and where it explains the power near it.
     """
-    per_cycle = int(2 ** np.ceil(np.log2(1.0 / gearing.mesh_frequency)))
+    per_cycle = samples_per_cycle(gearing.mesh_frequency)
     values, spectrum = clearest(table, gearing.mesh_frequency)
     line = line_in(spectrum, near=gearing.mesh_frequency, half_width=_reach(spectrum, gearing))
     beside = sides_of(gearing, teeth=teeth, rank=1, mesh=line.frequency)
@@ -126,6 +128,11 @@ def mesh_turns(
         spread=spread,
     )
     return _or_sidebands(steady, values, spectrum, reading, strong, nearest) if few else steady
+
+
+def samples_per_cycle(frequency: float) -> int:
+    """Samples in a cycle of its angle, of a line at ``frequency`` [cycles/sample]."""
+    return int(2 ** np.ceil(np.log2(1.0 / frequency)))
 
 
 def _or_steady(
@@ -355,33 +362,35 @@ def _follow(
     """The line followed by the narrowest filter that leaves hardly more of noise and of turning in
     its phase than any; None: then its power is less than ``least``, or it cannot be followed."""
     orders = [one / frequency for one in beside]
-    tried: list[tuple[Followed, MeshTurns]] = []
+    tried: list[tuple[float, Followed, MeshTurns]] = []
+    every = max(1, int(_THIN / frequency))
+    thin = signal.resample_poly(values, 1, every) if every > 1 else values
     for half_width in filter_widths(spectrum, frequency, every=True):
         if spectrum.samples * half_width < 4.0 * spectrum.rate:
             continue
         one = follow_line(
-            values,
-            spectrum.rate,
-            frequency=frequency,
-            half_width=half_width,
-            beside=beside,
+            thin,
+            1.0,
+            frequency=every * frequency,
+            half_width=every * half_width,
+            beside=[every * place for place in beside],
             cut=False,
         )
-        turns = _followed(one, values, per_cycle, orders, trial=True)
+        turns = _followed(one, thin, samples_per_cycle(every * frequency), orders, trial=True)
         if turns is not None:
-            tried.append((one, turns))
-    held = [pair for pair in tried if pair[0].whole] or tried
+            tried.append((half_width, one, turns))
+    held = [one for one in tried if one[1].whole] or tried
     if not held:
         return None
-    bound = _ALIKE * min(turns.phase_noise for _, turns in held)
-    best, turns = next(pair for pair in held if pair[1].phase_noise <= bound)
+    bound = _ALIKE * min(turns.phase_noise for *_, turns in held)
+    half_width, _, turns = next(one for one in held if one[2].phase_noise <= bound)
     if turns.power < least:
         return None
     whole = follow_line(
         values,
         spectrum.rate,
         frequency=frequency,
-        half_width=best.half_width,
+        half_width=half_width,
         beside=beside,
     )
     found = _followed(whole, values, per_cycle, orders)

@@ -34,6 +34,7 @@ _SAME = 0.5  # turns
 _ROUNDS = 40
 _FEWER = 5
 _ALIKE = 1e-4  # cycles
+_EQUAL = 1e-8  # turns
 _LEAST = 1e-3  # of the largest: lines too near to each other share what they hold
 
 
@@ -294,19 +295,33 @@ def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Fl
     at their distance. A line less than half a turn off over the record is taken for the line.
     """
     count, turned = values.size, float(cycles[-1] - cycles[0])
-    apart = np.array([0.0, *((one - 1.0) * turned for one in ratios)])
+    apart = np.array([0.0, *(round((one - 1.0) * turned, 9) for one in ratios)])
     apart = apart[(apart == 0.0) | (np.abs(apart) > _SAME)]
     window = np.hanning(count)
     line = np.exp(2j * np.pi * cycles)
     still = 2.0 / np.sum(window) * window * values * np.conj(line)
-    turn = 2j * np.pi / turned * cycles
-    sums = np.array([np.sum(still * np.exp(-away * turn)) for away in apart])
+    waves = _waves(np.unique(np.abs(apart[1:])), cycles / turned)
+    sums = [
+        np.vdot(waves[away], still) if away > 0.0 else np.dot(waves[-away], still)
+        for away in apart[1:]
+    ]
     shared = hann_at(apart[None, :] - apart[:, None], count)
-    found = np.linalg.lstsq(shared, sums, rcond=_LEAST)[0]
+    found = np.linalg.lstsq(shared, np.array([np.sum(still), *sums]), rcond=_LEAST)[0]
     total = np.zeros(count, dtype=complex)
     for away, size in zip(apart[1:], found[1:], strict=True):
-        total += size * np.exp(away * turn)
+        total += size * (waves[away] if away > 0.0 else np.conj(waves[-away]))
     return np.asarray(np.real(total * line))
+
+
+def _waves(apart: Floats, turned: Floats) -> dict[float, Complexes]:
+    """exp(2 pi i away turned) by ``away``, the lowest first: where it is the sum of two before, the
+    product of theirs."""
+    waves: dict[float, Complexes] = {}
+    for away in map(float, apart):
+        sums = ((one, two) for one in waves for two in waves if abs(one + two - away) < _EQUAL)
+        one, two = next(sums, (0.0, 0.0))
+        waves[away] = waves[one] * waves[two] if one else np.exp(2j * np.pi * away * turned)
+    return waves
 
 
 def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple[float, float]:
