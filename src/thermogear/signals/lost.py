@@ -102,7 +102,7 @@ def _sharp(x: Floats, frequency: float, at: int, cycles: float) -> bool:
             noise = 1.4826 * float(np.median(bends)) / np.sqrt(6.0)
     step, beside = (one - np.rint(one) for one in (step, beside))
     least = max(_SHARP * abs(step), _JUMP)
-    return abs(beside) > least or _HIDDEN * noise > least
+    return bool(abs(beside) > least or _HIDDEN * noise > least)
 
 
 def phase_step(x: Floats, frequency: float, turns: Sequence[float]) -> tuple[int, int] | None:

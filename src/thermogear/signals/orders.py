@@ -148,8 +148,8 @@ def _finer(values: Floats, factor: int) -> Floats:
     pad = [(0, 0)] * (values.ndim - 1) + [(0, min(half - (count - 1), count - 1))]
     longer = np.pad(values, pad, mode="reflect")
     closed = np.concatenate([longer, longer[..., -2:0:-1]], axis=-1)
-    lines = fft.rfft(closed, axis=-1)
-    fine = fft.irfft(lines, n=factor * closed.shape[-1], axis=-1) * factor
+    lines = factor * fft.rfft(closed, axis=-1)
+    fine = fft.irfft(lines, n=factor * closed.shape[-1], axis=-1)
     return np.asarray(fine[..., : factor * (count - 1) + 1])
 
 
