@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from unittest.mock import Mock, patch
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ from record_makers import SHARED, mesh_train, quantised
 from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
+from thermogear.measured.evidence import Evidence
 from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.hypotheses import Gears, Hypothesis
 from thermogear.measured.meshes import Stated
 
 # main mesh [cycles/sample], then main and second mesh in orders of the first shaft
@@ -117,3 +120,17 @@ def test_a_line_that_was_followed_may_be_a_harmonic() -> None:
     found = find_gearing([x], 2.0 * mesh, Stated(teeth=teeth), followed=0.001)
     assert found.weighed.mesh == pytest.approx(mesh, rel=1e-3)
     assert found.mesh_frequency == pytest.approx(mesh, rel=1e-4)
+
+
+@pytest.mark.parametrize(("first", "taken"), [(1.0, 0.05), (0.3, 0.1)])
+def test_an_undecided_mesh_line_is_no_harmonic_of_a_higher_one(first: float, taken: float) -> None:
+    """Twice the mesh line was taken where its weight was 0.6 (3 of 960 drawn records)."""
+    n = np.arange(20_000)
+    x = 0.01 * np.random.default_rng(9).standard_normal(n.size)
+    for rank, size in ((1, first), (2, 0.6)):
+        x += size * np.cos(2 * np.pi * rank * 0.05 * n + rank)
+    gears = Gears(mesh=0.1, level=4.0, teeth=(), sides=(), free=())
+    undecided = Evidence(hypotheses=(Hypothesis(gears=(gears,), evidence=0.4, weight=0.6),))
+    with patch("thermogear.measured.gearing.weigh", Mock(return_value=undecided)):
+        found = find_gearing([x])
+    assert found.mesh_frequency == pytest.approx(taken, rel=1e-4)

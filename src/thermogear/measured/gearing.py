@@ -28,6 +28,7 @@ LONGEST = 1 << 19
 _HARMONICS = 5
 _SAME = 1e-3  # a mesh line's position from two ways of reading it
 _STANDS = float(np.log(3.0))  # over the floor
+_BINS = 1.5  # between a line and its harmonic's place over its rank
 _LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
@@ -70,8 +71,8 @@ def find_gearing(
        (:func:`~thermogear.measured.evidence.weigh`). Teeth are named where nearly all the weight
        has them; else the record leaves them undecided and the alternatives are told.
     2. Mesh line: that of the hypotheses; where they agree on none, or on one that is not seen while
-       teeth are undecided, the peak with the clearest harmonics 1..5 (``near`` [cycles/sample]
-       restricts it to +-3 %).
+       teeth are undecided or is a harmonic of a line as high, the peak with the clearest harmonics
+       1..5 (``near`` [cycles/sample] restricts it to +-3 %).
     3. The phase of that line is the angle: the record is resampled in mesh cycles, where the
        decided shafts' sidebands measure mesh line over shaft line.
     4. A further mesh turns on the second and on a slower shaft: its order is a whole multiple of
@@ -102,7 +103,8 @@ def find_gearing(
     if weighed.mesh_weight >= _LIKELY and any(abs(rank - one) < 0.03 for one in ranks):
         likely = replace(_family(raw, weighed.mesh), mesh=weighed.mesh)
         # harmonics alone make no mesh line while teeth are undecided: it must be seen itself
-        if weighed.teeth or likely.heights[0] > _STANDS:
+        seen = likely.heights[0] > _STANDS and not _is_rank_of(raw, family, likely)
+        if weighed.teeth or seen:
             family = likely
     return _of_family(table, family, weighed, told_as)
 
@@ -115,6 +117,15 @@ class _Family:
     mesh: float
     heights: tuple[float, ...]
     score: float
+
+
+def _is_rank_of(raw: Prominence, family: _Family, likely: _Family) -> bool:
+    """Whether a line is the second or third harmonic of a family that is as high at least: no gear
+    has a shaft's line there."""
+    rank = round(likely.line / family.line)
+    heights = [float(raw.amplitude[round(one.line * raw.per_unit)]) for one in (family, likely)]
+    same = abs(likely.line - rank * family.line) * raw.per_unit < rank * _BINS
+    return rank in (2, 3) and same and heights[0] >= heights[1]
 
 
 def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float) -> Gearing:
