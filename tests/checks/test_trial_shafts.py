@@ -9,6 +9,7 @@ import pytest
 from scripts import script
 
 from thermogear.measured.evidence import Evidence
+from thermogear.signals.lost import phase_jumps
 
 TRIAL = script("trial_shafts")
 
@@ -35,3 +36,12 @@ def test_the_page_tells_every_sort() -> None:
         for sort in TRIAL.SORTS
     ]
     assert [line.split(" | ")[0][2:] for line in TRIAL.table(rows)[2:8]] == list(TRIAL.SORTS)
+
+
+@pytest.mark.parametrize("number", [59, 64, 90, 135])
+def test_a_slower_shaft_that_is_not_known_is_no_loss(number: int) -> None:
+    """It turns the phase of pieces of three turns: these four were told to have lost samples."""
+    made = TRIAL.drawn(np.random.default_rng([TRIAL.SEED, 2, number]), TRIAL.SORTS[2])
+    x = made.values - made.values.mean()
+    pace = made.teeth * made.shaft / TRIAL.RATE
+    assert phase_jumps(x, pace, cycles=3.0 * made.teeth) == []

@@ -216,3 +216,47 @@ def test_sidebands_of_clipped_peaks_are_within_their_intervals() -> None:
             if line.kind in ("mesh", "sideband"):
                 size = true[line.name[:8]] * (1.0 if line.kind == "mesh" else 0.1)
                 assert abs(line.reading - size) <= line.half_width * line.reading
+
+
+@pytest.mark.parametrize("rounded", [0.0, 0.001])
+def test_a_limit_with_noise_behind_it_is_clipping(rounded: float) -> None:
+    """An amplifier that saturates before the converter: no two values at the limit are equal."""
+    random = np.random.default_rng(71)
+    x = channel(3, 4 * COUNT)
+    x = np.minimum(x, np.quantile(x, 0.93)) + 4e-4 * random.normal(size=x.size)
+    x = np.round(x / rounded) * rounded if rounded else x
+    found = measured(x)
+    assert [one.kind.split()[0] for one in found.findings] == ["clipping"]
+    assert found.findings[0].withholds
+    assert found.findings[0].share == pytest.approx(0.07, abs=0.01)
+
+
+def test_peaks_of_undamaged_lines_are_no_limit() -> None:
+    """Sines, peaks as flat as x^4, lines in step with the rate, coarse steps, impacts."""
+    random = np.random.default_rng(72)
+    n = np.arange(COUNT)
+    for pace in (0.2, 0.1, 0.0371, 1 / 12.8, 0.25):
+        turn = 2 * np.pi * pace * n
+        for third in (0.0, -1 / 9, 0.5):
+            for noise in (0.0, 1e-4, 1e-2):
+                x = np.cos(turn) + third * np.cos(3 * turn) + noise * random.normal(size=n.size)
+                for step in (1e-6, 1e-3, 1e-2):
+                    told = damages(np.round(x / step) * step)
+                    assert not any(one.kind == "clipping" and one.count > 1000 for one in told)
+    rings = np.exp(-(n % 300) / 30.0) * np.cos(2 * np.pi * 0.21 * (n % 300))
+    assert damages(rings + 1e-3 * random.normal(size=n.size)) == []
+
+
+@pytest.mark.parametrize("trend", [3.0, 40.0, 1300.0])
+def test_a_trend_changes_no_line(trend: float) -> None:
+    """It was taken away from what lines are read in, but not from what they are found in."""
+    n = np.arange(COUNT)
+    cycles = MESH * n / RATE + 0.4 * np.sin(2 * np.pi * n / COUNT)
+    x = (1.0 + 0.1 * np.cos(2 * np.pi * cycles / TEETH)) * np.cos(2 * np.pi * cycles)
+    x += 0.05 * np.random.default_rng(73).normal(size=COUNT)
+    plain = measured(x)
+    found = measured(x + trend * (n / COUNT + 1.0))
+    for one, other in zip(plain.lines, found.lines, strict=True):
+        assert other.reading == pytest.approx(one.reading, rel=0.1 * one.half_width)
+        assert other.half_width == pytest.approx(one.half_width, rel=0.1)
+        assert other.frequency_half_width == pytest.approx(one.frequency_half_width, rel=0.1)

@@ -17,6 +17,8 @@ from thermogear.measured.evidence import Evidence
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.hypotheses import Gears, Hypothesis
 from thermogear.measured.meshes import Stated
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import measure
 
 # main mesh [cycles/sample], then main and second mesh in orders of the first shaft
 TRUTH = {"h30hz0": (0.074385, 32.0, 19.2), "h30hz50": (0.074189, 32.0, 19.2)}
@@ -134,3 +136,11 @@ def test_an_undecided_mesh_line_is_no_harmonic_of_a_higher_one(first: float, tak
     with patch("thermogear.measured.gearing.weigh", Mock(return_value=undecided)):
         found = find_gearing([x])
     assert found.mesh_frequency == pytest.approx(taken, rel=1e-4)
+
+
+@pytest.mark.parametrize(("turns", "told"), [(6.0, 1), (15.0, 0)])
+def test_few_turns_say_nothing_of_a_larger_mate(turns: float, told: int) -> None:
+    n = np.arange(int(turns * 23 / 0.05))
+    x = 0.01 * np.random.default_rng(10).standard_normal(n.size) + np.cos(2 * np.pi * 0.05 * n)
+    found = measure(Record((Channel("a", x, "g"),), "made", 12_800.0, "made"), teeth=23)
+    assert sum("a larger mate" in one.text for one in found.notices) == told

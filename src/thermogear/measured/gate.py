@@ -329,12 +329,13 @@ def _without_copies(through: Passed) -> Passed:
 
 
 def _proportions(through: Passed) -> None:
-    """Means and trends far larger than what vibrates."""
-    for channel, values in zip(through.channels, through.table, strict=True):
-        moving = float(np.std(without_trend(values)))
-        mean = abs(float(np.mean(values)))
+    """Means, and trends of more than the rms that vibrates, taken away; told where far larger."""
+    for place, (channel, values) in enumerate(zip(through.channels, through.table, strict=True)):
+        straight = without_trend(values)
+        moving = float(np.std(straight))
+        mean = float(np.mean(values))
         span = abs(float(np.polyfit(np.linspace(-0.5, 0.5, values.size), values, 1)[0]))
-        for name, size in (("mean", mean), ("trend", span)):
+        for name, size in (("mean", abs(mean)), ("trend", span)):
             if size > _PROPORTION * moving > 0.0:
                 through.findings.append(
                     Finding(
@@ -344,3 +345,4 @@ def _proportions(through: Passed) -> None:
                         effect="the sensor's range may be used up: see clipping",
                     )
                 )
+        through.table[place] = straight if span > moving else values - mean

@@ -15,6 +15,7 @@ from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence, weigh
 from thermogear.measured.meshes import Stated
 from thermogear.measured.prominence import Prominence, prominence
+from thermogear.measured.record import Notice
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
 from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.orders import line_angle, resample_by_angle
@@ -29,6 +30,7 @@ _HARMONICS = 5
 _SAME = 1e-3  # a mesh line's position from two ways of reading it
 _STANDS = float(np.log(3.0))  # over the floor
 _BINS = 1.5  # between a line and its harmonic's place over its rank
+_MATE = 12.0  # turns of a gear: four of a mate three times as large
 _LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
@@ -109,6 +111,27 @@ def find_gearing(
     return _of_family(table, family, weighed, told_as)
 
 
+def told_of_mate(gearing: Gearing, teeth: int | None, samples: int) -> list[Notice]:
+    """Where one gear alone is known, and a mate of up to three times its teeth would turn fewer
+    than four times in the record: what it changes is told from no line."""
+    known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
+    if len(known) != 1:
+        return []
+    (own,) = known
+    turns = gearing.mesh_frequency * samples / own
+    if turns >= _MATE:
+        return []
+    return [
+        Notice(
+            "warning",
+            f"the record holds {turns:.3g} turns of the gear of {own} teeth, and fewer of a larger "
+            "mate, which is not known: below four of them its sidebands are no lines of their own, "
+            "and the half widths of the mesh lines do not hold what they change (record "
+            f"{_MATE / turns:.2g} times as long)",
+        )
+    ]
+
+
 @dataclass(frozen=True)
 class _Family:
     """A line and its harmonics: ``heights`` their log prominences, ``score`` the mean."""
@@ -120,8 +143,8 @@ class _Family:
 
 
 def _is_rank_of(raw: Prominence, family: _Family, likely: _Family) -> bool:
-    """Whether a line is the second or third harmonic of a family that is as high at least: no gear
-    has a shaft's line there."""
+    """Whether a line is the second or third harmonic of a family that is as high at least. That
+    is no shaft's: a gear has more than three teeth."""
     rank = round(likely.line / family.line)
     heights = [float(raw.amplitude[round(one.line * raw.per_unit)]) for one in (family, likely)]
     same = abs(likely.line - rank * family.line) * raw.per_unit < rank * _BINS

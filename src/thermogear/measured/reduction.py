@@ -21,7 +21,7 @@ from thermogear.measured.changing import (
 )
 from thermogear.measured.contradictions import NEAR, of_line, of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
-from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.gearing import Gearing, find_gearing, told_of_mate
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -184,15 +184,11 @@ def measure(
         teeth = _teeth(gearing, teeth, notices)
     doubt = record.rate_doubt
     if gearing is not None and turns is None:
-        turns = mesh_turns(
-            table,
-            gearing,
-            teeth=teeth,
-            harmonics=harmonics,
-        )
+        turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
+        notices += told_of_mate(gearing, teeth, table.shape[-1])
     if gearing is not None:
         doubt = check_rate(record, gearing, notices, teeth=teeth, given=given[0], speed=speed)
     if doubt:
@@ -402,7 +398,8 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
     if len(jumps) < 2 and known:
         step = phase_step(values, gearing.mesh_frequency, sorted(known))
-        jumps, around = (jumps, around) if step is None else ([step[0]], 2 * step[1])
+        if step is not None and all(abs(step[0] - at) < around for at in jumps):
+            jumps, around = [step[0]], 2 * step[1]
     if not jumps or _beats(spectrum, gearing.mesh_frequency):
         return False
     edges = [-around, *jumps, values.size + around]
@@ -422,6 +419,7 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
         )
     )
     through.cut(first, stop=stop)
+    _whole_turns(through, gearing, teeth)  # a smaller jump shows beside no larger one
     return True
 
 

@@ -35,6 +35,7 @@ _ROUNDS = 40
 _FEWER = 5
 _ALIKE = 1e-4  # cycles
 _EQUAL = 1e-8  # turns
+_BLOCK = 65536  # samples, of which all waves are held at once
 _LEAST = 1e-3  # of the largest: lines too near to each other share what they hold
 
 
@@ -244,7 +245,7 @@ class _Smoother:
         """Unwrapped phase of the mean [rad], and its size."""
         mean, slope = self.means(envelope)
         size = np.abs(mean)
-        turning = np.imag(slope * np.conj(mean)) / np.maximum(size, 1e-300) ** 2
+        turning = np.imag(slope * np.conj(mean)) / np.maximum(size, 1e-150) ** 2
         return np.unwrap(np.angle(mean)) - turning * self._moments[1], size
 
     def values(self, x: Floats) -> Floats:
@@ -298,30 +299,39 @@ def _turning_with(values: Floats, cycles: Floats, ratios: Sequence[float]) -> Fl
     apart = np.array([0.0, *(round((one - 1.0) * turned, 9) for one in ratios)])
     apart = apart[(apart == 0.0) | (np.abs(apart) > _SAME)]
     window = np.hanning(count)
-    line = np.exp(2j * np.pi * cycles)
-    still = 2.0 / np.sum(window) * window * values * np.conj(line)
-    waves = _waves(np.unique(np.abs(apart[1:])), cycles / turned)
-    sums = [
-        np.vdot(waves[away], still) if away > 0.0 else np.dot(waves[-away], still)
-        for away in apart[1:]
-    ]
+    window *= 2.0 / np.sum(window)
+    sums = np.zeros(apart.size, dtype=complex)
+    for part in _blocks(count):
+        still = window[part] * values[part] * np.exp(-2j * np.pi * cycles[part])
+        waves = _waves(apart, cycles[part] / turned)
+        sums += [np.dot(waves[-away], still) for away in apart]
     shared = hann_at(apart[None, :] - apart[:, None], count)
-    found = np.linalg.lstsq(shared, np.array([np.sum(still), *sums]), rcond=_LEAST)[0]
-    total = np.zeros(count, dtype=complex)
-    for away, size in zip(apart[1:], found[1:], strict=True):
-        total += size * (waves[away] if away > 0.0 else np.conj(waves[-away]))
-    return np.asarray(np.real(total * line))
+    found = np.linalg.lstsq(shared, sums, rcond=_LEAST)[0]
+    total = np.zeros(count)
+    for part in _blocks(count):
+        waves = _waves(apart, cycles[part] / turned)
+        beside = sum(size * waves[away] for away, size in zip(apart[1:], found[1:], strict=True))
+        total[part] = np.real(beside * np.exp(2j * np.pi * cycles[part]))
+    return total
+
+
+def _blocks(count: int) -> list[slice]:
+    return [slice(first, first + _BLOCK) for first in range(0, count, _BLOCK)]
 
 
 def _waves(apart: Floats, turned: Floats) -> dict[float, Complexes]:
-    """exp(2 pi i away turned) by ``away``, the lowest first: where it is the sum of two before, the
-    product of theirs."""
-    waves: dict[float, Complexes] = {}
-    for away in map(float, apart):
-        sums = ((one, two) for one in waves for two in waves if abs(one + two - away) < _EQUAL)
-        one, two = next(sums, (0.0, 0.0))
-        waves[away] = waves[one] * waves[two] if one else np.exp(2j * np.pi * away * turned)
-    return waves
+    """exp(2 pi i away turned) by ``away``, those of ``apart`` and their negatives: one that is the
+    sum of two before is the product of theirs."""
+    waves: dict[float, Complexes] = {0.0: np.ones(turned.size, dtype=complex)}
+    for away in map(float, np.unique(np.abs(apart))):
+        if away == 0.0:
+            continue
+        sums = ((one, two) for one in waves for two in waves if 0.0 < one <= two < away)
+        pair = next((pair for pair in sums if abs(sum(pair) - away) < _EQUAL), None)
+        waves[away] = (
+            waves[pair[0]] * waves[pair[1]] if pair else np.exp(2j * np.pi * away * turned)
+        )
+    return waves | {-away: np.conj(wave) for away, wave in waves.items()}
 
 
 def _edge(values: Floats, frequency: float, length: float, last: float) -> tuple[float, float]:

@@ -22,6 +22,9 @@ _SHORTEST = 8  # samples of a run of one value
 _PILE = 8.0  # times as many samples at a limit as at the levels beside
 _LIMITS = 6  # values that may be limits inside the range
 _VISITS, _BACK = 10, 0.9  # to such a limit, and how many of them turn back there
+_BANDS, _DOUBLED = 10_000, 8  # of the range; how often they are made twice as wide
+_EVERYWHERE = 0.7  # of the widest bands hold samples
+_SATURATED, _HIGHER = 30, 10.0  # samples at a limit, and times those of another band
 _FAR = 12.0  # robust standard deviations of a spike's second difference
 _OUTSIDE = 8.0  # spans of all other samples
 
@@ -120,7 +123,43 @@ def _clipped(x: Floats, free: Mask) -> list[Damage]:
         beside = float(np.mean(sizes[:5])) if levels.size >= 5 else 0.0
         if levels.size >= 5 and count > _PILE * beside:
             found.append(Damage(kind="clipping", samples=at, value=limit))
-    return found + _clipped_inside(x, free, [one.value for one in found])
+    found += _clipped_inside(x, free, [one.value for one in found])
+    return found or _saturated(x, free)
+
+
+def _saturated(x: Floats, free: Mask) -> list[Damage]:
+    """Samples piled up in a narrow band at an extreme, where noise is added behind the limit.
+
+    In bands of 1e-4 to 1/78 of the range: the one at the extreme holds ten times as many samples
+    as any other. Of a sine it holds 2.4 times as many, of a peak as flat as x^4 5.3 times; a
+    line in step with the rate has few values, and most bands are empty.
+    """
+    kept = x[free]
+    low, high = float(kept.min()), float(kept.max())
+    if not high > low:
+        return []
+    fine = np.histogram(kept, bins=_BANDS, range=(low, high))[0]
+    coarse = np.add.reduceat(fine, np.arange(0, _BANDS, 2 ** (_DOUBLED - 1)))
+    if np.mean(coarse > 0) < _EVERYWHERE:
+        return []
+    found = []
+    for order in (-1, 1):
+        best = 0.0, 0
+        for doubled in range(_DOUBLED):
+            width = 2**doubled
+            counts = np.add.reduceat(fine[::order], np.arange(0, _BANDS, width))
+            if counts[0] >= _SATURATED:
+                # the last may be the other limit, and is no whole band
+                best = max(best, (counts[0] / max(1, int(counts[1:-2].max())), width))
+        if best[0] < _HIGHER:
+            continue
+        reach = best[1] * (high - low) / _BANDS
+        limit = high - reach if order < 0 else low + reach
+        at = free & ((x > limit) if order < 0 else (x < limit))
+        visits = np.count_nonzero(np.diff(at.astype(np.int8)) == 1)
+        if visits >= _VISITS:
+            found.append(Damage(kind="clipping", samples=at, value=limit))
+    return found
 
 
 def _clipped_inside(x: Floats, free: Mask, known: Sequence[float | None]) -> list[Damage]:
