@@ -46,7 +46,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "orbit": ("-o", "{out}"),
     "lyapunov": (),
     "continue": ("-o", "{out}", "--parameter", "speed", "--to", "3100 rpm"),
-    "shared-force": ("-o", "{out}"),
+    "shared-force": ("-o", "{out}", "--speeds", "5"),
     "bifurcation": ("-o", "{out}", "--over", "zeta=0.1:0.2:3"),
     "map": ("-o", "{out}", "--over", "zeta=0.1:0.2:3", "--over", "omega=1:2:3"),
     "basins": ("-o", "{out}"),
