@@ -41,7 +41,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "sensitivity": ("-o", "{out}", "--samples", "8"),
     "temperature": ("-o", "{out}", "--speeds", "1000,3000", "--torques", "80"),
     "warmup": ("-o", "{out}"),
-    "relief": ("-o", "{out}"),
+    # both gears alike: another relief of each is asked of the own pair's page
+    "relief": ("-o", "{out}", "--symmetric"),
     "contact": ("-o", "{out}"),
     "orbit": ("-o", "{out}"),
     "lyapunov": (),
