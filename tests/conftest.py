@@ -14,6 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does
 
 import numpy as np
 import pytest
+from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
@@ -137,6 +138,28 @@ def at_length(
         return long if request.config.getoption("--long") else usual
 
     return chosen
+
+
+@pytest.fixture
+def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages draw a picture once, and take it again where its data are the same to the letter.
+
+    For a test that asks whether a page made again is the same: its texts, tables and data are made
+    again. That the same data draw the same is asked of every kind of picture in ``views``.
+    """
+    from thermogear.views import page
+    from thermogear.views.picture import Picture
+    from thermogear.views.svg import draw
+
+    drawn: dict[tuple[str, str, str], Markup] = {}
+
+    def once(picture: Picture, name: str, title: str) -> Markup:
+        key = json.dumps(picture.to_json()), name, title
+        if key not in drawn:
+            drawn[key] = draw(picture, name, title)
+        return drawn[key]
+
+    monkeypatch.setattr(page, "draw", once)
 
 
 @pytest.fixture(scope="session")

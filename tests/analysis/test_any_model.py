@@ -28,21 +28,25 @@ def turning(mu, d=2, rate=0.7, tolerance=1e-11):
     z = p and has the multipliers exp((mu +- i rate) T), whatever mu is.
     """
     fall = -1.0 - np.arange(d - 2)
+    decays = np.diag(np.concatenate([[0.0, 0.0], fall]))
 
     def apart(t, y):
         c, s = 0.3 * math.cos(OMEGA * t), 0.3 * math.sin(OMEGA * t)
-        return y[0] - c, y[1] - s, -OMEGA * s, OMEGA * c
+        x, z = y[:2].tolist()  # plain numbers: asked for a million times
+        return x - c, z - s, -OMEGA * s, OMEGA * c
 
     def rates(t, y):
         a, b, p, q = apart(t, y)
         left = mu - a * a - b * b
         inner = [left * a - rate * b + p, left * b + rate * a + q]
+        if d == 2:
+            return np.array(inner)
         return np.concatenate([inner, fall * y[2:] + math.sin(OMEGA * t)])
 
     def matrix(t, y):
         a, b, _, _ = apart(t, y)
         left, both = mu - a * a - b * b, -2.0 * a * b
-        out = np.diag(np.concatenate([[0.0, 0.0], fall]))
+        out = decays.copy()
         out[0, 0], out[0, 1] = left - 2.0 * a * a, both - rate
         out[1, 0], out[1, 1] = both + rate, left - 2.0 * b * b
         return out

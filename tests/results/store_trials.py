@@ -29,6 +29,7 @@ from thermogear.base.errors import InputError, WorkerWarning
 from thermogear.base.plan import keys_of
 from thermogear.base.stores import read_journal, read_store
 from thermogear.dynamics.models import TorsionalModel
+from thermogear.results import workers
 from thermogear.results.fingerprint import code_version
 from thermogear.results.store import QUARANTINE
 from thermogear.results.work import carry_out
@@ -342,12 +343,14 @@ def crowd(directory: Path, count: int) -> dict:
     finally:
         one.end()
     two = Crowd(directory)
+    grace, workers.GRACE = workers.GRACE, 2.0
     try:
         two.hire("bare", "bare")
         two.names(1)
         started = time.monotonic()
         found["alone"] = refusal(lambda: carry_out(plan, store, scheduler=two.address))
         found["alone_after_s"] = time.monotonic() - started
+        workers.GRACE = grace
         two.hire("good")
         two.names(2)
         with warnings.catch_warnings():

@@ -392,4 +392,4 @@ def test_cluster_of_good_old_bare_and_dying_workers_and_a_dying_scheduler(tmp_pa
     assert found["same_resumed"]
     assert "none of its workers can be believed" in found["alone"]
     assert "it cannot import thermogear" in found["alone"]
-    assert found["alone_after_s"] < 30.0
+    assert 2.0 <= found["alone_after_s"] < 22.0

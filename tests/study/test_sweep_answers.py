@@ -8,7 +8,7 @@ import pytest
 import thermogear as tg
 from thermogear.base.units import ZERO_CELSIUS
 from thermogear.case.case import GearCase, gear_case, load_case
-from thermogear.study.answers import moving
+from thermogear.study.answers import moving, steady
 from thermogear.study.answers.asked import Asked, undecided
 from thermogear.study.answers.points import NUMBERS, answer_numbers
 
@@ -76,6 +76,10 @@ def test_a_sweep_tells_what_the_answers_tell(monkeypatch: pytest.MonkeyPatch) ->
     """4 drawn pairs, both bundles, two corners of torque x speed x backlash each."""
     monkeypatch.setattr(Asked, "speeds", None)  # the survey over speed is of no point
     monkeypatch.setattr(moving, "_relief", lambda asked: undecided("", "relief", "not asked"))
+    # nor is the way there: a sweep has no number of it
+    monkeypatch.setattr(
+        steady, "_worst_moment", lambda asked: undecided("", "warm_up", "not asked")
+    )
     worst = dict.fromkeys(SCALE, 0.0)
     factors = []
     for case in drawn(4):

@@ -104,6 +104,7 @@ def test_ctrl_c_keeps_what_is_judged(
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("drawn_once")
 def test_report_holds_every_claim_with_verdict_and_working_links(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, evidence: Evidence
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import xarray as xr
 
 from thermogear.base.errors import InputError
 from thermogear.results.result import open_results
+from thermogear.views import write as files
 from thermogear.views.write import clear_tables, page_of, write
 
 
@@ -27,8 +29,16 @@ def read(path: Path) -> dict[str, list[str]]:
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
+@pytest.fixture(scope="module", autouse=True)
+def undrawn() -> Iterator[None]:
+    """Of a page its tables alone: drawing its pictures takes most of the time of writing it."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(files, "render", lambda page: "")
+        yield
+
+
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+def whole(undrawn: None, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """The tables of a run with everything, beside its results."""
     place = tmp_path_factory.mktemp("whole")
     synthetic.build(place)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -116,7 +117,7 @@ class ModelFamily:
         if len(set(self.names)) < len(self.names):
             raise InputError("parameter", list(self.names), allowed="different parameters")
 
-    @property
+    @cached_property
     def dimension(self) -> int:
         """Length of a state."""
         return return_map(self.model).dimension

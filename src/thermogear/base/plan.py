@@ -100,16 +100,16 @@ def keys_of(plan: Plan) -> list[Key]:
 
 def ranges_of(plan: Plan, key: Key) -> dict[str, slice]:
     """The stretch of every cut dimension that a chunk covers."""
-    found = {}
+    found, sizes = {}, plan.sizes
     for place, (name, length) in zip(key, plan.cuts.items(), strict=True):
-        found[name] = slice(place * length, min((place + 1) * length, plan.sizes[name]))
+        found[name] = slice(place * length, min((place + 1) * length, sizes[name]))
     return found
 
 
 def region_of(plan: Plan, key: Key, variable: Variable) -> tuple[slice, ...]:
     """Where a chunk's array lies inside the whole variable."""
-    ranges = ranges_of(plan, key)
-    return tuple(ranges.get(name, slice(0, plan.sizes[name])) for name in variable.dims)
+    ranges, sizes = ranges_of(plan, key), plan.sizes
+    return tuple(ranges.get(name, slice(0, sizes[name])) for name in variable.dims)
 
 
 def checked(plan: Plan, key: Key, arrays: Arrays) -> Arrays:
