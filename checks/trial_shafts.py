@@ -222,9 +222,8 @@ teeth more or less. Of lost samples, 5 to 400 in one place, no time column tells
 in the gear's own angle, or turns over time; what is told as lost is left out.
 
 Below four turns nothing tells sidebands from a speed that changes: they are withheld where it does,
-and below two turns always. The worst are in half widths; "inf" would be a line that is not in the result.
-Sidebands of an unknown shaft that turn the phase alone are not told from an oscillation of the
-speed.
+and below two turns always. The worst are in half widths. Sidebands of an unknown shaft that turn
+the phase alone are not told from an oscillation of the speed.
 """
 
 

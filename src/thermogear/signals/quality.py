@@ -136,9 +136,10 @@ def _saturated(x: Floats, free: Mask) -> list[Damage]:
     """
     kept = x[free]
     low, high = float(kept.min()), float(kept.max())
-    if not high > low:
+    if not 0.0 < high - low < np.inf:
         return []
-    fine = np.histogram(kept, bins=_BANDS, range=(low, high))[0]
+    place = ((kept - low) / (high - low) * _BANDS).astype(np.int64)
+    fine = np.bincount(np.minimum(place, _BANDS - 1), minlength=_BANDS)
     coarse = np.add.reduceat(fine, np.arange(0, _BANDS, 2 ** (_DOUBLED - 1)))
     if np.mean(coarse > 0) < _EVERYWHERE:
         return []
