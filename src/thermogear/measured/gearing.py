@@ -111,7 +111,7 @@ def find_gearing(
     return _of_family(table, family, weighed, told_as)
 
 
-def told_of_mate(gearing: Gearing, teeth: int | None, samples: int) -> list[Notice]:
+def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
     """Where one gear alone is known, and a mate of up to three times its teeth would turn fewer
     than four times in the record: what it changes is told from no line."""
     known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())

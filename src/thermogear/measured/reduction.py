@@ -188,7 +188,7 @@ def measure(
         # in a resampled record the lines stand at multiples of this mean and nowhere else
         gearing = replace(gearing, mesh_frequency=turns.frequency)
         turns = replace(turns, half_width=turns.half_width + through.turned)
-        notices += told_of_mate(gearing, teeth, table.shape[-1])
+        notices += told_of_mate(gearing, teeth=teeth, samples=table.shape[-1])
     if gearing is not None:
         doubt = check_rate(record, gearing, notices, teeth=teeth, given=given[0], speed=speed)
     if doubt:
