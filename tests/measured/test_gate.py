@@ -242,7 +242,7 @@ def test_peaks_of_undamaged_lines_are_no_limit() -> None:
                 x = np.cos(turn) + third * np.cos(3 * turn) + noise * random.normal(size=n.size)
                 for step in (1e-6, 1e-3, 1e-2):
                     told = damages(np.round(x / step) * step)
-                    assert not any(one.kind == "clipping" and one.count > 1000 for one in told)
+                    assert not any(one.kind == "clipping" for one in told)
     rings = np.exp(-(n % 300) / 30.0) * np.cos(2 * np.pi * 0.21 * (n % 300))
     assert damages(rings + 1e-3 * random.normal(size=n.size)) == []
 

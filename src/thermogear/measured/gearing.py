@@ -18,7 +18,7 @@ from thermogear.measured.prominence import Prominence, prominence
 from thermogear.measured.record import Notice
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
 from thermogear.measured.straight import sharp_peaks
-from thermogear.signals.orders import line_angle, resample_by_angle
+from thermogear.signals.orders import line_angle, resample_by_angle, samples_per_cycle
 from thermogear.signals.spectra import amplitude_spectrum
 
 Floats = NDArray[np.float64]
@@ -170,7 +170,7 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float
         cycles, dropped, mesh, error = angle_of
         kept = table[:, dropped : dropped + cycles.size]
         top = max(1, min(_HARMONICS, int(0.45 / mesh)))
-        per_cycle = int(2 ** np.ceil(np.log2(1.0 / mesh)))
+        per_cycle = samples_per_cycle(mesh)
         sharp = prominence(
             resample_by_angle(kept, cycles, samples_per_turn=per_cycle), float(per_cycle)
         )

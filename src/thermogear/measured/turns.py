@@ -21,6 +21,7 @@ from thermogear.signals.following import (
 )
 from thermogear.signals.interval import APART, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
+from thermogear.signals.orders import samples_per_cycle
 from thermogear.signals.strong import Strong, dirichlet, strong_lines, twins
 
 Floats = NDArray[np.float64]
@@ -42,7 +43,7 @@ _UNKNOWN = (
     "both"
 )
 _THIN = 0.25  # cycles a sample, of the line while filters are tried
-_EVEN = ("kaiser", 10.0)  # a gain within 1e-5 up to 0.7 of half the rate
+_EVEN = ("kaiser", 10.0)  # its gain is even to 1.1e-5 up to 0.6 of half the rate
 _HELD = 1.0  # of the filter's half width: there its phase has taken the noise away
 
 
@@ -129,11 +130,6 @@ def mesh_turns(
         spread=spread,
     )
     return _or_sidebands(steady, values, spectrum, reading, strong, nearest) if few else steady
-
-
-def samples_per_cycle(frequency: float) -> int:
-    """Samples in a cycle of its angle, of a line at ``frequency`` [cycles/sample]."""
-    return int(2 ** np.ceil(np.log2(1.0 / frequency)))
 
 
 def _or_steady(

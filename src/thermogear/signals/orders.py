@@ -102,6 +102,16 @@ def line_angle(x: ArrayLike, *, frequency: float, half_width: float) -> tuple[Fl
     return angle, dropped
 
 
+def samples_per_cycle(frequency: float) -> int:
+    """Samples in a cycle of its angle, of a line at ``frequency`` [cycles/sample]: the power of two
+    that is no fewer than there.
+
+    >>> samples_per_cycle(0.1)
+    16
+    """
+    return int(2 ** np.ceil(np.log2(1.0 / frequency)))
+
+
 def resample_by_angle(
     x: ArrayLike, angle: ArrayLike, *, samples_per_turn: int, turns: int | None = None
 ) -> Floats:
