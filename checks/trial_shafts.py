@@ -34,6 +34,7 @@ SORTS = (
     "unknown shaft, speed walks",
     "samples lost",
     "none lost, speed changes",
+    "unknown slower mate, steady",
 )
 PAGE = Path(__file__).parents[1] / "docs" / "trial_shafts.md"
 RATE = 4_000.0
@@ -94,11 +95,17 @@ def drawn(random: Random, sort: str) -> Made:
     of 1 to 15 %, noise of rms 0.3 to 30 % of the mesh line, over 1.5 to 60 turns of the shaft.
 
     An unknown shaft turns a half or a third as fast, or has one to three teeth more or less, its
-    sidebands of 1 to 30 %; it is two turns or more from the known one's.
+    sidebands of 1 to 30 %; it is two turns or more from the known one's. An unknown slower mate turns
+    1 to 4.5 times, its first sidebands of 1 to 15 % and its second lower.
     """
     few = sort.startswith("few")
     teeth, mesh = int(random.integers(12, 91)), between(random, 150.0, 700.0)
     span = between(random, *((SPANS[0], 8.0) if few else (4.0 if "lost" in sort else 12.0, 60.0)))
+    mate = 0
+    if "mate" in sort:
+        teeth = int(random.integers(12, 61))
+        mate = max(teeth + 1, int(teeth * random.uniform(1.0, 3.0)))
+        span = random.uniform(1.0, 4.5) * mate / teeth
     count = max(400, int(span * teeth / mesh * RATE))
     t = np.arange(count) / RATE
     change, words = changes(random, sort, t, span)
@@ -108,7 +115,11 @@ def drawn(random: Random, sort: str) -> Made:
         cycles = mesh * (t + (np.arange(count) >= at) * lost / RATE)
         words = f"{lost} lost at {at} of {count}"
     sides = [(1 / teeth, between(random, 0.01, 0.15)), (2 / teeth, between(random, 0.01, 0.15))]
-    if "unknown" in sort:
+    if mate:
+        first = between(random, 0.01, 0.15)
+        sides += [(1 / mate, first), (2 / mate, first * random.uniform(0.0, 1.0))]
+        words += f", unknown mate of {mate} teeth with {100 * first:.0f} %"
+    elif "unknown" in sort:
         others = [2 * teeth, 3 * teeth, *(teeth + n for n in (-3, -2, -1, 1, 2, 3))]
         apart = [one for one in others if abs(1 / one - 1 / teeth) * mesh * t[-1] > 2.0]
         other = int(random.choice(apart))
@@ -218,11 +229,14 @@ Made by `make trial-shafts` (`checks/trial_shafts.py`). Each record is a gear's 
 but the teeth of this gear is stated. A speed that changes walks (0.2 to 5 s), oscillates (0.3 to 3
 periods in the record, at most half as fast as the shaft) or drifts, by 0.03 to 1 %. An unknown
 shaft has sidebands of 1 to 30 %; it turns a half or a third as fast, or its gear has up to three
-teeth more or less. Of lost samples, 5 to 400 in one place, no time column tells. The truth is that
+teeth more or less. An unknown slower mate has up to three times the teeth and turns 1 to 4.5 times
+in the record, with sidebands of 1 to 15 % and second ones that are lower. Of lost samples, 5 to 400 in one place, no time column tells. The truth is that
 in the gear's own angle, or turns over time; what is told as lost is left out.
 
 Below four turns nothing tells sidebands from a speed that changes: they are withheld where it does,
-and below two turns always. The worst are in half widths. Sidebands of an unknown shaft that turn
+and below two turns always. Where a slower mate is not known, that is told in words, and the mesh
+lines' intervals hold what it may bring; those of sidebands do not where one of the mate stands
+within a bin or so of them. The worst are in half widths. Sidebands of an unknown shaft that turn
 the phase alone are not told from an oscillation of the speed.
 """
 

@@ -111,23 +111,32 @@ def find_gearing(
     return _of_family(table, family, weighed, told_as)
 
 
+def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
+    """Teeth of the shafts that are decided, and those given."""
+    return sorted({shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set()))
+
+
+def mate_may_be_slow(gearing: Gearing, *, teeth: int | None, samples: int) -> bool:
+    """Whether one gear alone is known, and a mate of up to three times its teeth would turn fewer
+    than four times in the record."""
+    known = known_teeth(gearing, teeth)
+    return len(known) == 1 and gearing.mesh_frequency * samples < _MATE * known[0]
+
+
 def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
-    """Where one gear alone is known, and a mate of up to three times its teeth would turn fewer
-    than four times in the record: what it changes is told from no line."""
-    known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
-    if len(known) != 1:
+    """What a slower mate that is not known would change."""
+    if not mate_may_be_slow(gearing, teeth=teeth, samples=samples):
         return []
-    (own,) = known
+    (own,) = known_teeth(gearing, teeth)
     turns = gearing.mesh_frequency * samples / own
-    if turns >= _MATE:
-        return []
     return [
         Notice(
             "warning",
             f"the record holds {turns:.3g} turns of the gear of {own} teeth, and fewer of a larger "
-            "mate, which is not known: below four of them its sidebands are no lines of their own, "
-            "and the half widths of the mesh lines do not hold what they change (record "
-            f"{_MATE / turns:.2g} times as long)",
+            "mate, which is not known: below four of them its sidebands are no lines of their own. "
+            "The mesh lines' half widths hold what those of a fifth may bring, a sideband's do not "
+            f"where one of the mate stands beside it (state the mate, or a record {_MATE / turns:.2g} times as "
+            "long)",
         )
     ]
 

@@ -298,6 +298,7 @@ def channel_lines(
             own_power = max(reading.amplitude, 1e-300) ** 2
             missed[rank] = single.amplitude**2 * (1.0 + lacks) / own_power - 1.0
         amplitude, relative = _amplitude(reading, position, turns)
+        relative += turns.leaked(reading) if turns and want.kind == "mesh" else 0.0
         doubt = turns.doubt if turns else 0.0
         # with the power in doubt, or without; an angle that is another's smears all others
         itself = want.kind == "mesh" and rank == 1

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from thermogear.measured.chain import Turning
-from thermogear.measured.gearing import Gearing
+from thermogear.measured.gearing import Gearing, known_teeth, mate_may_be_slow
 from thermogear.measured.unfollowed import AS_FAR, CLEAR, unfollowed
 from thermogear.signals.following import (
     Followed,
@@ -19,7 +19,7 @@ from thermogear.signals.following import (
     follow_line,
     power_beyond,
 )
-from thermogear.signals.interval import APART, Reading, read_line
+from thermogear.signals.interval import APART, LEAK, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 from thermogear.signals.orders import samples_per_cycle
 from thermogear.signals.strong import Strong, dirichlet, strong_lines, twins
@@ -35,9 +35,12 @@ _ALIKE = 1.5  # of the phase's noise
 _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
+_MATES = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and a little more
 _CLEARLY = 3.0  # times the power of Q
 _ALONE = 10.0  # times the power of I
 _SEEN = 2.0  # times the noise
+_PER_TURN = 24.0  # points of the phase, of a known gear
+_STEP = 0.25  # turns over the record, between those tried
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
     "both"
@@ -57,7 +60,7 @@ class MeshTurns:
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
     line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why
-    lines nearer to it and its harmonics than ``near`` are.
+    lines nearer to it and its harmonics than ``near`` are; ``mate``: a slower gear that is not known may be among what changes the line.
     """
 
     frequency: float
@@ -73,6 +76,17 @@ class MeshTurns:
     lacks: bool = False
     withheld: str = ""
     near: float = 0.0
+    mate: bool = False
+
+    def leaked(self, reading: Reading) -> float:
+        """What sidebands of a mate that is not known bring to a mesh line, over its amplitude,
+        where they may be what changes it, turns it or stands beside it."""
+        if not self.mate:
+            return 0.0
+        own = max(reading.amplitude, 1e-300)
+        told = 0.0 if reading.explained else reading.half_width / own
+        change = np.linalg.norm([reading.changing, reading.turning, _of_neighbours(reading)])
+        return max(LEAK * float(change) - told, 0.0)
 
     def why_withheld(self, position: float) -> str:
         """Why a line at this place [cycles/sample], no harmonic itself, is withheld, or ''."""
@@ -105,10 +119,14 @@ def mesh_turns(
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
     few = nearest < _FEW * spectrum.bin_width
+    mate = mate_may_be_slow(gearing, teeth=teeth, samples=values.size)
     if turns is not None:
         if few:
             return _or_sidebands(turns, values, spectrum, reading, strong, nearest)
-        return _or_steady(turns, spectrum, reading, beside, strong)
+        turns = _or_steady(turns, spectrum, reading, beside, strong)
+        if len(known_teeth(gearing, teeth)) == 1:
+            turns = _or_mate(turns, nearest / spectrum.bin_width)
+        return turns
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
         if 2.56 * rank * reading.frequency > 1.0:
@@ -122,12 +140,15 @@ def mesh_turns(
         if other.frequency_half_width / rank < 0.5 * best[1]:  # not the luckier estimate: clearly
             best = other.frequency / rank, other.frequency_half_width / rank
     share, spread = unfollowed(spectrum, reading, beside, strong)
+    if mate:
+        spread = float(np.hypot(spread, _of_neighbours(reading) / np.pi * spectrum.bin_width))
     steady = MeshTurns(
         frequency=best[0],
         half_width=float(np.hypot(best[1], spread)),
         said=_beside(reading, least, share),
         unfollowed=share,
         spread=spread,
+        mate=mate,
     )
     return _or_sidebands(steady, values, spectrum, reading, strong, nearest) if few else steady
 
@@ -219,6 +240,48 @@ def _or_sidebands(
     )
 
 
+def _or_mate(turns: MeshTurns, nearest: float) -> MeshTurns:
+    """A line followed whose phase a gear may turn that is not known: the intervals hold both.
+
+    ``nearest``: turns of the known gear over the record; the other has up to three times its teeth,
+    or up to a fourth fewer. Of the phase it may be what a wave and its double explain best, unless
+    that is more than sidebands hold.
+    """
+    assert turns.turning is not None
+    cycles, first = turns.turning.cycles, max(nearest / AS_FAR, 1.0)
+    along = np.linspace(-0.5, 0.5, int(np.ceil(_PER_TURN * nearest)))
+    phase = (
+        2.0 * np.pi * np.interp((along + 0.5) * (cycles.size - 1), np.arange(cycles.size), cycles)
+    )
+    # where there is room a window keeps what is slower out
+    weight = np.cos(np.pi * along) if first > _FEW else np.ones(along.size)
+    straight = np.stack([np.ones(along.size), along], axis=1)
+
+    def left(columns: Floats) -> float:
+        found = np.linalg.lstsq(columns * weight[:, None], phase * weight)[0]
+        return float(np.average((phase - columns @ found) ** 2, weights=weight**2))
+
+    power, bare = 0.0, left(straight)
+    for turn in np.arange(first, 4.0 / 3.0 * nearest, _STEP):
+        angle = 2.0 * np.pi * turn * along[:, None] * np.array([1.0, 2.0])
+        waves = np.concatenate([straight, np.cos(angle), np.sin(angle)], axis=1)
+        power = max(power, bare - left(waves))
+    power = min(power, _MATES)
+    spread = float(np.sqrt(2.0 * power)) / np.pi / cycles.size
+    return replace(
+        turns,
+        doubt=max(turns.doubt, power / (1.0 + power)),
+        half_width=float(np.hypot(turns.half_width, spread)),
+        spread=float(np.hypot(turns.spread, spread)),
+        mate=True,
+    )
+
+
+def _of_neighbours(reading: Reading) -> float:
+    """Root of the power of lines fitted beside a line, over its amplitude."""
+    return float(np.sqrt(max(reading.beside, 0.0))) / max(reading.amplitude, 1e-300)
+
+
 def _around(
     values: Floats, place: float, most: int, *, strong: Sequence[Strong], noise: float
 ) -> tuple[float, float, float]:
@@ -259,9 +322,11 @@ def _beside(reading: Reading, least: float | None, share: float) -> str:
 
 def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
     """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
-    known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
     return tuple(
-        mesh * (rank + sign * n / z) for z in sorted(known) for n in (1, 2, 3) for sign in (-1, 1)
+        mesh * (rank + sign * n / z)
+        for z in known_teeth(gearing, teeth)
+        for n in (1, 2, 3)
+        for sign in (-1, 1)
     )
 
 

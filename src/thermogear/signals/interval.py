@@ -43,7 +43,8 @@ _HIGHER = 1.5
 _MUCH_HIGHER = 4.0
 _LEAST_REACH = 4  # bins
 
-_LEAK = 0.22  # largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings
+LEAK = 0.22
+"""Largest |sin(pi u)/(pi u)| beyond the first zero: what a hidden neighbour brings."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -383,7 +384,7 @@ class _Fit:
         square += left.change
         amplitude = float(np.sqrt(square)) if square > left.noise else size
         hidden_power = left.shared if changed and turned else 0.0
-        both = _LEAK**2 * hidden_power
+        both = LEAK**2 * hidden_power
         variance = float(way @ spread @ way) * max(1.0, (size / amplitude) ** 2) + both
         # noise in the bins of the change
         variance += 0.25 * left.even.size * left.noise**2 / max(amplitude, 1e-150) ** 2
