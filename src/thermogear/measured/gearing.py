@@ -135,8 +135,8 @@ def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[N
             f"the record holds {turns:.3g} turns of the gear of {own} teeth, and fewer of a larger "
             "mate, which is not known: below four of them its sidebands are no lines of their own. "
             "The mesh lines' half widths hold what those of a fifth may bring, a sideband's do not "
-            f"where one of the mate stands beside it (state the mate, or a record {_MATE / turns:.2g} times as "
-            "long)",
+            "where one of the mate stands beside it (a record "
+            f"{_MATE / turns:.2g} times as long tells them apart)",
         )
     ]
 

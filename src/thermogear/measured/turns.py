@@ -41,6 +41,7 @@ _ALONE = 10.0  # times the power of I
 _SEEN = 2.0  # times the noise
 _PER_TURN = 24.0  # points of the phase, of a known gear
 _STEP = 0.25  # turns over the record, between those tried
+_LINE = 6.0  # times what waves beside it gain: of noise one wave in 13 000 does
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
     "both"
@@ -60,7 +61,8 @@ class MeshTurns:
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
     line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why
-    lines nearer to it and its harmonics than ``near`` are; ``mate``: a slower gear that is not known may be among what changes the line.
+    lines nearer to it and its harmonics than ``near`` are; ``mate``: a gear that is not known may turn a few
+    times and be among what changes the line.
     """
 
     frequency: float
@@ -253,19 +255,27 @@ def _or_mate(turns: MeshTurns, nearest: float) -> MeshTurns:
     phase = (
         2.0 * np.pi * np.interp((along + 0.5) * (cycles.size - 1), np.arange(cycles.size), cycles)
     )
-    # where there is room a window keeps what is slower out
-    weight = np.cos(np.pi * along) if first > _FEW else np.ones(along.size)
-    straight = np.stack([np.ones(along.size), along], axis=1)
+    # where there is room a window keeps what is slower out, and only what is sharp is a gear's
+    room = first > _FEW
+    weight = np.cos(np.pi * along) if room else np.ones(along.size)
+    own = 2.0 * np.pi * nearest * along[:, None] * np.array([1.0, 2.0, 3.0])
+    lines = [np.ones((along.size, 1)), along[:, None], np.cos(own), np.sin(own)]
+    straight = np.concatenate(lines if room else lines[:2], axis=1)
 
     def left(columns: Floats) -> float:
         found = np.linalg.lstsq(columns * weight[:, None], phase * weight)[0]
         return float(np.average((phase - columns @ found) ** 2, weights=weight**2))
 
-    power, bare = 0.0, left(straight)
-    for turn in np.arange(first, 4.0 / 3.0 * nearest, _STEP):
+    bare, tried = left(straight), np.arange(first, 4.0 / 3.0 * nearest, _STEP)
+    gains = np.zeros(tried.size)
+    for number, turn in enumerate(tried):
         angle = 2.0 * np.pi * turn * along[:, None] * np.array([1.0, 2.0])
         waves = np.concatenate([straight, np.cos(angle), np.sin(angle)], axis=1)
-        power = max(power, bare - left(waves))
+        gains[number] = bare - left(waves)
+    best = int(np.argmax(gains / _beside_each(gains))) if room else int(np.argmax(gains))
+    power = float(gains[best])
+    if room and power < _LINE * _beside_each(gains)[best]:
+        return turns
     power = min(power, _MATES)
     spread = float(np.sqrt(2.0 * power)) / np.pi / cycles.size
     return replace(
@@ -273,8 +283,19 @@ def _or_mate(turns: MeshTurns, nearest: float) -> MeshTurns:
         doubt=max(turns.doubt, power / (1.0 + power)),
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
-        mate=True,
+        mate=not room,
     )
+
+
+def _beside_each(gains: Floats) -> Floats:
+    """Mean of what waves gain that are 2 to 6 turns slower or faster than each."""
+    far, near = round(6.0 / _STEP), round(2.0 / _STEP)
+    ring = np.ones(2 * far + 1)
+    ring[far - near + 1 : far + near] = 0.0
+    sums, counts = (
+        np.convolve(one, ring)[far : far + gains.size] for one in (gains, np.ones(gains.size))
+    )
+    return np.asarray(np.maximum(sums, 1e-300) / np.maximum(counts, 1.0))
 
 
 def _of_neighbours(reading: Reading) -> float:
