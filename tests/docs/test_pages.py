@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import fnmatch
+import functools
 import importlib
 import json
 import posixpath
@@ -203,6 +204,7 @@ def test_every_file_and_test_named_exists(texts: dict[str, str]) -> None:
     assert wrong == []
 
 
+@functools.cache
 def _tests(file: Path) -> dict[str, set[str]]:
     """Names of the tests of a file and what fixtures each asks for."""
     if not file.exists():
