@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
 import pytest
 
+from in_words import in_words
 from own_pair import OWN_PAIR
 from thermogear.front.cli import main
 from thermogear.gears.relief import optimise_tip_relief
@@ -64,6 +66,13 @@ TEXTS = {".html", ".json", ".csv", ".svg", ".txt", ".md", ".toml"}
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """A relief is searched for a while only: its words are the same."""
     monkeypatch.setattr(relief, "optimise_tip_relief", partial(optimise_tip_relief, evaluations=40))
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _told() -> Iterator[None]:
+    """Pictures are asked for their words, which are the same whether they are drawn or not."""
+    with in_words():
+        yield
 
 
 def said(command: str, case: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, str]:

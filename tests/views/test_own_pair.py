@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from html import unescape
 
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from in_words import in_words
 from own_pair import OWN_PAIR
 from said import numbers
 from thermogear.case.case import GearCase, load_case, load_example
@@ -50,6 +51,13 @@ def prose(html: str) -> str:
     text = re.sub(r"<style.*?</style>|<pre.*?</pre>", "", html, flags=re.DOTALL)
     text = re.sub(r'<section id="(sources|version)".*?</section>', "", text, flags=re.DOTALL)
     return " ".join(unescape(re.sub(r"<[^>]+>", " ", text)).split())
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _told() -> Iterator[None]:
+    """Pages are read for their words: those of their pictures are the same drawn or not."""
+    with in_words():
+        yield
 
 
 @pytest.fixture(scope="module")
