@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from thermogear.base.progress import Progress
 from thermogear.front.cli import main
 from thermogear.thesis import chain, motions, report, section5
 from thermogear.thesis.claim import Verdict, rising, verdict_of
@@ -80,12 +81,23 @@ def test_words_for_trends() -> None:
     assert verdict_of(False, assumption=True) is Verdict.CONTRADICTED
 
 
+@pytest.mark.usefixtures("drawn_once")
 def test_ctrl_c_keeps_what_is_judged(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    evidence: Evidence,
 ) -> None:
+    def begun(size: Size, progress: Progress) -> Evidence:
+        """New evidence, its run of the rig as made before: it is of one size."""
+        one = Evidence(size, progress)
+        vars(one)["result"] = evidence.result
+        return one
+
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
+    monkeypatch.setattr(report, "Evidence", begun)
     monkeypatch.setattr(motions, "diagrams", stop)
     monkeypatch.setattr(motions, "flips", stop)
     monkeypatch.setattr(chain, "operating_grid", stop)
