@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.bounds import YOUNGS_MODULUS
+from thermogear.base.gauss import gauss
 from thermogear.gears.body import sainsot_compliance
 from thermogear.gears.contact import curvature_radii, pair_positions, reduced_modulus
 from thermogear.gears.contact_compliance import yang_sun_stiffness
@@ -193,7 +194,7 @@ def mesh_figures(
     """
     length = pair.path.e - pair.path.a
     ratio = length / pair.base_pitch
-    nodes, weights = np.polynomial.legendre.leggauss(32)
+    nodes, weights = gauss(32)
     s = pair.path.a + 0.5 * length * (1.0 + nodes)
     single = pair_stiffness(pair, s, start, pinion, wheel)
     mean = float(0.5 * ratio * np.sum(weights * single))

@@ -13,6 +13,7 @@ from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.errors import ConvergenceError, InputError
+from thermogear.base.gauss import gauss
 
 Floats = NDArray[np.float64]
 
@@ -241,13 +242,6 @@ def rotating_face_convection(
     return np.asarray(k / r * ((1.0 - share) * laminar + share * turbulent))
 
 
-@cache
-def _gauss(count: int) -> tuple[Floats, Floats]:
-    """Nodes and weights of Gauss and Legendre on -1..1, which cost more than the rest."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return nodes, weights
-
-
 def transition_pieces(
     speed: ArrayLike, viscosity: ArrayLike, *, inner: ArrayLike, outer: ArrayLike, nodes: int = 24
 ) -> tuple[Floats, Floats]:
@@ -268,7 +262,7 @@ def transition_pieces(
     turning = np.maximum(omega, 1e-30)  # a disc at rest is laminar all over
     turns = [np.clip(np.sqrt(re * nu / turning), low, high) for re in TRANSITION]
     ends = np.stack([low, *turns, high], axis=-1)
-    u, w = _gauss(nodes)
+    u, w = gauss(nodes)
     s = 0.5 * (u + 1.0)
     length = np.diff(ends)[..., None]
     radii = ends[..., :-1, None] + length * s**2

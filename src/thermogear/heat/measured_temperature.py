@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermogear.base.bounds import BODY, CONDUCTIVITY, DEPTH, require_share
 from thermogear.base.errors import InputError
+from thermogear.base.gauss import gauss
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +45,7 @@ def band_radiance(temperature: ArrayLike, band: Band = None) -> Floats:
         raise InputError("band", f"{low} .. {high} m", allowed="0 < shorter <= longer")
     if low == high:
         return np.asarray(1.0 / np.expm1(_C2 / (low * t)))
-    nodes, weights = np.polynomial.legendre.leggauss(32)
+    nodes, weights = gauss(32)
     wave = 0.5 * (low + high) + 0.5 * (high - low) * nodes
     spectrum = (low / wave) ** 5 / np.expm1(_C2 / (wave * t[..., None]))
     return np.asarray(0.5 * np.sum(weights * spectrum, axis=-1))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.base.gauss import gauss
 from thermogear.gears.pair import GearPair
 from thermogear.mesh.elastic import ElasticPair, PathShare, loaded_pair
 from thermogear.mesh.friction_path import FrictionPath
@@ -96,6 +97,6 @@ def _between_steps(pair: GearPair) -> tuple[Floats, Floats]:
     whole = np.arange(int(np.ceil(pair.contact_ratio)) + 1) * pair.base_pitch
     cuts = np.concatenate([a + whole, e - whole, [a, c, e]])
     ends = np.unique(np.clip(cuts, a, e))
-    u, w = np.polynomial.legendre.leggauss(GAUSS)
+    u, w = gauss(GAUSS)
     half, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
     return (middle + half * u).ravel(), (half * w).ravel()

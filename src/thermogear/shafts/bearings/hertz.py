@@ -16,6 +16,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from thermogear.base.gauss import gauss
+
 YOUNGS_MODULUS, POISSON_RATIO = 210e9, 0.3
 """Of bearing steel [Pa], [-]; customary values lie between 206 and 210 GPa."""
 
@@ -161,7 +163,7 @@ def load_zone_integral(zone: float, *, exponent: float) -> float:
     ['0.2288', '0.2448']
     """
     half = np.arccos(np.clip(1.0 - 2.0 * zone, -1.0, 1.0))
-    nodes, weights = np.polynomial.legendre.leggauss(200)
+    nodes, weights = gauss(200)
     psi = half * nodes
     deep = np.maximum(1.0 - (1.0 - np.cos(psi)) / (2.0 * zone), 0.0)
     return float(half * np.sum(weights * deep**exponent * np.cos(psi)) / (2.0 * np.pi))
