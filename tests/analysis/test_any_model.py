@@ -187,7 +187,7 @@ def test_attractors_of_a_model_that_is_no_single_mass():
 )
 def test_a_label_of_any_model_never_calls_a_torus_settled_or_chaotic(mu, name):
     """|mu| = exp(mu T): near 1 nothing is decided; a pair off the circle leaves a torus."""
-    model = turning(mu, tolerance=1e-10)
+    model = turning(mu, tolerance=1e-8)
     found = label(model, initial_state=(0.35, 0.0), discard=16, cap=128, max_period=4)
     assert found.name == name
     if name == "period-1":

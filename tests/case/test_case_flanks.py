@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from thermogear.base.errors import GeometryError, InputError
 from thermogear.case.case import GearCase, load_example
@@ -99,10 +100,18 @@ def test_what_does_not_fit_is_refused_under_its_field(change: str, field: str, w
     assert isinstance(caught.value, GeometryError) == ("longer" in words)
 
 
-def test_a_relief_reaches_every_result_of_a_run() -> None:
-    changes = ['model.bundle="consistent"', 'draw.pictures=["path"]']
-    plain, relieved = (run(rig(*changes, *more))["mesh"].to_dataset() for more in ([], TIP))
-    case = rig(*changes, *TIP)
+CONSISTENT = ['model.bundle="consistent"', 'draw.pictures=["path"]']
+
+
+@pytest.fixture(scope="module")
+def plain() -> xr.Dataset:
+    """The mesh of a run without relief."""
+    return run(rig(*CONSISTENT))["mesh"].to_dataset()
+
+
+def test_a_relief_reaches_every_result_of_a_run(plain: xr.Dataset) -> None:
+    relieved = run(rig(*CONSISTENT, *TIP))["mesh"].to_dataset()
+    case = rig(*CONSISTENT, *TIP)
     cycle = mesh_cycle(
         case.pair,
         case.operating,
@@ -118,10 +127,9 @@ def test_a_relief_reaches_every_result_of_a_run() -> None:
     assert float(hot["mean_stiffness"]) < float(unrelieved["mean_stiffness"])
 
 
-def test_a_relief_of_nothing_changes_nothing() -> None:
-    changes = ['model.bundle="consistent"', 'draw.pictures=["path"]']
+def test_a_relief_of_nothing_changes_nothing(plain: xr.Dataset) -> None:
     none = 'gears.pinion.tip_relief={amount="0 um", length="4 mm"}'
-    plain, zero = (run(rig(*changes, *more))["mesh"] for more in ([], [none]))
+    zero = run(rig(*CONSISTENT, none))["mesh"]
     np.testing.assert_array_equal(plain["mesh_stiffness"].values, zero["mesh_stiffness"].values)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scripts import ROOT, script
 
-COUNT = 10
+COUNT = 5
 
 
 @pytest.mark.slow

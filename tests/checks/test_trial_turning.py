@@ -67,7 +67,7 @@ def test_a_tacho_in_another_file_is_placed_by_its_time() -> None:
 
 def test_teeth_and_pulses_per_turn_are_found() -> None:
     random = np.random.default_rng(11)
-    run = TRIAL.drawn(random, seconds=8.0)
+    run = TRIAL.drawn(random, seconds=5.0)
     fast = replace(run, turns=4 * run.turns)
     four = Channel("tacho", TRIAL.pulses(fast, random), "V")
     record = Record((Channel("a", run.values, "g"), four), "x", TRIAL.RATE, "made", tacho="tacho")

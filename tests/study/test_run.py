@@ -31,14 +31,21 @@ SMALL = [
 
 
 @pytest.fixture(scope="module")
-def small() -> Result:
-    return run(load_example("rig", SMALL))
+def stages() -> list[str]:
+    """What the run of ``small`` said it was doing."""
+    return []
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def small(stages: list[str]) -> Result:
+    case = load_example("rig", SMALL)
+    return run(case, progress=lambda stage, done, total: stages.append(stage))
+
+
+@pytest.fixture(scope="module")
+def written(small: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("results") / "out"
-    save_results(run(load_example("rig", SMALL)), directory)
+    save_results(small, directory)
     return directory
 
 
@@ -201,9 +208,7 @@ def test_errata_carry_both_values_of_the_flash_temperature(small: Result) -> Non
     assert rows[16]["value_as_printed"] == pytest.approx(7.4, abs=0.05)
 
 
-def test_progress_names_its_stages() -> None:
-    stages: list[str] = []
-    run(load_example("rig", SMALL), progress=lambda stage, done, total: stages.append(stage))
+def test_progress_names_its_stages(small: Result, stages: list[str]) -> None:
     named = {stage.partition(" ")[0] for stage in stages}
     assert {"mesh", "motion"} <= named
     assert any(stage.endswith("temperature") for stage in stages)
