@@ -6,6 +6,7 @@ import json
 import math
 import random
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,12 @@ from thermogear.case.rexs.importing import CASE, imported
 
 GEARS = [name for name in EXAMPLES if load_example(name).kind == "gear"]
 ENDINGS = (".rexs", ".rexsj", ".rexsz")
+
+
+@cache
+def fzg_c() -> GearCase:
+    """One case for the tests that only read it: its heat balance is computed once."""
+    return gear_case(load_example("fzg-c"))
 
 
 def there_and_back(case: GearCase, path: Path, version: str = "1.7") -> GearCase:
@@ -99,7 +106,7 @@ def test_overrides_are_part_of_the_case(tmp_path: Path) -> None:
 
 
 def test_every_version_has_its_own_names_and_units(tmp_path: Path) -> None:
-    case = gear_case(load_example("fzg-c"))
+    case = fzg_c()
     new, old = (
         write_rexs(case, tmp_path / f"{version}.rexs", version=version).read_text(encoding="utf-8")
         for version in ("2.0.0", "1.7")
@@ -161,7 +168,7 @@ def test_without_our_attributes_the_converted_values_give_the_pair(tmp_path: Pat
 def test_what_another_program_changed_counts_and_is_said(
     old: str, new: str, path: str, value: float, tmp_path: Path
 ) -> None:
-    case = gear_case(load_example("fzg-c"))
+    case = fzg_c()
     file = write_rexs(case, tmp_path / "gearbox.rexs")
     text = file.read_text(encoding="utf-8")
     assert old in text
@@ -176,7 +183,7 @@ def test_what_another_program_changed_counts_and_is_said(
 
 
 def test_a_changed_load_and_oil_replace_theirs(tmp_path: Path) -> None:
-    case = gear_case(load_example("fzg-c"))
+    case = fzg_c()
     file = write_rexs(case, tmp_path / "gearbox.rexs")
     text = file.read_text(encoding="utf-8")
     text = text.replace('unit="1 / min">1500.0', 'unit="1 / min">1600.0')
@@ -190,7 +197,7 @@ def test_a_changed_load_and_oil_replace_theirs(tmp_path: Path) -> None:
 
 
 def test_results_stand_in_the_load_cases(tmp_path: Path) -> None:
-    case = gear_case(load_example("fzg-c"))
+    case = fzg_c()
     model = read_rexs(write_rexs(case, tmp_path / "gearbox.rexsj"))
     assert len(model.load_cases) == 3
     first = case.models[0]
@@ -209,7 +216,7 @@ def test_results_stand_in_the_load_cases(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_exported(tmp_path: Path) -> None:
-    case = gear_case(load_example("fzg-c"))
+    case = fzg_c()
     with pytest.raises(InputError, match="kind = 'dimensionless'"):
         write_rexs(load_example("table-4.2"), tmp_path / "a.rexs")  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"output: got 'a.txt'; allowed .rexs"):
@@ -240,7 +247,7 @@ def test_a_pair_without_a_hot_state_is_written_without_results(
 
 
 def test_a_stored_case_is_checked_like_any_other(tmp_path: Path) -> None:
-    case = gear_case(load_example("fzg-c"))
+    case = fzg_c()
     file = write_rexs(case, tmp_path / "gearbox.rexsj")
     content = json.loads(file.read_text(encoding="utf-8"))
     for attribute in content["model"]["components"][0]["attributes"]:
