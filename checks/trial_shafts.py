@@ -95,8 +95,8 @@ def drawn(random: Random, sort: str) -> Made:
     of 1 to 15 %, noise of rms 0.3 to 30 % of the mesh line, over 1.5 to 60 turns of the shaft.
 
     An unknown shaft turns a half or a third as fast, or has one to three teeth more or less, its
-    sidebands of 1 to 30 %; it is two turns or more from the known one's. An unknown slower mate turns
-    1 to 4.5 times, its first sidebands of 1 to 15 % and its second lower.
+    sidebands of 1 to 30 %; it is two turns or more from the known one's. An unknown slower mate
+    turns 1 to 4.5 times, its first sidebands of 1 to 15 % and its second lower.
     """
     few = sort.startswith("few")
     teeth, mesh = int(random.integers(12, 91)), between(random, 150.0, 700.0)
@@ -230,14 +230,15 @@ but the teeth of this gear is stated. A speed that changes walks (0.2 to 5 s), o
 periods in the record, at most half as fast as the shaft) or drifts, by 0.03 to 1 %. An unknown
 shaft has sidebands of 1 to 30 %; it turns a half or a third as fast, or its gear has up to three
 teeth more or less. An unknown slower mate has up to three times the teeth and turns 1 to 4.5 times
-in the record, with sidebands of 1 to 15 % and second ones that are lower. Of lost samples, 5 to 400 in one place, no time column tells. The truth is that
-in the gear's own angle, or turns over time; what is told as lost is left out.
+in the record, with sidebands of 1 to 15 % and second ones that are lower. Of lost samples, 5 to 400
+in one place, no time column tells. The truth is that in the gear's own angle, or turns over time;
+what is told as lost is left out.
 
 Below four turns nothing tells sidebands from a speed that changes: they are withheld where it does,
 and below two turns always. Where a slower mate is not known, that is told in words, and the mesh
 lines' intervals hold what it may bring; those of sidebands do not where one of the mate stands
 within a bin or so of them. The worst are in half widths. Sidebands of an unknown shaft that turn
-the phase alone are not told from an oscillation of the speed.
+the phase alone are not told from an oscillation of the speed: the intervals hold both.
 """
 
 

@@ -45,3 +45,15 @@ def test_a_slower_shaft_that_is_not_known_is_no_loss(number: int) -> None:
     x = made.values - made.values.mean()
     pace = made.teeth * made.shaft / TRIAL.RATE
     assert phase_jumps(x, pace, cycles=3.0 * made.teeth) == []
+
+
+@pytest.mark.parametrize(("sort", "number"), [(2, 18), (3, 0), (3, 23)])
+def test_a_shaft_that_is_not_known_and_turns_the_phase_is_in_the_intervals(
+    sort: int, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They were 3, 11 and 6 half widths off: what turns the phase alone went with it."""
+    monkeypatch.setattr(
+        "thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))
+    )
+    row = TRIAL.run((sort, number))
+    assert max(abs(one) for name in TRIAL.LINES for one in row.errors[name]) < 1.8

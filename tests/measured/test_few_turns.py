@@ -52,7 +52,7 @@ def test_lines_about_a_followed_one_are_in_their_intervals(turns: float) -> None
             line = lines[name]
             worst.append(abs(line.reading / size - 1.0) / line.half_width)
         line = lines["mesh x 1"]
-        assert line.half_width < 0.02
+        assert line.half_width < 0.03  # a tenth of the power may be a mate's, which is not known
         assert abs(line.frequency - mesh) < 1.5 * line.frequency_half_width
     assert np.mean(np.array(worst) < 1.0) > 0.85
     assert max(worst) < 1.8

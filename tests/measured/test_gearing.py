@@ -14,8 +14,9 @@ from conftest import Compared
 from said import numbers
 from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence
-from thermogear.measured.gearing import Gearing, find_gearing, told_of_mate
+from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.hypotheses import Gears, Hypothesis
+from thermogear.measured.mate import told_of_mate
 from thermogear.measured.meshes import Stated
 from thermogear.measured.record import Channel, Record
 from thermogear.measured.reduction import measure

@@ -15,7 +15,6 @@ from thermogear.base.errors import InputError
 from thermogear.measured.evidence import Evidence, weigh
 from thermogear.measured.meshes import Stated
 from thermogear.measured.prominence import Prominence, prominence
-from thermogear.measured.record import Notice
 from thermogear.measured.sidebands import Mesh, Shaft, second_mesh, shafts_of
 from thermogear.measured.straight import sharp_peaks
 from thermogear.signals.orders import line_angle, resample_by_angle, samples_per_cycle
@@ -30,7 +29,6 @@ _HARMONICS = 5
 _SAME = 1e-3  # a mesh line's position from two ways of reading it
 _STANDS = float(np.log(3.0))  # over the floor
 _BINS = 1.5  # between a line and its harmonic's place over its rank
-_MATE = 12.0  # turns of a gear: four of a mate three times as large
 _LIKELY = 0.5  # weight from which a mesh line is taken for the one to read lines at
 _NARROW = 0.006  # half width of the phase filter over the mesh line
 
@@ -109,36 +107,6 @@ def find_gearing(
         if weighed.teeth or seen:
             family = likely
     return _of_family(table, family, weighed, told_as)
-
-
-def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
-    """Teeth of the shafts that are decided, and those given."""
-    return sorted({shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set()))
-
-
-def mate_may_be_slow(gearing: Gearing, *, teeth: int | None, samples: int) -> bool:
-    """Whether one gear alone is known, and a mate of up to three times its teeth would turn fewer
-    than four times in the record."""
-    known = known_teeth(gearing, teeth)
-    return len(known) == 1 and gearing.mesh_frequency * samples < _MATE * known[0]
-
-
-def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
-    """What a slower mate that is not known would change."""
-    if not mate_may_be_slow(gearing, teeth=teeth, samples=samples):
-        return []
-    (own,) = known_teeth(gearing, teeth)
-    turns = gearing.mesh_frequency * samples / own
-    return [
-        Notice(
-            "warning",
-            f"the record holds {turns:.3g} turns of the gear of {own} teeth, and fewer of a larger "
-            "mate, which is not known: below four of them its sidebands are no lines of their own. "
-            "The mesh lines' half widths hold what those of a fifth may bring, a sideband's do not "
-            "where one of the mate stands beside it (a record "
-            f"{_MATE / turns:.2g} times as long tells them apart)",
-        )
-    ]
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,9 @@ from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing
+from thermogear.measured.mate import sides_of
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.turns import MeshTurns, sides_of
+from thermogear.measured.turns import MeshTurns
 from thermogear.measured.unfollowed import unfollowed
 from thermogear.measured.units import kind_of
 from thermogear.signals.interval import APART, REACH, Reading, read_line

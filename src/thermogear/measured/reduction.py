@@ -21,7 +21,7 @@ from thermogear.measured.changing import (
 )
 from thermogear.measured.contradictions import NEAR, of_line, of_speed, of_teeth
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
-from thermogear.measured.gearing import Gearing, find_gearing, told_of_mate
+from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -30,6 +30,7 @@ from thermogear.measured.lines import (
     told_withheld,
     wanted_lines,
 )
+from thermogear.measured.mate import known_teeth, told_of_mate
 from thermogear.measured.meshes import Stated
 from thermogear.measured.quantities import of_velocity
 from thermogear.measured.rate_check import SURE, check_rate
@@ -395,9 +396,9 @@ def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) ->
     piece = _JUMP_TURNS * (teeth or gearing.teeth or 20)
     jumps = phase_jumps(values, gearing.mesh_frequency, cycles=piece)
     around = int(np.ceil(1.5 * piece / gearing.mesh_frequency))  # a jump is placed so well
-    known = {shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set())
+    known = known_teeth(gearing, teeth)
     if len(jumps) < 2 and known:
-        step = phase_step(values, gearing.mesh_frequency, sorted(known))
+        step = phase_step(values, gearing.mesh_frequency, known)
         if step is not None and all(abs(step[0] - at) < around for at in jumps):
             jumps, around = [step[0]], 2 * step[1]
     if not jumps or _beats(spectrum, gearing.mesh_frequency):

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from thermogear.measured.chain import Turning
-from thermogear.measured.gearing import Gearing, known_teeth, mate_may_be_slow
-from thermogear.measured.unfollowed import AS_FAR, CLEAR, unfollowed
+from thermogear.measured.gearing import Gearing
+from thermogear.measured.mate import known_teeth, may_be_slow, power_in_phase, sides_of
+from thermogear.measured.unfollowed import AS_FAR, CLEAR, around, unfollowed
 from thermogear.signals.following import (
     Followed,
     band_power,
@@ -22,7 +23,7 @@ from thermogear.signals.following import (
 from thermogear.signals.interval import APART, LEAK, Reading, read_line
 from thermogear.signals.lines import LineSpectrum, line_in, line_spectrum
 from thermogear.signals.orders import samples_per_cycle
-from thermogear.signals.strong import Strong, dirichlet, strong_lines, twins
+from thermogear.signals.strong import Strong, strong_lines, twins
 
 Floats = NDArray[np.float64]
 
@@ -35,13 +36,9 @@ _ALIKE = 1.5  # of the phase's noise
 _EXPLAINED = 1.1  # times the power of lines beside a line, all that is there
 _STILL = 0.1  # of a line, that no steady one explains
 _FEW = 4.0  # turns of a shaft over the record
-_MATES = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and a little more
 _CLEARLY = 3.0  # times the power of Q
 _ALONE = 10.0  # times the power of I
 _SEEN = 2.0  # times the noise
-_PER_TURN = 24.0  # points of the phase, of a known gear
-_STEP = 0.25  # turns over the record, between those tried
-_LINE = 6.0  # times what waves beside it gain: of noise one wave in 13 000 does
 _UNKNOWN = (
     "the lines beside it may as well be sidebands of a shaft that is not known: the intervals hold "
     "both"
@@ -61,8 +58,8 @@ class MeshTurns:
     ``unfollowed``: power beside the line that its reading lacks and that may be its own, of its
     power; ``spread``: what of ``half_width`` comes of that; ``doubt``: share of the power near the
     line that may be its own or others', which its reading ``lacks`` or holds; ``withheld``: why
-    lines nearer to it and its harmonics than ``near`` are; ``mate``: a gear that is not known may turn a few
-    times and be among what changes the line.
+    lines nearer to it and its harmonics than ``near`` are; ``mate``: a gear that is not known may
+    turn a few times and be among what changes the line.
     """
 
     frequency: float
@@ -121,7 +118,7 @@ def mesh_turns(
         turns = _follow(values, spectrum, line.frequency, per_cycle, least=least, beside=beside)
     nearest = min((abs(one - line.frequency) for one in beside), default=np.inf)
     few = nearest < _FEW * spectrum.bin_width
-    mate = mate_may_be_slow(gearing, teeth=teeth, samples=values.size)
+    mate = may_be_slow(gearing, teeth=teeth, samples=values.size)
     if turns is not None:
         if few:
             return _or_sidebands(turns, values, spectrum, reading, strong, nearest)
@@ -215,14 +212,16 @@ def _or_sidebands(
         "sidebands are not told from a speed that wanders"
     )
     place = reading.frequency / width
-    own, even, odd = _around(values, place, most, strong=strong, noise=reading.noise)
+    own, even, odd = around(values, place=place, most=most, strong=strong, noise=reading.noise)
     doubt, turned, near = 0.0, 0.0, 2.0 * width
     if turns.turning is not None:
         doubt, near = (even + odd) / (own + even + odd), AS_FAR * nearest + near
         straight = turns.turning.resampled(values, 0)
         per_cycle = turns.turning.per_cycle
         strong, place = strong_lines(line_spectrum(straight, 1.0)), straight.size / per_cycle
-        own, even, odd = _around(straight, place, most, strong=strong, noise=reading.noise)
+        own, even, odd = around(
+            straight, place=place, most=most, strong=strong, noise=reading.noise
+        )
         turned = (even + odd) / own
         why = f"the speed wanders, and {why}"
     elif odd > max(_ALONE * even, _SEEN * most * reading.noise**2):
@@ -245,85 +244,24 @@ def _or_sidebands(
 def _or_mate(turns: MeshTurns, nearest: float) -> MeshTurns:
     """A line followed whose phase a gear may turn that is not known: the intervals hold both.
 
-    ``nearest``: turns of the known gear over the record; the other has up to three times its teeth,
-    or up to a fourth fewer. Of the phase it may be what a wave and its double explain best, unless
-    that is more than sidebands hold.
+    ``nearest``: turns of the known gear over the record.
     """
     assert turns.turning is not None
-    cycles, first = turns.turning.cycles, max(nearest / AS_FAR, 1.0)
-    along = np.linspace(-0.5, 0.5, int(np.ceil(_PER_TURN * nearest)))
-    phase = (
-        2.0 * np.pi * np.interp((along + 0.5) * (cycles.size - 1), np.arange(cycles.size), cycles)
-    )
-    # where there is room a window keeps what is slower out, and only what is sharp is a gear's
-    room = first > _FEW
-    weight = np.cos(np.pi * along) if room else np.ones(along.size)
-    own = 2.0 * np.pi * nearest * along[:, None] * np.array([1.0, 2.0, 3.0])
-    lines = [np.ones((along.size, 1)), along[:, None], np.cos(own), np.sin(own)]
-    straight = np.concatenate(lines if room else lines[:2], axis=1)
-
-    def left(columns: Floats) -> float:
-        found = np.linalg.lstsq(columns * weight[:, None], phase * weight)[0]
-        return float(np.average((phase - columns @ found) ** 2, weights=weight**2))
-
-    bare, tried = left(straight), np.arange(first, 4.0 / 3.0 * nearest, _STEP)
-    gains = np.zeros(tried.size)
-    for number, turn in enumerate(tried):
-        angle = 2.0 * np.pi * turn * along[:, None] * np.array([1.0, 2.0])
-        waves = np.concatenate([straight, np.cos(angle), np.sin(angle)], axis=1)
-        gains[number] = bare - left(waves)
-    best = int(np.argmax(gains / _beside_each(gains))) if room else int(np.argmax(gains))
-    power = float(gains[best])
-    if room and power < _LINE * _beside_each(gains)[best]:
-        return turns
-    power = min(power, _MATES)
+    cycles = turns.turning.cycles
+    power, sharp = power_in_phase(cycles, nearest)
     spread = float(np.sqrt(2.0 * power)) / np.pi / cycles.size
     return replace(
         turns,
         doubt=max(turns.doubt, power / (1.0 + power)),
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
-        mate=not room,
+        mate=not sharp,
     )
-
-
-def _beside_each(gains: Floats) -> Floats:
-    """Mean of what waves gain that are 2 to 6 turns slower or faster than each."""
-    far, near = round(6.0 / _STEP), round(2.0 / _STEP)
-    ring = np.ones(2 * far + 1)
-    ring[far - near + 1 : far + near] = 0.0
-    sums, counts = (
-        np.convolve(one, ring)[far : far + gains.size] for one in (gains, np.ones(gains.size))
-    )
-    return np.asarray(np.maximum(sums, 1e-300) / np.maximum(counts, 1.0))
 
 
 def _of_neighbours(reading: Reading) -> float:
     """Root of the power of lines fitted beside a line, over its amplitude."""
     return float(np.sqrt(max(reading.beside, 0.0))) / max(reading.amplitude, 1e-300)
-
-
-def _around(
-    values: Floats, place: float, most: int, *, strong: Sequence[Strong], noise: float
-) -> tuple[float, float, float]:
-    """Power of a line at ``place`` [bins], and beyond ``noise`` of a bin what up to ``most`` bins
-    beside it changes its amplitude (I), and what turns it (Q). ``strong`` lines farther off are
-    taken away."""
-    count = values.size
-    at = np.asarray(place + np.arange(-most, most + 1), dtype=float)
-    steps = np.arange(count) / count
-    found = np.array([np.vdot(np.exp(2j * np.pi * one * steps), values) for one in at])
-    found *= 2.0 / count
-    for one in strong:
-        if abs(one.place - place) > most + CLEAR:
-            found -= one.amplitude * dirichlet(np.asarray(one.place - at), count)
-            found -= np.conj(one.amplitude) * dirichlet(np.asarray(-one.place - at), count)
-    found *= np.exp(-1j * np.angle(found[most]))
-    above, below = found[most + 1 :], np.conj(found[:most][::-1])
-    even, odd = (float(np.sum(np.abs(above + sign * below) ** 2)) / 2.0 for sign in (1, -1))
-    level = most * noise**2
-    own = max(float(np.abs(found[most])) ** 2, 1e-300)
-    return own, max(even - level, 0.0), max(odd - level, 0.0)
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> str:
@@ -338,16 +276,6 @@ def _beside(reading: Reading, least: float | None, share: float) -> str:
         f"lines beside the mesh line that are no sidebands of its shafts hold {percent} % of its "
         "power: neighbours, or a speed that swings too fast to be followed; it is read as a "
         "steady line"
-    )
-
-
-def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
-    """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
-    return tuple(
-        mesh * (rank + sign * n / z)
-        for z in known_teeth(gearing, teeth)
-        for n in (1, 2, 3)
-        for sign in (-1, 1)
     )
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from thermogear.signals.interval import APART, REACH, SIDE, Reading
 from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.strong import UNEVEN, Strong, twins
+from thermogear.signals.strong import UNEVEN, Strong, dirichlet, twins
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -82,6 +82,29 @@ def unfollowed(
         return max(0.0, (steady + total) / own - 1.0), spread * width
     total = reading.pairs + unread + sum(one for place, one in each.items() if place > REACH)
     return max(total / own, -_FAR), spread * width
+
+
+def around(
+    values: Floats, *, place: float, most: int, strong: Sequence[Strong], noise: float
+) -> tuple[float, float, float]:
+    """Power of a line at ``place`` [bins], and beyond ``noise`` of a bin what up to ``most`` bins
+    beside it changes its amplitude (I), and what turns it (Q). ``strong`` lines farther off are
+    taken away."""
+    count = values.size
+    at = np.asarray(place + np.arange(-most, most + 1), dtype=float)
+    steps = np.arange(count) / count
+    found = np.array([np.vdot(np.exp(2j * np.pi * one * steps), values) for one in at])
+    found *= 2.0 / count
+    for one in strong:
+        if abs(one.place - place) > most + CLEAR:
+            found -= one.amplitude * dirichlet(np.asarray(one.place - at), count)
+            found -= np.conj(one.amplitude) * dirichlet(np.asarray(-one.place - at), count)
+    found *= np.exp(-1j * np.angle(found[most]))
+    above, below = found[most + 1 :], np.conj(found[:most][::-1])
+    even, odd = (float(np.sum(np.abs(above + sign * below) ** 2)) / 2.0 for sign in (1, -1))
+    level = most * noise**2
+    own = max(float(np.abs(found[most])) ** 2, 1e-300)
+    return own, max(even - level, 0.0), max(odd - level, 0.0)
 
 
 def _next_to_sides(strong: Sequence[Strong], place: float, first: float) -> tuple[float, float]:

@@ -1,0 +1,128 @@
+"""A gear that meshes with the known one and is not known: what it may change of the mesh line."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.measured.gearing import Gearing
+from thermogear.measured.record import Notice
+
+Floats = NDArray[np.float64]
+
+_SLOW = 12.0  # turns of a gear: four of a mate three times as large
+_RATIO = 3.0  # teeth of the mate over those of the known gear
+_FASTER = 4.0 / 3.0
+_FEW = 4.0  # turns over the record, below which nothing tells a wave from what is slower
+_STEP = 0.25  # turns over the record, between waves tried
+_PER_TURN = 16.0  # points of the phase, of the known gear
+_LINE = 6.0  # times what waves beside it hold: of noise one wave in 13 000 does
+_RING = 2.0, 6.0  # turns to each side
+_MOST = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and a little more
+
+
+def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
+    """Teeth of the shafts that are decided, and those given."""
+    return sorted({shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set()))
+
+
+def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
+    """Where the shafts' sidebands of a mesh harmonic stand, ``mesh`` in any unit."""
+    return tuple(
+        mesh * (rank + sign * n / z)
+        for z in known_teeth(gearing, teeth)
+        for n in (1, 2, 3)
+        for sign in (-1, 1)
+    )
+
+
+def may_be_slow(gearing: Gearing, *, teeth: int | None, samples: int) -> bool:
+    """Whether one gear alone is known, and a mate of up to three times its teeth would turn fewer
+    than four times in the record."""
+    known = known_teeth(gearing, teeth)
+    return len(known) == 1 and gearing.mesh_frequency * samples < _SLOW * known[0]
+
+
+def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
+    """What a slower mate that is not known would change."""
+    if not may_be_slow(gearing, teeth=teeth, samples=samples):
+        return []
+    (own,) = known_teeth(gearing, teeth)
+    turns = gearing.mesh_frequency * samples / own
+    return [
+        Notice(
+            "warning",
+            f"the record holds {turns:.3g} turns of the gear of {own} teeth, and fewer of a larger "
+            "mate, which is not known: below four of them its sidebands are no lines of their own. "
+            "The mesh lines' half widths hold what those of a fifth may bring, a sideband's do not "
+            "where one of the mate stands beside it (a record "
+            f"{_SLOW / turns:.2g} times as long tells them apart)",
+        )
+    ]
+
+
+def power_in_phase(cycles: Floats, nearest: float) -> tuple[float, bool]:
+    """Power of sidebands, over their line's, that a gear may have which is not known and turns the
+    phase; whether it would show as a sharp wave.
+
+    ``cycles`` of the line at each sample, ``nearest`` turns of the known gear over them. The other
+    has up to three times its teeth, or up to a fourth fewer. A phase of variance v has sidebands of
+    power v. What a wave and its double hold of the phase counts: where the mate would turn four
+    times or more, if it is well above what is beside it; else that of the best wave. Of more than
+    0.1 it is a speed that wanders.
+
+    >>> turn = np.linspace(0.0, 40.0, 4000)
+    >>> round(power_in_phase(20.0 * turn + 0.02 * np.sin(np.pi * turn), 40.0)[0], 4)
+    0.0079
+    """
+    first, last = max(nearest / _RATIO, 1.0), _FASTER * nearest
+    along = np.linspace(-0.5, 0.5, int(np.ceil(_PER_TURN * nearest)), endpoint=False)
+    place = (along + 0.5) * (cycles.size - 1)
+    phase = 2.0 * np.pi * np.interp(place, np.arange(cycles.size), cycles)
+    sharp = first > _FEW
+    if not sharp:
+        return min(float(np.max(_held(phase, along, first, last))), _MOST), False
+    power = _of_waves(phase, along, nearest)
+    tried = np.arange(int(first / _STEP), int(last / _STEP) + 1)
+    held = power[tried] + power[2 * tried]
+    beside = _beside(held)
+    best = int(np.argmax(held / beside))
+    return (min(float(held[best]), _MOST) if held[best] > _LINE * beside[best] else 0.0), True
+
+
+def _held(phase: Floats, along: Floats, first: float, last: float) -> Floats:
+    """Mean square of ``phase`` that each wave and its double explain, a straight line besides."""
+    straight = np.stack([np.ones(along.size), along], axis=1)
+
+    def left(columns: Floats) -> float:
+        found = np.linalg.lstsq(columns, phase)[0]
+        return float(np.mean((phase - columns @ found) ** 2))
+
+    gains = []
+    for turn in np.arange(first, last, _STEP):
+        angle = 2.0 * np.pi * turn * along[:, None] * np.array([1.0, 2.0])
+        gains.append(left(np.concatenate([straight, np.cos(angle), np.sin(angle)], axis=1)))
+    return left(straight) - np.asarray(gains)
+
+
+def _of_waves(phase: Floats, along: Floats, nearest: float) -> Floats:
+    """Mean square of waves of 0, 1, 2 .. steps, Hann's window; those of the known gear left out."""
+    own = 2.0 * np.pi * nearest * along[:, None] * np.array([1.0, 2.0, 3.0])
+    known = np.concatenate(
+        [np.ones((along.size, 1)), along[:, None], np.cos(own), np.sin(own)], axis=1
+    )
+    weight = np.cos(np.pi * along)
+    rest = phase - known @ np.linalg.lstsq(known * weight[:, None], phase * weight)[0]
+    steps = np.fft.rfft(weight**2 * rest, n=round(along.size / _STEP))
+    return np.asarray(2.0 * np.abs(steps / np.sum(weight**2)) ** 2)
+
+
+def _beside(held: Floats) -> Floats:
+    """Mean of what waves hold that are two to six turns slower or faster than each."""
+    near, far = (round(one / _STEP) for one in _RING)
+    ring = np.ones(2 * far + 1)
+    ring[far - near + 1 : far + near] = 0.0
+    sums, counts = (
+        np.convolve(one, ring)[far : far + held.size] for one in (held, np.ones(held.size))
+    )
+    return np.asarray(np.maximum(sums, 1e-300) / np.maximum(counts, 1.0))
