@@ -79,7 +79,7 @@ class MeshTurns:
 
     def leaked(self, reading: Reading) -> float:
         """What sidebands of a mate that is not known bring to a mesh line, over its amplitude,
-        where they may be what changes it, turns it or stands beside it."""
+        where they may be what changes it, turns it or is beside it."""
         if not self.mate:
             return 0.0
         own = max(reading.amplitude, 1e-300)
