@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,13 +12,14 @@ from thermogear.measured.record import Notice
 
 Floats = NDArray[np.float64]
 
-_SLOW = 12.0  # turns of a gear: four of a mate three times as large
+SLOW = 12.0
+"""Turns of a gear over the record: four of a mate three times as large."""
 _RATIO = 3.0  # teeth of the mate over those of the known gear
 _FASTER = 4.0 / 3.0
 _FEW = 4.0  # turns over the record, below which nothing tells a wave from what is slower
 _STEP = 0.25  # turns over the record, between waves tried
 _PER_TURN = 16.0  # points of the phase, of the known gear
-_LINE = 6.0  # times what waves beside it hold: of noise one wave in 13 000 does
+_LINE = 4.0  # times the level beside it: of noise one wave in 330 does, and has hardly any power
 _RING = 2.0, 6.0  # turns to each side
 _MOST = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and a little more
 
@@ -40,7 +43,7 @@ def may_be_slow(gearing: Gearing, *, teeth: int | None, samples: int) -> bool:
     """Whether one gear alone is known, and a mate of up to three times its teeth would turn fewer
     than four times in the record."""
     known = known_teeth(gearing, teeth)
-    return len(known) == 1 and gearing.mesh_frequency * samples < _SLOW * known[0]
+    return len(known) == 1 and gearing.mesh_frequency * samples < SLOW * known[0]
 
 
 def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
@@ -56,41 +59,64 @@ def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[N
             "mate, which is not known: below four of them its sidebands are no lines of their own. "
             "The mesh lines' half widths hold what those of a fifth may bring, a sideband's do not "
             "where one of the mate stands beside it (a record "
-            f"{_SLOW / turns:.2g} times as long tells them apart)",
+            f"{SLOW / turns:.2g} times as long tells them apart)",
         )
     ]
 
 
-def power_in_phase(cycles: Floats, nearest: float) -> tuple[float, bool]:
-    """Power of sidebands, over their line's, that a gear may have which is not known and turns the
-    phase; whether it would show as a sharp wave.
+class Wave(NamedTuple):
+    """What of a line's phase a gear may be that is not known: ``power`` of its sidebands, over the
+    line's; its ``turns`` over the record; whether it is ``sharp``, well above what is beside it."""
+
+    power: float
+    turns: float
+    sharp: bool
+
+    def words(self, cycles: float) -> str:
+        """What is said of a sharp one, after what is said of the phase of so many ``cycles``."""
+        if not self.sharp:
+            return ""
+        return (
+            f"; it oscillates {self.turns:.3g} times over the record, as a gear of about "
+            f"{cycles / self.turns:.0f} teeth would turn it: the intervals hold both"
+        )
+
+
+def wave_of_mate(cycles: Floats, nearest: float) -> Wave:
+    """The wave in a line's phase that a gear may make which is not known.
 
     ``cycles`` of the line at each sample, ``nearest`` turns of the known gear over them. The other
     has up to three times its teeth, or up to a fourth fewer. A phase of variance v has sidebands of
     power v. What a wave and its double hold of the phase counts: where the mate would turn four
-    times or more, if it is well above what is beside it; else that of the best wave. Of more than
-    0.1 it is a speed that wanders.
+    times or more, if it is sharp; else that of the best wave. At most 0.1 counts: sidebands of a
+    fifth of the line. More is a speed that wanders.
 
     >>> turn = np.linspace(0.0, 40.0, 4000)
-    >>> round(power_in_phase(20.0 * turn + 0.02 * np.sin(np.pi * turn), 40.0)[0], 4)
-    0.0079
+    >>> wave = wave_of_mate(20.0 * turn + 0.02 * np.sin(np.pi * turn), 40.0)
+    >>> round(wave.power, 4), wave.turns, wave.sharp
+    (0.0079, 20.0, True)
     """
     first, last = max(nearest / _RATIO, 1.0), _FASTER * nearest
     along = np.linspace(-0.5, 0.5, int(np.ceil(_PER_TURN * nearest)), endpoint=False)
     place = (along + 0.5) * (cycles.size - 1)
     phase = 2.0 * np.pi * np.interp(place, np.arange(cycles.size), cycles)
-    sharp = first > _FEW
-    if not sharp:
-        return min(float(np.max(_held(phase, along, first, last))), _MOST), False
+    if first <= _FEW:
+        tried = np.arange(first, last, _STEP)
+        held = _held(phase, along, tried)
+        best = int(np.argmax(held))
+        return Wave(min(float(held[best]), _MOST), float(tried[best]), False)
     power = _of_waves(phase, along, nearest)
-    tried = np.arange(int(first / _STEP), int(last / _STEP) + 1)
-    held = power[tried] + power[2 * tried]
-    beside = _beside(held)
-    best = int(np.argmax(held / beside))
-    return (min(float(held[best]), _MOST) if held[best] > _LINE * beside[best] else 0.0), True
+    steps = np.arange(int(last / _STEP) + 1)
+    held = power[steps] + power[2 * steps]
+    sharp = (held > _LINE * _beside(held)) & (steps >= int(first / _STEP))
+    if not np.any(sharp):
+        return Wave(0.0, 0.0, False)
+    best = int(np.argmax(np.where(sharp, held, 0.0)))
+    itself = best if power[best] > power[2 * best] or 2 * best >= steps.size else 2 * best
+    return Wave(min(float(held[best]), _MOST), _STEP * itself, True)
 
 
-def _held(phase: Floats, along: Floats, first: float, last: float) -> Floats:
+def _held(phase: Floats, along: Floats, tried: Floats) -> Floats:
     """Mean square of ``phase`` that each wave and its double explain, a straight line besides."""
     straight = np.stack([np.ones(along.size), along], axis=1)
 
@@ -99,7 +125,7 @@ def _held(phase: Floats, along: Floats, first: float, last: float) -> Floats:
         return float(np.mean((phase - columns @ found) ** 2))
 
     gains = []
-    for turn in np.arange(first, last, _STEP):
+    for turn in tried:
         angle = 2.0 * np.pi * turn * along[:, None] * np.array([1.0, 2.0])
         gains.append(left(np.concatenate([straight, np.cos(angle), np.sin(angle)], axis=1)))
     return left(straight) - np.asarray(gains)
@@ -118,11 +144,16 @@ def _of_waves(phase: Floats, along: Floats, nearest: float) -> Floats:
 
 
 def _beside(held: Floats) -> Floats:
-    """Mean of what waves hold that are two to six turns slower or faster than each."""
+    """Level of what waves hold that are two to six turns slower or faster than each.
+
+    The mean of the logarithm follows the steep spectrum of a speed that walks; of noise in a wave
+    and its double it is e^0.42 where the mean is 2.
+    """
     near, far = (round(one / _STEP) for one in _RING)
     ring = np.ones(2 * far + 1)
     ring[far - near + 1 : far + near] = 0.0
+    logs = np.log(np.maximum(held, 1e-300))
     sums, counts = (
-        np.convolve(one, ring)[far : far + held.size] for one in (held, np.ones(held.size))
+        np.convolve(one, ring)[far : far + held.size] for one in (logs, np.ones(held.size))
     )
-    return np.asarray(np.maximum(sums, 1e-300) / np.maximum(counts, 1.0))
+    return np.asarray(2.0 * np.exp(sums / np.maximum(counts, 1.0) - 0.42))

@@ -11,7 +11,7 @@ from scipy import signal
 
 from thermogear.measured.chain import Turning
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.mate import known_teeth, may_be_slow, power_in_phase, sides_of
+from thermogear.measured.mate import SLOW, known_teeth, may_be_slow, sides_of, wave_of_mate
 from thermogear.measured.unfollowed import AS_FAR, CLEAR, around, unfollowed
 from thermogear.signals.following import (
     Followed,
@@ -123,9 +123,8 @@ def mesh_turns(
         if few:
             return _or_sidebands(turns, values, spectrum, reading, strong, nearest)
         turns = _or_steady(turns, spectrum, reading, beside, strong)
-        if len(known_teeth(gearing, teeth)) == 1:
-            turns = _or_mate(turns, nearest / spectrum.bin_width)
-        return turns
+        known = known_teeth(gearing, teeth)
+        return turns if len(known) != 1 else _or_mate(turns, known[0], nearest / spectrum.bin_width)
     best = reading.frequency, reading.frequency_half_width
     for rank in range(2, harmonics + 1):
         if 2.56 * rank * reading.frequency > 1.0:
@@ -241,21 +240,23 @@ def _or_sidebands(
     )
 
 
-def _or_mate(turns: MeshTurns, nearest: float) -> MeshTurns:
+def _or_mate(turns: MeshTurns, teeth: int, nearest: float) -> MeshTurns:
     """A line followed whose phase a gear may turn that is not known: the intervals hold both.
 
-    ``nearest``: turns of the known gear over the record.
+    ``nearest``: turns of the known gear of ``teeth`` over the record.
     """
     assert turns.turning is not None
     cycles = turns.turning.cycles
-    power, sharp = power_in_phase(cycles, nearest)
-    spread = float(np.sqrt(2.0 * power)) / np.pi / cycles.size
+    wave = wave_of_mate(cycles, nearest)
+    spread = float(np.sqrt(2.0 * wave.power)) / np.pi / cycles.size
+    told = wave.words(teeth * nearest) if wave.power > _MISSED else ""
     return replace(
         turns,
-        doubt=max(turns.doubt, power / (1.0 + power)),
+        doubt=max(turns.doubt, wave.power / (1.0 + wave.power)),
         half_width=float(np.hypot(turns.half_width, spread)),
         spread=float(np.hypot(turns.spread, spread)),
-        mate=not sharp,
+        mate=nearest < SLOW,
+        said=turns.said + told,
     )
 
 
