@@ -24,7 +24,7 @@ from scipy import stats
 
 from thermogear.signals.left_over import NEAR, Left, noise_beside, without_others
 from thermogear.signals.lines import LineSpectrum
-from thermogear.signals.strong import Strong, dirichlet, twins
+from thermogear.signals.strong import Strong, dirichlet, shown, twins
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -184,6 +184,7 @@ class _Fit:
                 known.append(at)
         data = spectrum.lines[low : high + 1].copy()
         taken: list[Strong] = []
+        away: list[Strong] = []
         for one in strong:
             if abs(one.place - place) < APART or any(abs(one.place - k) < SIDE for k in known):
                 continue
@@ -191,8 +192,10 @@ class _Fit:
                 continue  # too near to be told apart by the Hann window
             if low - _TOUCH < one.place < high + _TOUCH:
                 taken.append(one)
-            data -= one.amplitude * dirichlet(one.place - bins, count)
-            data -= np.conj(one.amplitude) * dirichlet(-one.place - bins, count)
+            away.append(one)
+        others = np.array([one.place for one in away])
+        sizes = np.array([one.amplitude for one in away], dtype=complex)
+        data -= shown(others, bins, count) @ sizes + shown(-others, bins, count) @ np.conj(sizes)
         places = np.array([place, *known])
         free = np.zeros(places.size, dtype=bool)
         free[0] = True
@@ -202,8 +205,8 @@ class _Fit:
 
     def _columns(self, places: Floats) -> tuple[Complexes, Complexes]:
         """Of each place the bins of its cosine and of its sine: (bin, place)."""
-        up = dirichlet(places[None, :] - self.bins[:, None], self.spectrum.samples)
-        down = dirichlet(-places[None, :] - self.bins[:, None], self.spectrum.samples)
+        up = shown(places, self.bins, self.spectrum.samples)
+        down = shown(-places, self.bins, self.spectrum.samples)
         return up + down, 1j * (up - down)
 
     def _slopes(self, places: Floats, amplitudes: Complexes) -> Complexes:
@@ -277,7 +280,7 @@ class _Fit:
         steps = np.arange(1, reach + 1, dtype=float)
 
         def rows(at: Floats) -> Complexes:
-            shapes = dirichlet(place + at[:, None] - self.bins[None, :], self.spectrum.samples)
+            shapes = shown(place + at, self.bins, self.spectrum.samples).T
             return np.asarray(np.conj(shapes) * phase)
 
         up, down = rows(steps), rows(-steps)

@@ -43,6 +43,23 @@ def dirichlet(offset: Floats, samples: int) -> Complexes:
     return np.asarray(np.exp(1j * np.pi * u * (samples - 1) / samples) * size)
 
 
+def shown(places: Floats, bins: Floats, samples: int) -> Complexes:
+    """What lines of amplitude 1 at ``places`` [bins] show at whole ``bins``: (bin, place).
+
+    :func:`dirichlet` of place - bin, where f, the place beyond its nearest bin, is one of all bins:
+    D(u) = exp(i pi f) sin(pi f)/N (cot(pi u/N) - i).
+
+    >>> np.abs(shown(np.array([7.0, 7.5]), np.array([6.0, 7.0]), 1000)).round(3).tolist()
+    [[0.0, 0.212], [1.0, 0.637]]
+    """
+    beyond = places - np.rint(places)
+    factor = np.exp(1j * np.pi * beyond) * np.sin(np.pi * beyond) / samples
+    offset = places[None, :] - bins[:, None]
+    own = np.abs(offset) < 1e-9
+    tangent = np.tan(np.pi / samples * np.where(own, 1.0, offset))
+    return np.asarray(np.where(own, 1.0, factor * (1.0 / tangent - 1j)))
+
+
 def hann_at(offset: Floats, samples: int) -> Complexes:
     """What a line of amplitude 1 shows ``offset`` bins below it, Hann's window.
 
