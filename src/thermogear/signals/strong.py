@@ -44,7 +44,7 @@ def dirichlet(offset: Floats, samples: int) -> Complexes:
 
 
 def shown(places: Floats, bins: Floats, samples: int) -> Complexes:
-    """What lines of amplitude 1 at ``places`` [bins] show at whole ``bins``: (bin, place).
+    """What lines of amplitude 1 at ``places`` [bins] show at whole ``bins`` [-]: (bin, place).
 
     :func:`dirichlet` of place - bin, where f, the place beyond its nearest bin, is one of all bins:
     D(u) = exp(i pi f) sin(pi f)/N (cot(pi u/N) - i).
