@@ -195,7 +195,8 @@ class _Fit:
             away.append(one)
         others = np.array([one.place for one in away])
         sizes = np.array([one.amplitude for one in away], dtype=complex)
-        data -= shown(others, bins, count) @ sizes + shown(-others, bins, count) @ np.conj(sizes)
+        data -= shown(others, bins=bins, samples=count) @ sizes
+        data -= shown(-others, bins=bins, samples=count) @ np.conj(sizes)
         places = np.array([place, *known])
         free = np.zeros(places.size, dtype=bool)
         free[0] = True
@@ -205,8 +206,8 @@ class _Fit:
 
     def _columns(self, places: Floats) -> tuple[Complexes, Complexes]:
         """Of each place the bins of its cosine and of its sine: (bin, place)."""
-        up = shown(places, self.bins, self.spectrum.samples)
-        down = shown(-places, self.bins, self.spectrum.samples)
+        up = shown(places, bins=self.bins, samples=self.spectrum.samples)
+        down = shown(-places, bins=self.bins, samples=self.spectrum.samples)
         return up + down, 1j * (up - down)
 
     def _slopes(self, places: Floats, amplitudes: Complexes) -> Complexes:
@@ -280,7 +281,7 @@ class _Fit:
         steps = np.arange(1, reach + 1, dtype=float)
 
         def rows(at: Floats) -> Complexes:
-            shapes = shown(place + at, self.bins, self.spectrum.samples).T
+            shapes = shown(place + at, bins=self.bins, samples=self.spectrum.samples).T
             return np.asarray(np.conj(shapes) * phase)
 
         up, down = rows(steps), rows(-steps)

@@ -43,13 +43,14 @@ def dirichlet(offset: Floats, samples: int) -> Complexes:
     return np.asarray(np.exp(1j * np.pi * u * (samples - 1) / samples) * size)
 
 
-def shown(places: Floats, bins: Floats, samples: int) -> Complexes:
-    """What lines of amplitude 1 at ``places`` [bins] show at whole ``bins`` [-]: (bin, place).
+def shown(places: Floats, *, bins: Floats, samples: int) -> Complexes:
+    """What lines of amplitude 1 at ``places`` [bins] show at whole ``bins``: (bin, place).
 
     :func:`dirichlet` of place - bin, where f, the place beyond its nearest bin, is one of all bins:
     D(u) = exp(i pi f) sin(pi f)/N (cot(pi u/N) - i).
 
-    >>> np.abs(shown(np.array([7.0, 7.5]), np.array([6.0, 7.0]), 1000)).round(3).tolist()
+    >>> seen = shown(np.array([7.0, 7.5]), bins=np.array([6.0, 7.0]), samples=1000)
+    >>> np.abs(seen).round(3).tolist()
     [[0.0, 0.212], [1.0, 0.637]]
     """
     beyond = places - np.rint(places)
