@@ -74,6 +74,19 @@ def test_cells_arrays_of_structures_and_a_step(tmp_path: Path) -> None:
     assert [c.values()[0] for c in record.channels] == [0.0, 1.0, 2.0, 3.0]
 
 
+def test_a_structure_states_the_unit_of_its_numbers(tmp_path: Path) -> None:
+    t = np.arange(500) / 1000.0
+    own = {"time_s": t, "acc": np.cos(t), "unit": "m/s^2", "range": 5.0}
+    inner = {"values": np.sin(t), "units": "g"}
+    io.savemat(tmp_path / "s.mat", {"own": own, "outer": {"inner": inner, "unit": "V"}})
+    record = read_record(tmp_path / "s.mat")
+    assert {c.name: c.unit for c in record.channels} == {
+        "own.acc": "m/s^2",
+        "outer.inner.values": "g",
+    }
+    assert record.rate == pytest.approx(1000.0)
+
+
 def test_a_velocity_has_acceleration_and_displacement() -> None:
     t = np.arange(40_000) / 10_000.0
     random = np.random.default_rng(1)

@@ -12,7 +12,7 @@ import mmap
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from thermogear.base.errors import InputError
 from thermogear.measured.options import ReadOptions, refused, too_large
 from thermogear.measured.record import Record
 from thermogear.measured.tables import Named, record_of
+from thermogear.measured.traps import is_time_name
 
 _KINDS = {
     1: "i1",
@@ -39,6 +40,9 @@ _KINDS = {
 }
 _MATRIX, _COMPRESSED = 14, 15
 _CELL, _STRUCT, _CHAR = 1, 2, 4
+_TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16*", 16: "utf-8", 17: "utf-16*"}
+_UNITS = ("unit", "units")
+_LONGEST_UNIT = 64  # bytes
 _DEEPEST = 8
 _MOST_PARTS = 1 << 16
 """Elements of one file or variable: fields of structures and their numbers."""
@@ -166,13 +170,37 @@ def _structure(
     if not fields:
         return found
     # the structures of an array one after another, each with all its fields
-    one = math.prod(shape) == 1
+    one, unit_of = math.prod(shape) == 1, dict[str, str]()
     for place, (kind, body) in enumerate(parts[5:]):
         number, field = divmod(place, len(fields))
         if kind == _MATRIX:
             which = name if one else f"{name}({number + 1})"
             found += _matrix(body, order, f"{which}.{fields[field]}.", depth + 1)
-    return found
+            if fields[field].lower() in _UNITS and (said := _text(body, order)):
+                unit_of[which] = said
+    return [_with_unit(array, unit_of) for array in found]
+
+
+def _with_unit(array: Named, unit_of: dict[str, str]) -> Named:
+    """An array with the unit that its own structure states, a clock and numbers of one aside."""
+    structure, _, field = array.name.rpartition(".")
+    said = unit_of.get(structure)
+    if said is None or is_time_name(field) or math.prod(array.shape) == 1:
+        return array
+    return replace(array, attributes={"units": said} | array.attributes)
+
+
+def _text(body: memoryview, order: str) -> str:
+    """The text of a variable of characters; of any other ''."""
+    parts = list(_Buffer(body, order).elements())
+    if len(parts) < 4 or len(parts[0][1]) < 8:
+        return ""
+    kind = struct.unpack(order + "I", parts[0][1][:4])[0] & 0xFF
+    stored, content = parts[3]
+    if kind != _CHAR or stored not in _TEXTS or len(content) > _LONGEST_UNIT:
+        return ""
+    wide = {"<": "-le", ">": "-be"}[order]
+    return bytes(content).decode(_TEXTS[stored].replace("*", wide), "replace").strip()
 
 
 def _cells(

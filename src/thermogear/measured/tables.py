@@ -148,6 +148,9 @@ class _Told:
         """A number, a time, one channel or several, by its shape and name."""
         bare, said = split_unit(array.name)
         leaf = bare.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
+        if said is None:  # "time_s" tells its unit wherever it is
+            head, (leaf, said) = bare.removesuffix(leaf), split_unit(leaf)
+            bare = head + leaf
         for key in ("units", "unit", "Unit", "Units", "unit_string"):
             said = said or unit(text_of(array.attributes.get(key)) or "")
         sizes = [n for n in array.shape if n != 1]
