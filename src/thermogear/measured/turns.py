@@ -261,8 +261,8 @@ def _or_mate(turns: MeshTurns, teeth: int, nearest: float) -> MeshTurns:
 
 
 def _of_neighbours(reading: Reading) -> float:
-    """Root of the power of lines fitted beside a line, over its amplitude."""
-    return float(np.sqrt(max(reading.beside, 0.0))) / max(reading.amplitude, 1e-300)
+    """Root of what lines fitted beside a line change of its power, over its amplitude."""
+    return float(np.sqrt(abs(reading.beside))) / max(reading.amplitude, 1e-300)
 
 
 def _beside(reading: Reading, least: float | None, share: float) -> str:
