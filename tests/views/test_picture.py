@@ -15,6 +15,7 @@ import pytest
 import synthetic_pictures
 import synthetic_results as synthetic
 from test_versus_report import built, read_versus
+from traits import traits
 
 from thermogear import pictures
 from thermogear.views import drawing
@@ -64,6 +65,18 @@ def svg(picture: Picture) -> bytes:
     return drawing.image(picture, "svg", salt="same")
 
 
+def needed(every: dict[str, Picture]) -> list[str]:
+    """The names of a few pictures that have all traits of ``every`` among them."""
+    left = {name: set(traits(one.to_json())) for name, one in every.items()}
+    found = []
+    while any(left.values()):
+        found.append(max(left, key=lambda name: len(left[name])))
+        shown = left[found[-1]].copy()
+        for rest in left.values():
+            rest -= shown
+    return found
+
+
 def test_every_function_that_makes_a_picture_is_called(every: dict[str, Picture]) -> None:
     assert all(isinstance(one, Picture) for one in every.values())
     folder = Path(versus.__file__).parent
@@ -99,10 +112,11 @@ def test_json_holds_everything_and_draws_the_same(every: dict[str, Picture]) -> 
                 assert told[axis]["unit"] in told[axis]["words"]
             labels = [getattr(mark, "label", "") for mark in panel.marks]
             assert [mark.get("label", "") for mark in told["marks"]] == labels
-        again = Picture.from_json(said)
-        assert again.to_json() == said, name
-        if "/" not in name:
-            assert svg(again) == svg(one), name
+        assert Picture.from_json(said).to_json() == said, name
+    alone = {name: one for name, one in every.items() if "/" not in name}
+    for name in needed(alone):
+        again = Picture.from_json(json.loads(json.dumps(alone[name].to_json())))
+        assert svg(again) == svg(alone[name]), name
 
 
 def test_values_are_told_as_they_are_and_gaps_as_nothing() -> None:
