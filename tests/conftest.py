@@ -7,6 +7,7 @@ import json
 import os
 import platform
 from collections.abc import Callable, Generator
+from contextlib import nullcontext
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -159,23 +160,32 @@ def at_length(
 
 _DRAWN: dict[tuple[str, str, str], Markup] = {}
 """What :func:`drawn_once` has drawn, of one test and of those before it."""
+_SHOWN: set[tuple[str, object]] = set()
+"""The traits of the pictures that were drawn, not told."""
 
 
 @pytest.fixture
 def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pages draw a picture once, and take it again where its data are the same to the letter.
+    """Pages draw a picture of every kind, and tell the others by their texts.
 
-    For a test that asks whether a page made again is the same: its texts, tables and data are made
-    again. That the same data draw the same is asked of every kind of picture in ``views``.
+    Drawn is what has a mark, or a choice of one, that none before it had; the same data are taken
+    again. For a test that asks what a page says, or whether a page made again is the same: its
+    texts, tables and data are made again. That the same data draw the same is asked in ``views``.
     """
+    from in_words import in_words
     from thermogear.views import page
     from thermogear.views.picture import Picture
     from thermogear.views.svg import draw
+    from traits import traits
 
     def once(picture: Picture, name: str, title: str) -> Markup:
-        key = json.dumps(picture.to_json()), name, title
+        said = picture.to_json()
+        key = json.dumps(said), name, title
         if key not in _DRAWN:
-            _DRAWN[key] = draw(picture, name, title)
+            found = set(traits(said))
+            with nullcontext() if found - _SHOWN else in_words():
+                _DRAWN[key] = draw(picture, name, title)
+            _SHOWN.update(found)
         return _DRAWN[key]
 
     monkeypatch.setattr(page, "draw", once)

@@ -15,13 +15,13 @@ import pytest
 import synthetic_pictures
 import synthetic_results as synthetic
 from test_versus_report import built, read_versus
-from traits import traits
 
 from thermogear import pictures
 from thermogear.views import drawing
 from thermogear.views.picture import KINDS, Axis, Mark, Panel, Picture
 from thermogear.views.plots import versus
 from thermogear.views.style import COLD, INK, ramp
+from traits import traits
 
 UNIT = re.compile(r"\[[^\[\]]+\]")
 FUNCTION = re.compile(r"^def ([a-z]\w*)\([^)]*\) -> Picture:", re.MULTILINE)
