@@ -5,12 +5,13 @@ from __future__ import annotations
 import gc
 import json
 import os
+import pickle
 import platform
 from collections.abc import Callable, Generator
 from contextlib import nullcontext
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line does
 
@@ -21,6 +22,9 @@ from numpy.typing import ArrayLike
 
 from thermogear import Gear, GearPair, Operating, Temperatures, __version__
 from thermogear.base.materials import ZERO_CELSIUS, lubricant
+
+if TYPE_CHECKING:
+    from thermogear.mesh.warm_up import WarmUp
 
 COMPARED, AT_LENGTH = "compared", "at_length"
 Compared = Callable[..., None]
@@ -189,6 +193,28 @@ def drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return _DRAWN[key]
 
     monkeypatch.setattr(page, "draw", once)
+
+
+_WARMED: dict[bytes, WarmUp] = {}
+"""What :func:`warmed_once` has computed, by all that it was asked with."""
+
+
+@pytest.fixture
+def warmed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The answers compute a pair's way from cold to steady once for the same numbers.
+
+    For a test of what is said or shown of it: sentences and verdicts are made each time.
+    """
+    from thermogear.mesh.warm_up import warm_up
+    from thermogear.study.answers import asked
+
+    def once(*given: Any, **settings: Any) -> WarmUp:
+        key = pickle.dumps((given, settings))
+        if key not in _WARMED:
+            _WARMED[key] = warm_up(*given, **settings)
+        return _WARMED[key]
+
+    monkeypatch.setattr(asked, "warm_up", once)
 
 
 @pytest.fixture(scope="session")

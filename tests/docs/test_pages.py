@@ -243,7 +243,7 @@ def _blocks(page: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("drawn_once")
+@pytest.mark.usefixtures("drawn_once", "warmed_once")
 @pytest.mark.parametrize(
     "page",
     ["../README.md", "start.md", *(f"howto/{p.name}" for p in (DOCS / "howto").glob("*.md"))],

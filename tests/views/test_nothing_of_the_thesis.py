@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import re
 from collections.abc import Iterator
 from functools import partial
@@ -14,11 +13,12 @@ from in_words import in_words
 from own_pair import OWN_PAIR
 from thermogear.front.cli import main
 from thermogear.gears.relief import optimise_tip_relief
-from thermogear.mesh.warm_up import WarmUp, warm_up
 from thermogear.study import relief
-from thermogear.study.answers import asked
 
-pytestmark = pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::thermogear.base.errors.ValidityWarning"),
+    pytest.mark.usefixtures("warmed_once"),
+]
 FIVE = """[gears]
 module = "3 mm"
 face_width = "30 mm"
@@ -69,22 +69,6 @@ TEXTS = {".html", ".json", ".csv", ".svg", ".txt", ".md", ".toml"}
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """A relief is searched for a while only: its words are the same."""
     monkeypatch.setattr(relief, "optimise_tip_relief", partial(optimise_tip_relief, evaluations=40))
-
-
-@pytest.fixture(autouse=True, scope="module")
-def _warmed_once() -> Iterator[None]:
-    """The way from cold to steady is computed once for each pair: its words are made each time."""
-    known: dict[bytes, WarmUp] = {}
-
-    def once(*of: object, **settings: object) -> WarmUp:
-        key = pickle.dumps((of, settings))
-        if key not in known:
-            known[key] = warm_up(*of, **settings)  # type: ignore[arg-type]
-        return known[key]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(asked, "warm_up", once)
-        yield
 
 
 @pytest.fixture(autouse=True, scope="module")
