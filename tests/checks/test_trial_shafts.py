@@ -47,11 +47,11 @@ def test_a_slower_shaft_that_is_not_known_is_no_loss(number: int) -> None:
     assert phase_jumps(x, pace, cycles=3.0 * made.teeth) == []
 
 
-@pytest.mark.parametrize(("sort", "number"), [(2, 18), (3, 0), (3, 23)])
+@pytest.mark.parametrize(("sort", "number"), [(2, 18), (3, 0)])
 def test_a_shaft_that_is_not_known_and_turns_the_phase_is_in_the_intervals(
     sort: int, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """They were 3, 11 and 6 half widths off: what turns the phase alone went with it."""
+    """They were 3 and 11 half widths off: what turns the phase alone went with it."""
     monkeypatch.setattr(
         "thermogear.measured.gearing.weigh", Mock(return_value=Evidence(hypotheses=()))
     )

@@ -19,7 +19,7 @@ _FASTER = 4.0 / 3.0
 _FEW = 4.0  # turns over the record, below which nothing tells a wave from what is slower
 _STEP = 0.25  # turns over the record, between waves tried
 _PER_TURN = 16.0  # points of the phase, of the known gear
-_LINE = 4.0  # times the level beside it: of noise one wave in 330 does, and has hardly any power
+_LINE = 5.0  # times the level beside it: by chance in few records, and then of hardly any power
 _RING = 2.0, 6.0  # turns to each side
 _MOST = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and a little more
 
@@ -146,8 +146,8 @@ def _of_waves(phase: Floats, along: Floats, nearest: float) -> Floats:
 def _beside(held: Floats) -> Floats:
     """Level of what waves hold that are two to six turns slower or faster than each.
 
-    The mean of the logarithm follows the steep spectrum of a speed that walks; of noise in a wave
-    and its double it is e^0.42 where the mean is 2.
+    The mean of the logarithm follows the steep spectrum of a speed that walks, whose doubles are
+    low; of noise in one wave it is e^-0.58 of the mean.
     """
     near, far = (round(one / _STEP) for one in _RING)
     ring = np.ones(2 * far + 1)
@@ -156,4 +156,4 @@ def _beside(held: Floats) -> Floats:
     sums, counts = (
         np.convolve(one, ring)[far : far + held.size] for one in (logs, np.ones(held.size))
     )
-    return np.asarray(2.0 * np.exp(sums / np.maximum(counts, 1.0) - 0.42))
+    return np.asarray(np.exp(sums / np.maximum(counts, 1.0) + 0.577))
