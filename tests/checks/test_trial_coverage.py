@@ -17,7 +17,7 @@ from thermogear.measured.turns import mesh_turns
 from thermogear.signals.lost import phase_jumps
 
 TRIAL = script("trial_coverage")
-RUNS = 16
+RUNS = 24
 SHORT = ("white noise, rms 0.1", "load wanders 5 %, 1 s", "neighbour 0.4 Hz away, 0.3 amplitudes")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scripts import ROOT, script
 
-COUNT = 5
+COUNT = 10
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from scripts import ROOT, script
 
 from said import numbers
 
-COUNT = 40
+COUNT = 75
 
 
 @pytest.mark.slow

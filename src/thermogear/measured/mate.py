@@ -19,7 +19,7 @@ _FASTER = 4.0 / 3.0
 _FEW = 4.0  # turns over the record, below which nothing tells a wave from what is slower
 _STEP = 0.25  # turns over the record, between waves tried
 _PER_TURN = 16.0  # points of the phase, of the known gear
-_LINE = 5.0  # times the level beside it: by chance in few records, and then of hardly any power
+_LINE = 5.0  # times the level beside it: so sharp is some wave of most walks, of hardly any power
 _RING = 2.0, 6.0  # turns to each side
 _MOST = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and a little more
 
@@ -77,7 +77,7 @@ class Wave(NamedTuple):
         if not self.sharp:
             return ""
         return (
-            f"; it oscillates {self.turns:.3g} times over the record, as a gear of about "
+            f"; the phase oscillates {self.turns:.3g} times over the record, as a gear of about "
             f"{cycles / self.turns:.0f} teeth would turn it: the intervals hold both"
         )
 
@@ -89,7 +89,7 @@ def wave_of_mate(cycles: Floats, nearest: float) -> Wave:
     has up to three times its teeth, or up to a fourth fewer. A phase of variance v has sidebands of
     power v. What a wave and its double hold of the phase counts: where the mate would turn four
     times or more, if it is sharp; else that of the best wave. At most 0.1 counts: sidebands of a
-    fifth of the line. More is a speed that wanders.
+    fifth of the line. What the phase turns beyond is a speed that wanders.
 
     >>> turn = np.linspace(0.0, 40.0, 4000)
     >>> wave = wave_of_mate(20.0 * turn + 0.02 * np.sin(np.pi * turn), 40.0)
