@@ -91,6 +91,20 @@ def _held(x: Floats, every: int) -> Floats:
     return np.repeat(x[::every], every)[: x.size]
 
 
+def _bridged(x: Floats, random: Random, gaps: int, size: int) -> Floats:
+    """Straight lines across gaps."""
+    y = x.copy()
+    for first in random.integers(size, x.size - 2 * size, gaps):
+        y[first : first + size + 1] = np.linspace(y[first], y[first + size], size + 1)
+    return y
+
+
+def _between(x: Floats, every: int) -> Floats:
+    """Straight lines between samples taken ``every`` so many."""
+    place = np.arange(x.size)
+    return np.asarray(np.interp(place, place[::every], x[::every]))
+
+
 DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "clipping of 1 % of the samples": lambda x, r: _clipped(x, 0.01),
     "clipping of 4 %": lambda x, r: _clipped(x, 0.04),
@@ -109,6 +123,11 @@ DEFECTS: dict[str, Callable[[Floats, Random], Floats]] = {
     "1 % NaN, one by one": lambda x, r: _scattered(x, r, 102, lambda n: np.full(n, np.nan)),
     "NaN for 4 %": lambda x, r: _block(x, r, 0.04, float("nan")),
     "NaN for 20 %": lambda x, r: _block(x, r, 0.20, float("nan")),
+    "a straight line across 4 %": lambda x, r: _bridged(x, r, 1, int(0.04 * x.size)),
+    "a straight line across 20 %": lambda x, r: _bridged(x, r, 1, int(0.2 * x.size)),
+    "20 straight lines across 15 samples": lambda x, r: _bridged(x, r, 20, 15),
+    "every second sample between two": lambda x, r: _between(x, 2),
+    "three of four samples between two": lambda x, r: _between(x, 4),
     "a mean of 200 amplitudes": lambda x, r: x + 200.0,
     "a trend of 200 amplitudes": lambda x, r: x + 200.0 * np.arange(x.size) / x.size,
 }

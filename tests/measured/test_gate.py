@@ -66,13 +66,14 @@ def test_every_limit_of_a_channel_is_found() -> None:
     assert [numbers(one.kind) for one in told] == [[2.1], [-2.2]]
 
 
-@pytest.mark.parametrize("kind", ["missing", "sentinel", "zeros", "held", "spikes"])
+@pytest.mark.parametrize("kind", ["missing", "sentinel", "zeros", "held", "bridged", "spikes"])
 def test_little_damage_is_filled_and_the_interval_holds_it(kind: str) -> None:
     x = channel()
     if kind == "spikes":
         x[[300, 2222, 7000]] = [30.0, -25.0, 28.0]
     else:
         stands = {"missing": np.nan, "sentinel": -9999.0, "zeros": 0.0, "held": x[2000]}
+        stands["bridged"] = np.linspace(x[1999], x[2200], 202)[1:-1]
         x[2000:2200] = stands[kind]
     (damage,) = damages(x)
     assert (damage.kind, damage.count) == (kind, 3 if kind == "spikes" else damage.count)
@@ -104,6 +105,17 @@ def test_much_clipping_withholds_amplitudes_and_keeps_the_frequency() -> None:
     assert told["findings"][0]["withholds"]
     with pytest.raises(InputError, match="its lines are withheld: clipping"):
         table_of(found)
+
+
+@pytest.mark.parametrize("every", [2, 5])
+def test_a_record_made_finer_by_straight_lines_is_withheld(every: int) -> None:
+    x = channel(count=every * COUNT)[::every]
+    finer = np.interp(np.arange(every * (COUNT - 1)) / every, np.arange(COUNT), x)
+    found = measured(finer)
+    line = found.lines[0]
+    assert np.isnan(line.reading)
+    assert numbers(line.withheld) == [pytest.approx(100.0 * (1.0 - 1.0 / every), abs=1.0)]
+    assert [one.withholds for one in found.findings] == [True]
 
 
 def test_lost_samples_cut_the_record_where_the_phase_jumps() -> None:

@@ -109,12 +109,15 @@ def turned_by(share: float, *, samples: int) -> float:
 def require_sampling_rate(record: Record) -> None:
     """Refuse a rate so low that it may be a shaft's."""
     if record.rate is not None and record.rate < LEAST_RATE:
+        fix = "give the samples per second by --rate, the shaft's speed by --speed"
+        if "time column" in record.rate_origin:
+            fix += "; if the time column counts milliseconds, name it 'time [ms]'"
         raise InputError(
             "rate",
             f"{record.rate:g} samples/s",
             allowed=f">= {LEAST_RATE:g} samples/s for a mesh line",
             why=f"is {record.rate:g} the shaft's turns per second ({60 * record.rate:g} rpm)",
-            fix="give the samples per second by --rate, the shaft's speed by --speed",
+            fix=fix,
         )
 
 
@@ -129,8 +132,8 @@ def require_samples(record: Record) -> None:
 def passed(channels: Sequence[Channel], longest: int) -> Passed:
     """The first ``longest`` samples of the channels through the gate.
 
-    Up to FILLED of a channel's samples (missing, sentinels, zeros, held, spikes, clipped) are
-    filled in by the channel's own strong lines. More missing: the longest whole stretch of all
+    Up to FILLED of a channel's samples (missing, sentinels, zeros, held, bridged, spikes, clipped)
+    are filled in by the channel's own strong lines. More missing: the longest whole stretch of all
     channels. More clipped or held: amplitudes are withheld. Copies are left out.
 
     Raises InputError where fewer than 256 samples are left.
@@ -170,7 +173,7 @@ def _examined(values: Floats) -> list[Damage]:
 
 def _lost(own: Sequence[Damage], size: int) -> Mask:
     """Samples of which nothing is known."""
-    kinds = [one.samples for one in own if one.kind in ("missing", "sentinel", "zeros")]
+    kinds = [one.samples for one in own if one.kind in _GONE]
     held = [one.samples for one in own if one.kind == "held" and _in_blocks(one)]
     return np.asarray(np.any([np.zeros(size, dtype=bool), *kinds, *held], axis=0))
 
@@ -214,7 +217,7 @@ class _Channel:
             if total <= FILLED:
                 missing |= one.samples
                 continue
-            if one.kind in ("clipping", "held") and not _in_blocks_of_loss(one):
+            if one.kind in _TOO_MUCH and not _in_blocks_of_loss(one):
                 effect = _TOO_MUCH[one.kind]
             else:
                 missing |= one.samples  # a number must stand there
@@ -291,10 +294,15 @@ _WORDS = {
     "held": "held samples",
     "spikes": "spikes",
     "clipping": "clipping at",
+    "bridged": "straight lines in place of samples",
+    "made finer": "samples on the line between their neighbours",
 }
+_GONE = ("missing", "sentinel", "zeros", "bridged")
 _TOO_MUCH = {
     "clipping": "lines are too small, and harmonics are made, by an unknown amount",
     "held": "a sample that repeats the one before weakens lines and makes images",
+    "made finer": "straight lines between samples weaken lines and make images of them (give the "
+    "record at the rate at which it was taken)",
 }
 
 

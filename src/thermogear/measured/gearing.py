@@ -164,7 +164,8 @@ def _of_family(table: Floats, family: _Family, weighed: Evidence, told_as: float
     if not shafts:
         any_fits = "" if weighed.gears else ", any fits"
         evidence.append(
-            f"no tooth number is decided{any_fits}: it may be a shaft's own line and no mesh line"
+            f"no tooth number is decided{any_fits}: it may be a shaft's own line and no mesh line "
+            "('mesh x n' is its n-th harmonic all the same)"
         )
     return Gearing(
         mesh_frequency=mesh,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermogear.signals.bridged import bridges, made_finer
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
@@ -54,7 +55,8 @@ class Damage:
 
 
 def damages(x: ArrayLike) -> list[Damage]:
-    """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping.
+    """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping,
+    straight lines in place of samples or between all of them.
 
     ``x`` [any unit], NaN where a value is missing. No sample is in two of them.
 
@@ -68,7 +70,7 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _clipped, _held, _spikes):
+    for one in (_sentinels, _clipped, _held, _straight, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
@@ -248,6 +250,17 @@ def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
     moves = np.abs(np.diff(kept))
     beside = int(np.count_nonzero((moves > 0.0) & (moves < 4.5 * step)))
     return int(np.count_nonzero(short)) > 2 * max(beside, 1)
+
+
+def _straight(x: Floats, free: Mask) -> list[Damage]:
+    """Lines between all samples taken, or across gaps."""
+    if np.count_nonzero(free) < 64:
+        return []
+    for kind, search in (("made finer", made_finer), ("bridged", bridges)):
+        where = search(x, free)
+        if where.any():
+            return [Damage(kind=kind, samples=where)]
+    return []
 
 
 def _spikes(x: Floats, free: Mask) -> list[Damage]:

@@ -1,0 +1,92 @@
+"""Straight lines in place of samples: drawn bridges and finer grids are seen, nothing else is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfilt
+
+from thermogear.signals.bridged import bridges, made_finer
+
+Floats = NDArray[np.float64]
+SEED = 26_11_2026
+
+
+def drawn(random: np.random.Generator) -> Floats:
+    """A mesh line with harmonics and one sideband; noise, white, filtered or walking; some records
+    hold impacts, or begin quietly."""
+    count = int(2 ** random.uniform(10, 13))
+    turn = 2 * np.pi * 10 ** random.uniform(-3.0, -0.5) * np.arange(count)
+    swing = 1.0 + random.uniform(0, 0.3) * np.cos(turn / random.integers(10, 60))
+    x = swing * np.cos(turn) + random.uniform(0, 0.5) * np.cos(2 * turn + 1)
+    noise = 10 ** random.uniform(-4, 0) * random.normal(size=count)
+    kind = random.integers(5)
+    if kind == 1:
+        noise = sosfilt(butter(4, 10 ** random.uniform(-2, -0.1), output="sos"), noise)
+    if kind == 2:
+        noise = 0.1 * np.cumsum(noise)
+    x = x + noise
+    if kind == 3:
+        for at in range(0, count - 60, int(random.integers(60, 400))):
+            ring = np.exp(-np.arange(60) / random.uniform(2, 20))
+            x[at : at + 60] += 30.0 * ring * np.cos(random.uniform(0.3, 3) * np.arange(60))
+    if kind == 4:
+        x *= np.clip(3 * (np.arange(count) / count - 0.3), 1e-3, 1.0)
+    return np.asarray(x)
+
+
+def written(x: Floats, random: np.random.Generator) -> Floats:
+    """As a file holds it: all digits, single precision, six digits, three decimals, a converter."""
+    form = random.integers(5)
+    if form == 1:
+        return x.astype(np.float32).astype(np.float64)
+    if form == 2:
+        return np.array([float(f"{one:.6g}") for one in x])
+    if form == 3:
+        return np.asarray(np.round(x + 50.0, 3))
+    if form == 4:
+        step = 8.0 * 2.0 ** -random.integers(10, 25)
+        return np.asarray(np.round(x / step) * step)
+    return x
+
+
+def everywhere(x: Floats) -> NDArray[np.bool_]:
+    return np.ones(x.size, dtype=bool)
+
+
+def test_an_undamaged_record_has_no_straight_lines() -> None:
+    random = np.random.default_rng([SEED, 1])
+    for _ in range(300):
+        x = written(drawn(random), random)
+        assert not bridges(x, everywhere(x)).any()
+        assert not made_finer(x, everywhere(x)).any()
+
+
+def test_a_bridged_gap_is_found_to_the_sample() -> None:
+    random = np.random.default_rng([SEED, 2])
+    whole = 0
+    for _ in range(60):
+        x = drawn(random) + 0.05 * random.normal(size=1)
+        x += 0.02 * random.normal(size=x.size)
+        size = int(random.integers(8, 200))
+        first = int(random.integers(20, x.size - size - 20))
+        x[first : first + size + 1] = np.linspace(x[first], x[first + size], size + 1)
+        found = np.flatnonzero(bridges(x, everywhere(x)))
+        assert np.isin(found, np.arange(first, first + size + 1)).all()
+        whole += np.array_equal(found, np.arange(first + 1, first + size))
+    assert whole >= 50  # of 60: a line as level as noise, or a quiet place, is left alone
+
+
+@pytest.mark.parametrize("times", [2, 3, 4, 7, 2.75, 3.5])
+def test_a_record_made_finer_is_found(times: float) -> None:
+    """By whole numbers and others: a sample bends where a true one stands on it or beside it."""
+    random = np.random.default_rng([SEED, int(100 * times)])
+    for _ in range(20):
+        x = drawn(random)
+        x += 0.02 * random.normal(size=x.size)
+        finer = np.interp(np.arange(0.0, x.size - 1, 1.0 / times), np.arange(x.size), x)
+        share = float(np.mean(made_finer(finer, everywhere(finer))))
+        assert 0.97 - 2.0 / times < share < 1.02 - 1.0 / times
+        assert share > 0.24
+        assert not made_finer(x, everywhere(x)).any()
