@@ -54,6 +54,32 @@ def test_a_line_that_grew_is_named_and_the_others_are_not(tmp_path: Path) -> Non
     assert (tmp_path / "out" / "records.html").is_file()
 
 
+def test_damage_of_one_of_several_records_is_told(tmp_path: Path) -> None:
+    """Clipped readings are withheld and say so; spikes are a finding; what is whole is compared."""
+    for number in range(4):
+        write(tmp_path / f"r{number}.csv", 1.0, number)
+    table = np.loadtxt(tmp_path / "r1.csv", delimiter=",", skiprows=1)
+    table[:, 1] = np.clip(table[:, 1], -0.8, 0.8)
+    np.savetxt(tmp_path / "r1.csv", table, "%.7g", ",", header="time [s],acc [g]", comments="")
+    table = np.loadtxt(tmp_path / "r2.csv", delimiter=",", skiprows=1)
+    table[[1000, 4000, 6000], 1] = 40.0
+    np.savetxt(tmp_path / "r2.csv", table, "%.7g", ",", header="time [s],acc [g]", comments="")
+    done = CliRunner().invoke(measure, [str(tmp_path), "--teeth", "20", "--sidebands", "0"])
+    assert done.exit_code == 0, done.output
+    told = [line for line in done.output.splitlines() if line.startswith(("important", "warning"))]
+    assert [("r1.csv" in line, "r2.csv" in line) for line in told] == [(True, False), (False, True)]
+    words = [str(tmp_path), "--teeth", "20", "--sidebands", "0", "--json"]
+    found = json.loads(CliRunner().invoke(measure, words).stdout)
+    assert [name for name, _ in found["withheld"]] == ["r1.csv"]
+    assert [name for name, _ in found["findings"]] == ["r1.csv", "r2.csv"]
+    assert found["compared"] == 6
+    for name in ("r0.csv", "r2.csv", "r3.csv"):
+        (tmp_path / name).unlink()
+    write(tmp_path / "r3.csv", 1.0, 3)
+    done = CliRunner().invoke(measure, [str(tmp_path), "--teeth", "20", "--sidebands", "0"])
+    assert "clipping" in str(done.exception)  # of the baseline: why nothing can be compared
+
+
 def test_one_record_has_no_baseline(tmp_path: Path) -> None:
     write(tmp_path / "a.csv", 1.0, 1)
     done = CliRunner().invoke(measure, [str(tmp_path / "a.csv"), "--baseline", "first"])

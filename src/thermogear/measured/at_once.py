@@ -29,7 +29,8 @@ _WORTH = 5.0
 @dataclass(frozen=True, kw_only=True)
 class Row:
     """What is kept of one record: its lines' ``readings`` with half widths, ``unit``, how it was
-    sampled, how many ``signals`` vibrate; or why it was ``refused``."""
+    sampled, how many ``signals`` vibrate, why readings are ``withheld``, what damage was ``found``;
+    or why it was ``refused``."""
 
     file: Path
     unit: str = ""
@@ -38,6 +39,8 @@ class Row:
     samples: int = 0
     signals: int = 0
     refused: str = ""
+    withheld: str = ""
+    found: tuple[str, ...] = ()
     warned: tuple[str, ...] = ()
 
 
@@ -51,6 +54,7 @@ def row_of(read: Read, file: Path) -> Row:
             return Row(file=file, refused=str(error))
         except (MemoryError, OSError) as error:
             return Row(file=file, refused=str(error) or "it does not fit in memory")
+    why = {one.channel: one.withheld for one in found.lines if np.isnan(one.reading)}
     return Row(
         file=file,
         unit=found.record.channel(found.channels[0]).unit or "",
@@ -62,6 +66,8 @@ def row_of(read: Read, file: Path) -> Row:
         rate=found.record.rate,
         samples=found.record.samples,
         signals=len(found.record.vibrating()),
+        withheld="; ".join(f"channel {name!r}: {said}" for name, said in why.items() if said),
+        found=tuple(one.text for one in found.findings),
         warned=tuple(str(one.message) for one in caught),
     )
 

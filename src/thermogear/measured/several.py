@@ -24,14 +24,16 @@ Floats = NDArray[np.float64]
 MOST = 10_000
 _HALF = 1.959964
 _REASONS = 3  # files that a refusal tells of
+_NAMED = 5  # damaged records that a notice names
 
 
 @dataclass(frozen=True, kw_only=True)
 class Several:
     """Lines of records: ``reading`` (record, line) with ``half_width`` of its 95 % interval, nan
     where a record has no such line; ``keys`` (channel, name) of the lines; ``refused`` why a file
-    gave none; ``baseline`` the record that others are compared with; ``hint`` what else the files
-    may be."""
+    gave none; ``withheld`` why readings of a record are, and what damage was ``found`` in it, where
+    there is any; ``baseline`` the record that others are compared with; ``hint`` what else the
+    files may be."""
 
     names: tuple[str, ...]
     keys: tuple[tuple[str, str], ...]
@@ -41,6 +43,8 @@ class Several:
     refused: tuple[tuple[str, str], ...]
     unit: str
     hint: str = ""
+    withheld: tuple[tuple[str, str], ...] = ()
+    found: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     @property
     def change(self) -> Floats:
@@ -155,13 +159,15 @@ def several(
         for row in good
         if row.unit != unit
     ]
+    withheld = tuple((names[row.file], row.withheld) for row in kept if row.withheld)
     keys = tuple(dict.fromkeys(key for row in kept for key in row.readings))
     blank = (float("nan"), float("nan"))
     table = np.array([[row.readings.get(key, blank) for key in keys] for row in kept])
     table = table.reshape(len(kept), len(keys), 2)
     both = np.isfinite(table[kept.index(good[place]), :, 0]) & np.isfinite(table[..., 0])
     if int(np.sum(both.any(axis=1))) < 2:
-        raise _nothing_compared(names[good[place].file], refused, len(files), _hint(good))
+        lost = [*refused, *((name, f"readings are withheld: {why}") for name, why in withheld)]
+        raise _nothing_compared(names[good[place].file], lost, len(files), _hint(good))
     return Several(
         names=tuple(names[row.file] for row in kept),
         keys=keys,
@@ -171,6 +177,8 @@ def several(
         refused=tuple(refused),
         unit=unit,
         hint=_hint(good),
+        withheld=withheld,
+        found=tuple((names[row.file], row.found) for row in kept if row.found),
     )
 
 
@@ -235,6 +243,20 @@ def result_of_several(found: Several) -> Result:
         name=("line", [name for _, name in found.keys]),
     )
     notices = [Notice("warning", f"{name} is left out: {why}") for name, why in found.refused]
+    notices += [
+        Notice("important", f"readings of {name} are withheld: {why}")
+        for name, why in found.withheld
+    ]
+    damaged = [name for name, _ in found.found if name not in dict(found.withheld)]
+    if damaged:
+        shown = ", ".join(damaged[:_NAMED]) + (", ..." if len(damaged) > _NAMED else "")
+        notices.append(
+            Notice(
+                "warning",
+                f"findings in {len(damaged)} of {len(found.names)} records, held by their "
+                f"intervals: {shown} (measure one alone, or see --json, for what it is)",
+            )
+        )
     if found.hint:
         notices.append(Notice("info", found.hint))
     return Result.of(
@@ -278,6 +300,8 @@ def figures_of_several(found: Several) -> dict[str, Any]:
         "changed": rows,
         "trends": trends,
         "refused": [list(pair) for pair in found.refused],
+        "withheld": [list(pair) for pair in found.withheld],
+        "findings": [[name, list(texts)] for name, texts in found.found],
         "units": {
             "reading": found.unit,
             **dict.fromkeys(("change", "change_half_width", "lines", "compared"), "1"),
