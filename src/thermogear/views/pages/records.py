@@ -23,7 +23,8 @@ def page(result: Result) -> Page:
         pictures.add(
             "course",
             "From record to record",
-            "The lines that changed most for their uncertainty; shaded: 95 % intervals.",
+            "The lines that changed most for their uncertainty, of those known to ±50 % if there "
+            "are any; shaded: 95 % intervals.",
             data,
             ["record_line_change", "record_line_change_half_width"],
             partial(plots.course, data),
@@ -46,6 +47,19 @@ def page(result: Result) -> Page:
         sections.append(
             Section("changed", "Changed", [Table("Beyond the 95 % interval.", head, rows, names=3)])
         )
+    rows = [
+        [
+            one["channel"],
+            one["name"],
+            f"{100 * one['trend']:+.3g}",
+            f"{100 * _half(one, 'trend'):.2g}",
+        ]
+        for one in found.get("trends", [])[:_SHOWN]
+    ]
+    if rows:
+        words = "A straight line over the records; beyond its 95 % interval."
+        head = ["channel", "line", "trend [%/record]", "± [%/record]"]
+        sections.append(Section("trends", "Trends", [Table(words, head, rows, names=2)]))
     return Page(
         result,
         summary(found),
