@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from thermogear.measured.evidence import weigh
+from thermogear.measured.evidence import Evidence, weigh
 from thermogear.measured.groups import falling, seen, some_of
+from thermogear.measured.hypotheses import Hypothesis
 from thermogear.measured.meshes import Gears, Stated, whole
 from thermogear.measured.peaks import Peaks, peaks_of
+from thermogear.measured.record import Channel, Record
+from thermogear.measured.reduction import measure
 from thermogear.measured.straight import sharp_peaks
 
 COUNT = 1 << 16
@@ -224,3 +227,53 @@ def test_a_ratio_is_whole_as_far_as_its_lines_are_placed(
     share, distance = whole(peaks, (gears,), 30, Stated())
     assert least <= share <= most
     assert distance == pytest.approx(mesh / ratio, abs=0.3 * error * width)
+
+
+def test_the_line_of_a_stated_gear_has_the_weight_of_the_readings_that_put_it_there() -> None:
+    """Teeth on a line count for it, two lines without them half each, a comb as a line if it is
+    high enough; what has no line at all speaks against none."""
+
+    def reading(
+        weight: float, *meshes: tuple[float, tuple[int, ...]], combs: tuple[float, ...] = ()
+    ) -> Hypothesis:
+        gears = tuple(Gears(mesh=m, level=0.0, teeth=z, sides=(), free=()) for m, z in meshes)
+        return Hypothesis(gears=gears, evidence=0.0, weight=weight, combs=combs)
+
+    low, high = 0.02, 0.05
+    for one, share in (
+        (reading(1.0, (low, (23,)), (high, (31,))), 1.0),
+        (reading(1.0, (low, (31,)), (high, (23,))), 0.0),
+        (reading(1.0, (low, (31,)), (high, ())), 0.5),
+        (reading(1.0, (low, ())), 1.0),
+        (reading(1.0, combs=(low, high)), 0.5),
+        (reading(1.0, combs=(low, 0.001)), 1.0),
+        (reading(1.0), 1.0),
+    ):
+        found = Evidence(hypotheses=(one, reading(0.0, (high, ()))))
+        assert found.share_of(low, teeth=23, least=0.01) == pytest.approx(share)
+    both = Evidence(hypotheses=(reading(0.3, (low, ())), reading(0.7, (high, ()))))
+    assert both.share_of(low, teeth=23, least=0.01) == pytest.approx(0.3)
+
+
+def two_stages(random: np.random.Generator) -> tuple[Record, float]:
+    """A pinion of 23 teeth with 57, and 31 with 44 behind, without sidebands; its speed [rad/s]."""
+    turn = np.arange(16384) * random.uniform(20.0, 35.0) / 10240.0
+    x = 0.03 * random.normal(size=turn.size)
+    for teeth, size in ((23.0, random.uniform(0.3, 0.5)), (23.0 * 31.0 / 57.0, 1.0)):
+        for rank in (1, 2, 3):
+            phase = 2.0 * np.pi * rank * teeth * turn + random.uniform(0.0, 6.0)
+            x += size / rank * np.cos(phase)
+    speed = 2.0 * np.pi * 10240.0 * (turn[1] - turn[0])
+    return Record((Channel("a", x, "g"),), "made", 10240.0, "made"), float(speed)
+
+
+def test_a_speed_is_withheld_where_the_gear_s_mesh_line_is_not_decided() -> None:
+    """The louder line is the second stage's: without a speed nothing tells which is the first's."""
+    random = np.random.default_rng(26_11_2026)
+    for _ in range(4):
+        record, true = two_stages(random)
+        line = measure(record, teeth=23, sidebands=0, harmonics=1).lines[0]
+        held = abs(line.shaft_speed - true) < line.speed_half_width
+        assert np.isnan(line.shaft_speed) or held
+        said = measure(record, teeth=23, speed=1.01 * true, sidebands=0, harmonics=1).lines[0]
+        assert abs(said.shaft_speed - true) < 3.0 * said.speed_half_width

@@ -118,6 +118,51 @@ def test_a_record_made_finer_by_straight_lines_is_withheld(every: int) -> None:
     assert [one.withholds for one in found.findings] == [True]
 
 
+@pytest.mark.parametrize("share", [0.01, 0.03, 0.1])
+def test_values_that_wrap_around_are_put_back_or_withheld(share: float) -> None:
+    x = channel()
+    limit = float(np.quantile(np.abs(x), 1.0 - share))
+    found = measured(np.mod(x + limit, 2.0 * limit) - limit)
+    line = found.lines[0]
+    assert sum(one.share for one in found.findings) == pytest.approx(share, rel=0.2)
+    if share > 0.05:
+        assert np.isnan(line.reading)
+        assert line.frequency == pytest.approx(MESH, abs=line.frequency_half_width)
+    else:
+        assert abs(line.reading - 1.0) < line.half_width < 0.02
+
+
+@pytest.mark.parametrize("share", [0.01, 0.08])
+def test_single_samples_set_to_zero_are_filled_in_or_withheld(share: float) -> None:
+    x = channel()
+    where = np.random.default_rng(75).choice(COUNT, int(share * COUNT), replace=False)
+    x[where] = 0.0
+    found = measured(x)
+    line = found.lines[0]
+    assert sum(one.count for one in found.findings) == where.size
+    if share > 0.05:
+        assert np.isnan(line.reading)
+    else:
+        assert abs(line.reading - 1.0) < line.half_width < 0.02
+
+
+@pytest.mark.parametrize(("step", "stated"), [(0.35, 0.05), (0.5, 0.2), (1.0, np.nan)])
+def test_coarse_levels_widen_intervals_or_withhold(step: float, stated: float) -> None:
+    found = measured(np.round(channel() / step) * step)
+    line = found.lines[0]
+    assert len(found.findings) == 1
+    assert np.isnan(line.reading) == np.isnan(stated)
+    if np.isfinite(stated):
+        assert abs(line.reading - 1.0) < line.half_width < stated
+
+
+def test_the_nearest_samples_of_another_rate_are_withheld() -> None:
+    x = channel()[np.rint(np.arange(COUNT) / 1.0078).astype(int)]
+    found = measured(x)
+    assert np.isnan(found.lines[0].reading)
+    assert sum(one.withholds for one in found.findings) >= 1
+
+
 def test_lost_samples_cut_the_record_where_the_phase_jumps() -> None:
     found = measured(np.delete(channel(), np.arange(5000, 5037)))
     assert "jumps" in found.findings[0].kind
@@ -272,3 +317,18 @@ def test_a_trend_changes_no_line(trend: float) -> None:
         assert other.reading == pytest.approx(one.reading, rel=0.1 * one.half_width)
         assert other.half_width == pytest.approx(one.half_width, rel=0.1)
         assert other.frequency_half_width == pytest.approx(one.frequency_half_width, rel=0.1)
+
+
+def test_a_burst_makes_no_sideband() -> None:
+    """2 rms of noise for 1 % of the record: of sidebands more comes and goes than stays, and what
+    is read where none is may be nothing."""
+    random = np.random.default_rng(8)
+    for first in (1500, 4000, 6500):
+        x = channel(first)
+        x[first : first + 80] += 2.0 * random.normal(size=80)
+        record = Record((Channel("a", x, "m/s^2"),), "made", RATE, "made")
+        found = measure(record, teeth=TEETH, speed=SPEED, sidebands=3, harmonics=1)
+        for line in found.lines:
+            if line.kind == "sideband":
+                true = 0.1 if " 1 shaft" in line.name else 0.0
+                assert abs(line.reading - true) < 2.0 * line.half_width * line.reading

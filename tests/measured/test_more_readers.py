@@ -6,8 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from record_makers import RATE, mesh_train
 from scipy import io
 
+from said import numbers
+from thermogear.base.errors import InputError
 from thermogear.measured.comparison import verdict
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Record
@@ -85,6 +88,54 @@ def test_a_structure_states_the_unit_of_its_numbers(tmp_path: Path) -> None:
         "outer.inner.values": "g",
     }
     assert record.rate == pytest.approx(1000.0)
+
+
+def test_a_unit_that_is_none_is_kept_and_told(tmp_path: Path) -> None:
+    acc = np.cos(0.7 * np.arange(500.0))
+    io.savemat(tmp_path / "s.mat", {"s": {"acc": acc, "unit": "furlong", "fs": 1000.0}})
+    record = read_record(tmp_path / "s.mat")
+    assert [(c.unit, c.strange) for c in record.channels] == [(None, "furlong")]
+    assert any("furlong" in n.text and "--unit" in n.text for n in measure(record).notices)
+
+
+def test_a_rate_stated_beside_a_time_without_a_unit(tmp_path: Path) -> None:
+    t = np.arange(500) / 1000.0
+    io.savemat(tmp_path / "t.mat", {"acc": np.cos(700.0 * t), "t": t, "fs": 1000.0})
+    record = read_record(tmp_path / "t.mat")
+    assert record.rate == 1000.0
+    assert {n.level for n in record.notices} == {"info"}
+    assert not any("--rate" in n.text for n in record.notices)
+
+
+@pytest.mark.parametrize("name", ["c.mat", "c.npz"])
+def test_complex_numbers_are_no_record(tmp_path: Path, name: str) -> None:
+    wave = np.exp(0.7j * np.arange(500.0))
+    write = io.savemat if name.endswith("mat") else lambda path, table: np.savez(path, **table)
+    write(tmp_path / name, {"acc": wave, "fs": 1000.0})
+    with pytest.raises(InputError, match=r"complex numbers .*'acc'"):
+        read_record(tmp_path / name)
+    write(tmp_path / name, {"acc": wave, "b": wave.real, "fs": 1000.0})
+    record = read_record(tmp_path / name)
+    assert record.names == ("b",)
+    assert any(n.level == "warning" and "'acc'" in n.text for n in record.notices)
+
+
+def test_a_vibration_as_the_tacho_is_refused_by_its_name() -> None:
+    turns = 1e-2 * np.arange(8000) + 2e-6 * np.arange(8000) ** 2
+    noise = np.random.default_rng(3).normal(size=8000)
+    channels = Channel("acc", np.sin(2.0 * np.pi * turns), "g"), Channel("p", noise, "V")
+    record = Record(channels, "x", RATE, tacho="acc")
+    with pytest.raises(InputError, match=r"^record: got no line; .*'acc'.*--tacho"):
+        measure(record)
+
+
+def test_a_speed_that_no_shaft_has_asks_for_the_rate() -> None:
+    x = mesh_train(1 << 14, channels=1)[0]
+    levels = []
+    for rate in (RATE, 1000.0 * RATE):
+        found = measure(Record((Channel("a", x, "g"),), "x", rate, "given"), teeth=32)
+        levels += [n.level for n in found.notices if numbers(n.text)[:2] == [rate, 32.0]]
+    assert levels == ["info", "warning"]
 
 
 def test_a_velocity_has_acceleration_and_displacement() -> None:

@@ -19,6 +19,7 @@ from conftest import Compared
 from thermogear.base.errors import InputError
 from thermogear.measured.readers import format_of, read_record
 from thermogear.measured.record import Channel, Record
+from thermogear.measured.shaft import Shaft, given_shaft
 
 
 @pytest.mark.parametrize("name", WRITERS)
@@ -196,6 +197,43 @@ def test_records_refuse_the_impossible() -> None:
         _ = one.si_factor
     with pytest.raises(InputError, match=r"^file: got nowhere\.csv; there is no such file$"):
         read_record("nowhere.csv")
+
+
+@pytest.mark.parametrize("keep", [(), ("a",)])
+def test_a_tacho_that_is_neither_file_nor_channel(tmp_path: Path, keep: tuple[str, ...]) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("a [g],b [g]\n" + "1.5,2.5\n2.5,1.5\n" * 20)
+    with pytest.raises(InputError, match=r"^tacho: got '/nope.csv'; .* no such file .*: a, b$"):
+        read_record(path, tacho="/nope.csv", channels=keep)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 7])
+def test_too_few_pulses_are_counted(count: int) -> None:
+    pulses = np.zeros(4000)
+    pulses[500 * np.arange(1, count + 1)] = 5.0
+    shaft = shaft_of(pulses)
+    assert shaft.turns.size == 0
+    noun = "pulse" if count == 1 else "pulses"
+    assert f"got {count} {noun}; allowed >= 8 " in shaft.told[0].text
+
+
+@pytest.mark.parametrize(("width", "spike"), [(200, 5.0), (200, 90.0), (3, 5.0)])
+def test_pulses_of_any_width_are_seen(width: int, spike: float) -> None:
+    place = np.arange(8000)
+    pulses = 5.0 * (place % 500 < width) + 0.02 * np.cos(place**2)
+    pulses[750] = spike if spike > 5.0 else pulses[750]
+    shaft = shaft_of(pulses)
+    assert shaft.turns[-1] - shaft.turns[0] == pytest.approx((shaft.turns.size - 1) / 500, rel=1e-3)
+    assert shaft.turns.size >= 7000
+
+
+def shaft_of(pulses: np.ndarray) -> Shaft:
+    """The shaft by a record's tacho."""
+    channels = Channel("a", np.cos(np.arange(pulses.size)), "g"), Channel("p", pulses, "V")
+    record = Record(channels, "x", 1000.0, tacho="p")
+    shaft = given_shaft(record, samples=pulses.size, start=0, pulses_per_turn=1.0)
+    assert shaft is not None
+    return shaft
 
 
 def test_groups_of_other_files_and_text_are_not_followed(tmp_path: Path) -> None:

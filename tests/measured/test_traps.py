@@ -11,8 +11,9 @@ from scipy import io
 
 from said import facts
 from thermogear.base.errors import InputError
+from thermogear.measured.choosing import chosen_channels, counts
 from thermogear.measured.readers import read_record
-from thermogear.measured.record import Record
+from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.traps import split_unit
 from thermogear.measured.units import unit
 
@@ -309,3 +310,102 @@ def test_tacho_is_recognised_by_name_and_can_be_named(tmp_path: Path) -> None:
     record = read(tmp_path, text)
     assert record.tacho == "Tacho"
     assert [c.name for c in record.signals()] == ["acc"]
+
+
+STAMPS = np.arange(200) / 1000.0
+WAVE = np.sin(STAMPS * 700.0)
+
+
+def columns(head: str, *values: np.ndarray) -> str:
+    """A text of columns, their numbers to 17 digits."""
+    return lines([head, *(",".join(f"{v:.17g}" for v in row) for row in zip(*values, strict=True))])
+
+
+def chosen(record: Record) -> tuple[list[str], list[Notice]]:
+    """The channels that are reduced, and the notices with what is left out."""
+    notices = list(record.notices)
+    return [c.name for c in chosen_channels(record, (), notices)], notices
+
+
+@pytest.mark.parametrize(
+    ("head", "in_one"),
+    [
+        *(("time [h]", 3600.0), ("Zeit (d)", 86400.0), ("time [ns]", 1e-9), ("Seconds", 1.0)),
+        *(("Elapsed Time (s)", 1.0), ("Relative time [s]", 1.0), ("X [s]", 1.0), ("ti [ms]", 1e-3)),
+        *(("tiempo [minutes]", 60.0), ("time_s", 1.0)),
+    ],
+)
+def test_a_column_of_a_unit_of_time_is_the_time(tmp_path: Path, head: str, in_one: float) -> None:
+    first = read(tmp_path, columns(f"{head},acc [g]", STAMPS / in_one, WAVE))
+    last = read(tmp_path, columns(f"acc [g],{head}", WAVE, STAMPS / in_one), channels=[1])
+    for record in (first, last):
+        assert record.names == ("acc",)
+        assert record.rate == pytest.approx(1000.0)
+
+
+def test_of_several_times_the_one_that_tells_the_rate_is_used(tmp_path: Path) -> None:
+    noise = np.cos(7.0 * STAMPS) + 20.0
+    heads = "T [degC],delay [ms],time,run [ms],acc [g]"
+    text = columns(heads, noise, noise, STAMPS, 1000.0 * STAMPS, WAVE)
+    record = read(tmp_path, text)
+    assert (record.names, record.rate) == (("T", "acc"), pytest.approx(1000.0))
+    assert ("warning", [3.0, "run"]) in told(record)
+    unsaid = read(tmp_path, columns("delay [ms],acc [g]", noise, WAVE))
+    assert (unsaid.names, unsaid.rate) == (("acc",), None)
+    assert [level for level, facts in told(unsaid) if "delay" in facts] == ["important"]
+
+
+def test_an_unknown_unit_of_time_is_named(tmp_path: Path) -> None:
+    record = read(tmp_path, columns("time [weeks],T [K],acc (h)", STAMPS, WAVE, WAVE))
+    assert (record.names, record.rate) == (("T [K]", "acc (h)"), None)
+    assert told(record) == [("important", ["time [weeks]", "weeks"])]
+
+
+def test_a_rate_that_no_sensor_has_asks_for_the_unit(tmp_path: Path) -> None:
+    record = read(tmp_path, columns("time [ms],acc [g]", STAMPS / 10.0, WAVE))
+    assert told(record) == [("warning", ["time", 1e7, 10000.0])]
+    plain = read(tmp_path, columns("time [us],acc [g]", STAMPS * 1e6, WAVE))
+    assert told(plain) == [("info", ["time"])]
+
+
+@pytest.mark.parametrize("index", [np.arange(200.0), np.arange(1.0, 201.0), 200.0 - np.arange(200)])
+@pytest.mark.parametrize("rate", [None, 1000.0])
+def test_an_index_is_no_vibration(tmp_path: Path, index: np.ndarray, rate: float | None) -> None:
+    record = read(tmp_path, columns("sample,raw,acc [m/s^2]", index, WAVE, WAVE), rate=rate)
+    names, notices = chosen(record)
+    assert names == ["acc"]
+    assert [(n.level, facts(n.text)) for n in notices] == [
+        ("warning", ["sample"]),
+        ("info", ["raw"]),
+    ]
+    assert ("--rate" in notices[0].text) == (rate is None)
+    assert "None" not in notices[1].text
+    with pytest.raises(InputError, match=r"^channel: got 'sample'; no signal: "):
+        chosen_channels(record, ["sample"], [])
+
+
+def test_a_drift_of_a_known_unit_is_a_channel() -> None:
+    drift = 3.0 * np.arange(200) + WAVE
+    assert [counts(Channel("a", drift, one)) for one in ("g", None)] == [False, True]
+    rounded = np.round(np.arange(200) * 0.97, 1)
+    jitters = STAMPS + 2e-4 * np.cos(np.arange(200) ** 2)
+    assert all(counts(Channel("a", one)) for one in (rounded, jitters, -STAMPS))
+    assert counts(Channel("a", rounded, "mm"))
+    steps = np.arange(200) // 100
+    assert not any(counts(Channel("a", one)) for one in (WAVE, steps, 0.0 * WAVE))
+
+
+def test_volts_do_not_take_the_place_of_a_channel_without_a_unit() -> None:
+    channels = Channel("acc", WAVE), Channel("trigger", 2.0 * WAVE, "V")
+    names, notices = chosen(Record(channels, "x"))
+    assert names == ["acc"]
+    assert facts(notices[0].text) == ["trigger"]
+
+
+def test_a_dead_channel_is_told_once(tmp_path: Path) -> None:
+    nothing = np.full(200, np.nan)
+    text = columns("time [s],acc [g],b [g],c [g]", STAMPS, WAVE, nothing, 0.0 * WAVE)
+    names, notices = chosen(read(tmp_path, text))
+    assert names == ["acc"]
+    assert [facts(n.text) for n in notices] == [["b"], ["c"]]
+    assert {n.level for n in notices} == {"important"}

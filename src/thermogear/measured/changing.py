@@ -184,6 +184,10 @@ def _sliced(
     if angle.mesh is not None and angle.gearing is not None:
         gearing = replace(angle.gearing, mesh_frequency=angle.mesh * mean)
     wanted = _wanted(gearing, angle, inside, per_turn, harmonics, sidebands, orders, mean)
+    if not wanted:
+        why = f"in the angle of {shaft.origin} no line is above the noise: does it mark the turns?"
+        fix = "name the channel of pulses or of speed by --tacho, or leave it out"
+        raise InputError("record", "no line", why=why, fix=fix)
     places = np.array([w.position / mean for w in wanted])
     read, maps = [], []
     for values in inside:
@@ -298,8 +302,6 @@ def _wanted(
         found = _strongest(inside[0], angle, per_turn, 4 * harmonics, mean)
     if not angle.of_mesh:
         found += order_lines(orders, mean, found)
-    if not found:
-        raise InputError("record", "no order", why="nothing stands out in angle", fix="--orders")
     kept: list[Wanted] = []
     for one in found:
         far = all(abs(one.position - k.position) > 0.05 * mean for k in kept)

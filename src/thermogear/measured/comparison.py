@@ -136,7 +136,10 @@ def table_of(found: Measurement, speed: float | None = None) -> LineTable:
     line = max(lines, key=lambda item: item.prominence)
     nominal = speed if speed is not None else line.shaft_speed
     if not np.isfinite(nominal):
-        raise InputError("speed", "none", why="no tooth number is known", fix="--teeth or --speed")
+        why = "no tooth number is known" if found.teeth is None else "the record does not decide it"
+        raise InputError(
+            "speed", "none", why=why, fix="--speed" if found.teeth else "--teeth or --speed"
+        )
     return LineTable(
         f"{found.record.source}, {line.channel}",
         (

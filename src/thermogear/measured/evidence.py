@@ -28,6 +28,7 @@ _PLAIN = 0.1  # weight of a reading that may be the one
 _TOLD = 1e-3  # least weight that is told
 _MOST_TOLD = 6
 _ALIKE = 3e-4  # relative distance of two lines that are one
+_APART = 0.01  # of two mesh lines of one train
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,6 +101,24 @@ class Evidence:
             if one.kind != "gear" and any(abs(c / self.mesh - 1.0) < _ALIKE for c in one.combs)
         )
         return self.mesh_weight + sum(beside)
+
+    def share_of(self, mesh: float, *, teeth: int, least: float) -> float:
+        """Weight of the ``mesh`` line [cycles/sample] as that of a gear of ``teeth`` known to be
+        there: of each hypothesis the line that has them, else any of its lines alike. Combs without
+        a gear are such lines from ``least`` on, lower ones do not count; one that has no line at
+        all has nothing against it."""
+        share = total = 0.0
+        for one in self.hypotheses:
+            lines = [own.mesh for own in one.gears if teeth in own.teeth]
+            lines = lines or [own.mesh for own in one.gears]
+            lines = lines or [step for step in one.combs if step >= least]
+            if not lines and not one.combs:
+                lines = [mesh]
+            if lines:
+                here = [abs(line / mesh - 1.0) < _APART for line in lines]
+                share += one.weight * float(np.mean(here))
+                total += one.weight
+        return share / total if total > 0.0 else 1.0
 
     @property
     def gears(self) -> tuple[Gear, ...]:

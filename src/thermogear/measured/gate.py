@@ -24,6 +24,10 @@ FILLED = 0.05
 """Largest share of a channel's samples that is filled in; above it the longest whole stretch is
 used, or amplitudes are withheld."""
 
+COARSE = 0.25
+"""Largest share of the strongest line that coarse levels may falsify; above it amplitudes are
+withheld."""
+
 LEAST_RATE = 200.0
 """Samples a second below which no mesh line is sampled: the rate is taken for a shaft's."""
 
@@ -204,10 +208,16 @@ class _Channel:
         values = self.through.table[self.place]
         inside = slice(*stretch) if stretch else slice(0, values.size)
         size = inside.stop - inside.start
-        kept = [(one, int(np.count_nonzero(one.samples[inside]))) for one in self.own]
+        counted = [(one, int(np.count_nonzero(one.samples[inside]))) for one in self.own]
+        whole = [(one, count / size) for one, count in counted if one.kind in _AS_A_WHOLE]
+        for one, share in whole:
+            alike = sum(other for its, other in whole if its.kind == one.kind)
+            if share:
+                self.as_a_whole(one, share, alike)
+        kept = [(one, count) for one, count in counted if one.kind not in _AS_A_WHOLE]
         total = sum(count for _, count in kept) / size
         missing = np.zeros(values.size, dtype=bool)
-        withhold = ""
+        withhold = self.through.withheld.get(self.channel.name, "")
         for one, count in kept:
             share = count / size
             if stretch and count == 0:
@@ -243,7 +253,38 @@ class _Channel:
         self.through.table[self.place] = values
         if withhold:
             self.through.withheld[self.channel.name] = withhold
-            self.through.extra[self.channel.name] = total
+            self.more(total)
+
+    def as_a_whole(self, one: Damage, share: float, alike: float) -> None:
+        """What no filling mends: wrapped samples are put back, up to FILLED of all ``alike``;
+        coarse levels widen intervals, up to COARSE; above, and of another grid, amplitudes are
+        withheld."""
+        own, withholds = share, True
+        if one.kind == "wrapped":
+            self.through.table[self.place][one.samples] += one.value or 0.0
+            own, withholds = _UNSURE * share, alike > FILLED
+        elif one.kind == "coarse":
+            own = one.value or 0.0
+            withholds = own > COARSE
+            self.more_of_strongest(own)
+        self.more(own)
+        if withholds:
+            self.through.withheld.setdefault(self.channel.name, _WORDS[one.kind])
+            self.say(one, "amplitudes are withheld", _TOO_MUCH[one.kind], withholds=True)
+        else:
+            self.say(
+                one, _DONE[one.kind], f"adds {100 * own:.2g} % to the half width of amplitudes"
+            )
+
+    def more(self, own: float) -> None:
+        """Add to the relative half width of the channel's amplitudes."""
+        extra = self.through.extra
+        extra[self.channel.name] = extra.get(self.channel.name, 0.0) + own
+
+    def more_of_strongest(self, own: float) -> None:
+        """Count a part of it in the channel's strongest line."""
+        clipped = self.through.clipped
+        clipped[self.channel.name] = clipped.get(self.channel.name, 0.0) + own
 
     def filled_in(self, kept: Sequence[tuple[Damage, int]], size: int, explained: float) -> None:
         """What filled samples may do: the share that the channel's lines do not explain, and how
@@ -259,15 +300,14 @@ class _Channel:
             extra += own
             whole = one.kind == "clipping"
             if whole:
-                clipped = self.through.clipped.get(self.channel.name, 0.0)
-                self.through.clipped[self.channel.name] = clipped + own
+                self.more_of_strongest(own)
             self.say(one, "filled in by the channel's own lines",
                      f"adds {100 * own:.2g} % {'of the strongest line ' if whole else ''}"
                      "to the half width of amplitudes")  # fmt: skip
-        self.through.extra[self.channel.name] = extra
+        self.more(extra)
 
     def say(self, one: Damage, done: str, effect: str, *, withholds: bool = False) -> None:
-        value = "" if one.value is None else f" {one.value:g}"
+        value = "" if one.value is None or one.kind in _AS_A_WHOLE else f" {one.value:g}"
         self.through.findings.append(
             Finding(
                 kind=f"{_WORDS[one.kind]}{value}",
@@ -296,11 +336,23 @@ _WORDS = {
     "clipping": "clipping at",
     "bridged": "straight lines in place of samples",
     "made finer": "samples on the line between their neighbours",
+    "stuck": "single samples at",
+    "wrapped": "values beyond the range that came back at its other end",
+    "another grid": "samples repeated at even distances",
+    "coarse": "coarse levels",
 }
-_GONE = ("missing", "sentinel", "zeros", "bridged")
+_GONE = ("missing", "sentinel", "zeros", "bridged", "stuck")
+_AS_A_WHOLE = ("wrapped", "another grid", "coarse")
+_DONE = {"wrapped": "put back by adding or taking the range", "coarse": "kept"}
 _TOO_MUCH = {
     "clipping": "lines are too small, and harmonics are made, by an unknown amount",
     "held": "a sample that repeats the one before weakens lines and makes images",
+    "wrapped": "which samples were beyond the range is unsure where they are many (use a larger "
+    "range)",
+    "another grid": "the nearest samples taken at another rate weaken lines and make images of "
+    "them (give the record at the rate at which it was taken)",
+    "coarse": "rounding to few levels is no noise, and falsifies every line (use more of the "
+    "converter's range)",
     "made finer": "straight lines between samples weaken lines and make images of them (give the "
     "record at the rate at which it was taken)",
 }

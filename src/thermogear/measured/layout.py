@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
+from thermogear.measured.choosing import is_time_column
 from thermogear.measured.clock import comment_column, labelled
 from thermogear.measured.options import A_TEXT, ReadOptions, refused
 from thermogear.measured.record import Notice
-from thermogear.measured.traps import is_possible_rate, is_rate_name, is_time_name, split_unit
+from thermogear.measured.traps import is_possible_rate, is_rate_name, split_unit
 from thermogear.measured.units import factor_of, kind_of, unit
 
 MOST_COLUMNS = 4096
@@ -212,7 +213,8 @@ def _facts(layout: Layout, above: list[str]) -> None:
         elif re.match(r"(number of )?channels?( count)?$", key_name.strip(), re.I) and re.fullmatch(
             r"[0-9]+", number
         ):
-            signals = sum(not is_time_name(name) for name in layout.names)
+            columns = zip(layout.names, layout.units, strict=True)
+            signals = sum(not is_time_column(*column) for column in columns)
             if number.lstrip("0") not in (str(signals), str(layout.columns)):
                 layout.notices.append(
                     Notice(

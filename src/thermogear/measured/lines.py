@@ -12,7 +12,7 @@ from thermogear.base.units import STANDARD_GRAVITY
 from thermogear.measured.chain import Chain, reduced
 from thermogear.measured.gate import turned_by
 from thermogear.measured.gearing import Gearing
-from thermogear.measured.mate import sides_of
+from thermogear.measured.mate import known_teeth, sides_of
 from thermogear.measured.record import Channel, Notice, Record
 from thermogear.measured.turns import MeshTurns
 from thermogear.measured.unfollowed import unfollowed
@@ -82,12 +82,13 @@ class MeasuredLine:
 class Doubts:
     """What damage does to a channel's lines: ``extra`` relative half width of amplitudes, of which
     ``clipped`` counts in the channel's strongest line, why amplitudes are ``withheld``, why the
-    ``rate`` is doubtful."""
+    ``rate`` is doubtful; whether the shaft's ``speed`` is."""
 
     extra: float = 0.0
     clipped: float = 0.0
     withheld: str = ""
     rate: str = ""
+    speed: bool = False
 
     def shared(self, lines: Sequence[tuple[float, float]], amplitude: float) -> float:
         """Relative half width of a line of this ``amplitude`` beside ``lines`` (place, size)."""
@@ -103,6 +104,7 @@ class Doubts:
             line = replace(line, half_width=nan)
         if self.rate:
             line = replace(line, frequency=nan, frequency_half_width=nan, displacement=nan)
+        if self.rate or self.speed:
             line = replace(line, shaft_speed=nan, speed_half_width=nan)
         return replace(line, withheld="; ".join(t for t in (self.withheld, self.rate) if t))
 
@@ -145,7 +147,7 @@ def wanted_lines(
                 )
         return found[:harmonics]
     mesh = gearing.mesh_frequency
-    shafts = _known(gearing, teeth)
+    shafts = known_teeth(gearing, teeth)
     found = []
     for rank in range(1, harmonics + 1):
         if 2.56 * rank * mesh > 1.0:  # not above rate/2.56
@@ -170,12 +172,6 @@ def wanted_lines(
     return [w for w in found if bins < w.position < 0.5 - bins]
 
 
-def _known(gearing: Gearing, teeth: int | None) -> list[int]:
-    """Teeth of the shafts that are decided, and those given."""
-    given = [teeth] if teeth else []
-    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
-
-
 def other_lines(
     strong: list[tuple[float, float]],
     gearing: Gearing,
@@ -192,7 +188,7 @@ def other_lines(
     sidebands.
     """
     mesh = gearing.mesh_frequency
-    known = _known(gearing, teeth)
+    known = known_teeth(gearing, teeth)
     shaft = mesh / (known[0] if teeth is None else teeth) if known or teeth else None
     further = [other.order * mesh / gearing.shafts[0].teeth for other in gearing.meshes]
     least = _PROMINENT * max((size for _, size in strong), default=0.0)
@@ -308,6 +304,11 @@ def channel_lines(
         # with what may be its own beside it, or without; a sideband shares its mesh line's
         gain = float(np.sqrt(1.0 + missed.get(rank, 0.0)))
         low, high = min(1.0, gain), max(1.0, gain)
+        comes = 0.0 if want.kind == "mesh" else reading.changing**2 + reading.turning**2
+        if comes > 1.0:  # more of it comes and goes than stays: it may be no line
+            relative = max(relative, 1.0)
+        else:  # a short event beside it, or its own
+            low = min(low, 1.0 / float(np.sqrt(1.0 + comes)))
         if turns is not None and turns.lacks:
             high = max(high, 1.0 / alone)
         else:

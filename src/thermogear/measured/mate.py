@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 SLOW = 12.0
 """Turns of a gear over the record: four of a mate three times as large."""
 _RATIO = 3.0  # teeth of the mate over those of the known gear
+_LARGEST = 8.0  # of that ratio
 _FASTER = 4.0 / 3.0
 _FEW = 4.0  # turns over the record, below which nothing tells a wave from what is slower
 _STEP = 0.25  # turns over the record, between waves tried
@@ -26,7 +27,8 @@ _MOST = 0.1  # of a line's power: sidebands of a fifth of it on both sides, and 
 
 def known_teeth(gearing: Gearing, teeth: int | None) -> list[int]:
     """Teeth of the shafts that are decided, and those given."""
-    return sorted({shaft.teeth for shaft in gearing.shafts} | ({teeth} if teeth else set()))
+    given = [teeth] if teeth else []
+    return list(dict.fromkeys([*(shaft.teeth for shaft in gearing.shafts), *given]))
 
 
 def sides_of(gearing: Gearing, *, teeth: int | None, rank: int, mesh: float) -> tuple[float, ...]:
@@ -48,16 +50,28 @@ def may_be_slow(gearing: Gearing, *, teeth: int | None, samples: int) -> bool:
 
 def told_of_mate(gearing: Gearing, *, teeth: int | None, samples: int) -> list[Notice]:
     """What a slower mate that is not known would change."""
-    if not may_be_slow(gearing, teeth=teeth, samples=samples):
+    known = known_teeth(gearing, teeth)
+    if len(known) != 1:
         return []
-    (own,) = known_teeth(gearing, teeth)
+    (own,) = known
     turns = gearing.mesh_frequency * samples / own
+    if turns >= _LARGEST * _FEW:
+        return []
+    if turns >= SLOW:
+        least = gearing.mesh_frequency * samples / _FEW
+        text = (
+            f"the record holds {turns:.3g} turns of the gear of {own} teeth; what a mate that is "
+            f"not known, of more than {least:.0f} teeth, changes of the mesh line counts as the "
+            "line's own: it turned fewer than four times"
+        )
+        return [Notice("info", text)]
     return [
         Notice(
             "warning",
             f"the record holds {turns:.3g} turns of the gear of {own} teeth, and fewer of a larger "
             "mate, which is not known: below four of them its sidebands are no lines of their own. "
-            "The mesh lines' half widths hold what those of a fifth may bring, a sideband's do not "
+            "The mesh lines' half widths hold what those of a fifth may bring, of a mate of up to "
+            "three times as many teeth; a sideband's do not "
             "where one of the mate stands beside it (a record "
             f"{SLOW / turns:.2g} times as long tells them apart)",
         )

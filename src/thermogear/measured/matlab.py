@@ -141,8 +141,10 @@ def _matrix(body: memoryview, order: str, prefix: str, depth: int) -> list[Named
         return _structure(parts, order, name, shape, depth)
     if kind == _CELL:
         return _cells(parts[3:], order, name, shape, depth)
-    if kind == _CHAR or kind > 15 or kind < 6 or is_complex or len(parts) < 4:
+    if kind == _CHAR or kind > 15 or kind < 6 or len(parts) < 4:
         return []
+    if is_complex:  # no record: what it is called and how large it is will do
+        return [Named(name, np.broadcast_to(np.complex128(0.0), shape), shape)]
     stored, content = parts[3]
     if stored not in _KINDS:
         raise _Malformed(f"numbers of type {stored}")

@@ -74,6 +74,12 @@ def no_channel(key: str, names: Sequence[str], field: str = "channel") -> InputE
     )
 
 
+def no_tacho(error: InputError) -> InputError:
+    """The refusal of a channel as that of a tacho, which may be a file as well."""
+    why = f"there is no such file and no such channel; {error.why}"
+    return InputError("tacho", error.got, allowed=error.allowed, why=why, fix=error.fix)
+
+
 def refused(path: Path, as_what: str, reason: object, fix: str | None = None) -> InputError:
     """A file that does not hold what its kind promises."""
     text = " ".join(str(reason).split())[:200] or type(reason).__name__

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.base.units import RPM
-from thermogear.measured.contradictions import of_pulses, of_tacho_speed, of_teeth
+from thermogear.measured.contradictions import of_pulses, of_speed, of_tacho_speed, of_teeth
 from thermogear.measured.gearing import Gearing, find_gearing
 from thermogear.measured.meshes import Stated
+from thermogear.measured.rate_check import SURE
 from thermogear.measured.record import Notice
 from thermogear.measured.shaft import VARIES, Shaft
 from thermogear.signals.orders import resample_by_angle
@@ -22,6 +23,10 @@ Floats = NDArray[np.float64]
 MESHES = 16.0
 """Mesh cycles that stand for a turn where no shaft is known."""
 
+_UNDECIDED = (
+    "which line is the mesh line of the gear of {} teeth is not decided: orders and the speed are "
+    "those of the line that was followed (--speed, or a tacho, decides)"
+)
 _NEAR, _MOST = 0.04, 10  # of pulses told by a stated speed
 
 
@@ -71,7 +76,7 @@ def order_angle(
         mesh = None if gearing is None else gearing.mesh_frequency * per_turn
     if mesh is None and teeth and not shaft.line:
         mesh = float(teeth)
-    z = teeth or (gearing.teeth if gearing else None)
+    z = _teeth_of(shaft, gearing, mesh, teeth, (speed, rate), told_as, notices)
     decided = [one.teeth for one in gearing.shafts] if gearing else []
     contradicted = [of_teeth(teeth, decided)]
     if steady:
@@ -122,6 +127,35 @@ def order_angle(
         gearing=gearing,
         teeth=z,
     )
+
+
+def _teeth_of(
+    shaft: Shaft,
+    gearing: Gearing | None,
+    mesh: float | None,
+    teeth: int | None,
+    said: tuple[float | None, float | None],
+    told_as: float,
+    notices: list[Notice],
+) -> int | None:
+    """The teeth given, else those found. None where a run's line that was followed may be the mesh
+    line of another gear than that of the teeth given, whose speed is not the one ``said`` [rad/s],
+    with the rate."""
+    if teeth is None or gearing is None:
+        return teeth or (gearing.teeth if gearing else None)
+    if not shaft.line or shaft.span < VARIES:
+        return teeth
+    speed, rate = said
+    per_sample = 2.0 * np.pi * (mesh or 1.0) / teeth * (rate or 1.0)
+    low, high = (per_sample * one for one in shaft.speeds)
+    if speed is not None and of_speed(speed, lowest=low, highest=high) is None:
+        return teeth
+    line = gearing.mesh_frequency * told_as
+    least = teeth / shaft.turns.size
+    if gearing.weighed.share_of(line, teeth=teeth, least=least) >= SURE:
+        return teeth
+    notices.append(Notice("important", _UNDECIDED.format(teeth)))
+    return None
 
 
 def _found(

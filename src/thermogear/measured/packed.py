@@ -90,7 +90,7 @@ def _header(stream: IO[bytes], path: Path) -> tuple[tuple[int, ...], bool, np.dt
 def _array(stream: IO[bytes], size: int, path: Path) -> np.ndarray | None:
     """One member; None for what holds no plain numbers. Text may be a unit, so it is left out."""
     shape, fortran, dtype = _header(stream, path)
-    if dtype.hasobject or dtype.kind not in "iufb":
+    if dtype.hasobject or dtype.kind not in "iufbc":
         return None
     need = math.prod(shape) * dtype.itemsize
     if need > size:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from thermogear.base.bounds import SPEED
 from thermogear.measured.contradictions import NEAR
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.record import Notice, Record
@@ -35,13 +36,14 @@ def check_rate(
     teeth: int | None,
     given: int | None,
     speed: float | None,
+    undecided: bool = False,
 ) -> str:
     """Why the rate is doubtful, "" where it is not: against teeth and speed where these are known.
 
     A rate given that contradicts the file's is kept where teeth and speed confirm it. The rate is
     doubted, beside the speed, only where the teeth are decided, or are ``given`` and the mesh line
     is beyond doubt, and no reading of the lines with any weight fits the speed (and the teeth
-    ``given``, or those decided).
+    ``given``, or those decided). ``undecided``: the mesh line may be another gear's.
     """
     if teeth is None:
         return record.rate_doubt
@@ -60,13 +62,13 @@ def check_rate(
     shaft = implied if speed is None else speed / (2.0 * np.pi)
     nominal = f"; the {60 * shaft:.6g} rpm given count as nominal"
     told = _TOLD < abs(implied / shaft - 1.0) <= NEAR
-    notices.append(
-        Notice(
-            "info",
-            f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
-            f"{60 * implied:.6g} rpm{nominal if told else ''}",
-        )
-    )
+    if undecided:
+        nominal, told = ", if this mesh line is theirs", True
+    text = f"the rate {record.rate:g}/s and {teeth} teeth make the shaft turn at "
+    text += f"{60 * implied:.6g} rpm{nominal if told else ''}"
+    high = 60 * implied > SPEED.high
+    text += f"; shafts turn at up to {SPEED.ends[1]}: is the rate right?" if high else ""
+    notices.append(Notice("warning" if high else "info", text))
     if 2.56 * gearing.mesh_frequency > 1.0:
         notices.append(
             Notice("warning", "the rate is below 2.56 times the mesh line: aliases are possible")
@@ -81,8 +83,8 @@ def check_rate(
         return record.rate_doubt
     if any(abs(implied * teeth / z / shaft - 1.0) <= NEAR for z in weighed.teeth):
         return record.rate_doubt  # the speed given is that of the teeth found: others are told of
-    sure = given is not None and weighed.line_weight >= SURE
-    if weighed.verdict != "decided" and not sure:
+    doubtless = given is not None and weighed.line_weight >= SURE
+    if weighed.verdict != "decided" and not doubtless:
         # what the mesh line is, is open: it contradicts nobody
         notices.append(
             Notice(

@@ -10,7 +10,7 @@ from thermogear.base.errors import InputError, meant
 from thermogear.measured.hdf import read_hdf
 from thermogear.measured.matlab import read_mat
 from thermogear.measured.optional import read_mdf, read_tdms, read_uff
-from thermogear.measured.options import ReadOptions, decoded_limit
+from thermogear.measured.options import ReadOptions, decoded_limit, no_tacho
 from thermogear.measured.packed import read_npy, read_npz
 from thermogear.measured.record import Record
 from thermogear.measured.text import read_text
@@ -114,5 +114,5 @@ def read_record(
         record = READERS[format_of(path)](path, options)
     except InputError as error:
         told = error.field == "channel" and keep[len(channels) :] and error.got == repr(keep[-1])
-        raise (error.named("tacho") if told else error) from error
+        raise (no_tacho(error) if told else error) from error
     return examined(record.supplied(rate, unit, scale, tacho))

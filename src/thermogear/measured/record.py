@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.bounds import FULL_SCALE, RATE
 from thermogear.base.errors import InputError
-from thermogear.measured.options import no_channel, place_of
+from thermogear.measured.options import no_channel, no_tacho, place_of
 from thermogear.measured.units import UNITS, factor_of, kind_of, known_unit
 
 Floats = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Channel:
     """One signal: ``unit`` a known name or None (the file does not say), ``samples`` its store.
 
     A value is ``scale`` x sample + ``offset`` in ``unit``. ``file``: of a run that lies in several
-    files the one it is from.
+    files the one it is from. ``strange``: what the file states as the unit and is none known.
     """
 
     name: str
@@ -56,6 +56,7 @@ class Channel:
     offset: float = 0.0
     needs_scale: bool = False  # integer full scale: a unit alone does not calibrate it
     file: str = ""
+    strange: str = ""
 
     def __len__(self) -> int:
         return len(self.samples)
@@ -180,7 +181,7 @@ class Record:
         try:
             named = self.channel(tacho).name
         except InputError as error:
-            raise error.named("tacho") from error
+            raise no_tacho(error) from error
         return replace(self, tacho=named)
 
     def supplied(

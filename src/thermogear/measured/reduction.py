@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from thermogear.base.bounds import MOST_TEETH, PULSES, SPEED
+from thermogear.base.bounds import MOST_TEETH, PULSES
 from thermogear.base.errors import InputError, short
 from thermogear.measured.chain import METHODS, Chain
 from thermogear.measured.changing import (
@@ -19,9 +19,10 @@ from thermogear.measured.changing import (
     order_lines,
     read_in_angle,
 )
-from thermogear.measured.contradictions import NEAR, of_line, of_speed, of_teeth
+from thermogear.measured.choosing import chosen_channels
+from thermogear.measured.contradictions import of_speed
 from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
-from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import (
     Doubts,
     MeasuredLine,
@@ -31,13 +32,19 @@ from thermogear.measured.lines import (
     wanted_lines,
 )
 from thermogear.measured.mate import known_teeth, told_of_mate
-from thermogear.measured.meshes import Stated
 from thermogear.measured.quantities import of_velocity
-from thermogear.measured.rate_check import SURE, check_rate
+from thermogear.measured.rate_check import check_rate
 from thermogear.measured.readers import read_record
 from thermogear.measured.record import Channel, Notice, Record
+from thermogear.measured.stated import (
+    expected_mesh,
+    settled_teeth,
+    speed_undecided,
+    stated_gearing,
+    stated_of,
+)
 from thermogear.measured.swelling import Swelling, swelling_of
-from thermogear.measured.traps import health, unknown_unit
+from thermogear.measured.traps import unknown_unit
 from thermogear.measured.turns import MeshTurns, clearest, mesh_turns
 from thermogear.measured.units import UNITS
 from thermogear.signals.interval import read_line
@@ -51,7 +58,6 @@ Floats = NDArray[np.float64]
 LONGEST = 1 << 21
 """Samples per channel reduced at once; a longer record is cut there with a notice."""
 
-_MAINS = (50.0, 60.0)  # Hz
 _BEAT = 0.05  # of the line, that two steady lines may leave
 _JUMP_TURNS = 3  # of the shaft in a piece whose phase is looked at
 
@@ -150,14 +156,14 @@ def measure(
     _require(harmonics, sidebands, orders, sensor_tolerance, pulses_per_turn)
     require_teeth(teeth)
     notices = list(record.notices)
-    chosen = _chosen(record, channels, notices)
+    chosen = chosen_channels(record, channels, notices)
     through = passed(chosen, LONGEST)
     if len(chosen[0]) > LONGEST:
         notices.append(
             Notice("info", f"the first {LONGEST} of {len(chosen[0])} samples are reduced to lines")
         )
     given = teeth, speed
-    expected, stated = _expected(record, teeth, speed), _stated(record, teeth, speed)
+    expected, stated = expected_mesh(record, teeth, speed), stated_of(record, teeth, speed)
     changing, said = read_in_angle(
         record,
         through,
@@ -175,15 +181,15 @@ def measure(
     if changing is not None:
         gearing, teeth, turns = changing.gearing, changing.teeth, changing.turns
     else:
-        gearing = _gearing(through.table, notices, expected, stated)
+        gearing = stated_gearing(through.table, notices, expected, stated)
     if changing is not None and changing.slices is not None:
         return _of_slices(record, through, chain, changing, notices, given)
     if changing is None and _whole_turns(through, gearing, teeth):
-        gearing = _gearing(through.table, [], expected, stated)
+        gearing = stated_gearing(through.table, [], expected, stated)
     chosen, start, table = through.channels, through.start, through.table
     if changing is None:
-        teeth = _teeth(gearing, teeth, notices)
-    doubt = record.rate_doubt
+        teeth = settled_teeth(gearing, teeth, notices)
+    doubt, undecided = record.rate_doubt, None
     if gearing is not None and turns is None:
         turns = mesh_turns(table, gearing, teeth=teeth, harmonics=harmonics)
         # in a resampled record the lines stand at multiples of this mean and nowhere else
@@ -191,7 +197,20 @@ def measure(
         turns = replace(turns, half_width=turns.half_width + through.turned)
         notices += told_of_mate(gearing, teeth=teeth, samples=table.shape[-1])
     if gearing is not None:
-        doubt = check_rate(record, gearing, notices, teeth=teeth, given=given[0], speed=speed)
+        size = table.shape[-1]
+        undecided = speed_undecided(
+            gearing, teeth=given[0], speed=speed, rate=record.rate, samples=size
+        )
+        doubt = check_rate(
+            record,
+            gearing,
+            notices,
+            teeth=teeth,
+            given=given[0],
+            speed=speed,
+            undecided=undecided is not None,
+        )
+        through.findings += [undecided] if undecided else []
     if doubt:
         through.findings.append(
             Finding(
@@ -232,6 +251,7 @@ def measure(
                 clipped=through.clipped.get(channel.name, 0.0),
                 withheld=through.withheld.get(channel.name, ""),
                 rate=doubt,
+                speed=undecided is not None,
             ),
         )
     notices += told_withheld(lines, turns)
@@ -344,9 +364,11 @@ def _untold(
 ) -> Iterator[Notice]:
     """What neither the record nor the user says, and what it means for the lines."""
     if record.rate is None:
-        yield Notice("important", "no rate is known: lines are in orders and cycles per sample")
+        text = "no rate is known: lines are in orders and cycles per sample (give --rate)"
+        yield Notice("important", text)
     if any(c.unit is None for c in channels):
-        strange = next((u for c in channels if c.unit is None and (u := unknown_unit(c.name))), "")
+        bare = [c for c in channels if c.unit is None]
+        strange = next((u for c in bare if (u := c.strange or unknown_unit(c.name))), "")
         what = f"the unit {strange!r} is not one of {UNITS}" if strange else "no unit is known"
         yield Notice("important", f"{what}: amplitudes are the file's own numbers (give --unit)")
     if sensor_tolerance is None:
@@ -363,29 +385,6 @@ def _filtered(chain: Chain, rate: float, mesh: float, gearing: Gearing | None) -
             f"{band.taps} taps: the filter passes {float(band.gain(mesh)):.3f} of the mesh "
             f"line ({kept})",
         )
-
-
-def _chosen(record: Record, channels: Sequence[str | int], notices: list[Notice]) -> list[Channel]:
-    if channels:
-        picked = [record.channel(name) for name in channels]
-        for channel in picked:
-            if why := health(channel).silent:
-                raise InputError("channel", repr(channel.name), why=f"no signal: {why}")
-        return picked
-    alive, silent = [], []
-    for channel in record.signals():
-        if why := health(channel).silent:
-            silent.append(f"channel {channel.name!r} holds no signal: {why}")
-        else:
-            alive.append(channel)
-    notices += [Notice("warning", f"{why}; left out") for why in silent]
-    if not alive:
-        raise InputError("record", record.source, why="; ".join(silent[:3]))
-    if len({c.unit for c in alive}) > 1:
-        first = alive[0].unit
-        notices.append(Notice("info", f"channels of several units; those in {first} are reduced"))
-        alive = [c for c in alive if c.unit == first]
-    return alive
 
 
 def _whole_turns(through: Passed, gearing: Gearing | None, teeth: int | None) -> bool:
@@ -436,64 +435,3 @@ def require_teeth(teeth: int | None) -> None:
     if teeth is not None and not 1 <= teeth <= MOST_TEETH:
         got = teeth if abs(teeth) < 10**12 else "a number of more than twelve digits"
         raise InputError("teeth", got, allowed=f"1..{MOST_TEETH}")
-
-
-def _expected(record: Record, teeth: int | None, speed: float | None) -> float | None:
-    if speed is not None:
-        SPEED.require("speed", speed)
-        if speed == 0.0:
-            raise InputError("speed", "0 rad/s", why="a gear that stands still has no line")
-    if record.rate is None or teeth is None or speed is None:
-        return None
-    return teeth * speed / (2.0 * np.pi) / record.rate
-
-
-def _stated(record: Record, teeth: int | None, speed: float | None) -> Stated:
-    if record.rate is None:
-        return Stated(teeth=teeth)
-    shaft = None if speed is None else speed / (2.0 * np.pi) / record.rate
-    return Stated(teeth=teeth, shaft=shaft, mains=tuple(f / record.rate for f in _MAINS))
-
-
-def _gearing(
-    table: Floats, notices: list[Notice], expected: float | None, stated: Stated
-) -> Gearing | None:
-    """What the lines say, with what is stated as evidence; the expected place only where a line
-    is clear there as well."""
-    try:
-        free: Gearing | None = find_gearing(list(table), stated=stated)
-    except InputError as error:
-        notices.append(Notice("important", str(error)))
-        free = None
-    if expected is None or (free and _is_expected(free, expected)):
-        return free
-    if 5.0 / table.shape[-1] < expected < 0.45:
-        try:
-            near = find_gearing(list(table), expected, stated)
-        except InputError:
-            return free  # nothing stands where teeth and speed put the mesh line
-        heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
-        if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
-            weighed = near.weighed
-            if weighed.mesh_weight >= SURE and (
-                said := of_line(near.mesh_frequency, found=weighed.mesh, weight=weighed.mesh_weight)
-            ):
-                notices.append(said)
-            return near
-    return free
-
-
-def _is_expected(free: Gearing, expected: float) -> bool:
-    """Whether the line found is the one expected: a stated speed is nominal. A sideband of a line
-    beyond doubt may stand nearer to it."""
-    off = abs(free.mesh_frequency / expected - 1.0)
-    sure = free.weighed.mesh_weight >= SURE
-    return off < 0.03 or (off <= NEAR and sure)
-
-
-def _teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
-    if gearing is None:
-        return teeth
-    if (said := of_teeth(teeth, [shaft.teeth for shaft in gearing.shafts])) is not None:
-        notices.append(said)
-    return gearing.teeth if teeth is None else teeth

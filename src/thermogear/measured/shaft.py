@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +14,8 @@ from thermogear.measured.traps import is_tacho_name
 from thermogear.measured.units import counts_turns, kind_of
 from thermogear.signals.following import band_power
 from thermogear.signals.lines import line_spectrum
-from thermogear.signals.orders import resample_by_angle, tacho_times
-from thermogear.signals.tacho import numbered, pulse_turns, speed_turns
+from thermogear.signals.orders import resample_by_angle, rising_edges
+from thermogear.signals.tacho import Pulses, numbered, pulse_turns, speed_turns
 from thermogear.signals.tracking import (
     LINES,
     Tracked,
@@ -34,6 +35,7 @@ _LEAST_PART = 0.2  # of the record, that an angle must cover to be used
 _SHARPER = 1.3  # times more power in the strongest lines: then an angle is believed
 _LEAST_SHARP = 0.05
 _POWER = 1e-3  # of the highest order's: less is no line to follow
+_NARROW = 0.25  # of the whole range, between the percentiles: less is beside the pulses
 _AS_SHARP = 0.8  # of the sharpness before: then a line's own phase is as good an angle
 
 
@@ -57,11 +59,17 @@ class Shaft:
     told: tuple[Notice, ...] = ()
 
     @property
-    def span(self) -> float:
-        """Highest over lowest speed, of means over hundredths of the record."""
+    def speeds(self) -> tuple[float, float]:
+        """Lowest and highest speed [turns/sample], of means over hundredths of the record."""
         marks = np.linspace(0, self.turns.size - 1, min(101, self.turns.size // 2)).astype(int)
         speeds = np.diff(self.turns[marks]) / np.diff(marks)
-        return float(speeds.max() / max(speeds.min(), 1e-300))
+        return float(speeds.min()), float(speeds.max())
+
+    @property
+    def span(self) -> float:
+        """Highest over lowest speed."""
+        low, high = self.speeds
+        return high / max(low, 1e-300)
 
 
 def given_shaft(
@@ -161,8 +169,9 @@ def _by_pulses(
 ) -> Shaft:
     values = channel.values()
     good = np.isfinite(values)
-    times = tacho_times(np.where(good, values, np.nanmin(values)), own)
-    pulses = numbered(times)
+    if not good.any():
+        raise InputError("tacho", "no number at all", allowed="a signal with pulses")
+    pulses = _counted(np.where(good, values, np.nanmin(values)), own)
     turns = pulse_turns(pulses, pulses_per_turn or 1.0, rate=rate, samples=samples, start=at)
     told = []
     if pulses.lost or pulses.extra or pulses.aside:
@@ -180,6 +189,23 @@ def _by_pulses(
         pulses=pulses_per_turn,
         told=tuple(told),
     )
+
+
+def _counted(values: Floats, rate: float) -> Pulses:
+    """The pulses through the level midway between percentiles, or between the extremes.
+
+    Pulses narrower than the percentiles see none of are far higher than what these see; so is a
+    single spike, through whose level nothing else goes.
+    """
+    low, high = float(values.min()), float(values.max())
+    levels = None, 0.5 * (low + high)
+    tried = [rising_edges(values, rate=rate, level=level) for level in levels]
+    if np.ptp(np.percentile(values, [2.0, 98.0])) < _NARROW * (high - low):
+        tried.reverse()
+    for times in tried:
+        with suppress(InputError):
+            return numbered(times)
+    return numbered(max(tried, key=len))
 
 
 def _by_speed(channel: Channel, own: float, rate: float, samples: int, at: float) -> Shaft:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from thermogear.measured.choosing import is_time_column, time_column
 from thermogear.measured.options import ReadOptions, no_channel, place_of, refused
 from thermogear.measured.parts import with_gaps
 from thermogear.measured.record import Channel, Notice, Record, Samples
@@ -19,12 +20,11 @@ from thermogear.measured.traps import (
     is_rate_name,
     is_step_name,
     is_tacho_name,
-    is_time_name,
     read_time,
     split_unit,
     without_doubles,
 )
-from thermogear.measured.units import counts_turns, factor_of, kind_of, unit
+from thermogear.measured.units import counts_turns, factor_of, kind_of, unit, unknown
 
 MOST_CHANNELS = 512
 MOST_IN_ALL = 4096
@@ -92,6 +92,12 @@ def record_of(
             told.number(str(key), value, f"attribute {key}")
     for array in arrays:
         told.array(array)
+    if told.complex:
+        text = f"complex numbers are no record: {', '.join(map(repr, told.complex[:5]))}"
+        if not told.channels:
+            fix = "save what was sampled: real numbers"
+            raise refused(path, kind, f"{text} (and no other array is as long as one)", fix)
+        told.notes.append(Notice("warning", f"{text}; left aside"))
     if not told.channels:
         raise refused(path, kind, "it holds no array of numbers as long as a record")
     notes = told.notes
@@ -133,6 +139,7 @@ class _Told:
     times: list[Channel] = field(default_factory=list)
     rates: list[tuple[float, str]] = field(default_factory=list)
     notes: list[Notice] = field(default_factory=list)
+    complex: list[str] = field(default_factory=list)
 
     def number(self, name: str, value: Any, origin: str, factor: float = 1.0) -> None:
         """A rate, where ``name`` says so and ``value`` is a number of ``factor`` [1/s]."""
@@ -151,8 +158,10 @@ class _Told:
         if said is None:  # "time_s" tells its unit wherever it is
             head, (leaf, said) = bare.removesuffix(leaf), split_unit(leaf)
             bare = head + leaf
+        strange = ""
         for key in ("units", "unit", "Unit", "Units", "unit_string"):
-            said = said or unit(text_of(array.attributes.get(key)) or "")
+            text = text_of(array.attributes.get(key)) or ""
+            said, strange = said or unit(text), strange or unknown(text)
         sizes = [n for n in array.shape if n != 1]
         if not sizes:
             factor = factor_of(said) if said and kind_of(said) == "frequency" else 1.0
@@ -160,32 +169,43 @@ class _Told:
             self.number(leaf, value, f"variable {array.name}", factor)
         elif len(sizes) > 2 or max(sizes) < SHORTEST:
             return
+        elif np.iscomplexobj(array.data):
+            self.complex.append(array.name)
         elif len(sizes) == 1:
-            kind = self.times if is_time_name(leaf) else self.channels
-            kind.append(Channel(bare, _flat(array), said))
+            kind = self.times if is_time_column(leaf, said) else self.channels
+            kind.append(Channel(bare, _flat(array), said, strange=strange))
         elif min(sizes) > MOST_CHANNELS or len(array.shape) != 2:
             text = f"{array.name!r} of shape {array.shape} is left aside"
             self.notes.append(Notice("warning", text))
         else:
             axis = 0 if sizes[0] >= sizes[1] else 1
             self.channels += [
-                Channel(f"{bare}[{index + 1}]", Column(array.data, index, axis=axis), said)
+                Channel(
+                    f"{bare}[{index + 1}]",
+                    Column(array.data, index, axis=axis),
+                    said,
+                    strange=strange,
+                )
                 for index in range(min(sizes))
             ]
 
     def time_base(self, longest: int) -> TimeBase:
-        """What the first time as long as the channels says; nothing where there is none.
+        """What the time as long as the channels says; nothing where there is none.
 
         What it says of the rate goes to the others.
         """
-        time = next((one for one in self.times if len(one) == longest), None)
-        if time is None:
+        times = [one for one in self.times if len(one) == longest]
+        leaves = [one.name.rsplit("/", 1)[-1].rsplit(".", 1)[-1] for one in times]
+        columns = [(leaf, one.unit, one.samples) for leaf, one in zip(leaves, times, strict=True)]
+        best = time_column(columns)
+        if best is None:
             return TimeBase(rate=None, start=0.0, origin="")
+        time = times[best]
         t = np.asarray(time.samples[0 : min(longest, MOST_STAMPS)], dtype=float)
         if t.size < longest:
             text = f"the rate is taken from the first {t.size} samples of {time.name!r}"
             self.notes.append(Notice("info", text))
-        base = read_time(time.name, time.unit, t)
+        base = read_time(time.name, time.unit, t, stated=bool(self.rates))
         self.notes += base.notices
         if base.rate is not None:
             self.rates.append((base.rate, base.origin))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermogear.base.cells import MISSING, NUMBER, cells_of
+from thermogear.measured.choosing import is_time_column, time_column
 from thermogear.measured.clock import has_clocks, is_stamp_name, without_clocks
 from thermogear.measured.layout import Layout, find_layout
 from thermogear.measured.options import (
@@ -156,7 +157,8 @@ def _head(lines: io.TextIOWrapper) -> list[str]:
 def _kept(layout: Layout, options: ReadOptions) -> list[int]:
     if not options.keep:
         return list(range(layout.columns))
-    times = {i for i, name in enumerate(layout.names) if is_time_name(name)}
+    columns = list(zip(layout.names, layout.units, strict=True))
+    times = {i for i, column in enumerate(columns) if is_time_column(*column)}
     channels = [i for i in range(layout.columns) if i not in times]
     names = [layout.names[i] for i in channels]
     wanted = set()
@@ -167,9 +169,8 @@ def _kept(layout: Layout, options: ReadOptions) -> list[int]:
             wanted.add(channels[place])
         else:
             raise no_channel(key, names)
-    named = zip(layout.names, layout.units, strict=True)
     special = {
-        i for i, (name, unit) in enumerate(named) if is_tacho_name(name) or counts_turns(unit)
+        i for i, (name, unit) in enumerate(columns) if is_tacho_name(name) or counts_turns(unit)
     }
     return sorted(wanted | times | special)
 
@@ -296,13 +297,17 @@ def _record(
     names = [layout.names[i] for i in keep]
     units = [layout.units[i] for i in keep]
     rate, origin, start = layout.rate, "header" if layout.rate else "", 0.0
-    times = [i for i, name in enumerate(names) if is_time_name(name)]
-    for place in times[:1]:
+    table = list(zip(names, units, columns, strict=True))
+    times = [i for i, (name, unit_name, _) in enumerate(table) if is_time_column(name, unit_name)]
+    best = time_column([table[i] for i in times])
+    if best is not None:
+        place = times[best]
         t = np.asarray(columns[place][:MOST_STAMPS])
         if t.size < len(columns[place]):
             text = f"the rate is taken from the first {t.size} rows of {names[place]!r}"
             notes.append(Notice("info", text))
-        base = read_time(names[place], units[place], t, repeats=_repeats(columns, t.size))
+        repeats, known = _repeats(columns, t.size), rate is not None
+        base = read_time(names[place], units[place], t, repeats=repeats, stated=known)
         notes += base.notices
         start, gaps, jitter = base.start, base.gaps, base.jitter
         if base.drop:
@@ -319,8 +324,9 @@ def _record(
         elif base.rate is not None and (rate is None or abs(base.rate - rate) > base.half_width):
             rate, origin = base.rate, base.origin
             half, note = base.half_width, base.note
-    if len(times) > 1:
-        notes.append(Notice("warning", f"{len(times)} time columns; the first is used"))
+        if len(times) > 1:
+            text = f"{len(times)} time columns; {names[place]!r} is used"
+            notes.append(Notice("warning", text))
     channels = [
         Channel(name, column, unit_name)
         for i, (name, unit_name, column) in enumerate(zip(names, units, columns, strict=True))

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from thermogear.base.bounds import RATE
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
-from thermogear.measured.units import factor_of, kind_of, unit
+from thermogear.measured.units import TIMES, factor_of, kind_of, says_seconds, unit, unknown
 from thermogear.signals.stamps import Pace, grain_of, jumps_of, pace_of, usual_rate
 
 Floats = NDArray[np.float64]
 
 _TIME = re.compile(r"^(x[_ ]?value|time|zeit|temps|tijd|时间|t)(?:[ _]?(?:stamp|axis))?$", re.I)
+_OF_TIME = re.compile(r"time|zeit|temps|tijd|时间", re.I)
 _TACHO = re.compile(r"tach|key[ _-]?phas|once[ _-]?per|转速脉冲|键相", re.I)
 _RATE = re.compile(
     r"^(fs|f_s|sr|samp(?:ling|le)?[ _-]?(?:rate|freq(?:uency)?)|rate|采样频率|采样率)"
@@ -30,6 +31,8 @@ _DT = re.compile(
 )
 _SUFFIX = re.compile(r"^(.*?)[ _](s|sec|ms|us|rpm|hz)$", re.I)
 """A unit behind an underscore: of times and speeds alone, where nothing else can be meant."""
+_LETTERS = ("h", "d")
+"""Units of time that mean other things behind any other name: (h) is horizontal."""
 
 _LONGEST = 200  # characters of a name that are looked at and kept
 
@@ -46,15 +49,20 @@ MOST_STAMPS = 1 << 23
 _OFF = 0.5  # of a step: farthest of a stamp from an even clock, beside rounding
 _JITTER = 0.02  # of a step: jitter, or rounding, that is told
 _EXACTLY = 1e-8  # relative half width that is not told
+_LOW, _HIGH = 1e3, 1e6  # samples/s: between them records of vibration are taken
 
 
 def is_time_name(name: str) -> bool:
-    """Whether a column's name (without its unit) says time.
+    """Whether a column's name says time: without its unit, or before one that is not known.
 
-    >>> is_time_name("Time"), is_time_name("a1")
-    (True, False)
+    >>> [is_time_name(one) for one in ("Time", "time [weeks]", "a1", "T [K]")]
+    [True, True, False, False]
     """
-    return bool(_TIME.match(name.strip()[:_LONGEST]))
+    text = name.strip()[:_LONGEST]
+    if unknown_unit(text):
+        text = re.split(r"\s*[\[(（]", text)[0]
+        return len(text) > 1 and bool(_TIME.match(text))
+    return bool(_TIME.match(text))
 
 
 def is_step_name(name: str) -> bool:
@@ -84,14 +92,16 @@ def is_possible_rate(rate: float) -> bool:
 def split_unit(name: str) -> tuple[str, str | None]:
     """A header cell as (name, known unit): "a1 [g]", "Time(ms)", "acc / m/s²", "加速度(m/s²)".
 
-    >>> split_unit("Time(ms)"), split_unit("time_s")
-    (('Time', 'ms'), ('time', 's'))
+    >>> split_unit("Time(ms)"), split_unit("time_s"), split_unit("Seconds")
+    (('Time', 'ms'), ('time', 's'), ('Seconds', 's'))
     """
     text = name.strip()[:_LONGEST].strip("\"'").strip()
     for pattern in (r"^(.*?)\s*[\[(（{]([^\])）}]*)[\])）}]\s*$", r"^(.*?)\s+(?:/|in)\s+(.+)$"):
         found = re.match(pattern, text)
         if found and found.group(1).strip():
             known = unit(found.group(2))
+            if known in _LETTERS and not _OF_TIME.search(found.group(1)):
+                known = None
             if known is not None:
                 return found.group(1).strip(), known
     found = _SUFFIX.match(text)
@@ -99,7 +109,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
         turns = kind_of(known) in ("speed", "frequency") and not is_rate_name(text)
         if turns or is_time_name(found.group(1)):
             return found.group(1), known
-    return text, None
+    return text, unit(text) if says_seconds(text) else None
 
 
 def unknown_unit(name: str) -> str:
@@ -109,8 +119,7 @@ def unknown_unit(name: str) -> str:
     ('furlong', '', '')
     """
     found = re.search(r"[\[(（]([^\])）]{1,20})[\])）]\s*$", name[:_LONGEST])
-    text = found.group(1).strip() if found else ""
-    return text if re.search(r"[^\W\d]", text) and unit(text) is None else ""
+    return unknown(found.group(1)) if found else ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,23 +140,30 @@ class TimeBase:
 
 
 def read_time(
-    name: str, unit_name: str | None, t: Floats, *, repeats: NDArray[np.bool_] | None = None
+    name: str,
+    unit_name: str | None,
+    t: Floats,
+    *,
+    repeats: NDArray[np.bool_] | None = None,
+    stated: bool = False,
 ) -> TimeBase:
     """Rate and start from a time column, or why it gives none.
 
     ``t`` in the column's own unit; ``repeats``: of each row, whether its every value repeats the
-    row before. A time without a unit gives no rate. A doubled stamp on a row that is doubled as a
-    whole is one row written twice and is dropped. Jumps by whole numbers of steps are dropped
-    blocks: ``gaps`` (before which row, how many samples). Stamps may be rounded, also so that they
-    repeat, and may jitter by half a step; any other irregularity gives no rate. The rate is that
-    of :func:`~thermogear.signals.stamps.pace_of`, or the one usual rate in its interval.
+    row before; ``stated``: the file states its rate elsewhere. A time without a unit gives no rate.
+    A doubled stamp on a row that is doubled as a whole is one row written twice and is dropped.
+    Jumps by whole numbers of steps are dropped blocks: ``gaps`` (before which row, how many
+    samples). Stamps may be rounded, also so that they repeat, and may jitter by half a step; any
+    other irregularity gives no rate. The rate is that of
+    :func:`~thermogear.signals.stamps.pace_of`, or the one usual rate in its interval.
     """
     notes: list[Notice] = []
     label = f"time column {name!r}"
     if unit_name is None or kind_of(unit_name) != "time":
-        notes.append(
-            Notice("important", f"{label} states no unit: no rate is taken from it (give --rate)")
-        )
+        strange = unknown_unit(name)
+        what = f"is in {strange!r}, which is none of {TIMES}" if strange else "states no unit"
+        level = "info" if stated else "important"
+        notes.append(Notice(level, f"{label} {what}: no rate is taken from it"))
         return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
     with np.errstate(over="ignore"):
         seconds = t * factor_of(unit_name)
@@ -160,7 +176,7 @@ def read_time(
     elif np.all(seconds == seconds[0]):
         what = "stands still"
     if what:
-        notes.append(Notice("important", f"{label} {what}: no rate is taken from it (give --rate)"))
+        notes.append(Notice("important", f"{label} {what}: no rate is taken from it"))
         return TimeBase(rate=None, start=0.0, origin="", drop=(), notices=tuple(notes))
     grain = grain_of(t) * factor_of(unit_name)
     steps = np.diff(seconds)
@@ -214,15 +230,26 @@ def _paced(found: TimeBase, label: str, seconds: Floats, grain: Floats, unit_nam
             if 0 < doubled.size <= _FEW * steps.size
             else f"steps are not uniform (row {first}: off by up to {far:.3g} steps)"
         )
-        text = f"{label}: {what}; no rate is taken from it (give --rate)"
+        text = f"{label}: {what}; no rate is taken from it"
         return replace(found, notices=(*notes, Notice("important", text)))
     if gaps:
         notes.append(_told(label, gaps, found.drop))
     if pace.jitter > _JITTER:
         notes.append(_jitters(label, pace))
     if unit_name != "s":
-        notes.append(Notice("info", f"{label} is in {unit_name}"))
+        notes.append(_in_unit(label, unit_name, 1.0 / pace.step))
     return _with_rate(replace(found, gaps=gaps, notices=tuple(notes)), label, pace)
+
+
+def _in_unit(label: str, unit_name: str, rate: float) -> Notice:
+    """The unit of a time column; asked about where it makes a ``rate`` [1/s] that is too high for
+    sensors of vibration, and a longer unit would not."""
+    meant = [(one, rate * factor_of(unit_name) / factor_of(one)) for one in ("us", "ms", "s")]
+    fits = [f"in {one} it is {slow:.6g}" for one, slow in meant if _LOW < slow < _HIGH]
+    if rate < _HIGH or not fits:
+        return Notice("info", f"{label} is in {unit_name}")
+    text = f"{label} in {unit_name} makes {rate:.6g} samples/s; {' or '.join(fits)}: is its unit"
+    return Notice("warning", f"{text} right? (else rename it, or give --rate)")
 
 
 def _with_rate(base: TimeBase, label: str, pace: Pace) -> TimeBase:
@@ -308,6 +335,15 @@ class Health:
             return ""
         return f"its largest value is {self.peak:.3g}, allowed {TINY:g}..{HUGE:g}: scale it"
 
+    @property
+    def state(self) -> str:
+        """What the reader says of a channel without a signal, "" of any other."""
+        if self.peak >= HUGE:
+            return f"holds values up to {self.peak:.3g}: damaged or of another type"
+        if self.constant:
+            return "is zero throughout" if self.zeros else "is constant"
+        return "" if self.peak else "holds no number at all"
+
 
 def health(channel: Channel) -> Health:
     """One pass over a channel, block by block."""
@@ -353,25 +389,13 @@ def health(channel: Channel) -> Health:
 def examined(record: Record) -> Record:
     """The record with a notice for every channel that is zero, constant or has gaps."""
     for channel in record.channels:
-        found = health(channel)
-        if found.missing == len(channel):
-            record = record.noting("important", f"channel {channel.name!r} holds no number at all")
-        elif found.missing:
-            record = record.noting(
-                "important",
-                f"channel {channel.name!r}: {_count(found.missing, 'sample')} missing (NaN), the "
-                f"longest gap {found.longest_gap}",
-            )
-        if found.peak >= HUGE:
-            record = record.noting(
-                "important",
-                f"channel {channel.name!r} holds values up to {found.peak:.3g}: damaged or of "
-                "another type",
-            )
-        if found.zeros:
-            record = record.noting("important", f"channel {channel.name!r} is zero throughout")
-        elif found.constant:
-            record = record.noting("important", f"channel {channel.name!r} is constant")
+        found, label = health(channel), f"channel {channel.name!r}"
+        if 0 < found.missing < len(channel):
+            missing = _count(found.missing, "sample")
+            text = f"{label}: {missing} missing (NaN), the longest gap {found.longest_gap}"
+            record = record.noting("important", text)
+        if found.state:
+            record = record.noting("important", f"{label} {found.state}")
     return record
 
 

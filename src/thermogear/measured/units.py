@@ -25,7 +25,10 @@ _TABLE: dict[str, tuple[str, float]] = {
     "s": ("time", 1.0),
     "ms": ("time", 1e-3),
     "us": ("time", 1e-6),
+    "ns": ("time", 1e-9),
     "min": ("time", 60.0),
+    "h": ("time", 3600.0),
+    "d": ("time", 86400.0),
     "V": ("voltage", 1.0),
     "mV": ("voltage", 1e-3),
     "rpm": ("speed", 1.0 / 60.0),
@@ -40,6 +43,8 @@ _VIBRATES = ("acceleration", "velocity", "displacement", "voltage")
 _OF_RECORDS = tuple(name for name, (kind, _) in _TABLE.items() if kind in _VIBRATES)
 UNITS = ", ".join(_OF_RECORDS)
 """Known units of what vibrates, in words."""
+TIMES = ", ".join(name for name, (kind, _) in _TABLE.items() if kind == "time")
+"""Known units of time, in words."""
 _SPELLINGS = {
     "m/s2": "m/s^2",
     "m/s**2": "m/s^2",
@@ -66,7 +71,22 @@ _SPELLINGS = {
     "second": "s",
     "seconds": "s",
     "msec": "ms",
+    "millisecond": "ms",
+    "milliseconds": "ms",
     "usec": "us",
+    "microsecond": "us",
+    "microseconds": "us",
+    "nsec": "ns",
+    "nanosecond": "ns",
+    "nanoseconds": "ns",
+    "minute": "min",
+    "minutes": "min",
+    "hr": "h",
+    "hrs": "h",
+    "hour": "h",
+    "hours": "h",
+    "day": "d",
+    "days": "d",
     "volt": "V",
     "volts": "V",
     "v": "V",
@@ -104,6 +124,26 @@ def unit(text: str) -> str | None:
     if low in _SPELLINGS:
         return _SPELLINGS[low]
     return low if low in _TABLE else None
+
+
+def unknown(text: str) -> str:
+    """What is written as a unit and is none that is known; "" where nothing is, or a known one.
+
+    >>> unknown("[furlong]"), unknown("g"), unknown("2")
+    ('furlong', '', '')
+    """
+    bare = text.strip()[:_LONGEST].strip("[](){}").strip()
+    return bare if re.search(r"[^\W\d]", bare) and unit(bare) is None else ""
+
+
+def says_seconds(text: str) -> bool:
+    """Whether a text is a unit of time in a word of its own: no sign that means other things too.
+
+    >>> says_seconds("Seconds"), says_seconds("S"), says_seconds("min")
+    (True, False, False)
+    """
+    known = _SPELLINGS.get(text.strip()[:_LONGEST].lower())
+    return known is not None and kind_of(known) == "time"
 
 
 def known_unit(text: str, field: str = "unit") -> str:

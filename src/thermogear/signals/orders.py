@@ -24,6 +24,18 @@ def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> F
     >>> tacho_times(pulses, 1000.0).round(4)
     array([0.0495, 0.1495, 0.2495, 0.3495])
     """
+    kept = rising_edges(pulses, rate=rate, level=level)
+    if kept.size < 2:
+        raise InputError("tacho", f"{kept.size} edges", allowed=">= 2 rising edges")
+    return kept
+
+
+def rising_edges(pulses: ArrayLike, *, rate: float, level: float | None = None) -> Floats:
+    """What :func:`tacho_times` gives of the same, however few there are.
+
+    >>> rising_edges(np.zeros(10), rate=1000.0).size
+    0
+    """
     values, per_second = finite_record(pulses), positive_rate(rate)
     bottom, top = np.percentile(values, [2.0, 98.0])
     middle = 0.5 * (bottom + top) if level is None else float(level)
@@ -40,9 +52,7 @@ def tacho_times(pulses: ArrayLike, rate: float, level: float | None = None) -> F
             rise = values[edge + 1] - values[edge]
             kept.append((edge + (middle - values[edge]) / rise) / per_second)
             last = int(edge)
-    if len(kept) < 2:
-        raise InputError("tacho", f"{len(kept)} edges", allowed=">= 2 rising edges")
-    return np.asarray(kept)
+    return np.asarray(kept, dtype=float)
 
 
 def tacho_angle(times: ArrayLike, pulses_per_turn: float, at: ArrayLike) -> Floats:

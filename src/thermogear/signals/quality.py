@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermogear.signals.bridged import bridges, made_finer
+from thermogear.signals.bridged import bridges, evenly, made_finer
+from thermogear.signals.converter import coarse, stuck, wrapped
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import Strong, strong_lines
 
@@ -28,11 +29,16 @@ _EVERYWHERE = 0.7  # of the widest bands hold samples
 _SATURATED, _HIGHER = 30, 10.0  # samples at a limit, and times those of another band
 _FAR = 12.0  # robust standard deviations of a spike's second difference
 _OUTSIDE = 8.0  # spans of all other samples
+_FALSIFIED = 0.01  # of the strongest line: what levels may do untold
 
 
 @dataclass(frozen=True, kw_only=True)
 class Damage:
-    """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one."""
+    """``kind`` of damage, ``samples`` where it is, the ``value`` there where it is one.
+
+    Of wrapped samples the value is what, added, puts them right; of coarse levels, how far they may
+    falsify a line, as a share of the strongest.
+    """
 
     kind: str
     samples: Mask
@@ -55,10 +61,11 @@ class Damage:
 
 
 def damages(x: ArrayLike) -> list[Damage]:
-    """Every damage of one channel: missing, sentinels, zeros, held samples, spikes, clipping,
-    straight lines in place of samples or between all of them.
+    """Every damage of one channel: missing, sentinels, values wrapped around, zeros, held or stuck
+    samples, spikes, clipping, another grid, straight lines in place of samples or between all of
+    them; coarse levels, of which all samples are.
 
-    ``x`` [any unit], NaN where a value is missing. No sample is in two of them.
+    ``x`` [any unit], NaN where a value is missing. No sample is in two others of them.
 
     >>> x = np.sin(np.arange(1000.0)) + 0.01 * np.cos(7.0 * np.arange(1000.0) ** 1.5)
     >>> damages(x)
@@ -70,10 +77,13 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _clipped, _held, _straight, _spikes):
+    for one in (_sentinels, _wrapped, _clipped, _held, _stuck, _straight, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
+    share = coarse(values, free) if np.count_nonzero(free) >= 64 else 0.0
+    if share > _FALSIFIED:
+        found.append(Damage(kind="coarse", samples=free, value=share))
     return found
 
 
@@ -101,6 +111,18 @@ def _sentinels(x: Floats, free: Mask) -> list[Damage]:
         else:
             break
     return found
+
+
+def _wrapped(x: Floats, free: Mask) -> list[Damage]:
+    """Values beyond one end of the range that came back at the other."""
+    if np.count_nonzero(free) < 64:
+        return []
+    return [Damage(kind="wrapped", samples=at, value=put) for at, put in wrapped(x, free)]
+
+
+def _stuck(x: Floats, free: Mask) -> list[Damage]:
+    """Samples at one value inside the range, here and there."""
+    return [Damage(kind="stuck", samples=at, value=value) for at, value in stuck(x, free)]
 
 
 def _clipped(x: Floats, free: Mask) -> list[Damage]:
@@ -231,25 +253,30 @@ def _held(x: Floats, free: Mask) -> list[Damage]:
     for start, stop in zip(starts[lengths >= least], stops[lengths >= least], strict=True):
         (zeros if x[start] == 0.0 else held)[start:stop] = True
     held[starts[lengths >= least]] = False  # the first of a held run is a true sample
-    levels = np.unique(x[free]).size
     short = same & ~zeros & ~held
+    grid = np.zeros(x.size, dtype=bool)
     # a coarse converter repeats values by chance: neighbours are equal as often as at random
-    if levels > 512 and np.count_nonzero(short) > 1e-3 * x.size and _not_by_chance(x, free, short):
+    if evenly(x, short) and _not_by_chance(x, free, short, times=2.0):
+        grid = short
+    elif np.count_nonzero(short) > 1e-3 * x.size and _not_by_chance(x, free, short, times=16.0):
         held |= short
-    for kind, where in (("zeros", zeros), ("held", held)):
+    for kind, where in (("zeros", zeros), ("held", held), ("another grid", grid)):
         if where.any():
             found.append(Damage(kind=kind, samples=where))
     return found
 
 
-def _not_by_chance(x: Floats, free: Mask, short: Mask) -> bool:
-    """Whether neighbours are equal far more often than they are one level apart."""
+def _not_by_chance(x: Floats, free: Mask, short: Mask, times: float) -> bool:
+    """Whether neighbours are equal so many times as often as they are one level apart, up or down,
+    of many levels."""
     kept = x[free]
     levels = np.unique(kept)
+    if levels.size <= 512:
+        return False
     step = float(np.min(np.diff(levels)))
     moves = np.abs(np.diff(kept))
     beside = int(np.count_nonzero((moves > 0.0) & (moves < 4.5 * step)))
-    return int(np.count_nonzero(short)) > 2 * max(beside, 1)
+    return int(np.count_nonzero(short)) > times * max(beside, 1) / 8.0  # levels beside
 
 
 def _straight(x: Floats, free: Mask) -> list[Damage]:

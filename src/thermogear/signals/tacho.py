@@ -73,10 +73,11 @@ def numbered(times: ArrayLike) -> Pulses:
     >>> found.numbers, found.lost, found.extra
     (array([0, 1, 2, 3, 5, 6, 7, 8, 9]), 1, 1)
     """
-    edges = finite_record(times, "tacho")
+    edges = np.asarray(times, dtype=float)
     if edges.size < _LEAST or np.any(np.diff(edges) <= 0.0):
-        got = f"{edges.size} pulses"
+        got = f"{edges.size} pulse{'' if edges.size == 1 else 's'}"
         raise InputError("tacho", got, allowed=f">= {_LEAST} pulses in rising order")
+    finite_record(edges, "tacho")
     places, steps = _likeliest(edges)
     kept = _longest(edges[places], steps)
     places = places[kept]

@@ -1,0 +1,116 @@
+"""What a user states of gears and shaft: as evidence, as a place, and what it does not decide."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermogear.base.bounds import SPEED
+from thermogear.base.errors import InputError
+from thermogear.measured.contradictions import NEAR, of_line, of_teeth
+from thermogear.measured.gate import Finding
+from thermogear.measured.gearing import Gearing, find_gearing
+from thermogear.measured.meshes import Stated
+from thermogear.measured.rate_check import SURE
+from thermogear.measured.record import Notice, Record
+
+Floats = NDArray[np.float64]
+
+_MAINS = (50.0, 60.0)  # Hz
+_LEAST_TURNS = 1.0
+
+
+def expected_mesh(record: Record, teeth: int | None, speed: float | None) -> float | None:
+    """Where teeth and ``speed`` [rad/s] put the mesh line [cycles/sample]; None: not known."""
+    if speed is not None:
+        SPEED.require("speed", speed)
+        if speed == 0.0:
+            raise InputError("speed", "0 rad/s", why="a gear that stands still has no line")
+    if record.rate is None or teeth is None or speed is None:
+        return None
+    return teeth * speed / (2.0 * np.pi) / record.rate
+
+
+def stated_of(record: Record, teeth: int | None, speed: float | None) -> Stated:
+    """Teeth, ``speed`` [rad/s] and the mains' frequencies as evidence."""
+    if record.rate is None:
+        return Stated(teeth=teeth)
+    shaft = None if speed is None else speed / (2.0 * np.pi) / record.rate
+    return Stated(teeth=teeth, shaft=shaft, mains=tuple(f / record.rate for f in _MAINS))
+
+
+def stated_gearing(
+    table: Floats, notices: list[Notice], expected: float | None, stated: Stated
+) -> Gearing | None:
+    """What the lines say, with what is stated as evidence; the expected place only where a line
+    is clear there as well."""
+    try:
+        free: Gearing | None = find_gearing(list(table), stated=stated)
+    except InputError as error:
+        notices.append(Notice("important", str(error)))
+        free = None
+    if expected is None or (free and _is_expected(free, expected)):
+        return free
+    if 5.0 / table.shape[-1] < expected < 0.45:
+        try:
+            near = find_gearing(list(table), expected, stated)
+        except InputError:
+            return free  # nothing stands where teeth and speed put the mesh line
+        heights = [float(np.mean(np.log(g.harmonics))) for g in (near, free) if g is not None]
+        if len(heights) == 1 or heights[0] > 0.6 * heights[1]:
+            weighed = near.weighed
+            if weighed.mesh_weight >= SURE and (
+                said := of_line(near.mesh_frequency, found=weighed.mesh, weight=weighed.mesh_weight)
+            ):
+                notices.append(said)
+            return near
+    return free
+
+
+def _is_expected(free: Gearing, expected: float) -> bool:
+    """Whether the line found is the one expected: a stated speed is nominal. A sideband of a line
+    beyond doubt may stand nearer to it."""
+    off = abs(free.mesh_frequency / expected - 1.0)
+    sure = free.weighed.mesh_weight >= SURE
+    return off < 0.03 or (off <= NEAR and sure)
+
+
+def settled_teeth(gearing: Gearing | None, teeth: int | None, notices: list[Notice]) -> int | None:
+    """The teeth given, else those found; told where these contradict each other."""
+    if gearing is None:
+        return teeth
+    if (said := of_teeth(teeth, [shaft.teeth for shaft in gearing.shafts])) is not None:
+        notices.append(said)
+    return gearing.teeth if teeth is None else teeth
+
+
+def speed_undecided(
+    gearing: Gearing,
+    *,
+    teeth: int | None,
+    speed: float | None,
+    rate: float | None,
+    samples: int,
+) -> Finding | None:
+    """Where the line that is read may be the mesh line of another gear than that of the ``teeth``
+    given, so that its shaft may turn otherwise: the shaft's speed is withheld.
+
+    Not where a ``speed`` [rad/s] is given that fits the line. A comb is no mesh line of theirs
+    where the gear turned less than once in the ``samples``.
+    """
+    if teeth is None:
+        return None
+    shaft = gearing.mesh_frequency / teeth
+    if speed is not None and rate and abs(2.0 * np.pi * shaft * rate / speed - 1.0) <= NEAR:
+        return None
+    least = _LEAST_TURNS * teeth / samples
+    share = gearing.weighed.share_of(gearing.mesh_frequency, teeth=teeth, least=least)
+    if share >= SURE:
+        return None
+    return Finding(
+        kind=f"which line is the mesh line of the gear of {teeth} teeth is not decided: that at "
+        f"{gearing.mesh_frequency:.6f} cycles/sample, which is read, has a weight of {share:.2g}",
+        done="the shaft's speed is withheld (give it by --speed)",
+        effect="orders count the turns of a shaft that may be another",
+        withholds=True,
+    )
