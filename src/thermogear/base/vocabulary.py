@@ -195,6 +195,9 @@ QUANTITIES: dict[str, Quantity] = {
     # measured records ("1" where the record states no unit or no rate)
     "record_sample": Quantity("1", "sample of the record", "n"),
     "record_reading": Quantity("1", "reading in the record's own unit", ""),
+    "piece_sample": Quantity("1", "first sample of a piece of the record", "n"),
+    "piece_lowest": Quantity("1", "lowest reading of a piece, in the record's own unit", ""),
+    "piece_highest": Quantity("1", "highest reading of a piece, in the record's own unit", ""),
     "spectrum_position": Quantity("1", "cycles per sample", "f/f_s"),
     "spectrum_reading": Quantity("1", "amplitude (peak) in the record's own unit", ""),
     "line_order": Quantity("1", "order of the first shaft", "f/f_shaft"),

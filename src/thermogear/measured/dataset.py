@@ -22,10 +22,12 @@ Floats = NDArray[np.float64]
 
 _DRAWN = 4096  # points of a curve kept for pictures
 _LONGEST = 1 << 20
+_PIECES = 600  # of the whole record
 
 
 def result_of(found: Measurement) -> Result:
-    """Groups ``record`` (an excerpt), ``spectrum`` (its peaks), ``lines``; settings, gearing and
+    """Groups ``record`` (an excerpt), ``whole`` (the extremes of pieces of a longer one),
+    ``spectrum`` (its peaks), ``lines``; settings, gearing and
     notices as texts, :func:`~thermogear.measured.figures.figures` as a table. Rates and units that
     are unknown stay empty."""
     channels = [found.record.channel(name) for name in found.channels]
@@ -44,6 +46,8 @@ def result_of(found: Measurement) -> Result:
             {"spectrum_position": (("bin",), place)},
         ).assign_coords(channel=names),
     }
+    if found.values.shape[-1] > excerpt:
+        groups["whole"] = _pieces(found.values, found.start).assign_coords(channel=names)
     if found.lines:
         groups["lines"] = _lines(found.lines)
     if found.slices is not None:
@@ -63,6 +67,19 @@ def result_of(found: Measurement) -> Result:
         teeth="" if found.teeth is None else str(found.teeth),
         mesh_position="" if gearing is None else repr(gearing.mesh_frequency),
         figures=figures(found),
+    )
+
+
+def _pieces(table: Floats, start: int) -> xr.Dataset:
+    """Lowest and highest reading of each of some hundred pieces of the record."""
+    first = np.unique(np.linspace(0, table.shape[-1], _PIECES + 1).astype(int)[:-1])
+    axes = ("channel", "piece")
+    return label(
+        {
+            "piece_lowest": (axes, np.minimum.reduceat(table, first, axis=-1)),
+            "piece_highest": (axes, np.maximum.reduceat(table, first, axis=-1)),
+        },
+        {"piece_sample": (("piece",), start + first)},
     )
 
 

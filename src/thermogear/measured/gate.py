@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from thermogear.base.errors import InputError
 from thermogear.measured.record import Channel, Notice, Record
+from thermogear.signals.events import short_event
 from thermogear.signals.filters import without_trend
 from thermogear.signals.quality import Damage, damages, filled
 
@@ -165,6 +166,7 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
         got = f"{size} samples without a gap"
         raise InputError("record", got, allowed=f">= {_SHORTEST}", fix=fix)
     _proportions(through)
+    _events(through)
     return through
 
 
@@ -406,3 +408,24 @@ def _proportions(through: Passed) -> None:
                     )
                 )
         through.table[place] = straight if span > moving else values - mean
+
+
+def _events(through: Passed) -> None:
+    """Short events, kept and told."""
+    for channel, values in zip(through.channels, through.table, strict=True):
+        event = short_event(values)
+        if event is None or channel.name in through.withheld:
+            continue
+        count = event.last - event.first + 1
+        through.findings.append(
+            Finding(
+                kind=f"a short event, {event.times:.2g} times the usual range",
+                channel=channel.name,
+                first=through.start + event.first,
+                last=through.start + event.last,
+                count=count,
+                share=count / values.size,
+                done="kept",
+                effect="sidebands' intervals hold what it adds, a mesh line's do not (cut it out)",
+            )
+        )

@@ -61,14 +61,14 @@ def _summary(results: Result) -> str:
 
 
 def _record(results: Result) -> Section | None:
-    data = results.group("record")
+    data, whole = results.group("record"), results.group("whole")
     if data is None:
         return None
     rate = results.text("rate")
     unit = results.text("unit") or "the file's numbers"
+    x_words = "time [s]" if rate else "sample [–]"
 
     def make() -> Picture:
-        x_words = "time [s]" if rate else "sample [–]"
         panel = Panel(Axis(x_words), Axis(f"reading [{unit}]"))
         count = min(data.sizes["sample"], 2048)
         place = data["record_sample"].values[:count]
@@ -78,7 +78,23 @@ def _record(results: Result) -> Section | None:
             panel.curve(x, values, colour=colour, width=0.6, label=str(channel))
         return Picture([[panel]], size=(WIDE, 2.8), legend=4)
 
+    def make_whole() -> Picture:
+        assert whole is not None
+        panel = Panel(Axis(x_words), Axis(f"reading [{unit}]"))
+        place = whole["piece_sample"].values
+        x = place / float(rate) if rate else place
+        for channel, colour in zip(whole["channel"].values[:4], _COLOURS, strict=False):
+            one = whole.sel(channel=channel)
+            low, high = one["piece_lowest"].values, one["piece_highest"].values
+            panel.band(x, low=low, high=high, colour=colour, opacity=0.4, label=str(channel))
+        return Picture([[panel]], size=(WIDE, 2.8), legend=4)
+
     pictures = Pictures()
+    if whole is not None:
+        caption = "Lowest to highest reading of each piece, after repair: a burst, a drift or a "
+        caption += "pause shows here."
+        needs = ["piece_lowest", "piece_highest"]
+        pictures.add("whole", "The whole record", caption, whole, needs, make_whole, wide=True)
     caption = "The first samples, unfiltered."
     needs = ["record_reading"]
     pictures.add("record", "Start of the record", caption, data, needs, make, wide=True)
