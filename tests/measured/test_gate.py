@@ -332,3 +332,11 @@ def test_a_burst_makes_no_sideband() -> None:
             if line.kind == "sideband":
                 true = 0.1 if " 1 shaft" in line.name else 0.0
                 assert abs(line.reading - true) < 2.0 * line.half_width * line.reading
+
+
+def test_a_blow_is_told_with_its_place() -> None:
+    x = channel()
+    x[3000:3100] += 12.0 * np.sin(1.1 * np.arange(100)) * np.exp(-np.arange(100) / 25.0)
+    (event,) = measured(x).findings
+    assert not event.withholds
+    assert 2900 < event.first < 3100 < event.last < 3200

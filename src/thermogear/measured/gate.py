@@ -166,7 +166,6 @@ def passed(channels: Sequence[Channel], longest: int) -> Passed:
         got = f"{size} samples without a gap"
         raise InputError("record", got, allowed=f">= {_SHORTEST}", fix=fix)
     _proportions(through)
-    _events(through)
     return through
 
 
@@ -410,14 +409,15 @@ def _proportions(through: Passed) -> None:
         through.table[place] = straight if span > moving else values - mean
 
 
-def _events(through: Passed) -> None:
-    """Short events, kept and told."""
+def events_of(through: Passed) -> list[Finding]:
+    """Short events of a record at one speed; they are kept. A run passes resonances as short."""
+    found = []
     for channel, values in zip(through.channels, through.table, strict=True):
         event = short_event(values)
         if event is None or channel.name in through.withheld:
             continue
         count = event.last - event.first + 1
-        through.findings.append(
+        found.append(
             Finding(
                 kind=f"a short event, {event.times:.2g} times the usual range",
                 channel=channel.name,
@@ -429,3 +429,4 @@ def _events(through: Passed) -> None:
                 effect="sidebands' intervals hold what it adds, a mesh line's do not (cut it out)",
             )
         )
+    return found

@@ -21,7 +21,14 @@ from thermogear.measured.changing import (
 )
 from thermogear.measured.choosing import chosen_channels
 from thermogear.measured.contradictions import of_speed
-from thermogear.measured.gate import Finding, Passed, passed, require_samples, require_sampling_rate
+from thermogear.measured.gate import (
+    Finding,
+    Passed,
+    events_of,
+    passed,
+    require_samples,
+    require_sampling_rate,
+)
 from thermogear.measured.gearing import Gearing
 from thermogear.measured.lines import (
     Doubts,
@@ -186,6 +193,7 @@ def measure(
         return _of_slices(record, through, chain, changing, notices, given)
     if changing is None and _whole_turns(through, gearing, teeth):
         gearing = stated_gearing(through.table, [], expected, stated)
+    through.findings += events_of(through)
     chosen, start, table = through.channels, through.start, through.table
     if changing is None:
         teeth = settled_teeth(gearing, teeth, notices)
