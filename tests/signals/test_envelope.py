@@ -65,3 +65,10 @@ def test_a_mesh_line_with_sidebands_is_no_swelling_noise() -> None:
     assert found is not None
     assert found.chance > 1e-2
     assert envelope_rate(np.zeros(200)) is None
+
+
+def test_a_record_whose_squares_vanish_has_no_rate() -> None:
+    """In a mutated file: all powers were 0, and their quotient no number."""
+    noise = 1e-260 * np.random.default_rng(3).normal(size=12_000)
+    found = envelope_rate(noise)
+    assert found is None or found.chance > 0.5

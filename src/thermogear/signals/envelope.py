@@ -129,6 +129,8 @@ def _clearest(band: NDArray[np.complex128], kept: Floats) -> tuple[float, tuple[
     parts = over[rank * tops[:, None]]
     # a rate whose double alone stands out is not the rate
     sums = np.where(parts[:, 0] >= _FIRST * parts.max(axis=-1), parts.sum(axis=-1), 0.0)
+    if not sums.max() > 0.0:  # the band holds lines alone
+        return None
     # where a rate stands out, so do its multiples: the lowest of those that do
     top = int(np.min(tops[sums >= 0.5 * sums.max()]))
     left, middle, right = np.sqrt(over[top - 1 : top + 2])
