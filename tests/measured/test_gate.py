@@ -124,11 +124,14 @@ def test_values_that_wrap_around_are_put_back_or_withheld(share: float) -> None:
     limit = float(np.quantile(np.abs(x), 1.0 - share))
     found = measured(np.mod(x + limit, 2.0 * limit) - limit)
     line = found.lines[0]
-    assert sum(one.share for one in found.findings) == pytest.approx(share, rel=0.2)
+    beyond = int(np.count_nonzero(np.abs(x) > limit))
+    told = sum(one.count for one in found.findings)
     if share > 0.05:
+        assert 0.8 * beyond < told <= beyond  # not all are found, and so none is put back
         assert np.isnan(line.reading)
         assert line.frequency == pytest.approx(MESH, abs=line.frequency_half_width)
     else:
+        assert told == beyond
         assert abs(line.reading - 1.0) < line.half_width < 0.02
 
 

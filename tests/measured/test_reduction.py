@@ -129,7 +129,9 @@ def test_nothing_is_said_of_the_right_rate() -> None:
 def test_a_wrong_tooth_number_is_said() -> None:
     record = Record((Channel("a", mesh_train(1 << 15)[0], "g"),), "x", RATE, "given")
     found = measure(record, teeth=25)
-    assert numbers(important(found))[:5] == [25.0, 32.0, 80.0, 25.0, 25.0]
+    teeth, line = numbers(important(found))[:6], numbers(important(found))[6]
+    assert teeth == [25.0, 32.0, 80.0, 25.0, 25.0, 25.0]
+    assert line == pytest.approx(found.lines[0].position, abs=1e-6)
     assert np.isnan(found.lines[0].shaft_speed)  # the record has a second mesh
 
 

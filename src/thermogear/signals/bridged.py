@@ -38,11 +38,11 @@ def bridges(x: Floats, free: Mask) -> Mask:
     >>> int(inside[0]), int(inside[-1]), inside.size
     (101, 119, 19)
     """
-    bend = _bends(x, free)
+    bend = bends(x, free)
     inside = np.zeros(x.size, dtype=bool)
     known = bend[np.isfinite(bend)]
     usual = float(np.median(known)) if known.size else 0.0
-    level = _level(x[free])
+    level = smallest_step(x[free])
     if not usual > 0.0 or level > _COARSE * usual:
         return inside
     rounding = _LEVEL * level
@@ -80,9 +80,9 @@ def made_finer(x: Floats, free: Mask) -> Mask:
     >>> round(float(np.mean(made_finer(finer, finer < 9.0))), 2)
     0.75
     """
-    bend = _bends(x, free)
+    bend = bends(x, free)
     size = np.nan_to_num(bend)
-    level = _level(x[free])
+    level = smallest_step(x[free])
     most = maximum_filter1d(size, _AROUND)
     straight = bend <= np.maximum(_FLAT * most, _LEVEL * level)
     straight &= (most > 0.0) & (most >= _FINE * level)
@@ -119,16 +119,25 @@ def evenly(x: Floats, repeats: Mask) -> bool:
     return bool(np.nanmedian(beside) >= _STEEP * np.nanmedian(moves) > 0.0)
 
 
-def _bends(x: Floats, free: Mask) -> Floats:
+def bends(x: Floats, free: Mask) -> Floats:
     """How far each sample is off the line between its neighbours, NaN at the ends and where one
-    of the three does not count."""
+    of the three does not count.
+
+    >>> bends(np.array([0.0, 1.0, 4.0, 9.0]), np.ones(4, dtype=bool)).tolist()
+    [nan, 1.0, 1.0, nan]
+    """
     known = np.where(free, x, np.nan)
     bend = np.full(x.size, np.nan)
     bend[1:-1] = np.abs(known[1:-1] - 0.5 * (known[:-2] + known[2:]))
     return bend
 
 
-def _level(kept: Floats) -> float:
-    """The smallest step between values that occur; of numbers with all their digits next to 0."""
+def smallest_step(kept: Floats) -> float:
+    """The smallest step between values that occur, 0 of a single one; of numbers with all their
+    digits next to 0.
+
+    >>> smallest_step(np.array([2.0, 0.5, 1.0, 2.0]))
+    0.5
+    """
     levels = np.unique(kept)
     return float(np.min(np.diff(levels))) if levels.size > 1 else 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from thermogear.signals.bridged import bends, smallest_step
 from thermogear.signals.lines import line_spectrum
 from thermogear.signals.strong import strong_lines
 
@@ -35,8 +36,8 @@ def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     """Samples at one exact value inside the range, eight times as many as at levels beside.
 
     So are samples set to 0.0 one by one, or a code that sticks. Levels are those that occur, five
-    on either side. The record bends there half as much as at samples next in value or more, and
-    less than a fifth of the distances from one to the next are equal: a record that rests has
+    on either side. The record bends there at least 0.4 times as much as at samples next in value,
+    and less than a fifth of the distances from one to the next are equal: a record that rests has
     samples there one after the other, lines in step with the rate at even distances. ``free``:
     samples that count.
 
@@ -56,9 +57,7 @@ def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     places = places[counts[places] > _PILE * np.maximum(below, above)]
     if not places.size:
         return []
-    known = np.where(free, x, np.nan)
-    bend = np.full(x.size, np.nan)
-    bend[1:-1] = np.abs(known[1:-1] - 0.5 * (known[:-2] + known[2:]))
+    bend = bends(x, free)
     found = []
     for place in places:
         at = free & (x == levels[place])
@@ -114,7 +113,7 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     outer = _BINS // 10
     if np.mean(held > 0) < _EVERYWHERE or 2 * np.sum(held[outer:-outer]) < kept.size:
         return []
-    span = high - low + _step(kept)
+    span = high - low + smallest_step(kept)
     turns, error = _turns(values, span, jumps)
     off = turns != 0
     if not _WRAPPED <= np.count_nonzero(off) <= _MOST_WRAPPED * x.size:
@@ -197,10 +196,13 @@ def coarse(x: Floats, free: Mask) -> float:
     """
     kept = x[free]
     spread = float(np.std(kept))
-    if kept.size < _WHOLE * x.size or _MANY * _step(kept[:: 1 + kept.size // 4096]) < spread:
+    if (
+        kept.size < _WHOLE * x.size
+        or _MANY * smallest_step(kept[:: 1 + kept.size // 4096]) < spread
+    ):
         return 0.0
     levels = np.unique(kept)
-    step = _step(levels)
+    step = smallest_step(levels)
     codes = np.ptp(levels) / step + 1.0 if step > 0.0 else np.inf
     if levels.size < _STATES or levels.size < _EVERYWHERE * codes:
         return 0.0
@@ -215,9 +217,3 @@ def coarse(x: Floats, free: Mask) -> float:
     noise = max(0.0, floor * x.size / step**2 - _OWN)
     height = abs(lines[0].amplitude) / step
     return _FOLDED * float(height**-1.5 * np.exp(-2.0 * np.pi**2 * noise))
-
-
-def _step(kept: Floats) -> float:
-    """The smallest step between values that occur, 0 of a single one."""
-    levels = np.unique(kept)
-    return float(np.min(np.diff(levels))) if levels.size > 1 else 0.0
