@@ -60,7 +60,8 @@ class Finding:
         where = f"channel {self.channel!r}: " if self.channel else ""
         much = ""
         if self.count:
-            share = f"{100 * self.share:.2g} %"
+            percent = 100.0 * self.share
+            share = f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %"
             much = f", {self.count} samples ({share}) in {self.first}..{self.last}"
         return f"{where}{self.kind}{much}; {self.done}; {self.effect}"
 
