@@ -74,6 +74,23 @@ def test_wrapped_samples_are_put_back(noise: float, pace: float) -> None:
         assert np.mean(np.abs(whole - x) > 0.05) < 0.1 * share
 
 
+def test_values_that_wrap_around_in_noise_are_told_and_hard_ends_alone_are_not() -> None:
+    random = np.random.default_rng([SEED, 6])
+    for number in range(30):
+        turn = 2 * np.pi * float(random.uniform(0.05, 0.3)) * np.arange(10000)
+        x = np.cos(turn) + 0.5 * np.cos(2.0 * turn) + 0.6 * random.normal(size=turn.size)
+        limit = float(np.quantile(np.abs(x), 0.92 if number % 2 else 0.99))
+        assert wrapped(np.mod(x + limit, 2.0 * limit) - limit, everywhere(x))
+        for ends in (np.arcsin(np.sin(turn)), random.uniform(-1.0, 1.0, turn.size)):
+            assert wrapped(ends + 0.01 * np.cos(turn), everywhere(x)) == []
+
+
+def test_two_states_are_no_amplitude() -> None:
+    x = np.cos(0.37 * np.arange(8000)) + 0.05 * np.random.default_rng(SEED).normal(size=8000)
+    assert coarse(np.where(x > 0.1, 1.0, 0.0), everywhere(x)) > 0.25
+    assert coarse(np.ones(8000), everywhere(x)) == 0.0
+
+
 def test_coarse_levels_falsify_a_line_by_no_more_than_is_told() -> None:
     random = np.random.default_rng([SEED, 4])
     told = 0

@@ -192,10 +192,10 @@ def some_of(evidence: Floats) -> Floats:
     return log_sum(np.add.reduce(each, axis=-1)) - float(np.log(_SHARES.size))
 
 
-def take(used: Flags, found: Seen) -> None:
-    """Mark the lines of groups that are rather there than not as explained."""
+def taken_by(found: Seen) -> NDArray[np.int64]:
+    """The lines of groups that are rather there than not: they are explained."""
     lines = found.lines[found.evidence > 0.0].ravel()
-    used[lines[lines >= 0]] = True
+    return np.asarray(lines[lines >= 0])
 
 
 def refined(
@@ -272,7 +272,7 @@ def comb(peaks: Peaks, used: Flags, *, step: float, error: float) -> tuple[float
     lines = looked.lines[start : start + BLOCK * size].reshape(size, BLOCK)
     found = Seen(evidence=own, lines=lines)
     after = used.copy()
-    take(after, found)
+    after[taken_by(found)] = True
     return mean_exp(each) + narrow(error, width=0.1), after, found
 
 

@@ -22,7 +22,7 @@ from thermogear.measured.groups import (
     narrow,
     seen,
     some_of,
-    take,
+    taken_by,
 )
 from thermogear.measured.peaks import Peaks
 
@@ -235,7 +235,7 @@ def _sidebands(peaks: Peaks, used: Flags, one: Comb, found: Seen) -> tuple[float
         evidence = float(some_of(sides.evidence)) + prior + ONE_MORE
         if evidence > best:
             best, after = evidence, used.copy()
-            take(after, sides)
+            after[taken_by(sides)] = True
     return best, after
 
 

@@ -21,7 +21,7 @@ from thermogear.measured.groups import (
     narrow,
     refined,
     some_of,
-    take,
+    taken_by,
 )
 from thermogear.measured.peaks import Peaks
 
@@ -107,7 +107,7 @@ class Draft:
         return tuple(gears.mesh / z for gears in self.gears for z in gears.teeth)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Carriers:
     """Harmonics of a mesh line +- ``error`` [cycles/sample]: log evidence, the lines that are
     theirs, the ranks seen and their levels."""
@@ -174,6 +174,21 @@ def _carriers(peaks: Peaks, mesh: float, taken: bytes) -> _Carriers:
     return _Carriers(mesh, error, float(evidence), lines, rank, peaks.level[lines])
 
 
+@functools.lru_cache(maxsize=512)
+def _gear(
+    peaks: Peaks, carriers: _Carriers, taken: bytes, teeth: int
+) -> tuple[float, tuple[float, float], NDArray[np.int64]]:
+    """A gear of so many teeth on lines that are not ``taken``: log evidence of its first sidebands
+    alone, of all sidebands and its shaft's own lines, and the lines that are its. Pairs of gears
+    share most."""
+    used = np.frombuffer(taken, dtype=bool)
+    sides, own = carriers.beside(peaks, used, np.array([float(teeth)]))
+    first = float(some_of(sides[0].evidence)[0])
+    each = _each(sides), _each(own)
+    lines = [taken_by(_best(part, one)) for part, one in zip((sides, own), each, strict=True)]
+    return first, (float(_open(each[0])[0]), float(_open(each[1])[0])), np.concatenate(lines)
+
+
 def mesh_of(
     peaks: Peaks, mesh: float, teeth: tuple[int, ...], stated: Stated, first: Draft | None = None
 ) -> Draft:
@@ -187,17 +202,14 @@ def mesh_of(
     mesh_lines[carriers.lines] = True
     around: list[float] = []
     for z in teeth:
-        sides, own = carriers.beside(peaks, used, np.array([float(z)]))
+        first_sides, (sides, own), lines = _gear(peaks, carriers, used.tobytes(), z)
         prior = prior_of(mesh, teeth=z, stated=stated)
         bare += prior
         # beside a line, as close as its own lobe, others are not placed well enough to count teeth
         near = mesh / z < _TOLD_APART * peaks.bin_width
-        around.append(0.0 if near else float(some_of(sides[0].evidence)[0]))
-        total += prior
-        for part in (sides, own):
-            each = _each(part)
-            total += float(_open(each)[0])
-            take(used, _best(part, each))
+        around.append(0.0 if near else first_sides)
+        total = total + prior + sides + own
+        used[lines] = True
     level = float(np.max(carriers.tops, initial=-np.inf))
     gears = Gears(mesh=mesh, level=level, teeth=teeth, sides=tuple(around))
     if first is None:

@@ -23,13 +23,13 @@ _BINS, _EVERYWHERE = 64, 0.7  # of the range; those that hold samples
 _REACH = 8  # samples on either side that a sample is foretold by
 _FITTED = 40_000  # samples at most
 _ROUNDS = 5
-_CLEAR = 9.0  # times the usual error of that: the range
+_CLEAR, _CLEAR_ENDS = 9.0, 7.0  # times the usual error of that: the range; where it ends hard
+_HARD = 0.1  # of the samples a bin holds: those of the outermost bins, where a range ends hard
 _USUAL, _AT_ALL, _AT_MOST = 3.0, 0.05, 0.2  # error of those put back: times the usual; of the range
 _MANY = 10.0  # levels in a standard deviation: fine
 _FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
 _OWN = 1.0 / 12.0  # of a squared level: the rounding's own noise
 _WHOLE = 0.75  # of the samples count
-_STATES = 3  # of a record that vibrates, at least
 
 
 def stuck(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
@@ -86,8 +86,10 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     more are nearer to that with the range added or taken, up to a quarter of all; the range is nine
     times the usual error. Where a run of them begins or ends, the error is then three times the
     usual at most, or a twentieth of the range, and a fifth of it at the very most. Half of all
-    samples are between the range's outer tenths: those of two states are not. ``free``: samples
-    that count.
+    samples are between the range's outer tenths: those of two states are not. Where the outermost
+    of 64 bins both hold a tenth of what a bin holds or more, the record ends hard on both sides, as
+    what overflows does: three times the usual error then does alone, and a range of seven.
+    ``free``: samples that count.
 
     >>> x = np.cos(0.37 * np.arange(2000.0)) + 0.3 * np.cos(0.1 * np.arange(2000.0))
     >>> wrapped(x, x < 9.0)
@@ -120,8 +122,11 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
         return []
     edges = np.flatnonzero(np.diff(off))
     usual, right = _median(error[~off]), _median(error[np.concatenate([edges, edges + 1])])
-    allowed = min(max(_USUAL * usual, _AT_ALL * span), _AT_MOST * span)
-    if span < _CLEAR * usual or right > allowed:
+    allowed = max(_USUAL * usual, _AT_ALL * span)
+    hard = _BINS * min(held[0], held[-1]) >= _HARD * kept.size
+    if not hard:
+        allowed = min(allowed, _AT_MOST * span)
+    if span < (_CLEAR_ENDS if hard else _CLEAR) * usual or right > allowed:
         return []
     sides = [(free & (turns == side), side * span) for side in (1, -1)]
     return [(where, put) for where, put in sides if where.any()]
@@ -188,7 +193,7 @@ def coarse(x: Floats, free: Mask) -> float:
     0.53 q sqrt(q/A) exp(-2 (pi s/q)^2) at most: with noise of a level, none. s^2 is by the median
     of the spectrum's powers, less the rounding's own q^2/12. 0 where a standard deviation holds ten
     levels, of which a line alone is false by 1 %, where most levels between the extremes are
-    empty, as of two states, or no line is clear of noise. ``free``: samples that count.
+    empty, or no line is clear of noise. ``free``: samples that count.
 
     >>> x = np.cos(0.37 * np.arange(4000.0))
     >>> round(coarse(np.round(x), x < 9.0), 2), coarse(np.round(x * 400.0), x < 9.0)
@@ -204,7 +209,7 @@ def coarse(x: Floats, free: Mask) -> float:
     levels = np.unique(kept)
     step = smallest_step(levels)
     codes = np.ptp(levels) / step + 1.0 if step > 0.0 else np.inf
-    if levels.size < _STATES or levels.size < _EVERYWHERE * codes:
+    if levels.size < _EVERYWHERE * codes:
         return 0.0
     place = np.arange(x.size)
     values = x if free.all() else np.interp(place, place[free], kept)
