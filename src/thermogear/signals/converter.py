@@ -23,9 +23,11 @@ _BINS, _EVERYWHERE = 64, 0.7  # of the range; those that hold samples
 _REACH = 8  # samples on either side that a sample is foretold by
 _FITTED = 40_000  # samples at most
 _ROUNDS = 5
-_CLEAR, _CLEAR_ENDS = 9.0, 7.0  # times the usual error of that: the range; where it ends hard
-_HARD = 0.1  # of the samples a bin holds: those of the outermost bins, where a range ends hard
+_CLEAR, _CLEAR_ENDS = 9.0, 6.0  # times the usual error of that: the range; where it ends hard
+_HARD, _HELD = 0.03, 6  # share of what a bin holds, and samples, in each outermost one: a hard end
 _USUAL, _AT_ALL, _AT_MOST = 3.0, 0.05, 0.2  # error of those put back: times the usual; of the range
+_USUAL_ENDS, _AT_MOST_ENDS = 3.5, 0.36  # the same where the range ends hard
+_PUT = 0.42  # of the range: error of those put back, half of it of those that need not be
 _MANY = 10.0  # levels in a standard deviation: fine
 _FOLDED = 0.53  # 2 zeta(3/2)/pi^2: see coarse
 _OWN = 1.0 / 12.0  # of a squared level: the rounding's own noise
@@ -87,8 +89,9 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
     times the usual error. Where a run of them begins or ends, the error is then three times the
     usual at most, or a twentieth of the range, and a fifth of it at the very most. Half of all
     samples are between the range's outer tenths: those of two states are not. Where the outermost
-    of 64 bins both hold a tenth of what a bin holds or more, the record ends hard on both sides, as
-    what overflows does: three times the usual error then does alone, and a range of seven.
+    of 64 bins both hold six samples, and 3 % of what a bin holds, the record ends hard on both
+    sides, as what overflows does: a range of six times the usual error then does, and an error of
+    3.5 times or 0.36 of the range. A saw tooth is a ramp that wraps around, and is told.
     ``free``: samples that count.
 
     >>> x = np.cos(0.37 * np.arange(2000.0)) + 0.3 * np.cos(0.1 * np.arange(2000.0))
@@ -122,11 +125,11 @@ def wrapped(x: Floats, free: Mask) -> list[tuple[Mask, float]]:
         return []
     edges = np.flatnonzero(np.diff(off))
     usual, right = _median(error[~off]), _median(error[np.concatenate([edges, edges + 1])])
-    allowed = max(_USUAL * usual, _AT_ALL * span)
-    hard = _BINS * min(held[0], held[-1]) >= _HARD * kept.size
-    if not hard:
-        allowed = min(allowed, _AT_MOST * span)
-    if span < (_CLEAR_ENDS if hard else _CLEAR) * usual or right > allowed:
+    hard = min(held[0], held[-1]) >= max(_HELD, _HARD * kept.size / _BINS)
+    times, most = (_USUAL_ENDS, _AT_MOST_ENDS) if hard else (_USUAL, _AT_MOST)
+    allowed = min(max(times * usual, _AT_ALL * span), most * span)
+    clear = span >= (_CLEAR_ENDS if hard else _CLEAR) * usual
+    if not clear or right > allowed or _median(error[off]) > _PUT * span:
         return []
     sides = [(free & (turns == side), side * span) for side in (1, -1)]
     return [(where, put) for where, put in sides if where.any()]
