@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt
 
 from thermogear.signals.bridged import bridges, made_finer
+from thermogear.signals.quality import damages
 
 Floats = NDArray[np.float64]
 SEED = 26_11_2026
@@ -90,3 +91,17 @@ def test_a_record_made_finer_is_found(times: float) -> None:
         assert 0.97 - 2.0 / times < share < 1.02 - 1.0 / times
         assert share > 0.24
         assert not made_finer(x, everywhere(x)).any()
+
+
+@pytest.mark.parametrize("bits", [10, 12, 16])
+def test_a_line_between_levels_is_one_damage_and_sticks_to_no_level(bits: int) -> None:
+    """Bridged behind the converter: the line's own values lie between its levels."""
+    random = np.random.default_rng([SEED, 5, bits])
+    step = 16.0 * 2.0**-bits
+    for _ in range(5):
+        turn = 2 * np.pi * float(random.uniform(0.1, 0.2)) * np.arange(10000)
+        x = np.round((np.cos(turn) + 0.1 * random.normal(size=turn.size)) / step) * step
+        x[3000:5001] = np.linspace(x[3000], x[3000] + 1.0, 2001)
+        (told,) = damages(x)
+        assert told.kind == "bridged"
+        assert told.count == pytest.approx(2000, abs=2)

@@ -77,7 +77,7 @@ def damages(x: ArrayLike) -> list[Damage]:
     values = np.asarray(x, dtype=float)
     free = np.isfinite(values)
     found = [Damage(kind="missing", samples=~free)] if not free.all() else []
-    for one in (_sentinels, _wrapped, _clipped, _held, _stuck, _straight, _spikes):
+    for one in (_sentinels, _wrapped, _clipped, _straight, _held, _stuck, _spikes):
         for damage in one(values, free):
             found.append(damage)
             free = free & ~damage.samples
